@@ -1,0 +1,2 @@
+//! stepwave
+fn main() {}
