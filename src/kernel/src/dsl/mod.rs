@@ -1,0 +1,316 @@
+//! The hardware description language: the only writer of netlists.
+//!
+//! A [`Module`] is the builder; a [`Scope`] is an instance in its hierarchy; a [`Signal`] is a net with a reading
+//! (unsigned or two's complement); a [`Register`] is closed by a chain of `when`s. A plain function that takes a scope
+//! and signals is a part. There is no `+`: arithmetic bears the names of Rust's integer methods, so that the reader
+//! sees where the carry goes.
+//!
+//! Mistakes (unequal widths, a register without next value, a name used twice) never panic; they are collected and
+//! come out of [`Module::finish`], each with the source line that made it.
+
+mod register;
+mod signal;
+mod strict;
+
+use std::cell::RefCell;
+use std::collections::HashSet;
+use std::panic::Location;
+
+use crate::bits::{Bits, Width};
+use crate::diag::{Code, Diagnostic, Diagnostics, Place};
+use crate::netlist::{Cell, Claim, Format, NamedNet, Net, Netlist, OnOverflow, Op, Property, ScopeData, ScopeId};
+
+pub use register::{Chain, Register};
+pub use signal::Signal;
+
+/// A netlist under construction.
+#[derive(Debug)]
+pub struct Module {
+    state: RefCell<State>,
+    on_overflow: OnOverflow,
+}
+
+#[derive(Debug)]
+struct State {
+    netlist: Netlist,
+    diagnostics: Vec<Diagnostic>,
+    used_names: HashSet<(ScopeId, String)>,
+}
+
+impl Module {
+    /// An empty module; its strict cells trap.
+    #[must_use]
+    pub fn new(name: &str) -> Module {
+        Module::with_overflow(name, OnOverflow::Trap)
+    }
+
+    /// An empty module whose strict cells do as told when their exact result does not fit.
+    #[must_use]
+    pub fn with_overflow(name: &str, on_overflow: OnOverflow) -> Module {
+        let state =
+            State { netlist: Netlist::new(name), diagnostics: Vec::new(), used_names: HashSet::new() };
+        Module { state: RefCell::new(state), on_overflow }
+    }
+
+    /// The top scope.
+    #[must_use]
+    pub fn top(&self) -> Scope<'_> {
+        Scope { module: self, id: ScopeId::TOP }
+    }
+
+    /// The finished netlist.
+    ///
+    /// # Errors
+    /// All mistakes made while it was described.
+    pub fn finish(self) -> Result<Netlist, Diagnostics> {
+        let State { netlist, mut diagnostics, .. } = self.state.into_inner();
+        for (net, cell) in netlist.nets().zip(&netlist.cells) {
+            if matches!(cell.op, Op::Register { next: None, .. }) {
+                let message = format!("register {} never gets a next value", netlist.describe(net));
+                let place = place_of(&netlist, net);
+                diagnostics.push(Diagnostic { code: Code::UndrivenRegister, place, message });
+            }
+        }
+        if diagnostics.is_empty() { Ok(netlist) } else { Err(Diagnostics(diagnostics)) }
+    }
+
+    /// Appends a cell; a broken width rule becomes a diagnostic and a constant 0 of the width asked for.
+    #[track_caller]
+    fn push(&self, op: Op, width: Width) -> Net {
+        let mut cell = Cell { op, width };
+        let checked = self.state.borrow().netlist.check_cell(&cell);
+        if let Err((code, message)) = checked {
+            self.report(code, message);
+            cell.op = Op::Const(0);
+        }
+        let netlist = &mut self.state.borrow_mut().netlist;
+        // More than 2^32 cells do not fit in memory.
+        let net = Net(u32::try_from(netlist.cells.len()).unwrap_or(u32::MAX));
+        netlist.cells.push(cell);
+        netlist.sources.push(Some(Location::caller()));
+        net
+    }
+
+    #[track_caller]
+    fn report(&self, code: Code, message: String) {
+        let place = Place::Source(Location::caller());
+        self.state.borrow_mut().diagnostics.push(Diagnostic { code, place, message });
+    }
+
+    /// A width, or a diagnostic and one bit.
+    #[track_caller]
+    fn width(&self, bits: u32) -> Width {
+        Width::new(u64::from(bits)).unwrap_or_else(|error| {
+            self.report(Code::BadWidth, error.to_string());
+            Width::ONE
+        })
+    }
+}
+
+fn place_of(netlist: &Netlist, net: Net) -> Place {
+    match netlist.sources.get(net.index()) {
+        Some(Some(location)) => Place::Source(location),
+        _ => Place::Component(netlist.describe(net)),
+    }
+}
+
+/// An instance in the hierarchy: the place where a part's registers and named nets stand.
+#[derive(Clone, Copy, Debug)]
+pub struct Scope<'m> {
+    module: &'m Module,
+    id: ScopeId,
+}
+
+impl<'m> Scope<'m> {
+    /// A scope inside this one.
+    #[track_caller]
+    #[must_use]
+    pub fn scope(self, name: &str) -> Scope<'m> {
+        self.claim_name(name);
+        let scopes = &mut self.module.state.borrow_mut().netlist.scopes;
+        let id = ScopeId(u32::try_from(scopes.len()).unwrap_or(u32::MAX));
+        scopes.push(ScopeData { parent: Some(self.id), name: name.to_owned() });
+        Scope { module: self.module, id }
+    }
+
+    /// An unsigned input.
+    #[track_caller]
+    #[must_use]
+    pub fn input(self, name: &str, bits: u32) -> Signal<'m> {
+        let signal = self.new_signal(Op::Input, self.module.width(bits), false);
+        self.name(name, signal)
+    }
+
+    /// A two's-complement input.
+    #[track_caller]
+    #[must_use]
+    pub fn input_signed(self, name: &str, bits: u32) -> Signal<'m> {
+        let signal = self.new_signal(Op::Input, self.module.width(bits), true);
+        self.name(name, signal)
+    }
+
+    /// An unsigned register, 0 at reset.
+    #[track_caller]
+    #[must_use]
+    pub fn reg(self, name: &str, bits: u32) -> Register<'m> {
+        self.register(name, bits, false)
+    }
+
+    /// A two's-complement register, 0 at reset.
+    #[track_caller]
+    #[must_use]
+    pub fn reg_signed(self, name: &str, bits: u32) -> Register<'m> {
+        self.register(name, bits, true)
+    }
+
+    #[track_caller]
+    fn register(self, name: &str, bits: u32, signed: bool) -> Register<'m> {
+        let op = Op::Register { next: None, reset: 0 };
+        let q = self.new_signal(op, self.module.width(bits), signed);
+        self.name(name, q);
+        Register { q }
+    }
+
+    /// An unsigned constant.
+    #[track_caller]
+    #[must_use]
+    pub fn lit(self, bits: u32, value: u64) -> Signal<'m> {
+        self.new_signal(Op::Const(value), self.module.width(bits), false)
+    }
+
+    /// A two's-complement constant.
+    #[track_caller]
+    #[must_use]
+    pub fn lit_signed(self, bits: u32, value: i64) -> Signal<'m> {
+        let width = self.module.width(bits);
+        let bits = Bits::exact(width, i128::from(value), true).unwrap_or_else(|| {
+            self.module.report(Code::ValueTooWide, format!("the value {value} does not fit in {width}"));
+            Bits::truncated(width, 0)
+        });
+        self.new_signal(Op::Const(bits.value()), width, true)
+    }
+
+    /// Gives a net a name in this scope, shown as its reading says; returns it.
+    #[track_caller]
+    pub fn name(self, name: &str, signal: Signal<'m>) -> Signal<'m> {
+        let format = if signal.is_signed() { Format::Signed } else { Format::Unsigned };
+        self.show(name, signal, format)
+    }
+
+    /// Gives a net a name in this scope, shown in the given format; returns it.
+    #[track_caller]
+    pub fn show(self, name: &str, signal: Signal<'m>, format: Format) -> Signal<'m> {
+        self.claim_name(name);
+        let named = NamedNet { net: signal.net(), scope: self.id, name: name.to_owned(), format };
+        self.module.state.borrow_mut().netlist.names.push(named);
+        signal
+    }
+
+    /// Claims that a net is 1 at every clock: the simulator watches it, a prover proves it.
+    #[track_caller]
+    pub fn invariant(self, name: &str, holds: Signal<'m>) {
+        let never = !holds;
+        let name = format!("{}.{name}", self.module.state.borrow().netlist.scope_path(self.id));
+        self.add_property(Property { name, never: never.net(), claim: Claim::Invariant });
+    }
+
+    #[track_caller]
+    fn add_property(self, property: Property) {
+        let width = self.module.state.borrow().netlist.width(property.never);
+        if width == Width::ONE {
+            self.module.state.borrow_mut().netlist.properties.push(property);
+        } else {
+            self.module.report(Code::NotOneBit, format!("a property is 1 bit wide, not {width}"));
+        }
+    }
+
+    #[track_caller]
+    fn new_signal(self, op: Op, width: Width, signed: bool) -> Signal<'m> {
+        Signal::new(self, self.module.push(op, width), signed)
+    }
+
+    #[track_caller]
+    fn claim_name(self, name: &str) {
+        if !is_identifier(name) {
+            let message = format!("'{name}' is no name: letters, digits and _ only, not beginning with a digit");
+            self.module.report(Code::BadName, message);
+        }
+        let fresh = self.module.state.borrow_mut().used_names.insert((self.id, name.to_owned()));
+        if !fresh {
+            let scope = self.module.state.borrow().netlist.scope_path(self.id);
+            self.module.report(Code::DuplicateName, format!("'{name}' is already a name in {scope}"));
+        }
+    }
+}
+
+/// A name that every wave viewer and Verilog take: `[A-Za-z_][A-Za-z0-9_]*`.
+pub(crate) fn is_identifier(name: &str) -> bool {
+    let mut chars = name.chars();
+    chars.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
+        && chars.all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn codes(module: Module) -> Vec<Code> {
+        module.finish().expect_err("mistakes expected").0.iter().map(|d| d.code).collect()
+    }
+
+    #[test]
+    fn unequal_widths_are_a_diagnostic_that_names_both_nets_and_the_line() {
+        let module = Module::new("bad");
+        let m = module.top();
+        let _ = m.input("a", 4).wrapping_add(m.input("b", 5));
+        let diagnostics = module.finish().unwrap_err();
+        let text = diagnostics.to_string();
+        assert!(text.contains("bad.a (4 bits) and bad.b (5 bits) are not equally wide"), "{text}");
+        assert!(text.contains("dsl/mod.rs:"), "{text}");
+        assert_eq!(diagnostics.0.len(), 1);
+    }
+
+    #[test]
+    fn a_register_without_next_value_and_one_with_two_are_diagnostics() {
+        let module = Module::new("bad");
+        let m = module.top();
+        let _ = m.reg("idle", 3);
+        let twice = m.reg("twice", 3);
+        twice.set(m.lit(3, 1));
+        twice.set(m.lit(3, 2));
+        assert_eq!(codes(module), [Code::DrivenTwice, Code::UndrivenRegister]);
+    }
+
+    #[test]
+    fn names_are_unique_in_their_scope_and_fit_for_waves() {
+        let module = Module::new("bad");
+        let m = module.top();
+        let a = m.input("a", 1);
+        let inner = m.scope("inner");
+        inner.name("a", a);
+        m.name("a", a);
+        m.name("a b", a);
+        m.name("1st", a);
+        assert_eq!(codes(module), [Code::DuplicateName, Code::BadName, Code::BadName]);
+    }
+
+    #[test]
+    fn impossible_widths_and_values_are_diagnostics_not_panics() {
+        let module = Module::new("bad");
+        let m = module.top();
+        let _ = m.reg("none", 0);
+        let _ = m.lit(3, 8);
+        let _ = m.lit_signed(3, 4);
+        let _ = m.lit(4, 1).slice(3, 2);
+        let _ = m.lit(40, 1).concat(m.lit(40, 1));
+        let expected = [
+            Code::BadWidth,
+            Code::ValueTooWide,
+            Code::ValueTooWide,
+            Code::OutOfRange,
+            Code::BadWidth,
+            Code::UndrivenRegister,
+        ];
+        assert_eq!(codes(module), expected);
+    }
+}

@@ -1,0 +1,86 @@
+//! Engines: what runs a [`Design`] clock by clock. They know nets and values, no names, no files, no methods.
+//!
+//! One clock is an edge, at which all registers take their next values at once from the old ones, and the settling of
+//! the combinational nets behind it. *Sample k* is the value of every net settled after edge k; sample 0 is the state
+//! after reset. An input set between two calls changes right behind the next edge, as the output of a register outside
+//! would: the edge itself still sees the old value.
+
+mod gates;
+mod rows;
+mod word;
+
+use crate::elaborate::Design;
+use crate::netlist::Net;
+
+pub use rows::Rows;
+
+/// What an engine is to observe, fixed before it is built so that it can be compiled in.
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    /// Nets recorded in every row.
+    pub columns: Vec<Net>,
+    /// Nets (1 bit) that stop a run as soon as one of them is 1 in a sample.
+    pub stops: Vec<Net>,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Stop {
+    /// The clocks asked for are done.
+    Clocks,
+    /// No room for a further row.
+    RowsFull,
+    /// The net `Watch::stops[_]` of this index is 1 in the last sample.
+    Net(usize),
+}
+
+/// A machine that runs one design.
+pub trait Engine: Send {
+    /// Sets an input from behind the next edge (or from reset) on. Bits above its width are ignored.
+    fn set_input(&mut self, input: Net, value: u64);
+
+    /// Registers take their reset values, clock 0; records sample 0 if there is room for a row.
+    fn reset(&mut self, rows: &mut Rows);
+
+    /// Runs until `clocks` clocks are done, `rows` is full, or a stop net is 1 in a sample; at least one clock is done
+    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded.
+    fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
+
+    /// Number of edges since reset.
+    fn clock(&self) -> u64;
+
+    /// Value of any net in the present sample.
+    fn value(&self, net: Net) -> u64;
+}
+
+/// The engines, for a choice at run time.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum EngineKind {
+    /// Bit by bit through full adders: slow, and obviously right. The judge of the others.
+    Gates,
+    /// Word by word from a flat array of operations.
+    Word,
+}
+
+impl EngineKind {
+    /// Every engine; tests loop over it.
+    pub const ALL: [EngineKind; 2] = [EngineKind::Gates, EngineKind::Word];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            EngineKind::Gates => "gates",
+            EngineKind::Word => "word",
+        }
+    }
+
+    /// An engine of this kind for a design, reset, all inputs 0.
+    #[must_use]
+    pub fn build(self, design: &Design, watch: &Watch) -> Box<dyn Engine> {
+        match self {
+            EngineKind::Gates => Box::new(gates::Gates::new(design, watch)),
+            EngineKind::Word => Box::new(word::WordEngine::new(design, watch)),
+        }
+    }
+}
