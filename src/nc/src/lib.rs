@@ -1,1 +1,37 @@
-//! NC.
+//! The geometry of numerical control, in integers: blocks and their ideal curves.
+//!
+//! Every length is in BLU (basic length units, the pulse equivalent δ): one pulse moves an axis by one BLU, and a
+//! programmed point has integer coordinates. This crate holds what a block *is* (a [`Line`] or an [`Arc`], both a
+//! [`Curve`]), into which quadrants an arc falls ([`Arc::sectors`]), and how far a point that hardware has reached lies
+//! off the ideal curve ([`Curve::deviation`]). It knows no register, no clock and no interpolation method.
+//!
+//! Decisions (which quadrant, on the circle or not, behind or ahead) are made in exact integers; `f64` appears only
+//! where a length, an angle or an error is reported. No input panics: what cannot be built is a [`GeometryError`].
+//!
+//! ```
+//! use stepwave_nc::{Arc, Crossing, Direction};
+//!
+//! // Clockwise about the origin, from the third quadrant into the second.
+//! let arc = Arc::new([-5, -3], [-3, 5], [0, 0], Direction::Clockwise)?;
+//! let sectors = arc.sectors(Crossing::PathExtreme);
+//! assert_eq!(sectors[0].end, [-6, 0]); // the path crosses outside the circle of radius 5.831
+//! assert_eq!(sectors.iter().flat_map(|sector| sector.steps()).sum::<i64>(), 12);
+//! # Ok::<(), stepwave_nc::GeometryError>(())
+//! ```
+
+mod arc;
+mod curve;
+mod error;
+mod exact;
+mod limit;
+mod line;
+mod quadrant;
+mod sector;
+
+pub use arc::Arc;
+pub use curve::{Curve, OUTLINE_LIMIT};
+pub use error::GeometryError;
+pub use limit::{AXES_MAX, AXES_MIN, AXIS_LETTERS, COORDINATE_LIMIT};
+pub use line::Line;
+pub use quadrant::{Direction, Quadrant};
+pub use sector::{Crossing, Sector};

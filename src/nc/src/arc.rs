@@ -1,0 +1,260 @@
+//! Circular arcs in the plane.
+
+use std::f64::consts::TAU;
+
+use crate::curve::outline_points;
+use crate::exact::{between, cross, dot, norm_squared, roots_within_one, vector};
+use crate::limit::check_coordinates;
+use crate::{Crossing, Direction, GeometryError, Quadrant, Sector, sector};
+
+/// A circular arc from one point to another about a centre.
+///
+/// The ideal circle is the one through the start point. The end point may lie up to one BLU off it, as rounded program
+/// data do. An arc that ends where it starts is a full circle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Arc {
+    from: [i64; 2],
+    to: [i64; 2],
+    center: [i64; 2],
+    direction: Direction,
+}
+
+impl Arc {
+    /// The arc between two points about a centre, all in BLU and in machine coordinates.
+    ///
+    /// # Errors
+    /// If a coordinate is beyond [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT), if the start or the end point is the
+    /// centre, or if the end point is more than one BLU nearer to or farther from the centre than the start point.
+    ///
+    /// ```
+    /// use stepwave_nc::{Arc, Direction, Quadrant};
+    ///
+    /// let arc = Arc::new([15, 10], [10, 15], [10, 10], Direction::CounterClockwise)?;
+    /// assert_eq!((arc.start(), arc.end(), arc.radius()), ([5, 0], [0, 5], 5.0));
+    /// assert_eq!((arc.start_quadrant(), arc.end_quadrant()), (Quadrant::I, Quadrant::I));
+    /// # Ok::<(), stepwave_nc::GeometryError>(())
+    /// ```
+    pub fn new(from: [i64; 2], to: [i64; 2], center: [i64; 2], direction: Direction) -> Result<Arc, GeometryError> {
+        for point in [from, to, center] {
+            check_coordinates(&point)?;
+        }
+        if from == center {
+            return Err(GeometryError::ZeroRadius { center });
+        }
+        let [start_squared, end_squared] = [from, to].map(|point| norm_squared(between(center, point)));
+        if !roots_within_one(start_squared, end_squared) {
+            let [start_radius, end_radius] = [start_squared, end_squared].map(|squared| (squared as f64).sqrt());
+            return Err(GeometryError::EndOffCircle { start_radius, end_radius });
+        }
+        if to == center {
+            return Err(GeometryError::EndAtCenter { center });
+        }
+        Ok(Arc { from, to, center, direction })
+    }
+
+    /// The start point in machine coordinates, in BLU.
+    #[must_use]
+    pub fn from(&self) -> [i64; 2] {
+        self.from
+    }
+
+    /// The end point in machine coordinates, in BLU.
+    #[must_use]
+    pub fn to(&self) -> [i64; 2] {
+        self.to
+    }
+
+    /// The centre in machine coordinates, in BLU.
+    #[must_use]
+    pub fn center(&self) -> [i64; 2] {
+        self.center
+    }
+
+    /// The direction of rotation.
+    #[must_use]
+    pub fn direction(&self) -> Direction {
+        self.direction
+    }
+
+    /// The start point relative to the centre, in BLU.
+    #[must_use]
+    pub fn start(&self) -> [i64; 2] {
+        self.relative(self.from)
+    }
+
+    /// The end point relative to the centre, in BLU.
+    #[must_use]
+    pub fn end(&self) -> [i64; 2] {
+        self.relative(self.to)
+    }
+
+    /// The square of the distance of the start point from the centre, in BLU², exact.
+    #[must_use]
+    pub fn radius_squared(&self) -> i128 {
+        let [x, y] = vector(self.start());
+        x * x + y * y
+    }
+
+    /// The radius of the ideal circle, the one through the start point, in BLU.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        (self.radius_squared() as f64).sqrt()
+    }
+
+    /// Whether the end point lies exactly on the circle through the start point.
+    #[must_use]
+    pub fn ends_on_circle(&self) -> bool {
+        norm_squared(vector(self.start())) == norm_squared(vector(self.end()))
+    }
+
+    /// Whether the arc ends where it starts, which means one whole turn.
+    #[must_use]
+    pub fn is_full_circle(&self) -> bool {
+        self.from == self.to
+    }
+
+    /// The quadrant that the motion enters at the start point.
+    ///
+    /// A start point on an axis belongs to the quadrant ahead: (R, 0) is in Q1 counter-clockwise, in Q4 clockwise.
+    #[must_use]
+    pub fn start_quadrant(&self) -> Quadrant {
+        Quadrant::entered(self.start(), self.direction)
+    }
+
+    /// The quadrant that the motion leaves at the end point.
+    ///
+    /// An end point on an axis belongs to the quadrant behind: (R, 0) is in Q4 counter-clockwise, in Q1 clockwise.
+    #[must_use]
+    pub fn end_quadrant(&self) -> Quadrant {
+        Quadrant::entered(self.end(), self.direction.reversed())
+    }
+
+    /// How often the arc passes over an axis between its ends, 0 to 4: one less than its number of sectors.
+    #[must_use]
+    pub fn crossings(&self) -> usize {
+        let (mut quadrant, last) = (self.start_quadrant(), self.end_quadrant());
+        if quadrant == last && !self.end_is_ahead() {
+            return 4; // the end point lies behind the start point: all the way round
+        }
+        let mut count = 0;
+        while quadrant != last {
+            quadrant = quadrant.next(self.direction);
+            count += 1;
+        }
+        count
+    }
+
+    /// The pieces of the arc inside one quadrant each, in the order of the motion: one to five.
+    ///
+    /// The first starts at [`start`](Arc::start), the last ends at [`end`](Arc::end), and between them they join at the
+    /// axes, where [`Crossing`] says. A full circle from inside a quadrant enters that quadrant twice and has five
+    /// sectors; from an axis it has four.
+    ///
+    /// In every sector one coordinate grows and the other shrinks in magnitude, even if the end is off the circle.
+    ///
+    /// ```
+    /// use stepwave_nc::{Arc, Crossing, Direction, Quadrant, Sector};
+    ///
+    /// let arc = Arc::new([-3, -4], [-4, 3], [0, 0], Direction::Clockwise)?;
+    /// let sectors = arc.sectors(Crossing::RoundedRadius);
+    /// assert_eq!(sectors[0], Sector { quadrant: Quadrant::III, start: [-3, -4], end: [-5, 0] });
+    /// assert_eq!(sectors[1], Sector { quadrant: Quadrant::II, start: [-5, 0], end: [-4, 3] });
+    /// # Ok::<(), stepwave_nc::GeometryError>(())
+    /// ```
+    #[must_use]
+    pub fn sectors(&self, crossing: Crossing) -> Vec<Sector> {
+        sector::split(self, crossing)
+    }
+
+    /// The angle through which the arc turns, in radians: more than 0, and 2π for a full circle.
+    #[must_use]
+    pub fn sweep(&self) -> f64 {
+        let (start, end) = (vector(self.start()), vector(self.end()));
+        let angle = (self.ahead() as f64).atan2(dot(start, end) as f64);
+        if angle > 0.0 { angle } else { angle + TAU }
+    }
+
+    /// The length of the ideal arc, in BLU.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.radius() * self.sweep()
+    }
+
+    /// The distance of a position from the whole ideal circle, in BLU.
+    ///
+    /// The position is in machine coordinates; coordinates after x and y are ignored, and with fewer there is no
+    /// distance (NaN). It is |x² + y² - R²| / (√(x² + y²) + R), whose numerator is exact.
+    ///
+    /// ```
+    /// use stepwave_nc::{Arc, Direction};
+    ///
+    /// let arc = Arc::new([5, 0], [0, 5], [0, 0], Direction::CounterClockwise)?;
+    /// assert_eq!(arc.deviation(&[3, 4]), 0.0);
+    /// assert_eq!(arc.deviation(&[4, 0]), 1.0);
+    /// # Ok::<(), stepwave_nc::GeometryError>(())
+    /// ```
+    #[must_use]
+    pub fn deviation(&self, position: &[i64]) -> f64 {
+        self.signed_deviation(position).abs()
+    }
+
+    /// The distance of a position from the whole ideal circle with its side, in BLU: positive outside.
+    ///
+    /// Its magnitude is [`deviation`](Arc::deviation).
+    #[must_use]
+    pub fn signed_deviation(&self, position: &[i64]) -> f64 {
+        let [x, y, ..] = *position else {
+            return f64::NAN;
+        };
+        let reached = norm_squared(between(self.center, [x, y]));
+        let wanted = norm_squared(vector(self.start()));
+        let distance = reached.abs_diff(wanted) as f64 / ((reached as f64).sqrt() + self.radius());
+        if reached < wanted { -distance } else { distance }
+    }
+
+    /// Points of the ideal arc at equal angles, in BLU and machine coordinates, for drawing.
+    ///
+    /// There are `max_points` of them, but two at least and [`OUTLINE_LIMIT`](crate::OUTLINE_LIMIT) at most. The first
+    /// and the last are the programmed ends exactly, all others lie on the circle through the start point.
+    #[must_use]
+    pub fn outline(&self, max_points: usize) -> Vec<[f64; 2]> {
+        let [[cx, cy], [sx, sy]] = [self.center, self.start()].map(|point| point.map(|c| c as f64));
+        let turn = match self.direction {
+            Direction::Clockwise => -self.sweep(),
+            Direction::CounterClockwise => self.sweep(),
+        };
+        let last = outline_points(max_points) - 1;
+        let inner = (1..last).map(|place| {
+            let (sin, cos) = (turn * place as f64 / last as f64).sin_cos();
+            [cx + sx * cos - sy * sin, cy + sx * sin + sy * cos]
+        });
+        let [first, end] = [self.from, self.to].map(|point| point.map(|c| c as f64));
+        std::iter::once(first).chain(inner).chain(std::iter::once(end)).collect()
+    }
+
+    /// The start and the end point in place, for a curve that lends them as slices.
+    pub(crate) fn ends(&self) -> (&[i64], &[i64]) {
+        (&self.from, &self.to)
+    }
+
+    fn relative(&self, [x, y]: [i64; 2]) -> [i64; 2] {
+        [x - self.center[0], y - self.center[1]]
+    }
+
+    /// The cross product of start and end in the sense of the motion.
+    fn ahead(&self) -> i128 {
+        let turned = cross(vector(self.start()), vector(self.end()));
+        match self.direction {
+            Direction::Clockwise => -turned,
+            Direction::CounterClockwise => turned,
+        }
+    }
+
+    /// Whether the end point lies less than half a turn ahead of the start point.
+    fn end_is_ahead(&self) -> bool {
+        self.ahead() > 0
+    }
+}
+
+#[cfg(test)]
+mod tests;

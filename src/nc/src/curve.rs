@@ -1,0 +1,132 @@
+//! The ideal curve of a block, whatever its kind.
+
+use crate::{Arc, Line};
+
+/// The greatest number of points of an outline, so that no request exhausts the memory.
+pub const OUTLINE_LIMIT: usize = 1 << 16;
+
+/// The number of points that an outline has when `max_points` are asked for.
+pub(crate) fn outline_points(max_points: usize) -> usize {
+    max_points.clamp(2, OUTLINE_LIMIT)
+}
+
+/// The ideal curve of one block.
+///
+/// ```
+/// use stepwave_nc::{Curve, Line};
+///
+/// let curve: Curve = Line::new(vec![0, 0], vec![6, 8])?.into();
+/// assert_eq!((curve.to(), curve.axes(), curve.length()), (&[6, 8][..], 2, 10.0));
+/// assert_eq!(curve.signed_deviation(&[0, 5]), 3.0); // left of the line
+/// # Ok::<(), stepwave_nc::GeometryError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Curve {
+    /// A straight line in two to six axes.
+    Line(Line),
+    /// A circular arc in x and y.
+    Arc(Arc),
+}
+
+impl Curve {
+    /// The start point in machine coordinates, in BLU.
+    #[must_use]
+    pub fn from(&self) -> &[i64] {
+        match self {
+            Curve::Line(line) => line.from(),
+            Curve::Arc(arc) => arc.ends().0,
+        }
+    }
+
+    /// The end point in machine coordinates, in BLU.
+    #[must_use]
+    pub fn to(&self) -> &[i64] {
+        match self {
+            Curve::Line(line) => line.to(),
+            Curve::Arc(arc) => arc.ends().1,
+        }
+    }
+
+    /// The number of axes: 2 to 6 for a line, 2 for an arc.
+    #[must_use]
+    pub fn axes(&self) -> usize {
+        self.from().len()
+    }
+
+    /// The length of the ideal curve, in BLU.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        match self {
+            Curve::Line(line) => line.length(),
+            Curve::Arc(arc) => arc.length(),
+        }
+    }
+
+    /// The distance of a position from the infinite line or the whole circle, in BLU; never negative.
+    ///
+    /// Coordinates beyond the axes of the curve are ignored; with too few there is no distance (NaN). See
+    /// [`Line::deviation`] and [`Arc::deviation`] for the accuracy.
+    #[must_use]
+    pub fn deviation(&self, position: &[i64]) -> f64 {
+        match self {
+            Curve::Line(line) => line.deviation(position),
+            Curve::Arc(arc) => arc.deviation(position),
+        }
+    }
+
+    /// The distance with its side, in BLU: positive on the left of a two-axis line and outside a circle.
+    ///
+    /// Its magnitude is [`deviation`](Curve::deviation); a line of more than two axes has no side.
+    #[must_use]
+    pub fn signed_deviation(&self, position: &[i64]) -> f64 {
+        match self {
+            Curve::Line(line) => line.signed_deviation(position),
+            Curve::Arc(arc) => arc.signed_deviation(position),
+        }
+    }
+
+    /// Ideal points in the first two axes, in BLU and machine coordinates, for drawing.
+    ///
+    /// A line gives its two ends, an arc `max_points` points at equal angles (two at least, [`OUTLINE_LIMIT`] at most).
+    /// The first and the last are the programmed ends exactly.
+    #[must_use]
+    pub fn outline(&self, max_points: usize) -> Vec<[f64; 2]> {
+        match self {
+            Curve::Line(line) => line.outline(),
+            Curve::Arc(arc) => arc.outline(max_points),
+        }
+    }
+}
+
+impl From<Line> for Curve {
+    fn from(line: Line) -> Curve {
+        Curve::Line(line)
+    }
+}
+
+impl From<Arc> for Curve {
+    fn from(arc: Arc) -> Curve {
+        Curve::Arc(arc)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Direction, GeometryError};
+
+    #[test]
+    fn both_kinds_of_curve_answer_alike() -> Result<(), GeometryError> {
+        let line: Curve = Line::new(vec![1, 2, 3], vec![1, 2, 8])?.into();
+        assert_eq!((line.from(), line.to(), line.axes()), (&[1, 2, 3][..], &[1, 2, 8][..], 3));
+        assert_eq!((line.length(), line.deviation(&[4, 6, 9]), line.signed_deviation(&[4, 6, 9])), (5.0, 5.0, 5.0));
+        assert_eq!(line.outline(100), [[1.0, 2.0]; 2]);
+
+        let arc: Curve = Arc::new([5, 0], [0, 5], [0, 0], Direction::CounterClockwise)?.into();
+        assert_eq!((arc.from(), arc.to(), arc.axes()), (&[5, 0][..], &[0, 5][..], 2));
+        assert_eq!(arc.length(), 2.5 * std::f64::consts::PI);
+        assert_eq!((arc.deviation(&[0, 3]), arc.signed_deviation(&[0, 3])), (2.0, -2.0));
+        assert_eq!(arc.outline(9).len(), 9);
+        Ok(())
+    }
+}

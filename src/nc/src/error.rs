@@ -1,0 +1,120 @@
+//! What can be wrong with a geometry.
+
+use crate::{AXES_MAX, AXES_MIN, COORDINATE_LIMIT};
+
+/// Why a geometry cannot be built; every message names the value, the limit and the way out.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum GeometryError {
+    /// A line has fewer than two or more than six axes.
+    #[error(
+        "a line has {AXES_MIN} to {AXES_MAX} axes, not {axes}: \
+         give x and y at least, and at most x,y,z,a,b,c"
+    )]
+    AxisCount {
+        /// The number of axes given.
+        axes: usize,
+    },
+    /// The start point and the end point have different numbers of coordinates.
+    #[error(
+        "the start point has {from} coordinates and the end point has {to}: \
+         give the same axes in both"
+    )]
+    AxisMismatch {
+        /// The number of coordinates of the start point.
+        from: usize,
+        /// The number of coordinates of the end point.
+        to: usize,
+    },
+    /// A coordinate is larger in magnitude than [`COORDINATE_LIMIT`].
+    #[error("{axis} = {value} BLU is beyond the limit of ±{COORDINATE_LIMIT} BLU: choose a larger BLU")]
+    CoordinateBeyondLimit {
+        /// The letter of the axis: x, y, z, a, b or c.
+        axis: char,
+        /// The coordinate given, in BLU.
+        value: i64,
+    },
+    /// A line ends where it starts.
+    #[error(
+        "the line ends where it starts and has length 0, but at least 1 BLU is needed: \
+         drop the block"
+    )]
+    ZeroLength,
+    /// The start point of an arc is its centre.
+    #[error(
+        "the arc starts at its centre ({}, {}) and has radius 0, but at least 1 BLU is needed: \
+         move the centre or the start point",
+        .center[0], .center[1]
+    )]
+    ZeroRadius {
+        /// The centre given, in BLU.
+        center: [i64; 2],
+    },
+    /// The end point of an arc is its centre.
+    #[error(
+        "the arc ends at its centre ({}, {}), but the end point must lie within 1 BLU of the circle \
+         and off the centre: move the centre or the end point",
+        .center[0], .center[1]
+    )]
+    EndAtCenter {
+        /// The centre given, in BLU.
+        center: [i64; 2],
+    },
+    /// The end point of an arc lies more than one BLU off the circle through the start point.
+    #[error(
+        "the radius is {start_radius:.3} BLU at the start point but {end_radius:.3} BLU at the \
+         end point, and they may differ by at most 1 BLU: correct the centre or the end point"
+    )]
+    EndOffCircle {
+        /// Distance of the start point from the centre, in BLU.
+        start_radius: f64,
+        /// Distance of the end point from the centre, in BLU.
+        end_radius: f64,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Arc, Direction, GeometryError, Line};
+
+    fn message<T>(result: Result<T, GeometryError>) -> String {
+        result.err().map(|error| error.to_string()).unwrap_or_default()
+    }
+
+    #[test]
+    fn every_message_names_the_value_the_limit_and_the_way_out() {
+        let arc = |from, to, center| Arc::new(from, to, center, Direction::Clockwise);
+        assert_eq!(
+            message(Line::new(vec![0], vec![1])),
+            "a line has 2 to 6 axes, not 1: give x and y at least, and at most x,y,z,a,b,c"
+        );
+        assert_eq!(
+            message(Line::new(vec![0, 0], vec![1, 1, 1])),
+            "the start point has 2 coordinates and the end point has 3: give the same axes in both"
+        );
+        assert_eq!(
+            message(Line::new(vec![0, 0, 0], vec![1, 1, i64::MIN])),
+            "z = -9223372036854775808 BLU is beyond the limit of \
+             ±4503599627370496 BLU: choose a larger BLU"
+        );
+        assert_eq!(
+            message(Line::new(vec![4, 4], vec![4, 4])),
+            "the line ends where it starts and has length 0, but at least 1 BLU is needed: \
+             drop the block"
+        );
+        assert_eq!(
+            message(arc([2, -3], [5, 5], [2, -3])),
+            "the arc starts at its centre (2, -3) and has radius 0, but at least 1 BLU is needed: \
+             move the centre or the start point"
+        );
+        assert_eq!(
+            message(arc([3, -3], [2, -3], [2, -3])),
+            "the arc ends at its centre (2, -3), but the end point must lie within 1 BLU of the circle and \
+             off the centre: move the centre or the end point"
+        );
+        assert_eq!(
+            message(arc([5, 0], [0, 7], [0, 0])),
+            "the radius is 5.000 BLU at the start point but 7.000 BLU at the end point, and they may differ by \
+             at most 1 BLU: correct the centre or the end point"
+        );
+    }
+}

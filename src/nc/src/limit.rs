@@ -1,0 +1,45 @@
+//! How many axes and how large a coordinate a block may have, and the checks that hold every block to it.
+
+use crate::GeometryError;
+
+/// The largest magnitude of a coordinate, in BLU.
+///
+/// Within it, differences and sums of coordinates fit `i64`, their squares and products fit `i128`, and a coordinate or
+/// a difference of two converts to `f64` exactly.
+pub const COORDINATE_LIMIT: i64 = 1 << 52;
+
+/// The least number of axes of a line.
+pub const AXES_MIN: usize = 2;
+
+/// The greatest number of axes of a line.
+pub const AXES_MAX: usize = 6;
+
+/// The letters of the axes in the order of a point's coordinates.
+pub const AXIS_LETTERS: [char; AXES_MAX] = ['x', 'y', 'z', 'a', 'b', 'c'];
+
+/// Checks that every coordinate of a point of at most six axes lies within [`COORDINATE_LIMIT`].
+pub(crate) fn check_coordinates(point: &[i64]) -> Result<(), GeometryError> {
+    for (&value, axis) in point.iter().zip(AXIS_LETTERS) {
+        if value.unsigned_abs() > COORDINATE_LIMIT.unsigned_abs() {
+            return Err(GeometryError::CoordinateBeyondLimit { axis, value });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limit_itself_is_allowed_and_one_more_is_not() {
+        assert_eq!(check_coordinates(&[COORDINATE_LIMIT, -COORDINATE_LIMIT]), Ok(()));
+        for value in [COORDINATE_LIMIT + 1, -COORDINATE_LIMIT - 1, i64::MAX, i64::MIN] {
+            for (place, axis) in AXIS_LETTERS.into_iter().enumerate() {
+                let mut point = [0; AXES_MAX];
+                point[place] = value;
+                assert_eq!(check_coordinates(&point), Err(GeometryError::CoordinateBeyondLimit { axis, value }));
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Splitting an arc at the axes through its centre.
+
+use crate::exact::{ceil_sqrt, length, norm_squared, round_sqrt, vector};
+use crate::{Arc, Quadrant};
+
+/// Where an arc that goes on into the next quadrant crosses the axis.
+///
+/// Under either rule the last crossing of an arc is moved out to the end point's coordinate on the same axis, |c|,
+/// where that is greater. In the last sector this coordinate can only shrink, so an end point up to 1 BLU off the
+/// circle is always reached. An end point on the circle never moves a crossing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Crossing {
+    /// Where the path of point-by-point comparison crosses: the growing coordinate stands at max(|c0|, ⌈√(R² - 1)⌉, 1),
+    /// with c0 its value at the start of the sector.
+    ///
+    /// Next to the axis the shrinking coordinate is 1, and the path steps over as soon as it is not inside the circle,
+    /// c² + 1 ≥ R². R = 1 steps to the centre first and from there to ±1.
+    PathExtreme,
+    /// At the radius rounded to the nearest integer, but never behind the point already reached, |c0|.
+    RoundedRadius,
+}
+
+/// A piece of an arc inside one quadrant; the points are relative to the centre, in BLU.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Sector {
+    /// The quadrant that the piece runs through.
+    pub quadrant: Quadrant,
+    /// Where it starts: the start point of the arc or a point on the axis that is crossed.
+    pub start: [i64; 2],
+    /// Where it ends: a point on the next axis or the end point of the arc.
+    pub end: [i64; 2],
+}
+
+impl Sector {
+    /// The number of steps of each axis from start to end, |Δx| and |Δy| in BLU.
+    ///
+    /// Differences beyond `i64` saturate; no sector of an [`Arc`] has one.
+    ///
+    /// ```
+    /// use stepwave_nc::{Quadrant, Sector};
+    ///
+    /// let sector = Sector { quadrant: Quadrant::III, start: [-5, -3], end: [-6, 0] };
+    /// assert_eq!(sector.steps(), [1, 3]);
+    /// ```
+    #[must_use]
+    pub fn steps(&self) -> [i64; 2] {
+        let way = |axis: usize| length(self.end[axis].abs_diff(self.start[axis]).into());
+        [way(0), way(1)]
+    }
+}
+
+/// The sectors of an arc, in the order of the motion.
+///
+/// In each of them the end is reached with the motion of its quadrant: one coordinate grows, the other shrinks. Every
+/// crossing and the last sector after a crossing have that from [`crossing_point`]. It leaves an arc with no crossing,
+/// from (g, s) to (g', s') in growing and shrinking magnitudes, whose end is ahead: g' s > g s'. With s' > s also g' >
+/// g; with g' < g also s' < s. Either way one end is farther out by 1 BLU or more on both axes, so its radius is
+/// greater by more than 1 BLU (with (g, s) the inner one, R² + 2(g + s) + 2 > (R + 1)², as g + s ≥ R), and that is no
+/// [`Arc`].
+pub(crate) fn split(arc: &Arc, crossing: Crossing) -> Vec<Sector> {
+    let crossings = arc.crossings();
+    let mut sectors = Vec::with_capacity(crossings + 1);
+    let (mut quadrant, mut start) = (arc.start_quadrant(), arc.start());
+    for left in (0..crossings).rev() {
+        let ahead = (left == 0).then(|| arc.end());
+        let end = crossing_point(arc, quadrant, start, ahead, crossing);
+        sectors.push(Sector { quadrant, start, end });
+        (quadrant, start) = (quadrant.next(arc.direction()), end);
+    }
+    sectors.push(Sector { quadrant, start, end: arc.end() });
+    sectors
+}
+
+/// The point on the axis where a sector ends that goes on into the next quadrant.
+///
+/// It is not behind the sector's start, nor behind the arc's end if that lies `ahead` in the next quadrant.
+fn crossing_point(
+    arc: &Arc,
+    quadrant: Quadrant,
+    start: [i64; 2],
+    ahead: Option<[i64; 2]>,
+    crossing: Crossing,
+) -> [i64; 2] {
+    let growing = quadrant.growing_axis(arc.direction());
+    let squared = norm_squared(vector(arc.start())); // at least 1
+    let radius = match crossing {
+        Crossing::PathExtreme => ceil_sqrt(squared - 1).max(1),
+        Crossing::RoundedRadius => round_sqrt(squared),
+    };
+    let least = ahead.map_or(0, |end| end[growing].abs()).max(start[growing].abs());
+    let mut point = [0, 0];
+    point[growing] = quadrant.signs()[growing] * length(radius).max(least);
+    point
+}
+
+#[cfg(test)]
+mod tests;
