@@ -1,1 +1,55 @@
-//! Models.
+//! The interpolators of numerical control as netlists: [`parts`] that more than one method uses, and one file per model
+//! that holds what is particular to its method.
+//!
+//! Models use the kernel's public interface only. [`catalogue`] is the one list of models.
+//!
+//! ```
+//! use stepwave_models::{Choices, find};
+//! use stepwave_nc::{Curve, Line};
+//!
+//! let model = find("dda-line")?;
+//! let line = Curve::Line(Line::new(vec![0, 0], vec![8, 6]).unwrap());
+//! let hardware = model.plan(&line, &Choices::default())?;
+//! assert_eq!(hardware.bits("jrx"), 4);
+//! let machine = model.machine(&hardware)?;
+//! assert_eq!(machine.design.netlist().cell(machine.positions[0].net).width.get(), 6);
+//! # Ok::<(), stepwave_models::ModelError>(())
+//! ```
+
+pub mod parts;
+
+mod choices;
+mod dda_arc;
+mod dda_line;
+mod error;
+mod hardware;
+mod machine;
+mod model;
+mod plan;
+mod ppc_arc;
+mod ppc_line;
+
+pub use choices::{Beats, Choice, Choices, EndPoint, Form, Preset};
+pub use error::ModelError;
+pub use hardware::{AXES, Hardware};
+pub use machine::{Machine, Port, Words};
+pub use model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+pub use stepwave_kernel::OnOverflow;
+
+/// Every model.
+#[must_use]
+pub fn catalogue() -> &'static [Model] {
+    const CATALOGUE: &[Model] = &[ppc_line::MODEL, ppc_arc::MODEL, dda_line::MODEL, dda_arc::MODEL];
+    CATALOGUE
+}
+
+/// The model of this name.
+///
+/// # Errors
+/// There is none; the message lists those there are.
+pub fn find(name: &str) -> Result<&'static Model, ModelError> {
+    catalogue().iter().find(|model| model.name == name).ok_or_else(|| ModelError::UnknownModel {
+        name: name.to_owned(),
+        known: catalogue().iter().map(|model| model.name).collect::<Vec<_>>().join(", "),
+    })
+}

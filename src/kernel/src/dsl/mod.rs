@@ -47,8 +47,7 @@ impl Module {
     /// An empty module whose strict cells do as told when their exact result does not fit.
     #[must_use]
     pub fn with_overflow(name: &str, on_overflow: OnOverflow) -> Module {
-        let state =
-            State { netlist: Netlist::new(name), diagnostics: Vec::new(), used_names: HashSet::new() };
+        let state = State { netlist: Netlist::new(name), diagnostics: Vec::new(), used_names: HashSet::new() };
         Module { state: RefCell::new(state), on_overflow }
     }
 

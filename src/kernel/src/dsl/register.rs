@@ -2,7 +2,7 @@
 
 use super::Signal;
 use crate::diag::Code;
-use crate::netlist::Op;
+use crate::netlist::{Format, Op};
 
 /// A clocked register. Its output is `q`; a chain of [`when`](Register::when)s says what it takes at the edge.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +39,15 @@ impl<'m> Register<'m> {
             cell.op = Op::Register { next: Some(net), reset };
         }
         module.state.borrow_mut().netlist.cells[net.index()] = cell;
+    }
+
+    /// Shown in this format instead of that of its reading.
+    pub fn shown(self, format: Format) -> Register<'m> {
+        let mut state = self.q.scope().module.state.borrow_mut();
+        if let Some(named) = state.netlist.names.iter_mut().find(|named| named.net == self.q.net()) {
+            named.format = format;
+        }
+        self
     }
 
     /// Value before the first edge, instead of 0.

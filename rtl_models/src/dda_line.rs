@@ -1,0 +1,177 @@
+//! `dda-line`: digital differential analyser, DDA (数字积分法), line of 2 to 6 axes.
+//!
+//! ```text
+//!   for each axis i:      jvi ──► + ──► jri ──┐       2^n iterations
+//!                                 ▲───────────┘       e ──► done
+//!                                 │ carry
+//!                                 └──► di ──► position i
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | jvx, jvy, … | n | integrand J_V = abs(d) |
+//! | jrx, jry, … | n | remainder J_R: the preset |
+//! | e | n+1 | 2^n iterations (`iterations`), all steps (`total`), steps of the longest axis (`longest`) |
+//! | ex, ey, … | n | steps of each axis (`per-axis`) |
+//!
+//! On every iteration {carry, J_R} := J_R + J_V; the carry is the axis's pulse. After t iterations the axis stands at
+//! floor((t·abs(d) + P) / 2^n): at d after 2^n, for every preset P, and J_R is back at P. 2^n must be greater than every
+//! abs(d). Normalised, all J_V are shifted left by the same Q until the largest has its top bit set, one bit a clock,
+//! and e is halved as often: 2^(n-Q) iterations.
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Curve, Line};
+
+use crate::choices::{Choice, Choices, EndPoint};
+use crate::error::ModelError;
+use crate::hardware::{self, Hardware, Widths};
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{Block, DownCounter, Normalizer, axis_counter, integrator, population_count, shifted_left};
+use crate::plan;
+
+const NAME: &str = "dda-line";
+const JV: [&str; 6] = ["jvx", "jvy", "jvz", "jva", "jvb", "jvc"];
+const JR: [&str; 6] = ["jrx", "jry", "jrz", "jra", "jrb", "jrc"];
+const END: [&str; 6] = ["ex", "ey", "ez", "ea", "eb", "ec"];
+const SIGN: [&str; 6] = ["sx", "sy", "sz", "sa", "sb", "sc"];
+const POSITION: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Digital differential analyser, line of 2 to 6 axes",
+    method: "digital differential analyser",
+    curve: CurveKind::Line { max_axes: 6 },
+    registers: &[
+        RegisterDoc { name: "jvx, jvy, …", width: "n", about: "integrand J_V of each axis, |d|" },
+        RegisterDoc { name: "jrx, jry, …", width: "n", about: "remainder J_R of each axis, from the preset" },
+        RegisterDoc { name: "e", width: "n+1", about: "end-point down-counter (iterations, total, longest)" },
+        RegisterDoc { name: "ex, ey, …", width: "n", about: "end-point down-counter of each axis (per-axis)" },
+        RegisterDoc { name: "x, y, …", width: "as the path needs, + 1", about: "machine position, signed" },
+    ],
+    choices: &[
+        ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the line)" },
+        ChoiceDoc { choice: Choice::Preset, values: "zero (default) | half | full | N, or jrx=N,jry=N" },
+        ChoiceDoc { choice: Choice::Normalize, values: "left-shift normalisation (default: none)" },
+        ChoiceDoc { choice: Choice::EndPoint, values: "iterations (default) | total | per-axis | longest" },
+        ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
+    ],
+    source: "数字积分法, the DDA linear interpolator of early NC systems, as in Chinese NC textbooks",
+    plan,
+    netlist,
+    words,
+};
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    let axes = curve.axes();
+    let delta = plan::line(curve).map(Line::delta).unwrap_or_default();
+    let n = plan::magnitude_bits(choices, delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0));
+    let all = [EndPoint::Iterations, EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest];
+    let end_point = plan::end_point(NAME, choices, EndPoint::Iterations, &all, "")?;
+    let mut widths = Widths::new(NAME, choices);
+    for axis in 0..axes {
+        widths.register(JV[axis], n).register(JR[axis], n);
+    }
+    match end_point {
+        EndPoint::PerAxis => END[..axes].iter().for_each(|name| _ = widths.register(*name, n)),
+        // The sum of up to 2, 4 or 6 axes.
+        EndPoint::Total => _ = widths.register("e", n + axes.next_power_of_two().trailing_zeros()),
+        EndPoint::Iterations | EndPoint::Longest => _ = widths.register("e", n + 1),
+    }
+    let table = widths.names();
+    for (axis, letter) in POSITION[..axes].iter().enumerate() {
+        widths.register(*letter, plan::position_bits([curve.from()[axis], curve.to()[axis]]));
+    }
+    let widths = widths.resolve()?;
+    hardware::check_integrators(NAME, &widths, axes, choices.normalize)?;
+    let n = widths[JR[0]].get();
+    Ok(Hardware {
+        model: NAME,
+        axes,
+        widths,
+        presets: hardware::presets(NAME, choices, axes)?,
+        normalize: choices.normalize,
+        end_point,
+        form: choices.form.unwrap_or_default(),
+        beats: choices.beats.unwrap_or_default(),
+        on_overflow: choices.on_overflow.unwrap_or_default(),
+        table,
+        stall_clocks: hardware::integrator_stall(n),
+        error_bound: (axes == 2 && end_point == EndPoint::Iterations).then_some(1.0),
+    })
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("dda_line", hardware.on_overflow);
+    let m = module.top();
+    let axes = 0..hardware.axes;
+    let bits = |name: &str| hardware.bits(name);
+    let block = Block::new(m);
+    let normalizer = Normalizer::new(m, &block, hardware.normalize);
+    let scopes: Vec<_> = hardware.letters().iter().map(|letter| m.scope(&format!("axis_{letter}"))).collect();
+    let integrands: Vec<_> = axes.clone().map(|i| scopes[i].reg(JV[i], bits(JV[i]))).collect();
+    let normalized = normalizer.close(&integrands.iter().map(|jv| jv.q).collect::<Vec<_>>(), 1);
+
+    let counters: Option<Vec<_>> = (hardware.end_point == EndPoint::PerAxis)
+        .then(|| axes.clone().map(|i| DownCounter::new(scopes[i], &block, END[i], bits(END[i]))).collect());
+    let mut pulses = Vec::new();
+    for i in axes {
+        let (scope, jv) = (scopes[i], integrands[i]);
+        jv.when(block.load, block.word(JV[i], bits(JV[i])))
+            .when(normalized.shift, shifted_left(scope, jv.q))
+            .else_hold();
+        // An exhausted axis stops adding.
+        let step = counters.as_ref().map_or(normalized.run, |counters| normalized.run & counters[i].running());
+        let pulse = integrator(scope, &block, hardware.letters()[i], bits(JR[i]), jv.q, step);
+        let negative = block.held(scope, SIGN[i], 1);
+        axis_counter(scope, &block, POSITION[i], bits(POSITION[i]), pulse, negative);
+        pulses.push(pulse);
+    }
+
+    let e = || DownCounter::new(m, &block, "e", bits("e"));
+    let last = match (hardware.end_point, counters) {
+        (_, Some(counters)) => {
+            let ended = counters.into_iter().zip(&pulses).map(|(counter, pulse)| counter.count(*pulse));
+            ended.reduce(|a, b| a & b).unwrap_or(block.load)
+        }
+        (EndPoint::Total, None) => e().count_pulses(population_count(m, 3, &pulses)),
+        (EndPoint::Longest, None) => {
+            let longest = (0..hardware.axes).map(|i| block.held(scopes[i], LONGEST[i], 1) & pulses[i]);
+            e().count(longest.reduce(|a, b| a | b).unwrap_or(block.load))
+        }
+        (_, None) => e().count_or_halve(normalized.run, normalized.shift),
+    };
+    block.close(normalized.ready, normalized.run, last);
+    Ok(module.finish()?)
+}
+
+/// 1 for the axis whose pulses `longest` counts.
+const LONGEST: [&str; 6] =
+    ["x_is_longest", "y_is_longest", "z_is_longest", "a_is_longest", "b_is_longest", "c_is_longest"];
+
+fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(line) = plan::line(curve) else { return Vec::new() };
+    let delta: Vec<i128> = line.delta().into_iter().map(i128::from).collect();
+    let way = |axis: usize| delta[axis].abs();
+    let longest = (0..hardware.axes).rev().max_by_key(|&axis| way(axis)).unwrap_or(0);
+    let mut words = Words::new();
+    for axis in 0..hardware.axes {
+        words.push((JV[axis], way(axis)));
+        words.push((JR[axis], hardware.preset(axis, JR[axis])));
+        words.push((SIGN[axis], i128::from(delta[axis] < 0)));
+        words.push((POSITION[axis], i128::from(line.from()[axis])));
+        match hardware.end_point {
+            EndPoint::PerAxis => words.push((END[axis], way(axis))),
+            EndPoint::Longest => words.push((LONGEST[axis], i128::from(axis == longest))),
+            EndPoint::Total | EndPoint::Iterations => {}
+        }
+    }
+    match hardware.end_point {
+        EndPoint::Iterations => words.push(("e", 1 << hardware.bits(JR[0]))),
+        EndPoint::Total => words.push(("e", (0..hardware.axes).map(way).sum())),
+        EndPoint::Longest => words.push(("e", way(longest))),
+        EndPoint::PerAxis => {}
+    }
+    vec![words]
+}

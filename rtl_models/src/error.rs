@@ -1,0 +1,97 @@
+//! Why a model cannot be built or loaded for a geometry.
+
+use stepwave_kernel::{Diagnostics, Width};
+
+use crate::choices::Choice;
+
+/// A geometry or a choice that a model does not take; every message names the value, the limit and the way out.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// No model bears this name.
+    #[error("there is no model '{name}'; the models are {known}")]
+    UnknownModel {
+        /// Name asked for.
+        name: String,
+        /// Names that exist, with commas.
+        known: String,
+    },
+    /// A line was given to a model of arcs, or the other way round.
+    #[error("{model} interpolates {takes}; {given} was given")]
+    Curve {
+        /// The model.
+        model: &'static str,
+        /// What it takes, with the options that give it.
+        takes: &'static str,
+        /// What was given.
+        given: String,
+    },
+    /// A choice that the model does not have.
+    #[error("{model} does not take {}; it takes {takes}", .choice.option())]
+    NotTaken {
+        /// The model.
+        model: &'static str,
+        /// The choice.
+        choice: Choice,
+        /// Options that it takes.
+        takes: String,
+    },
+    /// A value of a choice that the model does not have.
+    #[error("{model} does not take {} {value}: {reason}", .choice.option())]
+    Value {
+        /// The model.
+        model: &'static str,
+        /// The choice.
+        choice: Choice,
+        /// The value given.
+        value: String,
+        /// Why, and what it takes instead.
+        reason: String,
+    },
+    /// `--width` or `--preset` names a register that does not exist here.
+    #[error("{model} has no register '{register}' here for {}; it has {known}", .choice.option())]
+    UnknownRegister {
+        /// The model.
+        model: &'static str,
+        /// The choice that names it.
+        choice: Choice,
+        /// The name given.
+        register: String,
+        /// Names that exist, with commas.
+        known: String,
+    },
+    /// A register would be wider than the kernel's limit.
+    #[error("register {register} would be {bits} bits wide, but a register holds 1 to 64 bits: {way_out}")]
+    TooWide {
+        /// The register.
+        register: String,
+        /// Bits that it would have.
+        bits: u64,
+        /// What to change.
+        way_out: String,
+    },
+    /// A load value does not fit in its register.
+    #[error(
+        "{register} = {value} does not fit in its {width}; {needed} bits would hold it: give --width {option}={needed}"
+    )]
+    DoesNotFit {
+        /// The register.
+        register: String,
+        /// Value to be loaded.
+        value: i128,
+        /// Width of the register.
+        width: Width,
+        /// Bits that would hold it.
+        needed: u32,
+        /// Name for `--width`.
+        option: String,
+    },
+    /// Registers that must be equally wide, or ordered, are not.
+    #[error("{0}")]
+    Widths(String),
+    /// A model describes a netlist that does not elaborate: a defect of the model.
+    #[error("the model's netlist is wrong; please report this:\n{0}")]
+    Netlist(#[from] Diagnostics),
+    /// A model lacks a port that every machine has: a defect of the model.
+    #[error("the model has no net named {0}; please report this")]
+    MissingPort(String),
+}

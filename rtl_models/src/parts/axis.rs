@@ -1,0 +1,25 @@
+//! An axis: its pulse and its machine position.
+
+use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_kernel::netlist::Format;
+
+use super::{Block, up_down_counter};
+
+/// The axis of this letter. `pulse` (1 bit) sends one pulse at this edge, in the negative direction where `negative` is
+/// 1. Registers: `d` + letter, 2 bits, the signed pulse of the last edge (-1, 0, +1); the letter, `bits` bits in two's
+/// complement, the machine position in BLU, preset with the first block.
+pub fn axis_counter<'m>(
+    m: Scope<'m>,
+    block: &Block<'m>,
+    letter: &str,
+    bits: u32,
+    pulse: Signal<'m>,
+    negative: Signal<'m>,
+) {
+    let signed_pulse = m.reg_signed(&format!("d{letter}"), 2);
+    signed_pulse.set((pulse & negative).concat(pulse).as_signed());
+    let (up, down) = (pulse & !negative, pulse & negative);
+    let position = m.reg_signed(letter, bits).shown(Format::Analog);
+    let preset = block.word_signed(letter, bits);
+    up_down_counter(position, &[(block.preset_position, preset)], up, down, m.lit_signed(2, 1));
+}

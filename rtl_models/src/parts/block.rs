@@ -1,0 +1,72 @@
+//! The block loader: inputs for the words of a block, and the registers that say how far it is.
+
+use stepwave_kernel::dsl::{Register, Scope, Signal};
+
+use crate::machine::input_name;
+
+/// Block loader and sequencer.
+///
+/// `load` = 1 at an edge takes the words on the inputs into their registers and starts the block: `busy` rises, and
+/// falls with the last step, when `done` rises.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'m> {
+    words: Scope<'m>,
+    /// 1 bit: this edge loads a block.
+    pub load: Signal<'m>,
+    /// 1 bit: this edge presets the position counters too.
+    pub preset_position: Signal<'m>,
+    /// 1 bit: a block is running.
+    pub busy: Signal<'m>,
+    registers: [Register<'m>; 4],
+}
+
+impl<'m> Block<'m> {
+    /// Ports and state in the top scope, load words in the scope `block`.
+    #[must_use]
+    pub fn new(m: Scope<'m>) -> Block<'m> {
+        let load = m.input("load", 1);
+        let preset_position = load & m.input("preset_position", 1);
+        let registers = ["busy", "done", "loaded", "stepped"].map(|name| m.reg(name, 1));
+        Block { words: m.scope("block"), load, preset_position, busy: registers[0].q, registers }
+    }
+
+    /// The unsigned load word of a register.
+    #[must_use]
+    pub fn word(&self, register: &str, bits: u32) -> Signal<'m> {
+        self.words.input(&input_name(register), bits)
+    }
+
+    /// The two's-complement load word of a register.
+    #[must_use]
+    pub fn word_signed(&self, register: &str, bits: u32) -> Signal<'m> {
+        self.words.input_signed(&input_name(register), bits)
+    }
+
+    /// A register that is loaded with its word and holds it for the whole block.
+    #[must_use]
+    pub fn held(&self, m: Scope<'m>, register: &str, bits: u32) -> Signal<'m> {
+        let held = m.reg(register, bits);
+        held.when(self.load, self.word(register, bits)).else_hold();
+        held.q
+    }
+
+    /// As [`held`](Block::held), in two's complement.
+    #[must_use]
+    pub fn held_signed(&self, m: Scope<'m>, register: &str, bits: u32) -> Signal<'m> {
+        let held = m.reg_signed(register, bits);
+        held.when(self.load, self.word_signed(register, bits)).else_hold();
+        held.q
+    }
+
+    /// Closes the sequencer. Each is 1 bit: `ready`, the registers stand loaded behind this edge; `step`, a step is
+    /// completed at this edge; `last`, it is the last one.
+    pub fn close(self, ready: Signal<'m>, step: Signal<'m>, last: Signal<'m>) {
+        let [busy, done, loaded, stepped] = self.registers;
+        let finish = step & last;
+        let [yes, no] = [self.words.lit(1, 1), self.words.lit(1, 0)];
+        busy.when(self.load, yes).when(finish, no).else_hold();
+        done.when(self.load, no).when(finish, yes).else_hold();
+        loaded.set(ready);
+        stepped.set(step);
+    }
+}

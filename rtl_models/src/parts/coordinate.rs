@@ -1,0 +1,26 @@
+//! Up/down counters: coordinates, integrands and positions.
+
+use stepwave_kernel::dsl::{Register, Signal};
+
+/// Closes an up/down counter: an arm of `loads` (condition, value) wins; else it counts `unit` up or down, which must
+/// not leave its range: `register` keeps its width and reading, and the two counts are strict cells.
+///
+/// `up` and `down` are 1 bit and never both 1; `unit` may be narrower than the register.
+pub fn up_down_counter<'m>(
+    register: Register<'m>,
+    loads: &[(Signal<'m>, Signal<'m>)],
+    up: Signal<'m>,
+    down: Signal<'m>,
+    unit: Signal<'m>,
+) {
+    let sum = register.q.strict_add(unit, up);
+    let difference = register.q.strict_sub(unit, down);
+    let counting = up.mux(sum, down.mux(difference, register.q));
+    match loads {
+        [] => register.set(counting),
+        [(condition, value), rest @ ..] => {
+            let first = register.when(*condition, *value);
+            rest.iter().fold(first, |chain, (condition, value)| chain.when(*condition, *value)).otherwise(counting);
+        }
+    }
+}

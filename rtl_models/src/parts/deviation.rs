@@ -1,0 +1,35 @@
+//! The deviation accumulator F of point-by-point comparison.
+
+use stepwave_kernel::dsl::{Register, Scope, Signal};
+
+use super::Block;
+
+/// Register `f`, two's complement, and the adder before it.
+#[derive(Clone, Copy, Debug)]
+pub struct DeviationAccumulator<'m> {
+    f: Register<'m>,
+}
+
+impl<'m> DeviationAccumulator<'m> {
+    /// The register, `bits` bits wide.
+    #[must_use]
+    pub fn new(m: Scope<'m>, bits: u32) -> DeviationAccumulator<'m> {
+        DeviationAccumulator { f: m.reg_signed("f", bits) }
+    }
+
+    /// 1 bit: F >= 0, the tool stands outside the curve or on it.
+    #[must_use]
+    pub fn not_negative(&self) -> Signal<'m> {
+        !self.f.q.msb()
+    }
+
+    /// Closes the accumulator: loaded with its word; at an edge with `compute` = 1 the operand is subtracted where
+    /// `subtract` is 1, else added. The exact result must fit; the operand may have any width and either reading.
+    pub fn close(self, block: &Block<'m>, compute: Signal<'m>, subtract: Signal<'m>, operand: Signal<'m>) {
+        let f = self.f;
+        let (plus, minus) = (compute & !subtract, compute & subtract);
+        let (sum, difference) = (f.q.strict_add(operand, plus), f.q.strict_sub(operand, minus));
+        let word = block.word_signed("f", f.q.bits());
+        f.when(block.load, word).when(plus, sum).when(minus, difference).else_hold();
+    }
+}

@@ -1,0 +1,25 @@
+//! Parts: clocked components that more than one interpolator is made of. A part is a plain function, or a struct where
+//! a register has to exist before the logic that drives it.
+
+mod axis;
+mod beats;
+mod block;
+mod coordinate;
+mod deviation;
+mod down_counter;
+mod integrator;
+mod normalizer;
+mod quadrant;
+
+pub use axis::axis_counter;
+pub use beats::BeatRing;
+pub use block::Block;
+pub use coordinate::up_down_counter;
+pub use deviation::DeviationAccumulator;
+pub use down_counter::{DownCounter, population_count};
+pub use integrator::integrator;
+pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
+pub use quadrant::{Kind, next_quadrant};
+
+#[cfg(test)]
+mod tests;

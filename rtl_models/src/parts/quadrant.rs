@@ -1,0 +1,42 @@
+//! Quadrant logic of arcs: from quadrant and direction to the kind of arc and the signs of its motion.
+
+use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_kernel::netlist::Format;
+
+/// The kind of an arc (SR1 … NR4), decoded. 1 bit each.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind<'m> {
+    /// |x| grows and |y| shrinks; else the other way round.
+    pub x_grows: Signal<'m>,
+    /// The motion in x is negative.
+    pub x_negative: Signal<'m>,
+    /// The motion in y is negative.
+    pub y_negative: Signal<'m>,
+}
+
+impl<'m> Kind<'m> {
+    /// Decodes a quadrant (2 bits, Q1 = 0 … Q4 = 3) and a direction (1 bit, 1 is counter-clockwise), and shows the kind
+    /// by its textbook name in the wave.
+    #[must_use]
+    pub fn decode(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Kind<'m> {
+        let (low, high) = (quadrant.bit(0), quadrant.bit(1));
+        let names = ["SR1", "SR2", "SR3", "SR4", "NR1", "NR2", "NR3", "NR4"];
+        let states = (0..).zip(names).map(|(value, name)| (value, name.to_owned())).collect();
+        m.show("kind", counter_clockwise.concat(quadrant), Format::States(states));
+        Kind {
+            // Clockwise |x| grows in Q1 and Q3.
+            x_grows: m.name("x_grows", !(low ^ counter_clockwise)),
+            // Clockwise x falls in the lower half, Q3 and Q4.
+            x_negative: m.name("x_negative", high ^ counter_clockwise),
+            // Clockwise y falls in the right half, Q1 and Q4.
+            y_negative: m.name("y_negative", !(low ^ high) ^ counter_clockwise),
+        }
+    }
+}
+
+/// The quadrant that the motion enters behind this one (2 bits).
+#[must_use]
+pub fn next_quadrant<'m>(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Signal<'m> {
+    let one = m.lit(2, 1);
+    counter_clockwise.mux(quadrant.wrapping_add(one), quadrant.wrapping_sub(one))
+}

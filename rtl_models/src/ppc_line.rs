@@ -1,0 +1,171 @@
+//! `ppc-line`: point-by-point comparison (逐点比较法), line.
+//!
+//! ```text
+//!            xe ──┐                       ┌── sx, sy: directions
+//!            ye ──┴─ mux ── ± ──► F ──► judge ──► X or Y ──► dx, dy ──► x, y
+//!                           ▲────────────┘                    │
+//!                                                             └──► e (ex, ey) ──► done
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | xe, ye | n (signed form n+1) | a = abs(dx), b = abs(dy) (signed form dx, dy) |
+//! | f | n+1, two's complement | 0 |
+//! | e | n+1 | a + b (`total`), or the longer of both (`longest`) |
+//! | ex, ey | n | a, b (`per-axis`) |
+//!
+//! Magnitude form: F >= 0 steps X and F -= b; F < 0 steps Y and F += a. In the signed form F = dx·y - dy·x, whose sign
+//! means the opposite in quadrants 2 and 4; there the tie F = 0 steps Y. A line of a = 0 steps Y only, one of b = 0
+//! steps X only.
+//!
+//! Four beats a step: judge, feed, compute, compare; or all at one edge (`--beats 1`). Range of F: [-b, a-1].
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Curve, Line};
+
+use crate::choices::{Choice, Choices, EndPoint, Form};
+use crate::error::ModelError;
+use crate::hardware::{Hardware, Widths};
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{BeatRing, Block, DeviationAccumulator, DownCounter, axis_counter};
+use crate::plan;
+
+const NAME: &str = "ppc-line";
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Point-by-point comparison, line",
+    method: "point-by-point comparison",
+    curve: CurveKind::Line { max_axes: 2 },
+    registers: &[
+        RegisterDoc { name: "xe", width: "n", about: "|dx| of the line (signed form: dx in n+1 bits)" },
+        RegisterDoc { name: "ye", width: "n", about: "|dy| of the line (signed form: dy in n+1 bits)" },
+        RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
+        RegisterDoc { name: "e", width: "n+1", about: "end-point down-counter (total, longest)" },
+        RegisterDoc { name: "ex, ey", width: "n", about: "end-point down-counter of each axis (per-axis)" },
+        RegisterDoc { name: "x, y", width: "as the path needs, + 1", about: "machine position, signed" },
+    ],
+    choices: &[
+        ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the line)" },
+        ChoiceDoc { choice: Choice::Form, values: "magnitude (default) | signed" },
+        ChoiceDoc { choice: Choice::EndPoint, values: "total (default) | per-axis | longest" },
+        ChoiceDoc { choice: Choice::Beats, values: "4 (default) | 1" },
+        ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
+    ],
+    source: "逐点比较法, the linear interpolator of early NC systems, as in Chinese NC textbooks",
+    plan,
+    netlist,
+    words,
+};
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    let delta = plan::line(curve).map(Line::delta).unwrap_or_default();
+    let largest = delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0);
+    let n = plan::magnitude_bits(choices, largest);
+    let end_point = plan::end_point(
+        NAME,
+        choices,
+        EndPoint::Total,
+        &[EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest],
+        "a point-by-point step has no iterations beside its pulses",
+    )?;
+    let form = choices.form.unwrap_or_default();
+    let end_bits = if form == Form::Signed { n + 1 } else { n };
+    let mut widths = Widths::new(NAME, choices);
+    widths.register("xe", end_bits).register("ye", end_bits).register("f", n + 1);
+    match end_point {
+        EndPoint::PerAxis => widths.register("ex", n).register("ey", n),
+        _ => widths.register("e", n + 1),
+    };
+    let table = widths.names();
+    for (axis, letter) in ["x", "y"].into_iter().enumerate() {
+        widths.register(letter, plan::position_bits([curve.from()[axis], curve.to()[axis]]));
+    }
+    Ok(Hardware {
+        model: NAME,
+        axes: 2,
+        widths: widths.resolve()?,
+        presets: Vec::new(),
+        normalize: false,
+        end_point,
+        form,
+        beats: choices.beats.unwrap_or_default(),
+        on_overflow: choices.on_overflow.unwrap_or_default(),
+        table,
+        stall_clocks: 16,
+        error_bound: Some(1.0),
+    })
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("ppc_line", hardware.on_overflow);
+    let m = module.top();
+    let signed = hardware.form == Form::Signed;
+    let block = Block::new(m);
+    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let end = |name: &str| match hardware.form {
+        Form::Magnitude => block.held(m, name, hardware.bits(name)),
+        Form::Signed => block.held_signed(m, name, hardware.bits(name)),
+    };
+    let (xe, ye) = (end("xe"), end("ye"));
+    // Directions: 1 is negative. The signed form has them in its end-point registers.
+    let (sx, sy) = if signed { (xe.msb(), ye.msb()) } else { (block.held(m, "sx", 1), block.held(m, "sy", 1)) };
+    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let counter = |name: &str| DownCounter::new(m, &block, name, hardware.bits(name));
+
+    // Judge.
+    let outside = if signed { f.not_negative() ^ sx ^ sy } else { f.not_negative() };
+    let per_axis = (hardware.end_point == EndPoint::PerAxis).then(|| (counter("ex"), counter("ey")));
+    let (x_open, y_open) = match per_axis {
+        // An exhausted axis hands its step to the other.
+        Some((ex, ey)) => (ex.running(), ey.running()),
+        None => (xe.is_nonzero(), ye.is_nonzero()),
+    };
+    let take_x = beat.decided("take_x", outside & x_open | !y_open);
+
+    // Feed.
+    axis_counter(m.scope("axis_x"), &block, "x", hardware.bits("x"), beat.feed & take_x, sx);
+    axis_counter(m.scope("axis_y"), &block, "y", hardware.bits("y"), beat.feed & !take_x, sy);
+
+    // Compute: an X step takes ye off F, a Y step puts xe on; signed, against the direction of the step.
+    let subtract = if signed { take_x.mux(!sx, sy) } else { take_x };
+    f.close(&block, beat.compute, subtract, take_x.mux(ye, xe));
+
+    // Compare.
+    let last = match per_axis {
+        Some((ex, ey)) => ex.count(beat.compare & take_x) & ey.count(beat.compare & !take_x),
+        None if hardware.end_point == EndPoint::Longest => {
+            let x_is_longest = block.held(m, "x_is_longest", 1);
+            counter("e").count(beat.compare & !(take_x ^ x_is_longest))
+        }
+        None => counter("e").count(beat.compare),
+    };
+    beat.close(&block, last);
+    block.close(block.load, beat.compare, last);
+    Ok(module.finish()?)
+}
+
+fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(line) = plan::line(curve) else { return Vec::new() };
+    let [dx, dy] = [0, 1].map(|axis| i128::from(line.delta()[axis]));
+    let (a, b) = (dx.abs(), dy.abs());
+    let mut words = match hardware.form {
+        Form::Magnitude => vec![("xe", a), ("ye", b), ("sx", i128::from(dx < 0)), ("sy", i128::from(dy < 0))],
+        Form::Signed => vec![("xe", dx), ("ye", dy)],
+    };
+    words.push(("f", 0));
+    match hardware.end_point {
+        EndPoint::PerAxis => words.extend([("ex", a), ("ey", b)]),
+        EndPoint::Longest => {
+            // On 45° lines the counter watches the axis that loses ties and therefore steps last: Y, but X where the
+            // signed form gives the tie to Y.
+            let x_is_longest = a > b || a == b && hardware.form == Form::Signed && (dx < 0) != (dy < 0);
+            words.extend([("e", a.max(b)), ("x_is_longest", i128::from(x_is_longest))]);
+        }
+        EndPoint::Total | EndPoint::Iterations => words.push(("e", a + b)),
+    }
+    words.extend([("x", i128::from(line.from()[0])), ("y", i128::from(line.from()[1]))]);
+    vec![words]
+}
