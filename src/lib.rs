@@ -1,1 +1,2 @@
-//! stepwave
+//! Cycle-accurate simulation of numerical-control interpolator hardware.
+pub mod testbench;

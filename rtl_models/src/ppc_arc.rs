@@ -119,17 +119,22 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let ccw = block.held(m, "ccw", 1);
     let counter = |name: &str| DownCounter::new(m, &block, name, bits(name));
 
-    // Judge. A shrinking coordinate at 0 means that the axis is reached: the next quadrant takes over.
+    // Judge. A shrinking coordinate at 0 means that the axis is reached: the next quadrant takes over, unless the loader
+    // splits the arc there.
+    let per_axis = (hardware.end_point == EndPoint::PerAxis).then(|| (counter("ex"), counter("ey")));
     let q = m.scope("quadrant");
-    let before = Kind::decode(q.scope("held"), quad.q, ccw);
-    let (x_zero, y_zero) = (xi.q.is_zero(), yi.q.is_zero());
-    let cross = q.name("cross", before.x_grows.mux(y_zero & !x_zero, x_zero & !y_zero));
-    let entered = cross.mux(next_quadrant(q, quad.q, ccw), quad.q);
+    let entered = if per_axis.is_some() {
+        quad.q
+    } else {
+        let before = Kind::decode(q.scope("held"), quad.q, ccw);
+        let (x_zero, y_zero) = (xi.q.is_zero(), yi.q.is_zero());
+        let cross = q.name("cross", before.x_grows.mux(y_zero & !x_zero, x_zero & !y_zero));
+        cross.mux(next_quadrant(q, quad.q, ccw), quad.q)
+    };
     quad.when(block.load, block.word("quad", 2)).when(beat.judge, entered).else_hold();
     // Behind the judge beat `entered` is `quad` itself, until the coordinates change.
     let kind = Kind::decode(q, entered, ccw);
     let grow_x = !f.not_negative() & kind.x_grows | f.not_negative() & !kind.x_grows;
-    let per_axis = (hardware.end_point == EndPoint::PerAxis).then(|| (counter("ex"), counter("ey")));
     let take_x = match per_axis {
         Some((ex, ey)) => grow_x & ex.running() | !ey.running(),
         None => grow_x,

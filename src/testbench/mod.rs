@@ -1,0 +1,351 @@
+//! The test bench: the one place where geometry, model, engine and observers meet. It loads the blocks, runs the clock
+//! until the machine says `done`, and hands every sample and every step to the observers.
+
+mod columns;
+mod overflow;
+mod path;
+mod ranges;
+mod wave;
+
+use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
+use stepwave_kernel::{Design, Net, OnOverflow};
+use stepwave_models::{Choices, Hardware, Machine, Model, ModelError};
+use stepwave_nc::Curve;
+
+pub use columns::Columns;
+pub use overflow::{OverflowEvent, OverflowWatch};
+pub use path::{PathWatch, WorstError};
+pub use ranges::{RangeWatch, RegisterRange};
+pub use wave::{Trigger, WaveWriter, Window};
+
+/// Samples held between engine and observers.
+const CHUNK: usize = 256;
+
+/// Trouble while running: what an observer could not do.
+pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
+
+/// A row of the step table: row 0 is the state after load, row k that after step k.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Number of the step, from 0.
+    pub number: u64,
+    /// Clock of the sample.
+    pub clock: u64,
+    /// Registers of the machine's table, in its order.
+    pub registers: Vec<i128>,
+    /// Pulses of the step: -1, 0 or +1 of each axis.
+    pub pulses: Vec<i64>,
+    /// Machine position of each axis behind the step, in BLU.
+    pub position: Vec<i64>,
+}
+
+/// Looks on while a machine runs.
+pub trait Observer {
+    /// Samples, in order, each seen once. Columns are those of [`Testbench::columns`].
+    ///
+    /// # Errors
+    /// Whatever keeps the observer from its work; the run ends.
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        let _ = rows;
+        Ok(())
+    }
+
+    /// A row of the step table.
+    ///
+    /// # Errors
+    /// Whatever keeps the observer from its work; the run ends.
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        let _ = step;
+        Ok(())
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Ending {
+    /// The machine said `done`.
+    Done,
+    /// A property was violated and the run stopped there.
+    Trapped,
+    /// No pulse came for so many clocks that none will.
+    Stalled {
+        /// Clocks without a pulse.
+        clocks: u64,
+    },
+}
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// How it ended.
+    pub ending: Ending,
+    /// Clocks since reset: the clock of the last sample.
+    pub clocks: u64,
+    /// Steps completed.
+    pub steps: u64,
+    /// Pulses of each axis, in either direction.
+    pub pulses: Vec<u64>,
+    /// Machine position of each axis in the last sample, in BLU.
+    pub reached: Vec<i64>,
+}
+
+/// A machine with the blocks of one geometry, ready to run.
+#[derive(Clone, Debug)]
+pub struct Testbench {
+    hardware: Hardware,
+    machine: Machine,
+    blocks: Vec<Vec<(Net, u64)>>,
+    columns: Columns,
+}
+
+impl Testbench {
+    /// Plans the hardware, builds the machine and encodes the load words.
+    ///
+    /// # Errors
+    /// The model does not take the geometry or a choice, or a value does not fit in its register.
+    pub fn new(model: &Model, curve: &Curve, choices: &Choices) -> Result<Testbench, ModelError> {
+        let hardware = model.plan(curve, choices)?;
+        let machine = model.machine(&hardware)?;
+        let words = model.words(&hardware, curve);
+        let blocks = words.iter().map(|words| machine.encode(words)).collect::<Result<_, _>>()?;
+        let columns = Columns::of(&machine);
+        Ok(Testbench { hardware, machine, blocks, columns })
+    }
+
+    /// The hardware.
+    #[must_use]
+    pub fn hardware(&self) -> &Hardware {
+        &self.hardware
+    }
+
+    /// The machine.
+    #[must_use]
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// Its design.
+    #[must_use]
+    pub fn design(&self) -> &Design {
+        &self.machine.design
+    }
+
+    /// What every sample holds.
+    #[must_use]
+    pub fn columns(&self) -> &Columns {
+        &self.columns
+    }
+
+    /// Runs all blocks from reset.
+    ///
+    /// # Errors
+    /// An observer fails.
+    pub fn run(&self, engine: EngineKind, observers: &mut [&mut dyn Observer]) -> Result<Outcome, ObserverError> {
+        let properties = &self.design().netlist().properties;
+        let mut stops = vec![self.machine.done.net];
+        if self.hardware.on_overflow == OnOverflow::Trap {
+            stops.extend(properties.iter().map(|property| property.never));
+        }
+        let watch = Watch { columns: self.columns.nets().to_vec(), stops };
+        let mut run = Run {
+            bench: self,
+            engine: engine.build(self.design(), &watch),
+            rows: Rows::new(watch.columns.len(), CHUNK),
+            steps: StepReader::new(self),
+            observers,
+        };
+        run.all_blocks()
+    }
+}
+
+/// A run in progress.
+struct Run<'a, 'o> {
+    bench: &'a Testbench,
+    engine: Box<dyn Engine>,
+    rows: Rows,
+    steps: StepReader<'a>,
+    observers: &'a mut [&'o mut dyn Observer],
+}
+
+impl Run<'_, '_> {
+    fn all_blocks(&mut self) -> Result<Outcome, ObserverError> {
+        let machine = &self.bench.machine;
+        let mut ending = Ending::Done;
+        for (index, words) in self.bench.blocks.iter().enumerate() {
+            for &(input, value) in words {
+                self.engine.set_input(input, value);
+            }
+            self.engine.set_input(machine.load.net, 1);
+            self.engine.set_input(machine.preset_position.net, u64::from(index == 0));
+            if index == 0 {
+                self.engine.reset(&mut self.rows);
+            } else {
+                self.clock()?;
+            }
+            self.engine.set_input(machine.load.net, 0);
+            self.engine.set_input(machine.preset_position.net, 0);
+            // The edge that loads; `done` of the block before falls with it.
+            self.clock()?;
+            ending = self.to_end_of_block()?;
+            if ending != Ending::Done {
+                break;
+            }
+        }
+        self.drain()?;
+        Ok(self.steps.outcome(ending, self.engine.clock()))
+    }
+
+    /// One clock, whatever the machine says.
+    fn clock(&mut self) -> Result<(), ObserverError> {
+        if self.rows.is_full() {
+            self.drain()?;
+        }
+        self.engine.run(1, &mut self.rows);
+        Ok(())
+    }
+
+    fn to_end_of_block(&mut self) -> Result<Ending, ObserverError> {
+        let stall = self.bench.hardware.stall_clocks;
+        // A trap may be seen in the very sample behind the load already.
+        if let Some(ending) = self.ended() {
+            return Ok(ending);
+        }
+        loop {
+            let stop = self.engine.run(u64::MAX, &mut self.rows);
+            match stop {
+                Stop::Net(0) => return Ok(Ending::Done),
+                Stop::Net(_) => return Ok(Ending::Trapped),
+                Stop::RowsFull | Stop::Clocks => self.drain()?,
+            }
+            let quiet = self.engine.clock().saturating_sub(self.steps.last_pulse);
+            if quiet > stall {
+                return Ok(Ending::Stalled { clocks: quiet });
+            }
+        }
+    }
+
+    /// What the present sample says by itself.
+    fn ended(&self) -> Option<Ending> {
+        if self.bench.hardware.on_overflow != OnOverflow::Trap {
+            return None;
+        }
+        let mut properties = self.bench.design().netlist().properties.iter();
+        properties.any(|property| self.engine.value(property.never) == 1).then_some(Ending::Trapped)
+    }
+
+    /// Shows the rows to the observers and makes room.
+    fn drain(&mut self) -> Result<(), ObserverError> {
+        for observer in self.observers.iter_mut() {
+            observer.samples(&self.rows)?;
+        }
+        for (clock, row) in self.rows.iter() {
+            if self.steps.sample(clock, row) {
+                for observer in self.observers.iter_mut() {
+                    observer.step(&self.steps.step)?;
+                }
+            }
+        }
+        self.rows.clear();
+        Ok(())
+    }
+}
+
+/// Reads the step table out of samples.
+struct StepReader<'a> {
+    bench: &'a Testbench,
+    step: Step,
+    /// Rows of the table so far.
+    rows: u64,
+    /// The sample before completed a row: the pulses of the next step are counted anew.
+    row_complete: bool,
+    pulses: Vec<u64>,
+    last_pulse: u64,
+    position: Vec<i64>,
+    columns: ReaderColumns,
+}
+
+struct ReaderColumns {
+    loaded: usize,
+    stepped: usize,
+    pulses: Vec<usize>,
+    positions: Vec<usize>,
+    table: Vec<usize>,
+}
+
+impl<'a> StepReader<'a> {
+    fn new(bench: &'a Testbench) -> StepReader<'a> {
+        let machine = &bench.machine;
+        let at = |net: Net| bench.columns.index(net);
+        let axes = machine.pulses.len();
+        let columns = ReaderColumns {
+            loaded: at(machine.loaded.net),
+            stepped: at(machine.stepped.net),
+            pulses: machine.pulses.iter().map(|port| at(port.net)).collect(),
+            positions: machine.positions.iter().map(|port| at(port.net)).collect(),
+            table: machine.table.iter().map(|(_, port)| at(port.net)).collect(),
+        };
+        let step = Step {
+            number: 0,
+            clock: 0,
+            registers: vec![0; machine.table.len()],
+            pulses: vec![0; axes],
+            position: vec![0; axes],
+        };
+        StepReader {
+            bench,
+            step,
+            rows: 0,
+            row_complete: false,
+            pulses: vec![0; axes],
+            last_pulse: 0,
+            position: vec![0; axes],
+            columns,
+        }
+    }
+
+    /// Takes a sample; true if it completes a row of the table, which then stands in `step`.
+    fn sample(&mut self, clock: u64, row: &[u64]) -> bool {
+        let machine = &self.bench.machine;
+        if std::mem::take(&mut self.row_complete) || self.rows == 0 {
+            self.step.pulses.fill(0);
+        }
+        for (axis, &column) in self.columns.pulses.iter().enumerate() {
+            // Two bits, two's complement: 1 is +1, 3 is -1.
+            let pulse = match row[column] {
+                0 => continue,
+                3 => -1,
+                _ => 1,
+            };
+            self.step.pulses[axis] += pulse;
+            self.pulses[axis] += 1;
+            self.last_pulse = clock;
+        }
+        let complete = row[self.columns.stepped] == 1 || (self.rows == 0 && row[self.columns.loaded] == 1);
+        for (axis, &column) in self.columns.positions.iter().enumerate() {
+            self.position[axis] = stepwave_kernel::bits::to_signed(machine.positions[axis].width, row[column]);
+        }
+        if !complete {
+            return false;
+        }
+        for ((value, &column), (_, port)) in self.step.registers.iter_mut().zip(&self.columns.table).zip(&machine.table)
+        {
+            *value = stepwave_kernel::bits::number(port.width, row[column], port.signed);
+        }
+        self.step.position.copy_from_slice(&self.position);
+        self.step.number = self.rows;
+        self.step.clock = clock;
+        self.rows += 1;
+        self.row_complete = true;
+        true
+    }
+
+    fn outcome(&self, ending: Ending, clocks: u64) -> Outcome {
+        Outcome {
+            ending,
+            clocks,
+            steps: self.rows.saturating_sub(1),
+            pulses: self.pulses.clone(),
+            reached: self.position.clone(),
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Overflow events: which component, which operands, what exactly, when, and how wide it would have had to be.
+
+use std::fmt;
+
+use stepwave_kernel::bits;
+use stepwave_kernel::engine::Rows;
+use stepwave_kernel::netlist::{Arithmetic, Claim, Property};
+use stepwave_kernel::{OnOverflow, Width};
+
+use super::{Observer, ObserverError, Testbench};
+
+/// Events kept in full; further ones are counted.
+const KEPT: usize = 100;
+
+/// A property violated at one clock.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum OverflowEvent {
+    /// A strict cell whose exact result did not fit.
+    Overflow {
+        /// Path of the register.
+        component: String,
+        /// Its width.
+        width: Width,
+        /// Two's complement.
+        signed: bool,
+        /// Add or subtract.
+        operation: Arithmetic,
+        /// Value of the register.
+        left: i128,
+        /// What was added or subtracted.
+        right: i128,
+        /// Clock of the sample in which the operands stand; the register would take the result at the next edge.
+        clock: u64,
+    },
+    /// An invariant of the model that did not hold: a defect of the model.
+    Invariant {
+        /// Path of the invariant.
+        component: String,
+        /// Clock of the sample.
+        clock: u64,
+    },
+}
+
+impl OverflowEvent {
+    /// Path of the component.
+    #[must_use]
+    pub fn component(&self) -> &str {
+        match self {
+            OverflowEvent::Overflow { component, .. } | OverflowEvent::Invariant { component, .. } => component,
+        }
+    }
+
+    /// Clock of the sample in which it was seen.
+    #[must_use]
+    pub fn clock(&self) -> u64 {
+        match self {
+            OverflowEvent::Overflow { clock, .. } | OverflowEvent::Invariant { clock, .. } => *clock,
+        }
+    }
+
+    /// The exact result, and the width that would have held it.
+    #[must_use]
+    pub fn exact(&self) -> Option<(i128, u32)> {
+        let OverflowEvent::Overflow { operation, left, right, signed, .. } = self else { return None };
+        let exact = match operation {
+            Arithmetic::Add => left + right,
+            Arithmetic::Sub => left - right,
+        };
+        Some((exact, Width::needed(exact, *signed)))
+    }
+}
+
+impl fmt::Display for OverflowEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } = self else {
+            return write!(f, "invariant {} does not hold at clock {}", self.component(), self.clock());
+        };
+        let (exact, needed) = self.exact().unwrap_or_default();
+        let (least, greatest) = width.range(*signed);
+        let sign = match operation {
+            Arithmetic::Add => "+",
+            Arithmetic::Sub => "-",
+        };
+        let right = if *right < 0 { format!("({right})") } else { right.to_string() };
+        write!(
+            f,
+            "overflow of {component} at clock {clock}: {left} {sign} {right} = {exact} does not fit in its {width} \
+             ({least} to {greatest}); "
+        )?;
+        if exact < 0 && !signed {
+            f.write_str("no unsigned width would hold it")
+        } else {
+            write!(f, "{needed} bits would hold it")
+        }
+    }
+}
+
+struct Watched {
+    property: Property,
+    never: usize,
+    operands: Option<(usize, Width, usize, Width)>,
+}
+
+/// Records the violations of every property.
+pub struct OverflowWatch {
+    watched: Vec<Watched>,
+    /// The first of them, in full.
+    pub events: Vec<OverflowEvent>,
+    /// All of them.
+    pub count: u64,
+    /// What the strict cells do.
+    pub mode: OnOverflow,
+}
+
+impl OverflowWatch {
+    /// Watches every property of a machine.
+    #[must_use]
+    pub fn new(bench: &Testbench) -> OverflowWatch {
+        let netlist = bench.design().netlist();
+        let at = |net| bench.columns().index(net);
+        let watched = netlist.properties.iter().map(|property| {
+            let operands = match property.claim {
+                Claim::NoOverflow { left, right, .. } => {
+                    Some((at(left.net), netlist.width(left.net), at(right.net), netlist.width(right.net)))
+                }
+                Claim::Invariant => None,
+            };
+            Watched { property: property.clone(), never: at(property.never), operands }
+        });
+        let mode = bench.hardware().on_overflow;
+        OverflowWatch { watched: watched.collect(), events: Vec::new(), count: 0, mode }
+    }
+}
+
+fn event(watched: &Watched, clock: u64, row: &[u64]) -> OverflowEvent {
+    let component = watched.property.name.clone();
+    let (Claim::NoOverflow { operation, left, right }, Some((a, a_width, b, b_width))) =
+        (watched.property.claim, watched.operands)
+    else {
+        return OverflowEvent::Invariant { component, clock };
+    };
+    OverflowEvent::Overflow {
+        component,
+        width: a_width,
+        signed: left.signed,
+        operation,
+        left: bits::number(a_width, row[a], left.signed),
+        right: bits::number(b_width, row[b], right.signed),
+        clock,
+    }
+}
+
+impl Observer for OverflowWatch {
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        for (clock, row) in rows.iter() {
+            for watched in &self.watched {
+                if row[watched.never] == 1 {
+                    self.count += 1;
+                    if self.events.len() < KEPT {
+                        self.events.push(event(watched, clock, row));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}

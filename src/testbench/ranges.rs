@@ -1,0 +1,99 @@
+//! Range watch: the least and greatest value that each register held.
+
+use stepwave_kernel::Width;
+use stepwave_kernel::bits;
+use stepwave_kernel::engine::Rows;
+use stepwave_kernel::netlist::Op;
+
+use super::{Observer, ObserverError, Testbench};
+
+/// What a register held during a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RegisterRange {
+    /// Name without path.
+    pub name: String,
+    /// Dotted path.
+    pub path: String,
+    /// Its width.
+    pub width: Width,
+    /// Two's complement.
+    pub signed: bool,
+    /// Least value seen.
+    pub least: i128,
+    /// Greatest value seen.
+    pub greatest: i128,
+}
+
+impl RegisterRange {
+    /// Width that the values seen need, in bits.
+    #[must_use]
+    pub fn needed(&self) -> u32 {
+        Width::needed(self.least, self.signed).max(Width::needed(self.greatest, self.signed))
+    }
+}
+
+struct Watched {
+    column: usize,
+    least: u64,
+    greatest: u64,
+}
+
+/// Watches every named register.
+pub struct RangeWatch {
+    registers: Vec<RegisterRange>,
+    watched: Vec<Watched>,
+}
+
+impl RangeWatch {
+    /// All named registers of a machine, in the order of the wave.
+    #[must_use]
+    pub fn new(bench: &Testbench) -> RangeWatch {
+        let netlist = bench.design().netlist();
+        let mut watch = RangeWatch { registers: Vec::new(), watched: Vec::new() };
+        for named in &netlist.names {
+            let cell = netlist.cell(named.net);
+            if matches!(cell.op, Op::Register { .. }) {
+                watch.watched.push(Watched { column: bench.columns().index(named.net), least: u64::MAX, greatest: 0 });
+                watch.registers.push(RegisterRange {
+                    name: named.name.clone(),
+                    path: netlist.path(named),
+                    width: cell.width,
+                    signed: named.format.is_signed(),
+                    least: 0,
+                    greatest: 0,
+                });
+            }
+        }
+        watch
+    }
+
+    /// The ranges seen so far.
+    #[must_use]
+    pub fn finish(mut self) -> Vec<RegisterRange> {
+        for (range, watched) in self.registers.iter_mut().zip(&self.watched) {
+            if watched.least <= watched.greatest {
+                let number = |biased| bits::number(range.width, unbiased(range, biased), range.signed);
+                (range.least, range.greatest) = (number(watched.least), number(watched.greatest));
+            }
+        }
+        self.registers
+    }
+}
+
+/// Two's complement with the sign bit turned over sorts as unsigned; so both readings compare alike.
+fn unbiased(range: &RegisterRange, biased: u64) -> u64 {
+    if range.signed { biased ^ range.width.sign_bit() } else { biased }
+}
+
+impl Observer for RangeWatch {
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        for (watched, range) in self.watched.iter_mut().zip(&self.registers) {
+            for (_, row) in rows.iter() {
+                let biased = unbiased(range, row[watched.column]);
+                watched.least = watched.least.min(biased);
+                watched.greatest = watched.greatest.max(biased);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,73 @@
+//! Every register of every model at every step, compared with the recurrences in `reference`.
+
+mod dda;
+mod ppc;
+
+use stepwave::testbench::{Ending, Observer, ObserverError, Outcome, Step, Testbench};
+use stepwave_kernel::engine::EngineKind;
+use stepwave_models::{Choices, find};
+use stepwave_nc::{Arc, Curve, Direction, Line};
+
+use crate::reference::Table;
+
+/// Keeps the whole step table.
+struct Keep(Vec<Step>);
+
+impl Observer for Keep {
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        self.0.push(step.clone());
+        Ok(())
+    }
+}
+
+/// A run: its step table with named columns, and how it ended.
+struct Ran {
+    columns: Vec<String>,
+    rows: Vec<Vec<i64>>,
+    outcome: Outcome,
+}
+
+fn line(from: &[i64], to: &[i64]) -> Curve {
+    Curve::Line(Line::new(from.to_vec(), to.to_vec()).unwrap())
+}
+
+fn arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool) -> Curve {
+    let direction = if clockwise { Direction::Clockwise } else { Direction::CounterClockwise };
+    Curve::Arc(Arc::new(from, to, center, direction).unwrap())
+}
+
+fn run(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind) -> Ran {
+    let bench = Testbench::new(find(model).unwrap(), curve, choices).unwrap();
+    let mut keep = Keep(Vec::new());
+    let outcome = bench.run(engine, &mut [&mut keep]).unwrap();
+    let letters = bench.hardware().letters();
+    let mut columns: Vec<String> = bench.machine().table.iter().map(|(name, _)| name.clone()).collect();
+    columns.extend(letters.iter().map(|axis| format!("d{axis}")));
+    columns.extend(letters.iter().map(|axis| (*axis).to_owned()));
+    let row = |step: Step| {
+        let registers = step.registers.iter().map(|&value| i64::try_from(value).unwrap());
+        registers.chain(step.pulses).chain(step.position).collect()
+    };
+    Ran { columns, rows: keep.0.into_iter().map(row).collect(), outcome }
+}
+
+/// Compares every column of the reference, row by row.
+fn assert_equal(what: &str, ran: &Ran, reference: &Table) {
+    for (index, (got, want)) in ran.rows.iter().zip(&reference.rows).enumerate() {
+        for (name, want) in reference.columns.iter().zip(want) {
+            let column = ran.columns.iter().position(|column| column == name);
+            let got = got[column.unwrap_or_else(|| panic!("{what}: no column {name}"))];
+            assert_eq!(got, *want, "{what}: {name} after step {index}");
+        }
+    }
+    assert_eq!(ran.rows.len(), reference.rows.len(), "{what}: number of steps");
+}
+
+/// Runs on one engine, compares with the reference, and wants a clean end.
+fn check(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind, reference: &Table) {
+    let what = format!("{model} {curve:?} {choices:?} on {}", engine.name());
+    let ran = run(model, curve, choices, engine);
+    assert_equal(&what, &ran, reference);
+    assert_eq!(ran.outcome.ending, Ending::Done, "{what}");
+    assert_eq!(ran.outcome.reached, curve.to(), "{what}: end point");
+}

@@ -1,0 +1,134 @@
+//! Point-by-point comparison.
+
+use proptest::prelude::*;
+use stepwave_kernel::engine::EngineKind;
+use stepwave_models::{Beats, Choices, EndPoint, Form};
+
+use super::{arc, check, line};
+use crate::reference::{self, ppc_arc, ppc_line};
+
+const END_POINTS: [(EndPoint, reference::EndPoint); 3] = [
+    (EndPoint::Total, reference::EndPoint::Total),
+    (EndPoint::PerAxis, reference::EndPoint::PerAxis),
+    (EndPoint::Longest, reference::EndPoint::Longest),
+];
+const FORMS: [(Form, reference::Form); 2] =
+    [(Form::Magnitude, reference::Form::Magnitude), (Form::Signed, reference::Form::Signed)];
+
+fn choices(end_point: EndPoint, form: Option<Form>, beats: Beats) -> Choices {
+    Choices { end_point: Some(end_point), form, beats: Some(beats), ..Choices::default() }
+}
+
+/// Every form and end-point scheme of one line.
+fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
+    for (end_point, end_reference) in END_POINTS {
+        for (form, form_reference) in FORMS {
+            let table = ppc_line(from, to, form_reference, end_reference);
+            check("ppc-line", &line(&from, &to), &choices(end_point, Some(form), beats), engine, &table);
+        }
+    }
+}
+
+fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, beats: Beats, engine: EngineKind) {
+    for (end_point, end_reference) in &END_POINTS[..2] {
+        let table = ppc_arc(from, to, center, clockwise, *end_reference);
+        check("ppc-arc", &arc(from, to, center, clockwise), &choices(*end_point, None, beats), engine, &table);
+    }
+}
+
+/// All points with x² + y² = r2.
+pub(super) fn lattice(r2: i64) -> Vec<[i64; 2]> {
+    let r = r2.isqrt();
+    let square = (-r..=r).flat_map(|x| (-r..=r).map(move |y| [x, y]));
+    square.filter(|[x, y]| x * x + y * y == r2).collect()
+}
+
+#[test]
+fn every_line_of_up_to_four_bits_in_every_quadrant_form_and_scheme() {
+    for x in -15..=15 {
+        for y in -15..=15 {
+            if [x, y] != [0, 0] {
+                check_line([0, 0], [x, y], Beats::One, EngineKind::Word);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_line_of_up_to_three_bits_in_four_beats_on_every_engine_from_a_translated_start() {
+    for x in -7..=7 {
+        for y in -7..=7 {
+            if [x, y] != [0, 0] {
+                check_line([3, -2], [3 + x, y - 2], Beats::Four, EngineKind::Word);
+                if x.rem_euclid(3) == 0 {
+                    check_line([3, -2], [3 + x, y - 2], Beats::Four, EngineKind::Gates);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_lattice_arc_and_full_circle_up_to_radius_10_in_both_directions() {
+    for r2 in 1..=100 {
+        let points = lattice(r2);
+        for &from in &points {
+            for &to in &points {
+                for clockwise in [true, false] {
+                    check_arc(from, to, [0, 0], clockwise, Beats::One, EngineKind::Word);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn arcs_in_four_beats_about_a_translated_centre_on_every_engine() {
+    for r2 in [1, 2, 5, 25, 34] {
+        let points = lattice(r2);
+        for (index, &[x, y]) in points.iter().enumerate() {
+            let [tx, ty] = points[(index * 5 + 3) % points.len()];
+            for engine in EngineKind::ALL {
+                let (from, to) = ([x + 40, y - 7], [tx + 40, ty - 7]);
+                check_arc(from, to, [40, -7], index % 2 == 0, Beats::Four, engine);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_end_point_beside_the_circle_is_reached_with_a_counter_for_each_axis() {
+    let mut off_circle = 0;
+    for from in lattice(50) {
+        for x in -8..=8i64 {
+            for y in -8..=8i64 {
+                let radius = f64::from(i32::try_from(x * x + y * y).unwrap()).sqrt();
+                let near = (radius - 50f64.sqrt()).abs() <= 1.0;
+                if near && x * x + y * y != 50 {
+                    off_circle += 1;
+                    let table = ppc_arc(from, [x, y], [0, 0], true, reference::EndPoint::PerAxis);
+                    let choices = Choices { beats: Some(Beats::One), ..Choices::default() };
+                    check("ppc-arc", &arc(from, [x, y], [0, 0], true), &choices, EngineKind::Word, &table);
+                }
+            }
+        }
+    }
+    assert!(off_circle > 500, "{off_circle}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn lines_of_any_size(from in prop::array::uniform2(-100_000i64..100_000), d in prop::array::uniform2(-3000i64..3000)) {
+        prop_assume!(d != [0, 0]);
+        let to = [from[0] + d[0], from[1] + d[1]];
+        check_line(from, to, Beats::One, EngineKind::Word);
+    }
+
+    #[test]
+    fn full_circles_of_any_size(start in prop::array::uniform2(-400i64..400), clockwise: bool) {
+        prop_assume!(start != [0, 0]);
+        check_arc(start, start, [0, 0], clockwise, Beats::Four, EngineKind::Word);
+    }
+}

@@ -1,0 +1,112 @@
+//! The four classic interpolators as plain integer recurrences: the judge of the netlists.
+//!
+//! Nothing here knows of a net, a clock or a register width. Each function writes down what one
+//! *step* of the method does to a handful of integers, and records the integers after every step.
+//! Lengths are BLU (basic length units). Row 0 of a [`Table`] is the state after the block was
+//! loaded, row `k` the state after step `k`.
+//!
+//! - [`ppc_line`], [`ppc_arc`]: point-by-point comparison, one axis per step, steered by the sign of
+//!   a deviation `f`.
+//! - [`dda_line`], [`dda_arc`]: digital differential analyser, one accumulation per axis per step,
+//!   the overflow of the accumulator is the pulse.
+//!
+//! A call outside a method's domain (a register too narrow, an end point that the arc cannot reach)
+//! is a mistake of the test that makes it, and panics.
+
+mod arc_geometry;
+mod dda;
+mod ppc;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use dda::{dda_arc, dda_line};
+pub(crate) use ppc::{ppc_arc, ppc_line};
+
+/// The names of up to six axes, in the order of the columns.
+pub(crate) const AXES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
+
+/// How a block knows that it is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum EndPoint {
+    /// One counter `e` of all pulses of all axes.
+    Total,
+    /// One counter per axis, `ex`, `ey`, …; the block is done when all are 0.
+    PerAxis,
+    /// One counter `e` of the pulses of the longest axis.
+    Longest,
+    /// One counter `e` of the iterations; only for the DDA line.
+    Iterations,
+}
+
+/// Which deviation a point-by-point line keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// F = a·|y| - b·|x| with a = |dx|, b = |dy|: every quadrant is treated as the first.
+    Magnitude,
+    /// F = dx·y - dy·x, with the signs of the line.
+    Signed,
+}
+
+/// A step table: row 0 is the state after load, row `k` every register after step `k`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Table {
+    /// The names of the columns.
+    pub(crate) columns: Vec<String>,
+    /// The rows; each holds one value per column.
+    pub(crate) rows: Vec<Vec<i64>>,
+    /// True when the end counters reached 0; false when the motion hung or overflowed.
+    pub(crate) finished: bool,
+    /// True when the step after the last row would take an integrand out of 0 ..= 2^n - 1.
+    pub(crate) overflow: bool,
+}
+
+impl Table {
+    /// An empty, unfinished table with these columns.
+    fn new(columns: Vec<String>) -> Self {
+        Table { columns, rows: Vec::new(), finished: false, overflow: false }
+    }
+
+    /// Appends the state after one step; the groups of values follow the order of the columns.
+    fn push(&mut self, groups: &[&[i64]]) {
+        let row = groups.concat();
+        assert_eq!(row.len(), self.columns.len(), "one value per column");
+        self.rows.push(row);
+    }
+
+    /// All values of one column, row 0 first.
+    ///
+    /// # Panics
+    /// When there is no such column.
+    pub(crate) fn column(&self, name: &str) -> Vec<i64> {
+        let index = self
+            .columns
+            .iter()
+            .position(|column| column == name)
+            .unwrap_or_else(|| panic!("no column `{name}` in {:?}", self.columns));
+        self.rows.iter().map(|row| row[index]).collect()
+    }
+
+    /// The number of steps, that is, of rows after row 0.
+    pub(crate) fn steps(&self) -> usize {
+        self.rows.len() - 1
+    }
+
+    /// The machine position of every row: x and y in BLU.
+    pub(crate) fn path(&self) -> Vec<[i64; 2]> {
+        let (x, y) = (self.column("x"), self.column("y"));
+        x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
+    }
+}
+
+/// The columns of the end counters: `e`, or one per axis.
+fn counter_columns(end: EndPoint, axes: usize) -> Vec<String> {
+    match end {
+        EndPoint::PerAxis => per_axis_columns("e", axes),
+        EndPoint::Total | EndPoint::Longest | EndPoint::Iterations => vec!["e".to_owned()],
+    }
+}
+
+/// One column per axis: the prefix and the axis letter.
+fn per_axis_columns(prefix: &str, axes: usize) -> Vec<String> {
+    AXES[..axes].iter().map(|axis| format!("{prefix}{axis}")).collect()
+}
