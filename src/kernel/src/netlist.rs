@@ -273,10 +273,7 @@ impl Netlist {
     /// An empty netlist with its top scope.
     #[must_use]
     pub fn new(name: &str) -> Netlist {
-        Netlist {
-            scopes: vec![ScopeData { parent: None, name: name.to_owned() }],
-            ..Netlist::default()
-        }
+        Netlist { scopes: vec![ScopeData { parent: None, name: name.to_owned() }], ..Netlist::default() }
     }
 
     /// The cell that drives a net.

@@ -370,7 +370,10 @@ property "counter.x.count" never %6 add %1 unsigned %2 unsigned
         for (text, message) in [
             ("", "line 1: expected 'netlist NAME' in the first line [Syntax]"),
             ("netlist m\n%1:1 = input", "line 2: expected the next net, %0 in '%1:1 = input' [Syntax]"),
-            ("netlist m\n%0:65 = input", "line 2: expected a width of 1 to 64 bits (a width of 65 bits is not possible: a register holds 1 to 64 bits) in '%0:65 = input' [Syntax]"),
+            (
+                "netlist m\n%0:65 = input",
+                "line 2: expected a width of 1 to 64 bits (a width of 65 bits is not possible: a register holds 1 to 64 bits) in '%0:65 = input' [Syntax]",
+            ),
             ("netlist m\n%0:1 = spin %0", "line 2: expected an operator in '%0:1 = spin %0' [Syntax]"),
             ("netlist m\nname %0 in 0 \"a", "line 2: expected the end of the quotes in 'name %0 in 0 \"a' [Syntax]"),
         ] {

@@ -1,8 +1,9 @@
 //! Waves: which nets are shown, how they are written, read back and compared.
 
+pub mod diverge;
 pub mod gtkw;
-
+pub mod merge;
 pub mod probe;
-
+pub mod read;
 pub mod timescale;
 pub mod vcd;

@@ -1,0 +1,151 @@
+//! The command line: what may be written, and how it is explained. Manual pages and completions come from it too.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::commands::diff::DiffArgs;
+
+mod values;
+
+pub(crate) use values::{HardwareArgs, Point};
+
+/// Cycle-accurate simulator of numerical-control interpolator hardware
+#[derive(Debug, Parser)]
+#[command(version, about, max_term_width = 100)]
+#[command(after_help = "Exit codes: 0 done and good; 1 the simulated hardware failed a check or a comparison \
+                        differs; 2 bad input, or a file cannot be read or written.")]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Every model: name, method, curves, registers with default widths, options
+    List(ListArgs),
+    /// Build a model's netlist, simulate it clock by clock, write waves, step table, report, picture
+    Run(Box<RunArgs>),
+    /// First divergence of two wave files (VCD or FST, ours or anybody's)
+    Diff(DiffArgs),
+    /// Re-simulate the recorded cases of a folder and compare bit by bit
+    #[command(subcommand)]
+    Golden(GoldenCommand),
+    /// Print a completion script for a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write manual pages for every command into a folder
+    Man {
+        /// The folder
+        #[arg(default_value = ".")]
+        dir: PathBuf,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ListArgs {
+    /// As JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum GoldenCommand {
+    /// Simulate every case anew and compare with its recorded files; exit 1 at a difference
+    Check(GoldenArgs),
+    /// Simulate every case and write its files
+    Record(GoldenArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GoldenArgs {
+    /// Folder with cases.toml and the recorded waves
+    #[arg(default_value = "waves")]
+    pub(crate) dir: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    stepwave run dda-line --to 8,6 --vcd line.vcd\n  \
+    stepwave run ppc-arc --from 5,0 --to 0,5 --ccw --steps - \n  \
+    stepwave run ppc-line --to 6,4 --width f=3 --vcd trap.vcd")]
+pub(crate) struct RunArgs {
+    /// The model; `stepwave list` shows them
+    pub(crate) model: String,
+    #[command(flatten)]
+    pub(crate) geometry: GeometryArgs,
+    #[command(flatten)]
+    pub(crate) hardware: HardwareArgs,
+    #[command(flatten)]
+    pub(crate) trace: TraceArgs,
+    #[command(flatten)]
+    pub(crate) outputs: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Geometry, in BLU")]
+pub(crate) struct GeometryArgs {
+    /// Start point [default: the origin]
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = values::parse_point)]
+    pub(crate) from: Option<Point>,
+    /// End point
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = values::parse_point)]
+    pub(crate) to: Option<Point>,
+    /// Centre of an arc [default: the origin]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = values::parse_point)]
+    pub(crate) center: Option<Point>,
+    /// Clockwise arc (G02, SR)
+    #[arg(long, conflicts_with = "ccw")]
+    pub(crate) cw: bool,
+    /// Counter-clockwise arc (G03, NR)
+    #[arg(long)]
+    pub(crate) ccw: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Wave")]
+pub(crate) struct TraceArgs {
+    /// Write the wave as VCD, with a GTKWave save file and state-name files beside it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) vcd: Option<PathBuf>,
+    /// Dump only names that match (leaf name or dotted path; may be repeated)
+    #[arg(long, value_name = "GLOB")]
+    pub(crate) trace: Vec<String>,
+    /// Leave out names that match (may be repeated)
+    #[arg(long, value_name = "GLOB")]
+    pub(crate) trace_exclude: Vec<String>,
+    /// Dump at most this many levels of scopes; 1 is the top scope alone
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) trace_depth: Option<u64>,
+    /// First clock of the wave
+    #[arg(long, value_name = "CLOCK", default_value_t = 0)]
+    pub(crate) trace_from: u64,
+    /// Last clock of the wave
+    #[arg(long, value_name = "CLOCK")]
+    pub(crate) trace_to: Option<u64>,
+    /// Begin the wave at the first clock on which this 1-bit signal is 1
+    #[arg(long, value_name = "SIGNAL")]
+    pub(crate) trace_on: Option<String>,
+    /// Do not dump the clock (saves about 15 bytes a cycle)
+    #[arg(long)]
+    pub(crate) no_clk: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Outputs (- is standard output)")]
+pub(crate) struct OutputArgs {
+    /// Write the step table as CSV
+    #[arg(long, value_name = "FILE")]
+    pub(crate) steps: Option<PathBuf>,
+    /// Write the report as JSON
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+    /// Draw the path over the ideal curve, and its error, as SVG
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Show registers in binary in the printed table
+    #[arg(long)]
+    pub(crate) bits: bool,
+}

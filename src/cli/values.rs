@@ -1,0 +1,165 @@
+//! Values on the command line, each with the sentence that says what is wrong with a bad one.
+
+use std::collections::BTreeMap;
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use stepwave::kernel::Width;
+use stepwave::kernel::engine::EngineKind;
+use stepwave::models::{Beats, Choices, EndPoint, Form, OnOverflow, Preset};
+
+/// Coordinates of a point in BLU.
+#[derive(Clone, Debug)]
+pub(crate) struct Point(pub(crate) Vec<i64>);
+
+pub(crate) fn parse_point(text: &str) -> Result<Point, String> {
+    let coordinate = |word: &str| {
+        let word = word.trim();
+        word.parse::<i64>().map_err(|error| match error.kind() {
+            std::num::IntErrorKind::PosOverflow | std::num::IntErrorKind::NegOverflow => {
+                format!("'{word}' is too large for a coordinate: give whole BLU within ±2^52")
+            }
+            _ => format!("'{word}' is no coordinate: give whole numbers of BLU, such as 8,6"),
+        })
+    };
+    text.split(',').map(coordinate).collect::<Result<_, _>>().map(Point)
+}
+
+/// One `--width`: `N`, or `REGISTER=N`, or several with commas.
+#[derive(Clone, Debug)]
+pub(crate) struct WidthArg(Vec<(Option<String>, Width)>);
+
+fn parse_width(text: &str) -> Result<WidthArg, String> {
+    let one = |part: &str| {
+        let (name, bits) = match part.split_once('=') {
+            Some((name, bits)) => (Some(name.trim().to_owned()), bits.trim()),
+            None => (None, part.trim()),
+        };
+        let bits: u64 = bits
+            .parse()
+            .map_err(|_| format!("'{bits}' is no width: give a number of bits from 1 to 64, such as 8 or f=9"))?;
+        let width = Width::new(bits).map_err(|error| error.to_string())?;
+        Ok((name, width))
+    };
+    text.split(',').map(one).collect::<Result<_, String>>().map(WidthArg)
+}
+
+/// One `--preset`: a preset for all, or `REGISTER=PRESET` with commas.
+#[derive(Clone, Debug)]
+pub(crate) struct PresetArg(Vec<(Option<String>, Preset)>);
+
+fn parse_preset(text: &str) -> Result<PresetArg, String> {
+    let preset = |word: &str| match word {
+        "zero" => Ok(Preset::Zero),
+        "half" => Ok(Preset::Half),
+        "full" => Ok(Preset::Full),
+        number => number
+            .parse()
+            .map(Preset::Value)
+            .map_err(|_| format!("'{number}' is no preset: give zero, half, full or a number from 0 on")),
+    };
+    let one = |part: &str| match part.split_once('=') {
+        Some((name, value)) => Ok((Some(name.trim().to_owned()), preset(value.trim())?)),
+        None => Ok((None, preset(part.trim())?)),
+    };
+    text.split(',').map(one).collect::<Result<_, String>>().map(PresetArg)
+}
+
+/// The clock frequency in Hz.
+fn parse_clock(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| format!("'{text}' is no frequency: give Hz, such as 1000000 or 1e6"))
+}
+
+/// One BLU in millimetres.
+fn parse_blu(text: &str) -> Result<f64, String> {
+    const UNITS: [(&str, f64); 4] = [("mm", 1.0), ("um", 1e-3), ("µm", 1e-3), ("in", 25.4)];
+    let way_out = || format!("'{text}' is no length: give one such as 0.001mm, 1um or 0.0001in");
+    let (unit, scale) = UNITS.iter().find(|(unit, _)| text.ends_with(unit)).ok_or_else(way_out)?;
+    let number = text.strip_suffix(unit).unwrap_or_default().trim();
+    let length: f64 = number.parse().map_err(|_| way_out())?;
+    if length.is_finite() && length > 0.0 { Ok(length * scale) } else { Err(way_out()) }
+}
+
+/// A choice among named values.
+fn one_of<T: Clone + Send + Sync + 'static>(values: &[(&'static str, T)]) -> impl TypedValueParser<Value = T> + use<T> {
+    let values = values.to_vec();
+    let names: Vec<&'static str> = values.iter().map(|(name, _)| *name).collect();
+    PossibleValuesParser::new(names).map(move |given| {
+        let chosen = values.iter().find(|(name, _)| *name == given).map(|(_, value)| value.clone());
+        // The parser before it lets only known names through.
+        chosen.unwrap_or_else(|| values[0].1.clone())
+    })
+}
+
+fn end_points() -> impl TypedValueParser<Value = EndPoint> {
+    let all = [EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest, EndPoint::Iterations];
+    one_of(&["total", "per-axis", "longest", "iterations"].into_iter().zip(all).collect::<Vec<_>>())
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Hardware (each model takes some; `stepwave list` tells which)")]
+pub(crate) struct HardwareArgs {
+    /// Width of all magnitude registers, or of single ones by name [default: the least that holds the geometry]
+    #[arg(long, value_name = "N|REGISTER=N,…", value_parser = parse_width)]
+    width: Vec<WidthArg>,
+    /// Start value of the remainder registers: zero, half, full, a number, or jrx=…,jry=…
+    #[arg(long, value_name = "PRESET", value_parser = parse_preset)]
+    preset: Vec<PresetArg>,
+    /// Left-shift normalisation of the integrands
+    #[arg(long)]
+    normalize: bool,
+    /// What ends a block
+    #[arg(long, value_parser = end_points())]
+    end_point: Option<EndPoint>,
+    /// How the deviation of a line is kept
+    #[arg(long, value_parser = one_of(&[("magnitude", Form::Magnitude), ("signed", Form::Signed)]))]
+    form: Option<Form>,
+    /// Clocks of a point-by-point step
+    #[arg(long, value_parser = one_of(&[("4", Beats::Four), ("1", Beats::One)]))]
+    beats: Option<Beats>,
+    /// What a cell does that must not overflow
+    #[arg(long, value_parser = one_of(&[
+        ("trap", OnOverflow::Trap), ("saturate", OnOverflow::Saturate), ("wrap", OnOverflow::Wrap)]))]
+    on_overflow: Option<OnOverflow>,
+    /// Clock frequency in Hz, for the time axis and the feed
+    #[arg(long, value_name = "HZ", default_value = "1e6", value_parser = parse_clock)]
+    pub(crate) clock_hz: f64,
+    /// Length of one BLU, for the feed
+    #[arg(long, value_name = "LENGTH", default_value = "0.001mm", value_parser = parse_blu)]
+    pub(crate) blu: f64,
+    /// What simulates the netlist
+    #[arg(long, default_value = "auto", value_parser = one_of(&[
+        ("auto", EngineKind::Word), ("word", EngineKind::Word), ("gates", EngineKind::Gates)]))]
+    pub(crate) engine: EngineKind,
+}
+
+/// Splits values for all from values for single registers; the last one given counts.
+fn split<T>(given: impl Iterator<Item = (Option<String>, T)>) -> (Option<T>, BTreeMap<String, T>) {
+    let (mut all, mut single) = (None, BTreeMap::new());
+    for (name, value) in given {
+        match name {
+            Some(name) => _ = single.insert(name, value),
+            None => all = Some(value),
+        }
+    }
+    (all, single)
+}
+
+impl HardwareArgs {
+    /// The choices made.
+    pub(crate) fn choices(&self) -> Choices {
+        let (width, widths) = split(self.width.iter().flat_map(|arg| arg.0.iter().cloned()));
+        let (preset, presets) = split(self.preset.iter().flat_map(|arg| arg.0.iter().cloned()));
+        Choices {
+            width,
+            widths,
+            preset,
+            presets,
+            normalize: self.normalize,
+            end_point: self.end_point,
+            form: self.form,
+            beats: self.beats,
+            on_overflow: self.on_overflow,
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! `stepwave diff`: where two waves part.
+
+use std::error::Error;
+use std::fs::OpenOptions;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::thread;
+use stepwave_kernel::trace::diverge::{self, By, Options};
+use stepwave_kernel::trace::merge::write_merged;
+use stepwave_kernel::trace::read::{Wave, WaveError};
+
+/// Compare two waves and show where they part
+///
+/// Reads VCD and FST, of stepwave or of any other simulator. By default both are sampled at the rising edges of their
+/// clocks, so that time units, clock periods and delays within a cycle play no part: sample k is what the hardware has
+/// settled to after edge k. Shows the first clock at which a signal differs, its values, and every other signal that
+/// differs anywhere. A signal that one side lacks, another width and another length are differences too.
+///
+/// Signals are matched by their dotted paths without bit ranges. If no path is common to both, the leading scopes that all
+/// signals of a file share are taken off first, on each side.
+///
+/// Exit code: 0 same, 1 different, 2 trouble.
+#[derive(Debug, clap::Args)]
+pub(crate) struct DiffArgs {
+    /// The first wave, side A
+    #[arg(value_name = "A")]
+    a: PathBuf,
+
+    /// The second wave, side B
+    #[arg(value_name = "B")]
+    b: PathBuf,
+
+    /// What stands beside what: samples at the clock edges, or values at equal times
+    #[arg(long, value_enum, default_value_t = Axis::Clock)]
+    by: Axis,
+
+    /// The clock: a dotted path, or the end of one [default: the 1-bit `clk` or `clock` nearest the top]
+    #[arg(long, value_name = "NAME")]
+    clock: Option<String>,
+
+    /// Compare sample k of A with sample k+CLOCKS of B; negative if A starts late
+    #[arg(long, value_name = "CLOCKS", default_value_t = 0, allow_negative_numbers = true)]
+    offset: i64,
+
+    /// Compare only signals whose path or name matches; `*` matches dots too (repeatable)
+    #[arg(long, value_name = "GLOB")]
+    signals: Vec<String>,
+
+    /// Leave out signals whose path or name matches (repeatable)
+    #[arg(long, value_name = "GLOB")]
+    ignore: Vec<String>,
+
+    /// The signal or scope `a` of A is `b` in B; an empty side is the root (repeatable, the first that fits counts)
+    #[arg(long, value_name = "a=b", value_parser = parse_map)]
+    map: Vec<(String, String)>,
+
+    /// Lines of context before and after the first divergence
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    context: usize,
+
+    /// Also write both sides and their exclusive-or as one VCD for the viewer (`-`: to standard output, instead of the
+    /// report)
+    #[arg(long, value_name = "F.vcd")]
+    merged: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Axis {
+    /// Sample k of A beside sample k of B
+    Clock,
+    /// Every change at its time, units converted
+    Time,
+}
+
+fn parse_map(rule: &str) -> Result<(String, String), String> {
+    let (a, b) =
+        rule.split_once('=').ok_or_else(|| format!("`{rule}` has no `=`; write a=b, as in tb.dut=dda_line"))?;
+    Ok((a.into(), b.into()))
+}
+
+/// Compares and reports to `out`; true if the waves are the same.
+pub(crate) fn run(args: &DiffArgs, out: &mut dyn Write) -> Result<bool, Box<dyn Error + Send + Sync>> {
+    let by = match args.by {
+        Axis::Clock => By::Clock { offset: args.offset },
+        Axis::Time if args.offset != 0 => return Err("--offset counts clocks, which --by time does without".into()),
+        Axis::Time if args.clock.is_some() => return Err("--clock names a clock, which --by time does without".into()),
+        Axis::Time => By::Time,
+    };
+    let options = Options {
+        by,
+        signals: args.signals.clone(),
+        ignore: args.ignore.clone(),
+        map: args.map.clone(),
+        context: args.context,
+    };
+    let open = |path: &Path| -> Result<Wave, WaveError> {
+        let wave = Wave::open(path)?;
+        match &args.clock {
+            Some(clock) => Ok(wave.with_clock(clock)?),
+            None => Ok(wave),
+        }
+    };
+    let (a, b) = thread::scope(|scope| {
+        let a = scope.spawn(|| open(&args.a));
+        let b = open(&args.b);
+        (a.join(), b)
+    });
+    let a = a.map_err(|_| "the first wave cannot be read: the reader stopped")??;
+    let b = b?;
+
+    let comparison = diverge::compare(&a, &b, &options)?;
+    let merged_to_out = args.merged.as_deref().is_some_and(|path| path == Path::new("-"));
+    match args.merged.as_deref() {
+        Some(_) if merged_to_out => write_merged(&a, &b, &options, out)?,
+        Some(path) => replace(path, |file| Ok(write_merged(&a, &b, &options, file)?))?,
+        None => {}
+    }
+    if !merged_to_out {
+        writeln!(out, "{comparison}")?;
+    }
+    Ok(comparison.divergence.is_none())
+}
+
+/// Writes a file under another name in the same folder and renames it when it is whole. What is there and is no file (a
+/// pipe, a device) is written into.
+fn replace(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<(), Box<dyn Error + Send + Sync>>,
+) -> Result<(), Box<dyn Error + Send + Sync>> {
+    let named = |error: &dyn std::fmt::Display| format!("{}: cannot be written: {error}", path.display());
+    if path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+        let mut pipe = OpenOptions::new().write(true).open(path).map_err(|error| named(&error))?;
+        return write(&mut pipe).map_err(|error| named(&error).into());
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.prefix(".stepwave-").tempfile_in(folder).map_err(|error| named(&error))?;
+    let mut buffer = BufWriter::new(file);
+    write(&mut buffer).map_err(|error| named(&error))?;
+    let file = buffer.into_inner().map_err(|error| named(&error))?;
+    file.persist(path).map_err(|error| named(&error.error))?;
+    Ok(())
+}

@@ -1,0 +1,29 @@
+//! One file per subcommand, thin: it joins the command line with the library.
+
+pub(crate) mod diff;
+mod golden;
+mod list;
+mod pages;
+mod progress;
+mod run;
+
+use crate::cli::{Cli, Command};
+use crate::failure::Failure;
+
+/// Runs the command that was given.
+///
+/// # Errors
+/// Whatever ends the process with an exit code other than 0.
+pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
+    match &cli.command {
+        Command::List(args) => list::run(args),
+        Command::Run(args) => run::run(args),
+        Command::Diff(args) => {
+            let same = diff::run(args, &mut std::io::stdout())?;
+            if same { Ok(()) } else { Err(Failure::Check(vec!["the waves differ".to_owned()])) }
+        }
+        Command::Golden(command) => golden::run(command),
+        Command::Completions { shell } => pages::completions(*shell),
+        Command::Man { dir } => pages::manual(dir),
+    }
+}

@@ -1,0 +1,34 @@
+//! `stepwave completions` and `stepwave man`: from the same definitions as `--help`.
+
+use std::path::Path;
+
+use clap::CommandFactory;
+
+use crate::cli::Cli;
+use crate::failure::Failure;
+use crate::output::{self, Outputs};
+
+/// Prints the completion script of a shell.
+pub(crate) fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "stepwave", &mut script);
+    output::print(&String::from_utf8_lossy(&script))
+}
+
+/// Writes a manual page for the program and for each command.
+pub(crate) fn manual(dir: &Path) -> Result<(), Failure> {
+    let mut outputs = Outputs::default();
+    let mut program = Cli::command();
+    program.build();
+    page(&mut outputs, dir, &program, "stepwave")?;
+    for command in program.get_subcommands() {
+        page(&mut outputs, dir, command, &format!("stepwave-{}", command.get_name()))?;
+    }
+    outputs.commit()
+}
+
+fn page(outputs: &mut Outputs, dir: &Path, command: &clap::Command, name: &str) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_mangen::Man::new(command.clone()).title(name.to_uppercase()).render(&mut text)?;
+    outputs.write(&dir.join(format!("{name}.1")), &String::from_utf8_lossy(&text))
+}

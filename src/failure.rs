@@ -1,0 +1,54 @@
+//! How a command fails: with which exit code, and in which words.
+
+use std::error::Error;
+use std::fmt;
+
+/// A command did not end well.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The simulated hardware failed a check, or a comparison differs: exit code 1. One sentence a line.
+    Check(Vec<String>),
+    /// Bad input or usage, or a file cannot be read or written: exit code 2.
+    Trouble(String),
+}
+
+impl Failure {
+    /// The exit code of the process.
+    pub(crate) fn code(&self) -> u8 {
+        match self {
+            Failure::Check(_) => 1,
+            Failure::Trouble(_) => 2,
+        }
+    }
+
+    /// A usage error, in one line: what is wrong, and where to read on.
+    pub(crate) fn usage(error: &clap::Error) -> Failure {
+        let text = error.render().to_string();
+        // The first paragraph says what is wrong; usage and tips follow.
+        let paragraph: Vec<&str> = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim).collect();
+        let sentence = paragraph.join(" ");
+        let sentence = sentence.strip_prefix("error: ").unwrap_or(&sentence);
+        let command = std::env::args().nth(1).filter(|word| !word.starts_with('-')).unwrap_or_default();
+        let help = format!("stepwave {command}").trim_end().to_owned();
+        Failure::Trouble(format!("{sentence} (see `{help} --help`)"))
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Check(sentences) => {
+                let lines: Vec<_> = sentences.iter().map(|sentence| format!("stepwave: {sentence}")).collect();
+                f.write_str(&lines.join("\n"))
+            }
+            Failure::Trouble(sentence) => write!(f, "stepwave: {sentence}"),
+        }
+    }
+}
+
+/// Every error of a library is trouble; it keeps its own words.
+impl<E: Into<Box<dyn Error + Send + Sync>>> From<E> for Failure {
+    fn from(error: E) -> Failure {
+        Failure::Trouble(error.into().to_string())
+    }
+}

@@ -1,0 +1,226 @@
+//! Two waves in one VCD for the viewer: side A under the scope `a`, side B under `b`, their exclusive-or under `xor`.
+//!
+//! The signals are those that a [comparison](super::diverge) with the same options compares, under the names by which it
+//! pairs them. Under `xor` stand the bit vectors of equal width on both sides; a bit of it is 0 where the comparison sees
+//! no difference, 1 where one side is 0 and the other 1, and `x` where only the states differ.
+//!
+//! By clock, the file has the times of A: the sample of a cycle stands from the rising edge that begins the cycle, on
+//! both sides, so that delays within a cycle are gone; A's clock is added to scope `a`. Cycles that A does not have are
+//! left out. By time, each change stands at its own time, in a unit that divides those of both sides. A
+//! side that has ended keeps its last values, one that has not begun is `x`.
+
+#[cfg(test)]
+mod tests;
+mod track;
+
+use super::diverge::{CompareError, Frame, Frames, Options, pairs};
+use super::read::{Kind, Signal, Timescale, Wave};
+use std::cmp::Reverse;
+use std::collections::binary_heap::{BinaryHeap, PeekMut};
+use std::collections::{HashMap, HashSet};
+use std::io::{self, BufWriter, Write};
+use track::{Source, Track};
+use vcd::{IdCode, ReferenceIndex, TimescaleUnit, VarType, Writer};
+
+/// Why the merged wave is not written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what the fields are")]
+pub enum MergeError {
+    /// The waves cannot be compared in the first place.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// The output fails.
+    #[error("the merged wave cannot be written: {0}")]
+    Io(#[from] io::Error),
+    /// VCD counts in powers of ten from femtoseconds to seconds.
+    #[error("a VCD cannot count in units of {unit}")]
+    Unit { unit: Timescale },
+    /// A 64-bit number of units.
+    #[error("the times of the merged wave do not fit 64 bits")]
+    TimeRange,
+}
+
+/// Writes both waves and their exclusive-or as one VCD.
+///
+/// # Errors
+/// [`MergeError`]; what is written by then is no whole file.
+pub fn write_merged(a: &Wave, b: &Wave, options: &Options, out: &mut dyn Write) -> Result<(), MergeError> {
+    let frames = Frames::new(a, b, options.by)?;
+    let mut entries = entries(&frames, options)?;
+    entries.sort_by(|x, y| x.scopes.cmp(&y.scopes));
+
+    let mut writer = Writer::new(BufWriter::with_capacity(1 << 16, out));
+    let sources = header(&mut writer, &entries, unit(&frames)?)?;
+    let raw = Frame::raw(a);
+    let tracks = sources.into_iter().map(|(source, id)| Track::new(source, id, &frames, &raw)).collect();
+    body(writer.writer(), tracks, &frames)?;
+    Ok(writer.flush()?)
+}
+
+/// A variable of the file: its scopes and name, and what it shows.
+struct Entry<'w> {
+    scopes: Vec<String>,
+    name: String,
+    source: Source<'w>,
+}
+
+fn entries<'w>(frames: &Frames<'w>, options: &Options) -> Result<Vec<Entry<'w>>, CompareError> {
+    let mut entries = Vec::new();
+    let mut taken = HashSet::new();
+    let mut push = |top: &str, name: &str, source| {
+        let mut scopes: Vec<String> = std::iter::once(top).chain(name.split('.')).map(identifier).collect();
+        let base = scopes.pop().unwrap_or_default();
+        let mut name = base.clone();
+        let mut number = 2;
+        while !taken.insert((scopes.clone(), name.clone())) {
+            name = format!("{base}_{number}");
+            number += 1;
+        }
+        entries.push(Entry { scopes, name, source });
+    };
+    if frames.unit.is_none() {
+        let wave = frames.a.wave;
+        let clock = &wave.signals()[wave.clock()?.signal()];
+        push("a", clock.leaf(), Source::Clock(clock));
+    }
+    for pair in pairs(frames, options)? {
+        if let Some(a) = pair.a {
+            push("a", &pair.name, Source::A(a));
+        }
+        if let Some(b) = pair.b {
+            push("b", &pair.name, Source::B(b));
+        }
+        let bits = |signal: &Signal| matches!(signal.kind, Kind::Unsigned | Kind::Signed);
+        if let (Some(a), Some(b)) = (pair.a, pair.b)
+            && bits(a)
+            && bits(b)
+            && a.width == b.width
+        {
+            push("xor", &pair.name, Source::Xor(a, b));
+        }
+    }
+    Ok(entries)
+}
+
+/// A name that every reader of VCD takes.
+fn identifier(name: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' };
+    let mut plain: String = name.chars().map(plain).collect();
+    if plain.is_empty() || plain.starts_with(|c: char| c.is_ascii_digit()) {
+        plain.insert(0, '_');
+    }
+    plain
+}
+
+fn unit(frames: &Frames<'_>) -> Result<(u32, TimescaleUnit), MergeError> {
+    let unit = frames.unit.or(frames.a.wave.timescale()).unwrap_or(Timescale::NANOSECOND);
+    let name = match unit.exponent {
+        -15 => TimescaleUnit::FS,
+        -12 => TimescaleUnit::PS,
+        -9 => TimescaleUnit::NS,
+        -6 => TimescaleUnit::US,
+        -3 => TimescaleUnit::MS,
+        0 => TimescaleUnit::S,
+        _ => return Err(MergeError::Unit { unit }),
+    };
+    Ok((unit.factor, name))
+}
+
+/// Writes the header and gives each distinct source its id code: an alias costs nothing.
+fn header<'w>(
+    writer: &mut Writer<impl Write>,
+    entries: &[Entry<'w>],
+    (factor, unit): (u32, TimescaleUnit),
+) -> io::Result<Vec<(Source<'w>, IdCode)>> {
+    let mut sources = Vec::new();
+    let mut ids: HashMap<_, IdCode> = HashMap::new();
+    let mut open: &[String] = &[];
+    writeln!(writer.writer(), "$version stepwave $end")?;
+    writeln!(writer.writer(), "$comment two waves a and b; xor is 0 where they agree $end")?;
+    writer.timescale(factor, unit)?;
+    for Entry { scopes, name, source } in entries {
+        let common = open.iter().zip(scopes).take_while(|(x, y)| x == y).count();
+        for _ in common..open.len() {
+            writer.upscope()?;
+        }
+        scopes[common..].iter().try_for_each(|scope| writer.add_module(scope))?;
+        open = scopes;
+        let (var, width) = match (source.kind(), source.width()) {
+            (Kind::Unsigned, width) => (VarType::Wire, width),
+            (Kind::Signed, width) => (VarType::Integer, width),
+            (Kind::Real, width) => (VarType::Real, width),
+            (Kind::Text, _) => (VarType::String, 1),
+            (Kind::Event, _) => (VarType::Event, 1),
+        };
+        let range = match (var, i32::try_from(width)) {
+            (VarType::Wire, Ok(width @ 2..)) => Some(ReferenceIndex::Range(width - 1, 0)),
+            _ => None,
+        };
+        match ids.get(&source.key()) {
+            Some(id) => writer.var_def(var, width, *id, name, range)?,
+            None => {
+                let id = writer.add_var(var, width, name, range)?;
+                ids.insert(source.key(), id);
+                sources.push((*source, id));
+            }
+        }
+    }
+    for _ in open {
+        writer.upscope()?;
+    }
+    writer.enddefinitions()?;
+    Ok(sources)
+}
+
+fn body(out: &mut impl Write, mut tracks: Vec<Track<'_, '_>>, frames: &Frames<'_>) -> Result<(), MergeError> {
+    let time_of = |track: &Track<'_, '_>, position: i128| match frames.unit {
+        // Positions are times already.
+        Some(_) => u64::try_from(position).map(Some).map_err(|_| MergeError::TimeRange),
+        None if track.is_clock() => Ok(u64::try_from(position).ok()),
+        None => Ok(frames.a.time_of(position)),
+    };
+    let (start, mut now, end) = match frames.unit {
+        Some(_) => {
+            let whole = |time: i128| u64::try_from(time).map_err(|_| MergeError::TimeRange);
+            let last = frames.a.last_position().max(frames.b.last_position());
+            (frames.common.start, whole(frames.common.start)?, whole(last)?)
+        }
+        None => {
+            let times = frames.a.wave.times();
+            (0, times.first().copied().unwrap_or(0), times.last().copied().unwrap_or(0))
+        }
+    };
+    // The time of the next change, with its position; a track ends with the wave.
+    let upcoming = |track: &mut Track<'_, '_>| -> Result<Option<(u64, i128)>, MergeError> {
+        let Some(next) = track.next_change() else { return Ok(None) };
+        Ok(time_of(track, next)?.map(|time| (time, next)))
+    };
+    writeln!(out, "#{now}\n$dumpvars")?;
+    let mut queue = BinaryHeap::new();
+    for (number, track) in tracks.iter_mut().enumerate() {
+        let start = if track.is_clock() { now.into() } else { start };
+        track.write(start, &mut |bytes| out.write_all(bytes))?;
+        queue.extend(upcoming(track)?.map(|(time, next)| Reverse((time, number, next))));
+    }
+    writeln!(out, "$end")?;
+    while let Some(mut top) = queue.peek_mut() {
+        let Reverse((time, number, position)) = *top;
+        let track = &mut tracks[number];
+        track.write(position, &mut |bytes| {
+            if time > now {
+                now = time;
+                writeln!(out, "#{now}")?;
+            }
+            out.write_all(bytes)
+        })?;
+        match upcoming(track)? {
+            Some((time, next)) => *top = Reverse((time, number, next)),
+            None => drop(PeekMut::pop(top)),
+        }
+    }
+    if end > now {
+        writeln!(out, "#{end}")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,106 @@
+//! The clock of a wave and the cycles it cuts time into.
+
+use super::{Kind, Signal, Value, Wave};
+
+/// The clock that samples a wave.
+///
+/// Unless named, it is the 1-bit signal called `clk` or `clock`, in any case, at the least depth of scopes; of several
+/// there, the first in the file.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    signal: usize,
+    edges: Vec<u32>,
+    cycle_of: Vec<u32>,
+}
+
+/// Why a wave cannot be sampled by a clock.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the message says what the fields are")]
+pub enum ClockError {
+    /// It may have been written without.
+    #[error("{name}: no 1-bit signal named clk or clock; name the clock with --clock or compare with --by time")]
+    None { name: String },
+    /// A slip of the pen.
+    #[error("{name}: no signal `{wanted}` to use as the clock; --by time needs none")]
+    Unknown { name: String, wanted: String },
+    /// A vector, real or text.
+    #[error("{name}: `{path}` cannot be the clock: it is not one bit")]
+    NotOneBit { name: String, path: String },
+    /// Values change, but there would be one single sample.
+    #[error("{name}: the clock `{path}` never rises; name another with --clock or compare with --by time")]
+    Flat { name: String, path: String },
+}
+
+impl Clock {
+    pub(super) fn found(wave: &Wave) -> Result<Self, ClockError> {
+        let is_clock = |signal: &Signal| ["clk", "clock"].iter().any(|name| signal.leaf().eq_ignore_ascii_case(name));
+        let one_bit = |signal: &Signal| is_bit(signal) && is_clock(signal);
+        let signal = shallowest(wave, one_bit).ok_or_else(|| ClockError::None { name: wave.name.clone() })?;
+        Self::new(wave, signal)
+    }
+
+    pub(super) fn named(wave: &Wave, wanted: &str) -> Result<Self, ClockError> {
+        let ends = |path: &str| path.strip_suffix(wanted).is_some_and(|scopes| scopes.ends_with('.'));
+        let signal = wave
+            .find(wanted)
+            .or_else(|| shallowest(wave, |signal| ends(&signal.path)))
+            .ok_or_else(|| ClockError::Unknown { name: wave.name.clone(), wanted: wanted.into() })?;
+        if !is_bit(&wave.signals[signal]) {
+            return Err(ClockError::NotOneBit { name: wave.name.clone(), path: wave.signals[signal].path.clone() });
+        }
+        Self::new(wave, signal)
+    }
+
+    fn new(wave: &Wave, signal: usize) -> Result<Self, ClockError> {
+        let clock = &wave.signals[signal];
+        let times = wave.change_times(clock);
+        let mut edges = Vec::new();
+        let mut high_before = true;
+        for (change, time) in times.iter().enumerate() {
+            if times.get(change + 1) != Some(time) {
+                let high = matches!(wave.value(clock, change), Value::Bits(bits) if bits.to_u128() == Some(1));
+                if high && !high_before {
+                    edges.push(*time);
+                }
+                high_before = high;
+            }
+        }
+        let changes = || wave.signals.iter().any(|signal| wave.change_times(signal).last() > Some(&0));
+        if edges.is_empty() && changes() {
+            return Err(ClockError::Flat { name: wave.name.clone(), path: clock.path.clone() });
+        }
+        let mut cycle_of = Vec::with_capacity(wave.times.len());
+        for (cycle, edge) in (0..).zip(edges.iter()) {
+            cycle_of.resize(*edge as usize, cycle);
+        }
+        cycle_of.resize(wave.times.len(), u32::try_from(edges.len()).unwrap_or(u32::MAX));
+        Ok(Self { signal, edges, cycle_of })
+    }
+
+    /// Its index in [`Wave::signals`].
+    #[must_use]
+    pub fn signal(&self) -> usize {
+        self.signal
+    }
+
+    /// The rising edges as indices of [`Wave::times`]: the first begins cycle 1.
+    #[must_use]
+    pub fn edges(&self) -> &[u32] {
+        &self.edges
+    }
+
+    /// The cycle in which a change at a time index shows.
+    pub(crate) fn cycle_of(&self, time_index: u32) -> u32 {
+        self.cycle_of[time_index as usize]
+    }
+}
+
+fn is_bit(signal: &Signal) -> bool {
+    signal.width == 1 && matches!(signal.kind, Kind::Unsigned | Kind::Signed)
+}
+
+fn shallowest(wave: &Wave, fits: impl Fn(&Signal) -> bool) -> Option<usize> {
+    let depth = |index: &usize| wave.signals[*index].path.matches('.').count();
+    (0..wave.signals.len()).filter(|index| fits(&wave.signals[*index])).min_by_key(depth)
+}

@@ -1,0 +1,145 @@
+//! The JSON report.
+
+use serde_json::{Map, Value, json};
+use stepwave_kernel::netlist::Arithmetic;
+use stepwave_nc::Curve;
+
+use super::{Report, summary};
+use crate::testbench::{Ending, OverflowEvent};
+
+/// Version of the report's form; a change of meaning raises it.
+const SCHEMA: u32 = 1;
+
+/// A number as JSON; one beyond 64 bits as text.
+fn number(value: i128) -> Value {
+    if let Ok(value) = i64::try_from(value) {
+        return json!(value);
+    }
+    u64::try_from(value).map_or_else(|_| json!(value.to_string()), |value| json!(value))
+}
+
+fn geometry(curve: &Curve) -> Value {
+    match curve {
+        Curve::Line(_) => json!({ "curve": "line", "from": curve.from(), "to": curve.to() }),
+        Curve::Arc(arc) => json!({
+            "curve": "arc",
+            "from": curve.from(),
+            "to": curve.to(),
+            "center": arc.center(),
+            "direction": arc.direction().to_string(),
+            "radius": arc.radius(),
+        }),
+    }
+}
+
+fn event(event: &OverflowEvent) -> Value {
+    match event {
+        OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } => {
+            let (exact, needed) = event.exact().unwrap_or_default();
+            let operation = match operation {
+                Arithmetic::Add => "add",
+                Arithmetic::Sub => "sub",
+            };
+            json!({
+                "component": component,
+                "clock": clock,
+                "width": width.get(),
+                "signed": signed,
+                "operation": operation,
+                "left": number(*left),
+                "right": number(*right),
+                "exact": number(exact),
+                "needed_width": if exact < 0 && !signed { Value::Null } else { json!(needed) },
+            })
+        }
+        OverflowEvent::Invariant { component, clock } => json!({ "component": component, "clock": clock }),
+    }
+}
+
+impl Report<'_> {
+    /// The report as JSON: see the README for its fields.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let outcome = &self.outcome;
+        let choices = summary::choices(self.model, self.hardware);
+        let choices: Map<String, Value> = choices
+            .into_iter()
+            .filter(|(name, _)| *name != "width")
+            .map(|(name, value)| (name.replace('-', "_"), json!(value)))
+            .collect();
+        let widths: Map<String, Value> =
+            self.hardware.widths.iter().map(|(name, width)| (name.clone(), json!(width.get()))).collect();
+        let registers: Vec<Value> = self
+            .ranges
+            .iter()
+            .map(|range| {
+                json!({
+                    "name": range.name,
+                    "path": range.path,
+                    "width": range.width.get(),
+                    "signed": range.signed,
+                    "least": number(range.least),
+                    "greatest": number(range.greatest),
+                    "needed_width": range.needed(),
+                })
+            })
+            .collect();
+        let letters = self.hardware.letters();
+        let pulses: Map<String, Value> =
+            letters.iter().zip(&outcome.pulses).map(|(axis, count)| ((*axis).to_owned(), json!(count))).collect();
+        let path_error = self.worst.as_ref().map(|worst| {
+            json!({
+                "greatest": worst.error,
+                "step": worst.step,
+                "position": worst.position,
+                "bound": self.hardware.error_bound,
+                "within_bound": self.path_within_bound(),
+            })
+        });
+        let ending = match outcome.ending {
+            Ending::Done => "done",
+            Ending::Trapped => "trapped",
+            Ending::Stalled { .. } => "stalled",
+        };
+        json!({
+            "schema": SCHEMA,
+            "model": self.model.name,
+            "geometry": geometry(self.curve),
+            "choices": choices,
+            "widths": widths,
+            "engine": self.engine.name(),
+            "registers": registers,
+            "clocks": outcome.clocks,
+            "steps": outcome.steps,
+            "pulses": pulses,
+            "end_point": {
+                "wanted": self.curve.to(),
+                "reached": outcome.reached,
+                "exact": self.end_exact(),
+            },
+            "path_error": path_error,
+            "overflow": {
+                "count": self.overflow_count,
+                "events": self.overflows.iter().map(event).collect::<Vec<_>>(),
+            },
+            "feed": self.feed(),
+            "ending": ending,
+            "failures": self.failures(),
+        })
+    }
+
+    /// Mean speed along the curve: BLU per step, and mm/min at the clock and BLU chosen.
+    fn feed(&self) -> Value {
+        // Counts of clocks and steps are far below 2^53.
+        #[allow(clippy::cast_precision_loss)]
+        let (steps, clocks) = (self.outcome.steps.max(1) as f64, self.outcome.clocks.max(1) as f64);
+        let length = self.curve.length();
+        json!({
+            "clock_hz": self.clock_hz,
+            "blu_mm": self.blu_mm,
+            "length": length,
+            "mean_per_step": length / steps,
+            "mean_mm_per_min": 60.0 * length * self.blu_mm * self.clock_hz / clocks,
+        })
+    }
+}

@@ -1,0 +1,119 @@
+//! What a run came to, for people and for programs: summary, step table, JSON, picture.
+
+mod json;
+pub mod plot;
+mod summary;
+mod table;
+
+use stepwave_kernel::engine::EngineKind;
+use stepwave_models::{Hardware, Model};
+use stepwave_nc::Curve;
+
+use crate::testbench::{Ending, Outcome, OverflowEvent, OverflowWatch, RegisterRange, WorstError};
+
+pub use summary::{choices, geometry, title};
+pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
+
+/// Room for rounding when a path error is compared with the method's bound, in BLU.
+const ROUNDING: f64 = 1e-9;
+
+/// Everything known about a finished run.
+#[derive(Debug)]
+pub struct Report<'a> {
+    /// The model.
+    pub model: &'static Model,
+    /// What was to be interpolated.
+    pub curve: &'a Curve,
+    /// The hardware, with every choice made.
+    pub hardware: &'a Hardware,
+    /// What simulated it.
+    pub engine: EngineKind,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// What each register held.
+    pub ranges: Vec<RegisterRange>,
+    /// Greatest path error.
+    pub worst: Option<WorstError>,
+    /// The first overflows in full.
+    pub overflows: Vec<OverflowEvent>,
+    /// Number of overflows.
+    pub overflow_count: u64,
+    /// Clock in Hz.
+    pub clock_hz: f64,
+    /// One BLU in millimetres.
+    pub blu_mm: f64,
+}
+
+impl Report<'_> {
+    /// Takes the overflows of a watch.
+    #[must_use]
+    pub fn with_overflows(self, watch: OverflowWatch) -> Self {
+        Report { overflows: watch.events, overflow_count: watch.count, ..self }
+    }
+
+    /// The end point was reached exactly.
+    #[must_use]
+    pub fn end_exact(&self) -> bool {
+        self.outcome.reached == self.curve.to()
+    }
+
+    /// The path error stayed within the method's bound, where it has one.
+    #[must_use]
+    pub fn path_within_bound(&self) -> bool {
+        match (&self.worst, self.hardware.error_bound) {
+            (Some(worst), Some(bound)) => worst.error <= bound + ROUNDING,
+            _ => true,
+        }
+    }
+
+    /// Sentences that say what is wrong with the simulated hardware; none if all is good.
+    #[must_use]
+    pub fn failures(&self) -> Vec<String> {
+        let mut failures = Vec::new();
+        match self.outcome.ending {
+            Ending::Trapped => {
+                if let Some(event) = self.overflows.last() {
+                    failures.push(event.to_string() + &way_out(event));
+                }
+                return failures;
+            }
+            Ending::Stalled { clocks } => {
+                let position = summary::point(&self.outcome.reached);
+                let way_out = if self.model.name == "dda-arc" {
+                    "; give --preset half, with which arcs were never seen to"
+                } else {
+                    ""
+                };
+                failures.push(format!(
+                    "the motion came to a stand at {position}: no pulse for {clocks} clocks, and none will come{way_out}"
+                ));
+            }
+            Ending::Done => {}
+        }
+        if !self.end_exact() {
+            let (wanted, reached) = (summary::point(self.curve.to()), summary::point(&self.outcome.reached));
+            failures.push(format!("the end point {wanted} was missed: the machine stands at {reached}"));
+        }
+        if let (false, Some(worst), Some(bound)) = (self.path_within_bound(), &self.worst, self.hardware.error_bound) {
+            let curve = if matches!(self.curve, Curve::Line(_)) { "line" } else { "arc" };
+            failures.push(format!(
+                "the path left the {curve}: {:.3} BLU off at {} after step {}, where the method promises at most {bound} BLU",
+                worst.error,
+                summary::point(&worst.position),
+                worst.step,
+            ));
+        }
+        failures
+    }
+}
+
+fn way_out(event: &OverflowEvent) -> String {
+    let leaf = event.component().rsplit('.').next().unwrap_or_default().to_owned();
+    match (event, event.exact()) {
+        (OverflowEvent::Overflow { signed, .. }, Some((exact, needed))) if *signed || exact >= 0 => {
+            format!(": give --width {leaf}={needed}, or go on with --on-overflow wrap or saturate")
+        }
+        (OverflowEvent::Overflow { .. }, _) => "; go on with --on-overflow wrap or saturate".to_owned(),
+        (OverflowEvent::Invariant { .. }, _) => ": the model is wrong, please report this".to_owned(),
+    }
+}

@@ -1,0 +1,107 @@
+//! The summary that a run prints, and the words for geometry and choices that waves and pictures bear.
+
+use std::fmt::Write as _;
+
+use stepwave_models::{Beats, Choice, Form, Hardware, Model};
+use stepwave_nc::{Curve, Direction};
+
+use super::Report;
+use crate::testbench::Ending;
+
+/// `(8, 6)`
+pub(super) fn point(coordinates: &[i64]) -> String {
+    let list: Vec<_> = coordinates.iter().map(ToString::to_string).collect();
+    format!("({})", list.join(", "))
+}
+
+/// The geometry in words: `line (0, 0) → (8, 6)`.
+#[must_use]
+pub fn geometry(curve: &Curve) -> String {
+    match curve {
+        Curve::Line(_) => format!("line {} to {}", point(curve.from()), point(curve.to())),
+        Curve::Arc(arc) => {
+            let direction = match arc.direction() {
+                Direction::Clockwise => "clockwise",
+                Direction::CounterClockwise => "counter-clockwise",
+            };
+            let kind = if arc.is_full_circle() { "full circle" } else { "arc" };
+            let (from, to, center) = (point(&arc.from()), point(&arc.to()), point(&arc.center()));
+            format!("{kind} {from} to {to} {direction} about {center}")
+        }
+    }
+}
+
+/// The choices that the model takes, as an option line would give them.
+#[must_use]
+pub fn choices(model: &Model, hardware: &Hardware) -> Vec<(&'static str, String)> {
+    let value = |choice: Choice| match choice {
+        Choice::Width => {
+            let widths = hardware.widths.iter().map(|(name, width)| format!("{name}={}", width.get()));
+            widths.collect::<Vec<_>>().join(",")
+        }
+        Choice::Preset => {
+            let all: Vec<_> = hardware.presets.iter().map(ToString::to_string).collect();
+            if all.windows(2).all(|pair| pair[0] == pair[1]) { all[0].clone() } else { all.join(",") }
+        }
+        Choice::Normalize => if hardware.normalize { "yes" } else { "no" }.to_owned(),
+        Choice::EndPoint => hardware.end_point.to_string(),
+        Choice::Form => match hardware.form {
+            Form::Magnitude => "magnitude".to_owned(),
+            Form::Signed => "signed".to_owned(),
+        },
+        Choice::Beats => match hardware.beats {
+            Beats::Four => "4".to_owned(),
+            Beats::One => "1".to_owned(),
+        },
+        Choice::OnOverflow => format!("{:?}", hardware.on_overflow).to_lowercase(),
+    };
+    model.choices.iter().map(|doc| (doc.choice.option().trim_start_matches("--"), value(doc.choice))).collect()
+}
+
+/// One line for wave headers: model, geometry, choices.
+#[must_use]
+pub fn title(model: &Model, hardware: &Hardware, curve: &Curve) -> String {
+    let choices: Vec<_> = choices(model, hardware).into_iter().map(|(name, value)| format!("{name} {value}")).collect();
+    format!("{}; {}; {}", model.name, geometry(curve), choices.join("; "))
+}
+
+impl Report<'_> {
+    /// Some lines for a terminal.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let mut text = String::new();
+        let outcome = &self.outcome;
+        let letters = self.hardware.letters();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}: {}", self.model.name, geometry(self.curve));
+        let pulses: Vec<_> =
+            outcome.pulses.iter().zip(letters).map(|(count, axis)| format!("{axis} {count}")).collect();
+        let _ = writeln!(text, "{} steps in {} clocks; pulses {}", outcome.steps, outcome.clocks, pulses.join(", "));
+        let exact = if self.end_exact() {
+            "reached exactly".to_owned()
+        } else {
+            format!("missed: {}", point(&outcome.reached))
+        };
+        let _ = match outcome.ending {
+            Ending::Done => writeln!(text, "end point {} {exact}", point(self.curve.to())),
+            Ending::Trapped => writeln!(text, "stopped by an overflow at {}", point(&outcome.reached)),
+            Ending::Stalled { .. } => writeln!(text, "came to a stand at {}", point(&outcome.reached)),
+        };
+        if let Some(worst) = &self.worst {
+            let at = point(&worst.position);
+            let _ = writeln!(text, "greatest path error {:.3} BLU at {at} after step {}", worst.error, worst.step);
+        }
+        if self.overflow_count > 0 {
+            let first = self.overflows.first().map(ToString::to_string).unwrap_or_default();
+            let _ = writeln!(text, "{} overflow(s), the first: {first}", self.overflow_count);
+        }
+        let spare: Vec<_> = self
+            .ranges
+            .iter()
+            .filter(|range| self.hardware.widths.contains_key(&range.name))
+            .map(|range| format!("{} {}/{}", range.name, range.needed(), range.width.get()))
+            .collect();
+        let _ = writeln!(text, "bits needed/given: {}", spare.join(", "));
+        text
+    }
+}

@@ -1,0 +1,127 @@
+//! Step tables: CSV for programs, and as a textbook prints them.
+
+use std::io::Write;
+
+use stepwave_kernel::Bits;
+use stepwave_models::Port;
+
+use crate::testbench::{Observer, ObserverError, Step, Testbench};
+
+/// Most steps that a textbook table shows.
+pub const TEXTBOOK_STEPS: u64 = 64;
+
+/// Writes the step table as CSV: step, clock, registers, pulses, positions; signed decimal.
+pub struct CsvTable<W: Write> {
+    out: W,
+}
+
+impl<W: Write> CsvTable<W> {
+    /// Writes the heading.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn new(bench: &Testbench, mut out: W) -> std::io::Result<CsvTable<W>> {
+        let letters = bench.hardware().letters();
+        let mut names = vec!["step".to_owned(), "clock".to_owned()];
+        names.extend(bench.machine().table.iter().map(|(name, _)| name.clone()));
+        names.extend(letters.iter().map(|axis| format!("d{axis}")));
+        names.extend(letters.iter().map(|axis| (*axis).to_owned()));
+        writeln!(out, "{}", names.join(","))?;
+        Ok(CsvTable { out })
+    }
+
+    /// Writes out what is buffered.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn finish(mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W: Write> Observer for CsvTable<W> {
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        write!(self.out, "{},{}", step.number, step.clock)?;
+        for value in &step.registers {
+            write!(self.out, ",{value}")?;
+        }
+        for value in step.pulses.iter().chain(&step.position) {
+            write!(self.out, ",{value}")?;
+        }
+        writeln!(self.out)?;
+        Ok(())
+    }
+}
+
+/// Keeps the first steps for a table as a textbook prints it.
+pub struct TextbookTable {
+    heading: Vec<String>,
+    letters: &'static [&'static str],
+    ports: Vec<Port>,
+    bits: bool,
+    rows: Vec<Step>,
+    complete: bool,
+}
+
+impl TextbookTable {
+    /// A table of a machine's registers, in binary if `bits`.
+    #[must_use]
+    pub fn new(bench: &Testbench, bits: bool) -> TextbookTable {
+        let letters = bench.hardware().letters();
+        let mut heading = vec!["step".to_owned()];
+        heading.extend(bench.machine().table.iter().map(|(name, _)| name.clone()));
+        heading.push("pulse".to_owned());
+        heading.extend(letters.iter().map(|axis| (*axis).to_owned()));
+        let ports = bench.machine().table.iter().map(|(_, port)| *port).collect();
+        TextbookTable { heading, letters, ports, bits, rows: Vec::new(), complete: true }
+    }
+
+    fn cells(&self, step: &Step) -> Vec<String> {
+        let mut cells = vec![step.number.to_string()];
+        for (value, port) in step.registers.iter().zip(&self.ports) {
+            let bits = Bits::exact(port.width, *value, port.signed);
+            cells.push(match bits {
+                Some(bits) if self.bits => bits.to_string(),
+                _ => value.to_string(),
+            });
+        }
+        let pulses = step.pulses.iter().zip(self.letters).filter(|(pulse, _)| **pulse != 0);
+        cells.push(pulses.map(|(pulse, axis)| format!("{pulse:+}{}", axis.to_uppercase()).replace('1', "")).collect());
+        cells.extend(step.position.iter().map(ToString::to_string));
+        cells
+    }
+
+    /// The table, or `None` if there were more than [`TEXTBOOK_STEPS`] steps.
+    #[must_use]
+    pub fn render(&self) -> Option<String> {
+        if !self.complete {
+            return None;
+        }
+        let rows: Vec<Vec<String>> = self.rows.iter().map(|step| self.cells(step)).collect();
+        let width = |column: usize| {
+            let cells = rows.iter().map(|row| row[column].chars().count());
+            cells.chain([self.heading[column].chars().count()]).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.heading.len()).map(width).collect();
+        let line = |cells: &[String]| {
+            let padded: Vec<_> = cells.iter().zip(&widths).map(|(cell, width)| format!("{cell:>width$}")).collect();
+            padded.join("  ").trim_end().to_owned() + "\n"
+        };
+        let rule: usize = widths.iter().map(|width| width + 2).sum::<usize>() - 2;
+        let mut text = line(&self.heading) + &"─".repeat(rule) + "\n";
+        text.extend(rows.iter().map(|row| line(row)));
+        Some(text)
+    }
+}
+
+impl Observer for TextbookTable {
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        if step.number > TEXTBOOK_STEPS {
+            self.complete = false;
+            self.rows.clear();
+        } else if self.complete {
+            self.rows.push(step.clone());
+        }
+        Ok(())
+    }
+}
