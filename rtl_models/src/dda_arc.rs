@@ -37,7 +37,8 @@ use crate::hardware::{self, Hardware, Widths};
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{
-    Block, DownCounter, Kind, Normalizer, axis_counter, integrator, population_count, shifted_left, up_down_counter,
+    Block, DownCounter, Kind, Normalizer, axis_counter, integrator, population_count, quadrant_register, shifted_left,
+    up_down_counter,
 };
 use crate::plan;
 
@@ -121,7 +122,9 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let block = Block::new(m);
     let normalizer = Normalizer::new(m, &block, hardware.normalize);
     let ccw = block.held(m, "ccw", 1);
-    let kind = Kind::decode(m.scope("quadrant"), block.held(m, "quad", 2), ccw);
+    let quad = quadrant_register(m);
+    quad.when(block.load, block.word("quad", 2)).else_hold();
+    let kind = Kind::decode(m.scope("quadrant"), quad.q, ccw);
     let (sx, sy) = (m.scope("axis_x"), m.scope("axis_y"));
     let (jvx, jvy) = (sx.reg("jvx", bits("jvx")), sy.reg("jvy", bits("jvy")));
     let wide = bits("jvx").max(bits("jvy"));

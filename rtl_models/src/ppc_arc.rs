@@ -34,7 +34,8 @@ use crate::hardware::{Hardware, Widths};
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{
-    BeatRing, Block, DeviationAccumulator, DownCounter, Kind, axis_counter, next_quadrant, up_down_counter,
+    BeatRing, Block, DeviationAccumulator, DownCounter, Kind, axis_counter, next_quadrant, quadrant_register,
+    up_down_counter, x_grows,
 };
 use crate::plan;
 
@@ -115,7 +116,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let beat = BeatRing::new(m, hardware.beats, block.busy);
     let f = DeviationAccumulator::new(m, bits("f"));
     let (xi, yi) = (m.reg("xi", bits("xi")), m.reg("yi", bits("yi")));
-    let quad = m.reg("quad", 2);
+    let quad = quadrant_register(m);
     let ccw = block.held(m, "ccw", 1);
     let counter = |name: &str| DownCounter::new(m, &block, name, bits(name));
 
@@ -126,9 +127,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let entered = if per_axis.is_some() {
         quad.q
     } else {
-        let before = Kind::decode(q.scope("held"), quad.q, ccw);
         let (x_zero, y_zero) = (xi.q.is_zero(), yi.q.is_zero());
-        let cross = q.name("cross", before.x_grows.mux(y_zero & !x_zero, x_zero & !y_zero));
+        let cross = q.name("cross", x_grows(quad.q, ccw).mux(y_zero & !x_zero, x_zero & !y_zero));
         cross.mux(next_quadrant(q, quad.q, ccw), quad.q)
     };
     quad.when(block.load, block.word("quad", 2)).when(beat.judge, entered).else_hold();

@@ -53,7 +53,7 @@ pub(crate) fn run(command: &GoldenCommand) -> Result<(), Failure> {
     for case in &cases {
         for engine in EngineKind::ALL {
             let made = simulate(case, engine)?;
-            if record && engine == EngineKind::Word {
+            if record && engine == EngineKind::ALL[0] {
                 write(&args.dir, &made)?;
             }
             compare(case, engine, &args.dir, &made, &mut differences)?;

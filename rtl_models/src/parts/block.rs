@@ -21,13 +21,14 @@ pub struct Block<'m> {
 }
 
 impl<'m> Block<'m> {
-    /// Ports and state in the top scope, load words in the scope `block`.
+    /// Ports, state and load words in the scope `block`.
     #[must_use]
     pub fn new(m: Scope<'m>) -> Block<'m> {
+        let m = m.scope("block");
         let load = m.input("load", 1);
         let preset_position = load & m.input("preset_position", 1);
         let registers = ["busy", "done", "loaded", "stepped"].map(|name| m.reg(name, 1));
-        Block { words: m.scope("block"), load, preset_position, busy: registers[0].q, registers }
+        Block { words: m, load, preset_position, busy: registers[0].q, registers }
     }
 
     /// The unsigned load word of a register.

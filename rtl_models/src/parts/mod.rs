@@ -19,7 +19,7 @@ pub use deviation::DeviationAccumulator;
 pub use down_counter::{DownCounter, population_count};
 pub use integrator::integrator;
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
-pub use quadrant::{Kind, next_quadrant};
+pub use quadrant::{Kind, next_quadrant, quadrant_register, x_grows};
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! Quadrant logic of arcs: from quadrant and direction to the kind of arc and the signs of its motion.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_kernel::dsl::{Register, Scope, Signal};
 use stepwave_kernel::netlist::Format;
 
 /// The kind of an arc (SR1 … NR4), decoded. 1 bit each.
@@ -24,14 +24,25 @@ impl<'m> Kind<'m> {
         let states = (0..).zip(names).map(|(value, name)| (value, name.to_owned())).collect();
         m.show("kind", counter_clockwise.concat(quadrant), Format::States(states));
         Kind {
-            // Clockwise |x| grows in Q1 and Q3.
-            x_grows: m.name("x_grows", !(low ^ counter_clockwise)),
+            x_grows: m.name("x_grows", x_grows(quadrant, counter_clockwise)),
             // Clockwise x falls in the lower half, Q3 and Q4.
             x_negative: m.name("x_negative", high ^ counter_clockwise),
             // Clockwise y falls in the right half, Q1 and Q4.
             y_negative: m.name("y_negative", !(low ^ high) ^ counter_clockwise),
         }
     }
+}
+
+/// The quadrant register `quad`: 2 bits, Q1 = 0 … Q4 = 3.
+pub fn quadrant_register(m: Scope<'_>) -> Register<'_> {
+    let states = (0..).zip(["Q1", "Q2", "Q3", "Q4"]).map(|(value, name)| (value, name.to_owned())).collect();
+    m.reg("quad", 2).shown(Format::States(states))
+}
+
+/// 1 bit: |x| grows and |y| shrinks on an arc in this quadrant (2 bits) and direction (1 bit): clockwise in Q1 and Q3.
+#[must_use]
+pub fn x_grows<'m>(quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Signal<'m> {
+    !(quadrant.bit(0) ^ counter_clockwise)
 }
 
 /// The quadrant that the motion enters behind this one (2 bits).

@@ -1,6 +1,6 @@
 //! Which nets a wave shows: every name of a design, narrowed by patterns and depth.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use globset::{Glob, GlobMatcher};
 
@@ -13,8 +13,12 @@ use crate::netlist::{Format, Net, Op};
 pub enum Role {
     /// A clocked register.
     Register,
-    /// An input or a combinational net.
+    /// An input, set by the test bench.
+    Input,
+    /// A combinational net.
     Wire,
+    /// A combinational net that must never be 1: the flag of a property.
+    Flag,
     /// A constant.
     Constant,
 }
@@ -106,6 +110,7 @@ impl Selection {
     pub fn probes(&self, design: &Design, columns: &[Net]) -> Result<Vec<Probe>, PatternError> {
         let netlist = design.netlist();
         let column_of: HashMap<Net, usize> = columns.iter().enumerate().map(|(index, &net)| (net, index)).collect();
+        let flags: HashSet<Net> = netlist.properties.iter().map(|property| property.never).collect();
         let mut scopes: Vec<Vec<String>> = Vec::new();
         for scope in &netlist.scopes {
             let mut path = scope.parent.map_or_else(Vec::new, |parent| scopes[parent.index()].clone());
@@ -131,6 +136,8 @@ impl Selection {
                 let role = match cell.op {
                     Op::Register { .. } => Role::Register,
                     Op::Const(_) => Role::Constant,
+                    Op::Input => Role::Input,
+                    _ if flags.contains(&named.net) => Role::Flag,
                     _ => Role::Wire,
                 };
                 probes.push(Probe {

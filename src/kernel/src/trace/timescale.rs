@@ -75,6 +75,7 @@ impl ClockTime {
         self.ticks
     }
 
+    /// Units of one tick: 1, 10 or 100.
     pub(super) fn magnitude(self) -> u32 {
         self.magnitude
     }

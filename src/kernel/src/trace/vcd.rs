@@ -53,7 +53,7 @@ fn variable_type(probe: &Probe) -> VarType {
         // Viewers show an integer of any width as signed decimal without being told.
         (_, true) => VarType::Integer,
         (Role::Register, false) => VarType::Reg,
-        (Role::Wire, false) => VarType::Wire,
+        (Role::Input | Role::Wire | Role::Flag, false) => VarType::Wire,
     }
 }
 
