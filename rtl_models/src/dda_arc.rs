@@ -26,6 +26,12 @@
 //!
 //! Two limits of the method itself: with a preset of zero or full the motion can come to a stand one pulse before an
 //! axis, where J_V is 0 already (the preset `half` was never seen to); and the counter `total` may miss the end.
+//!
+//! The arc NR1 from (5, 0) to (0, 5) in 3 bits, from the golden file `waves/dda-arc-nr1.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/dda-arc-nr1.csv")]
+//! ```
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::Module;

@@ -18,6 +18,12 @@
 //! floor((t·abs(d) + P) / 2^n): at d after 2^n, for every preset P, and J_R is back at P. 2^n must be greater than every
 //! abs(d). Normalised, all J_V are shifted left by the same Q until the largest has its top bit set, one bit a clock,
 //! and e is halved as often: 2^(n-Q) iterations.
+//!
+//! The line (8, 6) in 4 bits, from the golden file `waves/dda-line-8-6.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/dda-line-8-6.csv")]
+//! ```
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::Module;

@@ -16,18 +16,18 @@
 //! # Ok::<(), stepwave_models::ModelError>(())
 //! ```
 
+pub mod dda_arc;
+pub mod dda_line;
 pub mod parts;
+pub mod ppc_arc;
+pub mod ppc_line;
 
 mod choices;
-mod dda_arc;
-mod dda_line;
 mod error;
 mod hardware;
 mod machine;
 mod model;
 mod plan;
-mod ppc_arc;
-mod ppc_line;
 
 pub use choices::{Beats, Choice, Choices, EndPoint, Form, Preset};
 pub use error::ModelError;

@@ -23,6 +23,12 @@
 //! step to the other, so that an end point beside the circle is reached too.
 //!
 //! F stays within [-(2R-1), 2·ceil(R)], so n+2 bits; the radial error within [-1, +1) BLU.
+//!
+//! The arc NR1 from (6, 0) to (0, 6), from the golden file `waves/ppc-arc-nr1.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/ppc-arc-nr1.csv")]
+//! ```
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::Module;

@@ -19,6 +19,12 @@
 //! steps X only.
 //!
 //! Four beats a step: judge, feed, compute, compare; or all at one edge (`--beats 1`). Range of F: [-b, a-1].
+//!
+//! The line (6, 4), from the golden file `waves/ppc-line-6-4.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/ppc-line-6-4.csv")]
+//! ```
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::Module;

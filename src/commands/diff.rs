@@ -1,13 +1,15 @@
 //! `stepwave diff`: where two waves part.
 
-use std::error::Error;
-use std::fs::OpenOptions;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::thread;
-use stepwave_kernel::trace::diverge::{self, By, Options};
-use stepwave_kernel::trace::merge::write_merged;
-use stepwave_kernel::trace::read::{Wave, WaveError};
+
+use stepwave::kernel::trace::diverge::{self, By, Options};
+use stepwave::kernel::trace::merge::write_merged;
+use stepwave::kernel::trace::read::{Wave, WaveError};
+
+use crate::failure::Failure;
+use crate::output::{self, Outputs};
 
 /// Compare two waves and show where they part
 ///
@@ -16,8 +18,8 @@ use stepwave_kernel::trace::read::{Wave, WaveError};
 /// settled to after edge k. Shows the first clock at which a signal differs, its values, and every other signal that
 /// differs anywhere. A signal that one side lacks, another width and another length are differences too.
 ///
-/// Signals are matched by their dotted paths without bit ranges. If no path is common to both, the leading scopes that all
-/// signals of a file share are taken off first, on each side.
+/// Signals are matched by their dotted paths without bit ranges. If no path is common to both, the leading scopes
+/// that all signals of a file share are taken off first, on each side.
 ///
 /// Exit code: 0 same, 1 different, 2 trouble.
 #[derive(Debug, clap::Args)]
@@ -78,12 +80,13 @@ fn parse_map(rule: &str) -> Result<(String, String), String> {
     Ok((a.into(), b.into()))
 }
 
-/// Compares and reports to `out`; true if the waves are the same.
-pub(crate) fn run(args: &DiffArgs, out: &mut dyn Write) -> Result<bool, Box<dyn Error + Send + Sync>> {
+/// Compares two waves and prints where they part.
+pub(crate) fn run(args: &DiffArgs) -> Result<(), Failure> {
+    let trouble = |sentence: &str| Err(Failure::Trouble(sentence.to_owned()));
     let by = match args.by {
         Axis::Clock => By::Clock { offset: args.offset },
-        Axis::Time if args.offset != 0 => return Err("--offset counts clocks, which --by time does without".into()),
-        Axis::Time if args.clock.is_some() => return Err("--clock names a clock, which --by time does without".into()),
+        Axis::Time if args.offset != 0 => return trouble("--offset counts clocks, which --by time does without"),
+        Axis::Time if args.clock.is_some() => return trouble("--clock names a clock, which --by time does without"),
         Axis::Time => By::Time,
     };
     let options = Options {
@@ -105,41 +108,23 @@ pub(crate) fn run(args: &DiffArgs, out: &mut dyn Write) -> Result<bool, Box<dyn 
         let b = open(&args.b);
         (a.join(), b)
     });
-    let a = a.map_err(|_| "the first wave cannot be read: the reader stopped")??;
-    let b = b?;
+    let Ok(a) = a else { return trouble("the first wave cannot be read: the reader stopped") };
+    let (a, b) = (a?, b?);
 
     let comparison = diverge::compare(&a, &b, &options)?;
-    let merged_to_out = args.merged.as_deref().is_some_and(|path| path == Path::new("-"));
-    match args.merged.as_deref() {
-        Some(_) if merged_to_out => write_merged(&a, &b, &options, out)?,
-        Some(path) => replace(path, |file| Ok(write_merged(&a, &b, &options, file)?))?,
-        None => {}
+    let mut outputs = Outputs::default();
+    if let Some(path) = &args.merged {
+        let mut sink = outputs.open(path)?;
+        write_merged(&a, &b, &options, &mut sink)?;
+        sink.flush()?;
     }
-    if !merged_to_out {
-        writeln!(out, "{comparison}")?;
+    let quiet = outputs.uses_stdout();
+    outputs.commit()?;
+    if !quiet {
+        output::print(&format!("{comparison}\n"))?;
     }
-    Ok(comparison.divergence.is_none())
-}
-
-/// Writes a file under another name in the same folder and renames it when it is whole. What is there and is no file (a
-/// pipe, a device) is written into.
-fn replace(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> Result<(), Box<dyn Error + Send + Sync>>,
-) -> Result<(), Box<dyn Error + Send + Sync>> {
-    let named = |error: &dyn std::fmt::Display| format!("{}: cannot be written: {error}", path.display());
-    if path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir()) {
-        let mut pipe = OpenOptions::new().write(true).open(path).map_err(|error| named(&error))?;
-        return write(&mut pipe).map_err(|error| named(&error).into());
+    match comparison.divergence {
+        None => Ok(()),
+        Some(_) => Err(Failure::Check(vec![format!("{} and {} differ", args.a.display(), args.b.display())])),
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.prefix(".stepwave-").tempfile_in(folder).map_err(|error| named(&error))?;
-    let mut buffer = BufWriter::new(file);
-    write(&mut buffer).map_err(|error| named(&error))?;
-    let file = buffer.into_inner().map_err(|error| named(&error))?;
-    file.persist(path).map_err(|error| named(&error.error))?;
-    Ok(())
 }

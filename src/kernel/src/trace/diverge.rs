@@ -1,19 +1,19 @@
 //! The first divergence of two waves, and everything else in which they differ.
 //!
 //! # What is compared with what
-//! By clock (the default), sample *k* of A with sample *k* + offset of B, a sample being what [`read`](super::read) says;
-//! the clocks themselves are not compared. By time, the values after every change, the times of both sides taken to one
-//! unit; a file without a timescale counts in nanoseconds. Only what both sides have is compared by value; that one side
-//! lasts longer is a difference of its own; with an offset, it is enough that both have the same number of cycles or that both
-//! end together.
+//! By clock (the default), sample *k* of A with sample *k* + offset of B, a sample being what [`read`](super::read)
+//! says; the clocks themselves are not compared. By time, the values after every change, the times of both sides taken
+//! to one unit; a file without a timescale counts in nanoseconds. Only what both sides have is compared by value; that
+//! one side lasts longer is a difference of its own. With an offset it is enough that both have the same number of
+//! cycles, or that they end together.
 //!
 //! Signals are matched by name:
 //! 1. The name of a signal is its dotted path, without a bit range.
 //! 2. The first rule `a=b` of [`Options::map`] that fits renames a signal of A: `a` is its whole path or its leading
 //!    scopes, `b` takes their place.
-//! 3. If then no name of A is a name of B, the leading scopes that all signals of A share are taken off, and those that all
-//!    signals of B share: `tb.dut.jr` alone and `dda_line.jr` alone are both `jr`. As soon as one name is common, nothing
-//!    is taken off.
+//! 3. If then no name of A is a name of B, the leading scopes that all signals of A share are taken off, and those
+//!    that all signals of B share: `tb.dut.jr` alone and `dda_line.jr` alone are both `jr`. As soon as one name is
+//!    common, nothing is taken off.
 //!
 //! A signal that one side lacks, a different width, and a different kind (bits, real, text, event) are differences.
 //! What counts as the same value is said at [`Value::same`].
@@ -35,8 +35,8 @@ use std::collections::HashMap;
 pub struct Options {
     /// The common axis.
     pub by: By,
-    /// Only signals that one of these globs matches; no glob means all. Globs are matched against the dotted path on each
-    /// side, the compared name, and the name without scopes; `*` matches dots too.
+    /// Only signals that one of these globs matches; no glob means all. Globs are matched against the dotted path on
+    /// each side, the compared name, and the name without scopes; `*` matches dots too.
     pub signals: Vec<String>,
     /// Leave out signals that one of these globs matches.
     pub ignore: Vec<String>,

@@ -1,17 +1,17 @@
 //! Reading a wave, VCD or FST, of this program or of any other.
 //!
 //! A [`Wave`] is the file in memory: its signals by dotted path, every change of their values, and, if the file has a
-//! clock, the grid of clock cycles that samples them. Cycle *k* is what the hardware settles to after rising edge *k* of
-//! the clock:
+//! clock, the grid of clock cycles that samples them. Cycle *k* is what the hardware settles to after rising edge *k*
+//! of the clock:
 //!
 //! - cycle 0 is the time before the first rising edge;
 //! - the sample of cycle *k* is the value held just before rising edge *k* + 1: a change at the very time of an edge
 //!   belongs to the cycle that the edge begins;
 //! - the last cycle is sampled at the end of the file.
 //!
-//! So the samples depend neither on the time unit, nor on the period of the clock, nor on delays within a cycle. A rising
-//! edge is a change to 1 from 0, `x` or `z`; the first value of the clock is none. Where a signal changes several times
-//! at one time, the last counts.
+//! So the samples depend neither on the time unit, nor on the period of the clock, nor on delays within a cycle. A
+//! rising edge is a change to 1 from 0, `x` or `z`; the first value of the clock is none. Where a signal changes
+//! several times at one time, the last counts.
 //!
 //! ```
 //! use stepwave_kernel::trace::read::Wave;
@@ -165,8 +165,9 @@ pub enum WaveError {
 }
 
 impl Wave {
-    /// Reads a whole file; the format is recognised by its content. What is no regular file (a pipe) is read to its end
-    /// first. The clock is the one found as [`Clock`] says; a file without a clock is no error until cycles are asked for.
+    /// Reads a whole file; the format is recognised by its content. What is no regular file (a pipe) is read to its
+    /// end first. The clock is the one found as [`Clock`] says; a file without a clock is no error until cycles are
+    /// asked for.
     ///
     /// # Errors
     /// [`WaveError`], whatever is wrong with the file.
@@ -204,8 +205,8 @@ impl Wave {
         scan::format(head).ok_or_else(|| WaveError::NotAWave { name: name.into() })
     }
 
-    /// The same wave sampled by the clock `wanted`: a full dotted path, or the last parts of one; of several that fit, the
-    /// least deep, then the first.
+    /// The same wave sampled by the clock `wanted`: a full dotted path, or the last parts of one; of several that
+    /// fit, the least deep, then the first.
     ///
     /// # Errors
     /// [`ClockError`] if there is no such signal, or it is not one bit wide, or never rises.

@@ -44,7 +44,7 @@ impl<'w> Frames<'w> {
         if common.is_empty() {
             return Err(CompareError::NoOverlap { offset, a: cycles_a, b: cycles_b });
         }
-        // Laid over one another with an offset, waves of one length end apart, and those that end together differ in length.
+        // With an offset, waves of one length end apart, and waves that end together differ in length.
         let even = cycles_a == cycles_b || end_b == cycles_a.into();
         let lengths = (!even).then_some(Lengths { a: Moment::Clock(cycles_a), b: Moment::Clock(cycles_b) });
         let a = Frame { wave: a, axis: Axis::Cycles { clock: a.clock()?, shift: 0 } };
@@ -144,7 +144,8 @@ impl<'w> Frame<'w> {
         }
     }
 
-    /// The positions at which the signal's sample may change, increasing, each with the number of the change that counts.
+    /// The positions at which the signal's sample may change, increasing, each with the number of the change that
+    /// counts.
     pub(crate) fn changes<'f>(&'f self, signal: &Signal) -> Changes<'f, 'w> {
         Changes { frame: self, times: self.wave.change_times(signal), next: 0 }
     }

@@ -24,13 +24,16 @@ impl Display for Divergence<'_> {
         match self.differences.split_first() {
             Some((first, others)) => {
                 writeln!(f, "first divergence: {first}")?;
-                writeln!(f, "\n{}", self.context)?;
+                write!(f, "\n{}", self.context)?;
                 if !others.is_empty() {
-                    writeln!(f, "{} more, each where it diverges first:", counted(others.len(), "signal"))?;
+                    writeln!(f, "\n{} more, each where it diverges first:", counted(others.len(), "signal"))?;
                 }
                 others.iter().try_for_each(|other| other.line(f))?;
             }
             None => writeln!(f, "no value differs in what both have, but:")?,
+        }
+        if !self.differences.is_empty() && (!self.mismatches.is_empty() || self.lengths.is_some()) {
+            writeln!(f)?;
         }
         self.mismatches.iter().try_for_each(|mismatch| writeln!(f, "{mismatch}"))?;
         if self.mismatches.iter().any(|m| matches!(m, Mismatch::OnlyInA(_) | Mismatch::OnlyInB(_))) {

@@ -98,7 +98,8 @@ fn by_time_each_change_stands_at_its_own_time_in_the_finer_unit() {
 #[test]
 fn signals_of_one_side_other_kinds_and_odd_names_are_kept_too() {
     let a = wave(&file(
-        "$var wire 1 ! clk $end $var string 1 \" s $end $var event 1 # ev $end $var wire 1 $ 1st $end $var wire 1 $ clk_ $end",
+        "$var wire 1 ! clk $end $var string 1 \" s $end $var event 1 # ev $end
+            $var wire 1 $ 1st $end $var wire 1 $ clk_ $end",
         "#0 0! sA\\x20B\\\\ \" 1$ #5 1! 1# #10 0! #15 1! 1# x$",
     ));
     let b = wave(&file("$var wire 1 ! clk $end $var integer 8 \" e $end", "#0 0! b11111111 \" #5 1! #10 0! #15 1!"));

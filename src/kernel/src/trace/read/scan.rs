@@ -1,5 +1,5 @@
-//! A quick look at a file before it is decoded: what `wellen` would panic on, drop in silence or never finish reading is
-//! found here, with its place.
+//! A quick look at a file before it is decoded: what `wellen` would panic on, drop in silence or never finish reading
+//! is found here, with its place.
 
 use super::WaveError;
 use std::collections::HashSet;
@@ -56,8 +56,8 @@ pub(super) fn fst(input: &mut (impl Read + Seek), name: &str) -> Result<(), Wave
     Ok(())
 }
 
-/// Whether the sizes written in the block of this kind, whose length field is at `at`, can be true. The decoder reserves
-/// memory by them before it looks any further, and running out of memory is no error that can be caught.
+/// Whether the sizes written in the block of this kind, whose length field is at `at`, can be true. The decoder
+/// reserves memory by them before it looks any further, and running out of memory is no error that can be caught.
 fn plausible(input: &mut (impl Read + Seek), kind: u8, at: u64, length: u64) -> io::Result<bool> {
     // The most that deflate makes of a byte; LZ4 stays below.
     let expanded = |bytes: u64| bytes.saturating_mul(1032);

@@ -208,45 +208,12 @@ fn never_panics(whole: &[u8]) {
     }
 }
 
-fn fst() -> Vec<u8> {
-    use fst_writer::{FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalType, FstVarDirection, FstVarType};
-    let info = FstInfo {
-        start_time: 0,
-        timescale_exponent: -9,
-        version: String::new(),
-        date: String::new(),
-        file_type: FstFileType::Verilog,
-    };
-    let mut header = FstHeaderWriter::write_to_mem(&info).expect("memory");
-    COUNTER.scopes.iter().for_each(|scope| header.scope(scope, "", FstScopeType::Module).expect("memory"));
-    let mut var = |name: &str, width, kind| {
-        header.var(name, FstSignalType::bit_vec(width), kind, FstVarDirection::Implicit, None).expect("memory")
-    };
-    let ids = [
-        var("clk", 1, FstVarType::Wire),
-        var("count [3:0]", 4, FstVarType::Reg),
-        var("odd", 1, FstVarType::Wire),
-        var("e", 8, FstVarType::Integer),
-    ];
-    COUNTER.scopes.iter().for_each(|_| header.up_scope().expect("memory"));
-    let mut body = header.finish().expect("memory");
-    let mut change = |time: u64, values: &[(usize, String)]| {
-        body.time_change(time).expect("memory");
-        values.iter().for_each(|(id, value)| body.signal_change(ids[*id], value.as_bytes()).expect("memory"));
-    };
-    for k in 0..COUNTER.cycles {
-        let e = format!("{:08b}", (256 - k) % 256);
-        let q = [(0, u8::from(k > 0).to_string()), (1, format!("{k:04b}")), (2, (k % 2).to_string()), (3, e)];
-        change(k * 10, &q);
-        change(k * 10 + 5, &[(0, "0".into())]);
-    }
-    change(COUNTER.cycles * 10, &[]);
-    body.finish().expect("memory").into_inner()
-}
+/// The run of [`COUNTER`] as the crate `fst-writer` writes it.
+const COUNTER_FST: &[u8] = include_bytes!("counter.fst");
 
 #[test]
 fn an_fst_reads_as_the_vcd_of_the_same_run() {
-    let (fst, vcd) = (Wave::from_bytes(fst()).expect("an FST"), COUNTER.wave());
+    let (fst, vcd) = (Wave::from_bytes(COUNTER_FST.to_vec()).expect("an FST"), COUNTER.wave());
     assert_eq!(fst.signals(), vcd.signals());
     assert_eq!(fst.timescale(), vcd.timescale());
     for signal in vcd.signals() {
@@ -256,5 +223,5 @@ fn an_fst_reads_as_the_vcd_of_the_same_run() {
 
 #[test]
 fn no_broken_fst_makes_the_reader_panic() {
-    never_panics(&fst());
+    never_panics(COUNTER_FST);
 }

@@ -32,8 +32,9 @@ impl<'w> Value<'w> {
         }
     }
 
-    /// Whether the two are the same value: bit vectors of equal width with the same state in every bit (`x` is only `x`,
-    /// `z` only `z`; a vector not yet set is all `x`), reals of equal value (not-a-number is itself), equal texts.
+    /// Whether the two are the same value: bit vectors of equal width with the same state in every bit (`x` is only
+    /// `x`, `z` only `z`; a vector not yet set is all `x`), reals of equal value (not-a-number is itself), equal
+    /// texts.
     #[must_use]
     pub fn same(self, other: Value<'_>) -> bool {
         match (self, other) {
@@ -47,8 +48,8 @@ impl<'w> Value<'w> {
         }
     }
 
-    /// The value in few columns, for a table: a bit vector of up to 16 bits in binary, a wider one in decimal where that
-    /// exists.
+    /// The value in few columns, for a table: a bit vector of up to 16 bits in binary, a wider one in decimal where
+    /// that exists.
     #[must_use]
     pub fn cell(self) -> String {
         match self {
