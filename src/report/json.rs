@@ -80,7 +80,7 @@ impl Report<'_> {
                     "signed": range.signed,
                     "least": number(range.least),
                     "greatest": number(range.greatest),
-                    "needed_width": range.needed(),
+                    "needed_width": self.needed_bits(range),
                 })
             })
             .collect();

@@ -66,6 +66,14 @@ impl Report<'_> {
         }
     }
 
+    /// Bits that a register needs: for the values that it held, and for the results that did not fit.
+    #[must_use]
+    pub fn needed_bits(&self, range: &RegisterRange) -> u32 {
+        let events = self.overflows.iter().filter(|event| event.component() == range.path);
+        let refused = events.filter_map(OverflowEvent::exact).filter(|(exact, _)| range.signed || *exact >= 0);
+        refused.map(|(_, needed)| needed).chain([range.needed()]).max().unwrap_or(1)
+    }
+
     /// Sentences that say what is wrong with the simulated hardware; none if all is good.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {

@@ -99,7 +99,7 @@ impl Report<'_> {
             .ranges
             .iter()
             .filter(|range| self.hardware.widths.contains_key(&range.name))
-            .map(|range| format!("{} {}/{}", range.name, range.needed(), range.width.get()))
+            .map(|range| format!("{} {}/{}", range.name, self.needed_bits(range), range.width.get()))
             .collect();
         let _ = writeln!(text, "bits needed/given: {}", spare.join(", "));
         text

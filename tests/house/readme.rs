@@ -1,0 +1,58 @@
+//! Every `stepwave run` in the README is run, and what the README shows of it is compared.
+
+use std::process::Command;
+
+/// Fenced blocks of the README: language and content.
+fn blocks(text: &str) -> Vec<(String, String)> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(String, String)> = None;
+    for line in text.lines() {
+        match (line.strip_prefix("```"), &mut open) {
+            (Some(language), None) => open = Some((language.to_owned(), String::new())),
+            (Some(_), Some(_)) => blocks.extend(open.take()),
+            (None, Some((_, content))) => *content += &format!("{line}\n"),
+            (None, None) => {}
+        }
+    }
+    blocks
+}
+
+#[test]
+fn the_commands_of_the_readme_print_what_it_shows() {
+    let readme = include_str!("../../README.md");
+    let blocks = blocks(readme);
+    let dir = tempfile::tempdir().unwrap();
+    let mut compared = 0;
+    for pair in blocks.windows(2) {
+        let [(language, command), (shown_language, shown)] = pair else { unreachable!() };
+        let Some((_, arguments)) = command.split_once(" run ").filter(|_| language == "sh") else { continue };
+        // `cargo run --release -- run …` and `stepwave run …` are the same program.
+        let arguments = arguments.strip_prefix("--release -- run ").unwrap_or(arguments);
+        let output = Command::new(env!("CARGO_BIN_EXE_stepwave"))
+            .arg("run")
+            .args(arguments.split_whitespace())
+            .current_dir(&dir)
+            .output()
+            .unwrap();
+        let printed = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        if shown_language == "text" {
+            for line in shown.lines().filter(|line| !line.trim().is_empty() && line.trim() != "…") {
+                assert!(printed.lines().any(|printed| printed == line), "not printed: {line}\n{printed}");
+                compared += 1;
+            }
+        }
+        let wave = arguments.split("--vcd ").nth(1).and_then(|rest| rest.split_whitespace().next());
+        if let Some(wave) = wave {
+            assert!(dir.path().join(wave).is_file(), "{wave}");
+        }
+    }
+    assert!(compared > 10, "{compared}");
+}
+
+#[test]
+fn continuous_integration_runs_the_test_command_of_the_readme() {
+    let readme = include_str!("../../README.md");
+    let command = blocks(readme).into_iter().find(|(_, content)| content.starts_with("cargo test")).unwrap().1;
+    let ci = include_str!("../../.ci/run");
+    assert!(ci.lines().any(|line| line == format!("step {}", command.trim())), "{command}");
+}
