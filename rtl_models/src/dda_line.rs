@@ -83,7 +83,8 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
         EndPoint::PerAxis => END[..axes].iter().for_each(|name| _ = widths.register(*name, n)),
         // The sum of up to 2, 4 or 6 axes.
         EndPoint::Total => _ = widths.register("e", n + axes.next_power_of_two().trailing_zeros()),
-        EndPoint::Iterations | EndPoint::Longest => _ = widths.register("e", n + 1),
+        EndPoint::Iterations => _ = widths.register("e", widths.bits(JR[0]) + 1),
+        EndPoint::Longest => _ = widths.register("e", n + 1),
     }
     let table = widths.names();
     for (axis, letter) in POSITION[..axes].iter().enumerate() {

@@ -81,6 +81,18 @@ impl<'a> Widths<'a> {
         self
     }
 
+    /// Width of a register given so far: the user's, or its default.
+    pub(crate) fn bits(&self, name: &str) -> u32 {
+        let default = self.default.iter().find(|(known, _)| known == name).map_or(1, |(_, bits)| *bits);
+        self.chosen(name).map_or(default, Width::get)
+    }
+
+    /// The width that the user gave this register, by its name or by its kind.
+    fn chosen(&self, name: &str) -> Option<Width> {
+        let single = self.choices.widths.get(name);
+        single.or_else(|| self.choices.widths.get(kind(name)?)).copied()
+    }
+
     /// Names of the registers given so far, in order.
     pub(crate) fn names(&self) -> Vec<String> {
         self.default.iter().map(|(name, _)| name.clone()).collect()
@@ -100,10 +112,8 @@ impl<'a> Widths<'a> {
             }
         }
         let resolved = self.default.iter().map(|(name, bits)| {
-            let single = self.choices.widths.get(name);
-            let given = single.or_else(|| self.choices.widths.get(kind(name)?));
-            let width = match given {
-                Some(width) => *width,
+            let width = match self.chosen(name) {
+                Some(width) => width,
                 None => Width::new(u64::from(*bits)).map_err(|_| ModelError::TooWide {
                     register: name.clone(),
                     bits: u64::from(*bits),
