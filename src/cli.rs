@@ -28,6 +28,8 @@ pub(crate) enum Command {
     Run(Box<RunArgs>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)
     Diff(DiffArgs),
+    /// Write a machine as Verilog, with a test bench that runs the geometry
+    Export(Box<ExportArgs>),
     /// Re-simulate the recorded cases of a folder and compare bit by bit
     #[command(subcommand)]
     Golden(GoldenCommand),
@@ -85,6 +87,28 @@ pub(crate) struct RunArgs {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    stepwave export dda-line --to 8,6 --verilog dda_line.v --testbench dda_line_tb.v\n  \
+    stepwave export ppc-arc --from 5,0 --to 0,5 --ccw --width 16 --verilog -\n\
+    The wave of the test bench (Icarus Verilog, Verilator) holds the signals of `run --vcd`, so that\n\
+    `stepwave diff` compares them clock by clock.")]
+#[command(group(clap::ArgGroup::new("exports").required(true).multiple(true)))]
+pub(crate) struct ExportArgs {
+    /// The model; `stepwave list` shows them
+    pub(crate) model: String,
+    #[command(flatten)]
+    pub(crate) geometry: GeometryArgs,
+    #[command(flatten)]
+    pub(crate) hardware: HardwareArgs,
+    /// Write the netlist as a Verilog module
+    #[arg(long, value_name = "FILE", group = "exports", help_heading = "Outputs (- is standard output)")]
+    pub(crate) verilog: Option<PathBuf>,
+    /// Write a Verilog test bench that loads and runs the geometry as `run` does
+    #[arg(long, value_name = "FILE", group = "exports", help_heading = "Outputs (- is standard output)")]
+    pub(crate) testbench: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 #[command(next_help_heading = "Geometry, in BLU")]
 pub(crate) struct GeometryArgs {
     /// Start point [default: the origin]
@@ -106,30 +130,35 @@ pub(crate) struct GeometryArgs {
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Wave")]
+#[command(group(clap::ArgGroup::new("wave").multiple(true)))]
 pub(crate) struct TraceArgs {
     /// Write the wave as VCD, with a GTKWave save file and state-name files beside it
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", group = "wave")]
     pub(crate) vcd: Option<PathBuf>,
+    /// Write the wave as FST, with the same files beside it; next to a --vcd of the same name they take the whole
+    /// name of the FST file (w.fst.gtkw beside w.gtkw)
+    #[arg(long, value_name = "FILE", group = "wave")]
+    pub(crate) fst: Option<PathBuf>,
     /// Dump only names that match (leaf name or dotted path; may be repeated)
-    #[arg(long, value_name = "GLOB")]
+    #[arg(long, requires = "wave", value_name = "GLOB")]
     pub(crate) trace: Vec<String>,
     /// Leave out names that match (may be repeated)
-    #[arg(long, value_name = "GLOB")]
+    #[arg(long, requires = "wave", value_name = "GLOB")]
     pub(crate) trace_exclude: Vec<String>,
     /// Dump at most this many levels of scopes; 1 is the top scope alone
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, requires = "wave", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) trace_depth: Option<u64>,
     /// First clock of the wave
-    #[arg(long, value_name = "CLOCK", default_value_t = 0)]
+    #[arg(long, requires = "wave", value_name = "CLOCK", default_value_t = 0)]
     pub(crate) trace_from: u64,
     /// Last clock of the wave
-    #[arg(long, value_name = "CLOCK")]
+    #[arg(long, requires = "wave", value_name = "CLOCK")]
     pub(crate) trace_to: Option<u64>,
     /// Begin the wave at the first clock on which this 1-bit signal is 1
-    #[arg(long, value_name = "SIGNAL")]
+    #[arg(long, requires = "wave", value_name = "SIGNAL")]
     pub(crate) trace_on: Option<String>,
     /// Do not dump the clock (saves about 15 bytes a cycle)
-    #[arg(long)]
+    #[arg(long, requires = "wave")]
     pub(crate) no_clk: bool,
 }
 

@@ -3,6 +3,11 @@
 use std::error::Error;
 use std::fmt;
 
+use clap::CommandFactory;
+use clap::error::ErrorKind;
+
+use crate::cli::Cli;
+
 /// A command did not end well.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -10,6 +15,8 @@ pub(crate) enum Failure {
     Check(Vec<String>),
     /// Bad input or usage, or a file cannot be read or written: exit code 2.
     Trouble(String),
+    /// No command was given: the help, exit code 2.
+    Help(String),
 }
 
 impl Failure {
@@ -17,18 +24,23 @@ impl Failure {
     pub(crate) fn code(&self) -> u8 {
         match self {
             Failure::Check(_) => 1,
-            Failure::Trouble(_) => 2,
+            Failure::Trouble(_) | Failure::Help(_) => 2,
         }
     }
 
-    /// A usage error, in one line: what is wrong, and where to read on.
+    /// A usage error, in one line: what is wrong, and where to read on. Without a command, the help.
     pub(crate) fn usage(error: &clap::Error) -> Failure {
         let text = error.render().to_string();
+        if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+            return Failure::Help(text.trim_end().to_owned());
+        }
         // The first paragraph says what is wrong; usage and tips follow.
         let paragraph: Vec<&str> = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim).collect();
         let sentence = paragraph.join(" ");
         let sentence = sentence.strip_prefix("error: ").unwrap_or(&sentence);
-        let command = std::env::args().nth(1).filter(|word| !word.starts_with('-')).unwrap_or_default();
+        let program = Cli::command();
+        let command = std::env::args().nth(1).filter(|word| program.find_subcommand(word).is_some());
+        let command = command.unwrap_or_default();
         let help = format!("stepwave {command}").trim_end().to_owned();
         Failure::Trouble(format!("{sentence} (see `{help} --help`)"))
     }
@@ -42,6 +54,7 @@ impl fmt::Display for Failure {
                 f.write_str(&lines.join("\n"))
             }
             Failure::Trouble(sentence) => write!(f, "stepwave: {sentence}"),
+            Failure::Help(text) => f.write_str(text),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all: written under another name beside the final one and renamed at the end.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempPath;
@@ -9,7 +9,10 @@ use tempfile::TempPath;
 use crate::failure::Failure;
 
 /// An open output.
-pub(crate) type Sink = BufWriter<Box<dyn Write>>;
+pub(crate) type Sink = BufWriter<Box<dyn Write + Send>>;
+
+/// An open file in which one can go back.
+pub(crate) type SeekSink = BufWriter<Named>;
 
 /// Outputs of one command.
 #[derive(Default)]
@@ -21,6 +24,24 @@ pub(crate) struct Outputs {
 
 fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::Trouble(format!("cannot write {}: {error}", path.display()))
+}
+
+/// The file that a path means: links are followed, so that a link is kept and what it points to is replaced. A file that
+/// does not exist yet is named by its folder.
+fn resolved(path: &Path) -> PathBuf {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    path.canonicalize().unwrap_or_else(|_| match (folder.canonicalize(), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path.to_owned(),
+    })
+}
+
+/// Standard output, a pipe or a device: no other files belong beside it.
+pub(crate) fn is_stream(path: &Path) -> bool {
+    path == Path::new("-") || path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
 impl Outputs {
@@ -35,8 +56,28 @@ impl Outputs {
             }
             return Ok(BufWriter::new(Box::new(QuietPipe(io::stdout()))));
         }
-        // A link is kept, and what it points to is replaced.
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        Ok(BufWriter::with_capacity(1 << 16, Box::new(self.file(path)?)))
+    }
+
+    /// Opens an output that is not written from the beginning to the end.
+    ///
+    /// # Errors
+    /// The file cannot be created, it is no file, or another output goes there already.
+    pub(crate) fn open_seekable(&mut self, path: &Path) -> Result<SeekSink, Failure> {
+        if is_stream(path) {
+            return Err(Failure::Trouble(format!(
+                "cannot write {}: FST is written back and forth, which needs a file: name one, or take --vcd",
+                path.display()
+            )));
+        }
+        Ok(BufWriter::with_capacity(1 << 16, self.file(path)?))
+    }
+
+    fn file(&mut self, path: &Path) -> Result<Named, Failure> {
+        if path.as_os_str().as_encoded_bytes().ends_with(b"/") && !path.is_dir() {
+            return Err(Failure::Trouble(format!("cannot write {}: there is no such folder", path.display())));
+        }
+        let target = resolved(path);
         if self.named.contains(&target) {
             let message = format!("two outputs would go to {}: give each its own file", path.display());
             return Err(Failure::Trouble(message));
@@ -49,11 +90,13 @@ impl Outputs {
             // A pipe or a device such as /dev/null is written as it is; renaming would replace it.
             Ok(found) if !found.is_file() => {
                 let file = File::options().write(true).open(&target).map_err(|error| cannot_write(path, &error))?;
-                Ok(BufWriter::new(Box::new(Named { path: path.to_owned(), file })))
+                Ok(Named { path: path.to_owned(), file })
             }
+            // Such as a name that is too long: better said now than when other files have their final names already.
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(cannot_write(path, &error)),
             _ => {
                 let file = self.stage(path, &target)?;
-                Ok(BufWriter::with_capacity(1 << 16, Box::new(Named { path: path.to_owned(), file })))
+                Ok(Named { path: path.to_owned(), file })
             }
         }
     }
@@ -112,7 +155,7 @@ impl Outputs {
 }
 
 /// A file whose errors bear its name.
-struct Named {
+pub(crate) struct Named {
     path: PathBuf,
     file: File,
 }
@@ -135,22 +178,30 @@ impl Write for Named {
     }
 }
 
+impl Seek for Named {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let result = self.file.seek(to);
+        self.named(result)
+    }
+}
+
 /// Standard output whose reader may leave early, as `head` does: that is no failure.
 struct QuietPipe(io::Stdout);
 
+fn unless_closed<T>(result: io::Result<T>, closed: T) -> io::Result<T> {
+    result.or_else(|error| match error.kind() {
+        io::ErrorKind::BrokenPipe => Ok(closed),
+        kind => Err(io::Error::new(kind, format!("cannot write standard output: {error}"))),
+    })
+}
+
 impl Write for QuietPipe {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
-        match self.0.write(buffer) {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(buffer.len()),
-            result => result,
-        }
+        unless_closed(self.0.write(buffer), buffer.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        match self.0.flush() {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            result => result,
-        }
+        unless_closed(self.0.flush(), ())
     }
 }
 
@@ -160,5 +211,6 @@ impl Write for QuietPipe {
 /// Standard output cannot be written.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = QuietPipe(io::stdout());
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| cannot_write(Path::new("-"), &error))
+    out.write_all(text.as_bytes())?;
+    Ok(out.flush()?)
 }

@@ -129,7 +129,8 @@ pub(crate) struct HardwareArgs {
     pub(crate) blu: f64,
     /// What simulates the netlist
     #[arg(long, default_value = "auto", value_parser = one_of(&[
-        ("auto", EngineKind::Word), ("word", EngineKind::Word), ("gates", EngineKind::Gates)]))]
+        ("auto", EngineKind::Compiled), ("compiled", EngineKind::Compiled), ("word", EngineKind::Word),
+        ("gates", EngineKind::Gates)]))]
     pub(crate) engine: EngineKind,
 }
 

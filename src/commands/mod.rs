@@ -1,11 +1,14 @@
 //! One file per subcommand, thin: it joins the command line with the library.
 
 pub(crate) mod diff;
+mod export;
+mod geometry;
 mod golden;
 mod list;
 mod pages;
 mod progress;
 mod run;
+mod wave;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
@@ -19,6 +22,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
         Command::List(args) => list::run(args),
         Command::Run(args) => run::run(args),
         Command::Diff(args) => diff::run(args),
+        Command::Export(args) => export::run(args),
         Command::Golden(command) => golden::run(command),
         Command::Completions { shell } => pages::completions(*shell),
         Command::Man { dir } => pages::manual(dir),

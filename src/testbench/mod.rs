@@ -2,9 +2,11 @@
 //! until the machine says `done`, and hands every sample and every step to the observers.
 
 mod columns;
+mod lanes;
 mod overflow;
 mod path;
 mod ranges;
+mod stimulus;
 mod wave;
 
 use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
@@ -13,10 +15,11 @@ use stepwave_models::{Choices, Hardware, Machine, Model, ModelError};
 use stepwave_nc::Curve;
 
 pub use columns::Columns;
+pub use lanes::{LaneOutcome, Lanes};
 pub use overflow::{OverflowEvent, OverflowWatch};
 pub use path::{PathWatch, WorstError};
 pub use ranges::{RangeWatch, RegisterRange};
-pub use wave::{Trigger, WaveWriter, Window};
+pub use wave::{Trigger, WaveBody, WaveWriter, Window};
 
 /// Samples held between engine and observers.
 const CHUNK: usize = 256;
@@ -112,6 +115,16 @@ impl Testbench {
         Ok(Testbench { hardware, machine, blocks, columns })
     }
 
+    /// The same hardware with the blocks of another geometry.
+    ///
+    /// # Errors
+    /// A value does not fit in its register.
+    pub fn of(&self, model: &Model, curve: &Curve) -> Result<Testbench, ModelError> {
+        let words = model.words(&self.hardware, curve);
+        let blocks = words.iter().map(|words| self.machine.encode(words)).collect::<Result<_, _>>()?;
+        Ok(Testbench { blocks, ..self.clone() })
+    }
+
     /// The hardware.
     #[must_use]
     pub fn hardware(&self) -> &Hardware {
@@ -186,7 +199,7 @@ impl Run<'_, '_> {
             self.engine.set_input(machine.preset_position.net, 0);
             // The edge that loads; `done` of the block before falls with it.
             self.clock()?;
-            ending = self.to_end_of_block()?;
+            ending = self.finish_block()?;
             if ending != Ending::Done {
                 break;
             }
@@ -204,7 +217,7 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    fn to_end_of_block(&mut self) -> Result<Ending, ObserverError> {
+    fn finish_block(&mut self) -> Result<Ending, ObserverError> {
         let stall = self.bench.hardware.stall_clocks;
         // A trap may be seen in the very sample behind the load already.
         if let Some(ending) = self.ended() {

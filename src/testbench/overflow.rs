@@ -152,6 +152,10 @@ fn event(watched: &Watched, clock: u64, row: &[u64]) -> OverflowEvent {
 
 impl Observer for OverflowWatch {
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        let violated = |watched: &Watched| rows.column(watched.never, 0..rows.len()).any(|value| value == 1);
+        if !self.watched.iter().any(violated) {
+            return Ok(());
+        }
         for (clock, row) in rows.iter() {
             for watched in &self.watched {
                 if row[watched.never] == 1 {

@@ -88,11 +88,12 @@ fn unbiased(range: &RegisterRange, biased: u64) -> u64 {
 impl Observer for RangeWatch {
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         for (watched, range) in self.watched.iter_mut().zip(&self.registers) {
-            for (_, row) in rows.iter() {
-                let biased = unbiased(range, row[watched.column]);
-                watched.least = watched.least.min(biased);
-                watched.greatest = watched.greatest.max(biased);
+            let (mut least, mut greatest) = (watched.least, watched.greatest);
+            for value in rows.column(watched.column, 0..rows.len()) {
+                let biased = unbiased(range, value);
+                (least, greatest) = (least.min(biased), greatest.max(biased));
             }
+            (watched.least, watched.greatest) = (least, greatest);
         }
         Ok(())
     }

@@ -5,9 +5,11 @@ use stepwave_kernel::netlist::Format;
 
 use super::{Block, up_down_counter};
 
-/// The axis of this letter. `pulse` (1 bit) sends one pulse at this edge, in the negative direction where `negative` is
-/// 1. Registers: `d` + letter, 2 bits, the signed pulse of the last edge (-1, 0, +1); the letter, `bits` bits in two's
-/// complement, the machine position in BLU, preset with the first block.
+/// The axis of this letter: at an edge with `pulse` = 1 it sends one pulse, in the negative direction where `negative` is
+/// 1 (1 bit each).
+///
+/// - `d` and the letter, 2 bits: the signed pulse of the last edge, -1, 0 or +1.
+/// - The letter, `bits` bits in two's complement: the machine position in BLU, preset with the first block.
 pub fn axis_counter<'m>(
     m: Scope<'m>,
     block: &Block<'m>,

@@ -1,8 +1,9 @@
 //! `Netlist` → `Design`: checked, levelled, immutable. Engines take nothing else.
 //!
 //! Checked are, for every cell: operands exist and come before their user (registers excepted); widths obey
-//! [`Netlist::check_cell`]; every register has a next value; properties are one bit; names fit and are unique in their
-//! scope. All mistakes are reported at once.
+//! [`Netlist::check_cell`]; every register has a next value; properties are one bit and their operands exist; names of
+//! nets and scopes fit and are unique in their scope. All mistakes are reported at once; only where a name belongs to
+//! nothing are such names reported alone.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 use crate::bits::Width;
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::dsl::is_identifier;
-use crate::netlist::{Net, Netlist, Op};
+use crate::netlist::{Claim, NamedNet, Net, Netlist, Op};
 
 /// A netlist that any engine can run. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -92,9 +93,15 @@ pub fn elaborate(netlist: Netlist) -> Result<Design, Diagnostics> {
 }
 
 fn check(netlist: &Netlist) -> Vec<Diagnostic> {
+    let count = netlist.cells.len();
+    let nowhere = |named: &&NamedNet| named.net.index() >= count || named.scope.index() >= netlist.scopes.len();
+    let ghosts: Vec<Diagnostic> = netlist.names.iter().filter(nowhere).map(ghost).collect();
+    if !ghosts.is_empty() {
+        // The messages below describe nets by their names, which would lead nowhere.
+        return ghosts;
+    }
     let mut found = Vec::new();
     let mut report = |code, place, message| found.push(Diagnostic { code, place, message });
-    let count = netlist.cells.len();
     let place = |net: Net| match netlist.sources.get(net.index()) {
         Some(Some(location)) => Place::Source(location),
         _ => Place::Component(format!("net %{}", net.index())),
@@ -115,29 +122,37 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
             report(code, place(net), message);
         }
     }
+    let scopes = netlist.scopes.iter().map(|scope| (scope.parent, scope.name.as_str()));
+    let names = netlist.names.iter().map(|named| (Some(named.scope), named.name.as_str()));
     let mut used = HashSet::new();
-    for named in &netlist.names {
-        let place = Place::Component(named.name.clone());
-        if named.net.index() >= count || named.scope.index() >= netlist.scopes.len() {
-            report(Code::Order, place, format!("the name '{}' is given to a net that does not exist", named.name));
-            continue;
+    for (scope, name) in scopes.chain(names) {
+        let place = Place::Component(name.to_owned());
+        if !is_identifier(name) {
+            report(Code::BadName, place.clone(), format!("'{name}' is no name for a wave"));
         }
-        if !is_identifier(&named.name) {
-            report(Code::BadName, place.clone(), format!("'{}' is no name for a wave", named.name));
-        }
-        if !used.insert((named.scope, named.name.as_str())) {
-            report(Code::DuplicateName, place, format!("'{}' is given twice in its scope", named.name));
+        if !used.insert((scope, name)) {
+            report(Code::DuplicateName, place, format!("'{name}' is given twice in its scope"));
         }
     }
     for property in &netlist.properties {
         let place = Place::Component(property.name.clone());
         if property.never.index() >= count {
-            report(Code::Order, place, "the property's net does not exist".to_owned());
+            report(Code::Order, place.clone(), "the property's net does not exist".to_owned());
         } else if netlist.width(property.never) != Width::ONE {
-            report(Code::NotOneBit, place, "a property is 1 bit wide".to_owned());
+            report(Code::NotOneBit, place.clone(), "a property is 1 bit wide".to_owned());
+        }
+        if let Claim::NoOverflow { left, right, .. } = property.claim
+            && left.net.max(right.net).index() >= count
+        {
+            report(Code::Order, place, "an operand of the property does not exist".to_owned());
         }
     }
     found
+}
+
+fn ghost(named: &NamedNet) -> Diagnostic {
+    let message = format!("the name '{}' is given to a net or in a scope that does not exist", named.name);
+    Diagnostic { code: Code::Order, place: Place::Component(named.name.clone()), message }
 }
 
 /// Marks what a register, a property or a name depends on.

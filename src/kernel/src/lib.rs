@@ -34,7 +34,9 @@ pub mod diag;
 pub mod dsl;
 mod elaborate;
 pub mod engine;
+pub mod export;
 pub mod netlist;
+pub mod passes;
 pub mod text;
 pub mod trace;
 

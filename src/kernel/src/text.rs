@@ -17,6 +17,7 @@
 //! ends in `invariant` or in the strict operation with its operands. Text in quotes is escaped as in Rust.
 
 use std::fmt::{self, Write as _};
+use std::str::CharIndices;
 
 use crate::bits::Width;
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
@@ -24,8 +25,11 @@ use crate::netlist::{
     Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Operand, Property, ScopeData, ScopeId,
 };
 
+/// Makes a two-operand operator.
+type Make = fn(Net, Net) -> Op;
+
 /// Two-operand operators and their words.
-const BINARY: [(&str, fn(Net, Net) -> Op); 11] = [
+const BINARY: [(&str, Make); 11] = [
     ("and", Op::And),
     ("or", Op::Or),
     ("xor", Op::Xor),
@@ -277,7 +281,7 @@ impl<'a> Words<'a> {
                     self.rest = inner[index + 1..].trim_start();
                     return Ok(name);
                 }
-                '\\' => name.push(chars.next().ok_or("the end of the quotes")?.1),
+                '\\' => name.push(escaped(&mut chars).ok_or("an escape of Rust's strings, and the end of the quotes")?),
                 c => name.push(c),
             }
         }
@@ -318,6 +322,22 @@ impl<'a> Words<'a> {
     fn end(&self) -> Result<(), Expected> {
         if self.rest.is_empty() { Ok(()) } else { Err("the end of the line".to_owned()) }
     }
+}
+
+/// The character behind a backslash: those escapes that the `Debug` form of a string uses.
+fn escaped(chars: &mut CharIndices<'_>) -> Option<char> {
+    Some(match chars.next()?.1 {
+        'n' => '\n',
+        'r' => '\r',
+        't' => '\t',
+        '0' => '\0',
+        'u' => {
+            let digits: String = chars.map(|(_, c)| c).take_while(|&c| c != '}').filter(|&c| c != '{').collect();
+            char::from_u32(u32::from_str_radix(&digits, 16).ok()?)?
+        }
+        c @ ('"' | '\\' | '\'') => c,
+        _ => return None,
+    })
 }
 
 /// The text form, as a string.

@@ -39,16 +39,20 @@ struct State {
 
 impl Module {
     /// An empty module; its strict cells trap.
+    #[track_caller]
     #[must_use]
     pub fn new(name: &str) -> Module {
         Module::with_overflow(name, OnOverflow::Trap)
     }
 
     /// An empty module whose strict cells do as told when their exact result does not fit.
+    #[track_caller]
     #[must_use]
     pub fn with_overflow(name: &str, on_overflow: OnOverflow) -> Module {
         let state = State { netlist: Netlist::new(name), diagnostics: Vec::new(), used_names: HashSet::new() };
-        Module { state: RefCell::new(state), on_overflow }
+        let module = Module { state: RefCell::new(state), on_overflow };
+        module.check_name(name);
+        module
     }
 
     /// The top scope.
@@ -96,13 +100,25 @@ impl Module {
         self.state.borrow_mut().diagnostics.push(Diagnostic { code, place, message });
     }
 
+    #[track_caller]
+    fn check_name(&self, name: &str) {
+        if !is_identifier(name) {
+            let message = format!("'{name}' is no name: letters, digits and _ only, not beginning with a digit");
+            self.report(Code::BadName, message);
+        }
+    }
+
     /// A width, or a diagnostic and one bit.
     #[track_caller]
     fn width(&self, bits: u32) -> Width {
-        Width::new(u64::from(bits)).unwrap_or_else(|error| {
-            self.report(Code::BadWidth, error.to_string());
-            Width::ONE
-        })
+        // No closure: it would put its own line into the diagnostic.
+        match Width::new(u64::from(bits)) {
+            Ok(width) => width,
+            Err(error) => {
+                self.report(Code::BadWidth, error.to_string());
+                Width::ONE
+            }
+        }
     }
 }
 
@@ -150,14 +166,12 @@ impl<'m> Scope<'m> {
 
     /// An unsigned register, 0 at reset.
     #[track_caller]
-    #[must_use]
     pub fn reg(self, name: &str, bits: u32) -> Register<'m> {
         self.register(name, bits, false)
     }
 
     /// A two's-complement register, 0 at reset.
     #[track_caller]
-    #[must_use]
     pub fn reg_signed(self, name: &str, bits: u32) -> Register<'m> {
         self.register(name, bits, true)
     }
@@ -182,11 +196,11 @@ impl<'m> Scope<'m> {
     #[must_use]
     pub fn lit_signed(self, bits: u32, value: i64) -> Signal<'m> {
         let width = self.module.width(bits);
-        let bits = Bits::exact(width, i128::from(value), true).unwrap_or_else(|| {
+        let bits = Bits::exact(width, i128::from(value), true);
+        if bits.is_none() {
             self.module.report(Code::ValueTooWide, format!("the value {value} does not fit in {width}"));
-            Bits::truncated(width, 0)
-        });
-        self.new_signal(Op::Const(bits.value()), width, true)
+        }
+        self.new_signal(Op::Const(bits.map_or(0, Bits::value)), width, true)
     }
 
     /// Gives a net a name in this scope, shown as its reading says; returns it.
@@ -230,10 +244,7 @@ impl<'m> Scope<'m> {
 
     #[track_caller]
     fn claim_name(self, name: &str) {
-        if !is_identifier(name) {
-            let message = format!("'{name}' is no name: letters, digits and _ only, not beginning with a digit");
-            self.module.report(Code::BadName, message);
-        }
+        self.module.check_name(name);
         let fresh = self.module.state.borrow_mut().used_names.insert((self.id, name.to_owned()));
         if !fresh {
             let scope = self.module.state.borrow().netlist.scope_path(self.id);

@@ -30,8 +30,9 @@ impl<'m> Signal<'m> {
     }
 
     /// Sum that must fit in the width and reading of this signal at every clock where `enable` (1 bit) is 1: a
-    /// property named after this signal, which therefore needs a name. `rhs` may have any width and either reading.
-    /// What happens where the sum does not fit is the module's [`OnOverflow`].
+    /// property named after this signal, which therefore needs a name. What happens where the sum does not fit is the
+    /// module's [`OnOverflow`]. `rhs` may have any width and either reading; where it does not fit in those of this
+    /// signal, two's complement of 64 bits must hold the exact sum.
     #[track_caller]
     #[must_use]
     pub fn strict_add(self, rhs: Signal<'m>, enable: Signal<'m>) -> Signal<'m> {
@@ -90,11 +91,12 @@ impl<'m> Signal<'m> {
     /// The result cut to the width of this signal, and whether that lost anything.
     #[track_caller]
     fn exact(self, operation: Arithmetic, rhs: Signal<'m>) -> Narrowed<'m> {
-        if self.is_signed() == rhs.is_signed() && rhs.bits() <= self.bits() {
-            self.exact_in_place(operation, rhs)
+        let fits = if self.is_signed() == rhs.is_signed() {
+            rhs.bits() <= self.bits()
         } else {
-            self.exact_widened(operation, rhs)
-        }
+            self.is_signed() && rhs.bits() < self.bits()
+        };
+        if fits { self.exact_in_place(operation, rhs) } else { self.exact_widened(operation, rhs) }
     }
 
     /// Both operands fit in the width and reading of this one: the adder's own carry or overflow is the flag.

@@ -5,7 +5,9 @@
 //! after reset. An input set between two calls changes right behind the next edge, as the output of a register outside
 //! would: the edge itself still sees the old value.
 
+mod compiled;
 mod gates;
+pub mod lanes;
 mod rows;
 mod word;
 
@@ -17,7 +19,7 @@ pub use rows::Rows;
 /// What an engine is to observe, fixed before it is built so that it can be compiled in.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
-    /// Nets recorded in every row.
+    /// Nets recorded in every row; where there are none, nothing is recorded and rows never fill.
     pub columns: Vec<Net>,
     /// Nets (1 bit) that stop a run as soon as one of them is 1 in a sample.
     pub stops: Vec<Net>,
@@ -36,7 +38,8 @@ pub enum Stop {
 
 /// A machine that runs one design.
 pub trait Engine: Send {
-    /// Sets an input from behind the next edge (or from reset) on. Bits above its width are ignored.
+    /// Sets an input from behind the next edge (or from reset) on. Bits above its width are ignored, and so is a net
+    /// that is no input.
     fn set_input(&mut self, input: Net, value: u64);
 
     /// Registers take their reset values, clock 0; records sample 0 if there is room for a row.
@@ -60,11 +63,13 @@ pub enum EngineKind {
     Gates,
     /// Word by word from a flat array of operations.
     Word,
+    /// Native code for long runs.
+    Compiled,
 }
 
 impl EngineKind {
     /// Every engine; tests loop over it.
-    pub const ALL: [EngineKind; 2] = [EngineKind::Gates, EngineKind::Word];
+    pub const ALL: [EngineKind; 3] = [EngineKind::Gates, EngineKind::Word, EngineKind::Compiled];
 
     /// Its name on the command line.
     #[must_use]
@@ -72,6 +77,7 @@ impl EngineKind {
         match self {
             EngineKind::Gates => "gates",
             EngineKind::Word => "word",
+            EngineKind::Compiled => "compiled",
         }
     }
 
@@ -81,6 +87,13 @@ impl EngineKind {
         match self {
             EngineKind::Gates => Box::new(gates::Gates::new(design, watch)),
             EngineKind::Word => Box::new(word::WordEngine::new(design, watch)),
+            EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch)),
         }
     }
+}
+
+/// The compiled engine, but compiling as soon as `warm_up` clocks were alike: for tests and measurements.
+#[must_use]
+pub fn compiled_after(design: &Design, watch: &Watch, warm_up: u64) -> Box<dyn Engine> {
+    Box::new(compiled::Compiled::after(design, watch, warm_up))
 }

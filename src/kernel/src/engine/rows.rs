@@ -1,5 +1,7 @@
 //! Recorded samples: a flat block of rows that is filled by an engine, read by observers, and used again.
 
+use std::ops::Range;
+
 /// Rows of equally many values, one row a sample, with room for a fixed number.
 #[derive(Clone, Debug)]
 pub struct Rows {
@@ -56,9 +58,42 @@ impl Rows {
         (0..self.len).map(|index| (self.first_clock + index as u64, self.row(index)))
     }
 
+    /// The values of a column in some of the rows.
+    ///
+    /// # Panics
+    /// If there is no such column, or a row of `rows` is not held.
+    #[inline]
+    pub fn column(&self, column: usize, rows: Range<usize>) -> impl Iterator<Item = u64> {
+        assert!(column < self.columns && rows.end <= self.len, "column {column}, rows {rows:?} of {}", self.len);
+        let held = &self.values[rows.start * self.columns..rows.end * self.columns];
+        held.get(column..).unwrap_or_default().iter().step_by(self.columns).copied()
+    }
+
     /// Forgets the rows; the room stays.
     pub fn clear(&mut self) {
         self.len = 0;
+    }
+
+    /// Number of rows that still fit.
+    pub(super) fn room(&self) -> u64 {
+        (self.capacity - self.len) as u64
+    }
+
+    /// The values of the rows that still fit, to be filled by native code.
+    pub(super) fn spare(&mut self) -> &mut [u64] {
+        &mut self.values[self.len * self.columns..]
+    }
+
+    /// Counts `rows` more as held, which native code has filled; the first is the sample of `clock`.
+    pub(super) fn grow(&mut self, clock: u64, rows: u64) {
+        if self.columns == 0 || rows == 0 {
+            return;
+        }
+        if self.len == 0 {
+            self.first_clock = clock;
+        }
+        // No more than `room`, which is a usize.
+        self.len += usize::try_from(rows).unwrap_or(0);
     }
 
     /// Room for the sample of `clock`, to be filled by the engine; `None` if full.

@@ -169,6 +169,9 @@ impl WordEngine {
 
     #[inline]
     fn record(&self, rows: &mut Rows) {
+        if self.columns.is_empty() {
+            return;
+        }
         if let Some(row) = rows.push(self.clock) {
             for (value, &column) in row.iter_mut().zip(&self.columns) {
                 *value = self.values[column as usize];
@@ -177,9 +180,42 @@ impl WordEngine {
     }
 }
 
+/// What the compiled engine needs to hand a run over and take it back.
+impl WordEngine {
+    /// An input changes behind the next edge.
+    pub(super) fn input_pending(&self) -> bool {
+        !self.pending.is_empty()
+    }
+
+    /// Takes the registers as they are `clocks` clocks later, and settles.
+    pub(super) fn continue_from(&mut self, clocks: u64, registers: &[u64]) {
+        self.clock += clocks;
+        for (&(register, _), &value) in self.registers.iter().zip(registers) {
+            self.values[register as usize] = value;
+        }
+        self.settle();
+    }
+
+    /// Counts and records the edge whose register values were taken over last.
+    pub(super) fn finish_edge(&mut self, rows: &mut Rows) {
+        self.clock += 1;
+        if !self.columns.is_empty() {
+            self.record(rows);
+        }
+    }
+
+    /// The stop net that is 1 in the present sample.
+    pub(super) fn stopped(&self) -> Option<Stop> {
+        self.stops.iter().position(|&net| self.values[net as usize] == 1).map(Stop::Net)
+    }
+}
+
 impl Engine for WordEngine {
     fn set_input(&mut self, input: Net, value: u64) {
-        self.pending.push((input.0, value & self.design.netlist().width(input).mask()));
+        let cell = self.design.netlist().cell(input);
+        if cell.op == Op::Input {
+            self.pending.push((input.0, value & cell.width.mask()));
+        }
     }
 
     fn reset(&mut self, rows: &mut Rows) {
@@ -206,8 +242,8 @@ impl Engine for WordEngine {
             if records {
                 self.record(rows);
             }
-            if let Some(index) = self.stops.iter().position(|&net| self.values[net as usize] == 1) {
-                return Stop::Net(index);
+            if let Some(stop) = self.stopped() {
+                return stop;
             }
         }
         Stop::Clocks

@@ -194,7 +194,7 @@ fn row(line: &mut impl FnMut(&str), probe: &Probe, states: &[(&[(u64, String)], 
 fn zoom_and_markers(view: &View<'_>) -> String {
     let period = view.time.ticks().saturating_mul(u64::from(view.time.magnitude()));
     let total = (view.last_clock + 1).saturating_mul(period);
-    let fits = |zoom: u32| u128::from(total) * u128::from(ZOOM_PIXELS) >> zoom <= u128::from(FITTED_PIXELS);
+    let fits = |zoom: u32| (u128::from(total) * u128::from(ZOOM_PIXELS)) >> zoom <= u128::from(FITTED_PIXELS);
     let zoom = (0..=70).find(|&zoom| fits(zoom)).unwrap_or(70);
     let at = |clock: u64| clock.saturating_mul(period);
     let mut text = format!("*-{zoom}.000000");

@@ -1,6 +1,7 @@
 //! Waves: which nets are shown, how they are written, read back and compared.
 
 pub mod diverge;
+pub mod fst;
 pub mod gtkw;
 pub mod merge;
 pub mod probe;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// Units of a VCD timescale, in seconds as a power of ten.
-const UNITS: [(i32, &str, ::vcd::TimescaleUnit); 6] = [
+const UNITS: [(i8, &str, ::vcd::TimescaleUnit); 6] = [
     (0, "s", ::vcd::TimescaleUnit::S),
     (-3, "ms", ::vcd::TimescaleUnit::MS),
     (-6, "us", ::vcd::TimescaleUnit::US),
@@ -40,7 +40,7 @@ impl ClockTime {
         let mut rounded = None;
         for (unit, magnitude) in scales {
             // The exponent is at most 15 and the magnitude a power of ten: exact in f64 for every usual frequency.
-            let per_second = 10f64.powi(-UNITS[unit].0) / f64::from(magnitude);
+            let per_second = 10f64.powi(-i32::from(UNITS[unit].0)) / f64::from(magnitude);
             let half = per_second / hz / 2.0;
             let whole = half.round();
             if whole < 1.0 {
@@ -54,9 +54,8 @@ impl ClockTime {
             if exact {
                 return Ok(time);
             }
-            if (half - whole).abs() <= 1e-9 * half {
-                rounded.get_or_insert(time);
-            } else if unit == UNITS.len() - 1 && magnitude == 1 {
+            let finest = unit == UNITS.len() - 1 && magnitude == 1;
+            if finest || (half - whole).abs() <= 1e-9 * half {
                 rounded.get_or_insert(time);
             }
         }
@@ -78,6 +77,12 @@ impl ClockTime {
     /// Units of one tick: 1, 10 or 100.
     pub(super) fn magnitude(self) -> u32 {
         self.magnitude
+    }
+
+    /// One tick is ten to this power, in seconds.
+    pub(super) fn exponent(self) -> i8 {
+        let unit = UNITS[self.unit].0;
+        unit + if self.magnitude == 100 { 2 } else { i8::from(self.magnitude == 10) }
     }
 
     pub(super) fn unit(self) -> ::vcd::TimescaleUnit {

@@ -2,16 +2,29 @@
 //!
 //! Edge k stands at k periods; the clock falls half a period later. Only changes are written, apart from the first
 //! sample, which holds every variable. There is no date: the same run gives the same bytes on any machine.
+//!
+//! Samples come in blocks. A net that keeps its value through a block is found once and costs nothing in its rows; of
+//! the others, each row writes every line, changed or not, and goes on behind those that changed: a line costs less
+//! than a branch that cannot be foreseen.
+
+mod background;
+mod text;
 
 use std::io::{self, Write};
+use std::ops::Range;
 
 use ::vcd::{IdCode, ReferenceIndex, VarType, Writer};
 
 use super::probe::{Probe, Role};
 use super::timescale::ClockTime;
+use crate::engine::Rows;
+use text::{Line, Stamps, Tail, WINDOW};
+
+pub use background::Background;
+pub(super) use text::digits;
 
 /// Bytes gathered before they go to the output.
-const BUFFER: usize = 64 * 1024;
+const BUFFER: usize = 128 * 1024;
 
 /// What the header says.
 #[derive(Clone, Debug)]
@@ -29,25 +42,29 @@ pub struct VcdHeader<'a> {
 /// One dumped net.
 struct Change {
     column: usize,
-    /// Width of a vector, or `None` for a scalar.
-    vector: Option<u32>,
-    /// The id and a newline.
-    tail: Vec<u8>,
+    line: Line,
     last: u64,
 }
 
 /// Takes samples, one after another.
 pub struct VcdBody<W: Write> {
     out: W,
+    /// Room for `BUFFER` bytes and the longest row behind them; the first `filled` bytes wait to be written.
     buffer: Vec<u8>,
+    filled: usize,
     changes: Vec<Change>,
+    /// Indices of the changes that happen in the present block.
+    busy: Vec<usize>,
     /// Value lines of the clock, high and low, if it is dumped.
-    clk: Option<[Vec<u8>; 2]>,
+    clk: Option<[Tail; 2]>,
+    /// Times of the next rising edge and of the falling one behind it.
+    rise: Stamps,
+    fall: Stamps,
     ticks: u64,
     last_clock: Option<u64>,
 }
 
-fn variable_type(probe: &Probe) -> VarType {
+pub(super) fn variable_type(probe: &Probe) -> VarType {
     match (probe.role, probe.format.is_signed()) {
         (Role::Constant, _) => VarType::Parameter,
         // Viewers show an integer of any width as signed decimal without being told.
@@ -83,7 +100,7 @@ impl VcdHeader<'_> {
             head.add_module(&top)?;
             open.push(top);
             head.var_def(VarType::Wire, 1, next, "clk", None)?;
-            clk = Some([format!("1{next}\n").into_bytes(), format!("0{next}\n").into_bytes()]);
+            clk = Some([Tail::new(&format!("\n1{next}\n")), Tail::new(&format!("\n0{next}\n"))]);
             next = next.next();
         }
         for probe in self.probes {
@@ -106,8 +123,8 @@ impl VcdHeader<'_> {
                 ids.push((probe.column, id));
                 next = next.next();
                 let scalar = width == 1 && !probe.format.is_signed();
-                let (vector, tail) = if scalar { (None, format!("{id}\n")) } else { (Some(width), format!(" {id}\n")) };
-                changes.push(Change { column: probe.column, vector, tail: tail.into_bytes(), last: 0 });
+                let line = Line::new(width, scalar, &id.to_string());
+                changes.push(Change { column: probe.column, line, last: 0 });
             }
         }
         for _ in 0..open.len() {
@@ -115,71 +132,139 @@ impl VcdHeader<'_> {
         }
         head.enddefinitions()?;
         out.write_all(head.writer())?;
-        let buffer = Vec::with_capacity(BUFFER + 4096);
-        Ok(VcdBody { out, buffer, changes, clk, ticks: self.time.ticks(), last_clock: None })
+        let longest: usize = changes.iter().map(|change| change.line.len()).sum();
+        let ticks = self.time.ticks();
+        Ok(VcdBody {
+            out,
+            // Two stamps and `$dumpvars` fit into a window too.
+            buffer: vec![0; BUFFER + longest + 3 * WINDOW],
+            filled: 0,
+            busy: Vec::with_capacity(changes.len()),
+            changes,
+            clk,
+            rise: Stamps::new(ticks),
+            fall: Stamps::new(ticks),
+            ticks,
+            last_clock: None,
+        })
     }
 }
 
 impl<W: Write> VcdBody<W> {
-    /// Writes the sample of `clock`, which is one more than that of the sample before; `row` holds every column of the
+    /// Writes the sample of `clock`, which is later than that of the sample before; `row` holds every column of the
     /// probes.
     ///
     /// # Errors
     /// The output cannot be written.
     pub fn sample(&mut self, clock: u64, row: &[u64]) -> io::Result<()> {
-        if self.last_clock.is_none() {
+        if self.seek(clock) {
             self.first(clock, row);
         } else {
-            self.next(clock, row);
+            self.busy.clear();
+            self.busy.extend(0..self.changes.len());
+            self.row(row);
         }
         self.last_clock = Some(clock);
-        if self.buffer.len() >= BUFFER {
-            self.out.write_all(&self.buffer)?;
-            self.buffer.clear();
+        self.spill()
+    }
+
+    /// Writes some rows of a block, as [`sample`](Self::sample) does row by row.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
+        if self.last_clock.is_none() && !range.is_empty() {
+            self.sample(rows.first_clock() + range.start as u64, rows.row(range.start))?;
+            range.start += 1;
         }
+        if range.is_empty() {
+            return Ok(());
+        }
+        self.seek(rows.first_clock() + range.start as u64);
+        let moves = |change: &Change| rows.column(change.column, range.clone()).any(|value| value != change.last);
+        self.busy.clear();
+        self.busy.extend(self.changes.iter().enumerate().filter(|(_, change)| moves(change)).map(|(index, _)| index));
+        for index in range.clone() {
+            self.row(rows.row(index));
+            self.spill()?;
+        }
+        self.last_clock = Some(rows.first_clock() + range.end as u64 - 1);
         Ok(())
     }
 
+    /// Sets the stamps to a clock, where they do not stand there; true before the first sample.
+    fn seek(&mut self, clock: u64) -> bool {
+        if self.last_clock.is_none_or(|last| clock != last + 1) {
+            self.rise.set(clock * self.ticks);
+            self.fall.set(clock * self.ticks + self.ticks / 2);
+        }
+        self.last_clock.is_none()
+    }
+
     fn first(&mut self, clock: u64, row: &[u64]) {
-        timestamp(&mut self.buffer, clock * self.ticks);
-        self.buffer.extend_from_slice(b"$dumpvars\n");
-        if let Some([high, low]) = &self.clk {
-            self.buffer.extend_from_slice(if clock == 0 { low } else { high });
+        self.filled += self.rise.put(Tail::new("\n"), &mut self.buffer[self.filled..]);
+        self.text(b"$dumpvars\n");
+        if let Some([high, low]) = self.clk {
+            // Without its newline, which ends the line of the time elsewhere.
+            let line = if clock == 0 { low } else { high };
+            self.filled -= 1;
+            self.filled += line.put(&mut self.buffer[self.filled..]);
         }
         for change in &mut self.changes {
             change.last = row[change.column];
-            value(&mut self.buffer, change);
+            change.line.put(change.last, window(&mut self.buffer, self.filled));
+            self.filled += change.line.len();
         }
-        self.buffer.extend_from_slice(b"$end\n");
-        self.fall(clock);
+        self.text(b"$end\n");
+        self.rise.advance();
+        // Before the first rising edge the clock is low anyway.
+        if let (Some([_, low]), true) = (self.clk, clock > 0) {
+            self.filled += self.fall.put(low, &mut self.buffer[self.filled..]);
+        }
+        self.fall.advance();
     }
 
-    fn next(&mut self, clock: u64, row: &[u64]) {
-        let start = self.buffer.len();
-        timestamp(&mut self.buffer, clock * self.ticks);
-        let changed = self.buffer.len();
-        if let Some([high, _]) = &self.clk {
-            self.buffer.extend_from_slice(high);
-        }
-        for change in &mut self.changes {
+    #[inline]
+    fn row(&mut self, row: &[u64]) {
+        let start = self.filled;
+        let buffer = &mut self.buffer[..];
+        let stamp = self.clk.map_or_else(|| Tail::new("\n"), |[high, _]| high);
+        let mut at = start + self.rise.put(stamp, &mut buffer[start..]);
+        let changed = at;
+        for &index in &self.busy {
+            let change = &mut self.changes[index];
             let now = row[change.column];
-            if now != change.last {
-                change.last = now;
-                value(&mut self.buffer, change);
+            if change.line.is_long() && now == change.last {
+                continue;
             }
+            change.line.put(now, window(buffer, at));
+            at += if now == change.last { 0 } else { change.line.len() };
+            change.last = now;
         }
-        if self.buffer.len() == changed {
-            self.buffer.truncate(start);
+        match self.clk {
+            Some([_, low]) => at += self.fall.put(low, &mut buffer[at..]),
+            // Nothing happens at this time.
+            None if at == changed => at = start,
+            None => {}
         }
-        self.fall(clock);
+        self.filled = at;
+        self.rise.advance();
+        self.fall.advance();
     }
 
-    /// The clock's falling edge; before the first rising one it is low anyway.
-    fn fall(&mut self, clock: u64) {
-        if let (Some([_, low]), true) = (&self.clk, clock > 0) {
-            timestamp(&mut self.buffer, clock * self.ticks + self.ticks / 2);
-            self.buffer.extend_from_slice(low);
+    fn text(&mut self, text: &[u8]) {
+        self.buffer[self.filled..self.filled + text.len()].copy_from_slice(text);
+        self.filled += text.len();
+    }
+
+    /// Writes the buffer if it is full.
+    #[inline]
+    fn spill(&mut self) -> io::Result<()> {
+        if self.filled >= BUFFER {
+            self.out.write_all(&self.buffer[..self.filled])?;
+            self.filled = 0;
         }
+        Ok(())
     }
 
     /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
@@ -188,38 +273,16 @@ impl<W: Write> VcdBody<W> {
     /// The output cannot be written.
     pub fn finish(mut self) -> io::Result<W> {
         let end = self.last_clock.map_or(0, |clock| clock + 1);
-        timestamp(&mut self.buffer, end * self.ticks);
-        self.out.write_all(&self.buffer)?;
+        self.rise.set(end * self.ticks);
+        self.filled += self.rise.put(Tail::new("\n"), &mut self.buffer[self.filled..]);
+        self.out.write_all(&self.buffer[..self.filled])?;
         self.out.flush()?;
         Ok(self.out)
     }
 }
 
-fn timestamp(buffer: &mut Vec<u8>, time: u64) {
-    buffer.push(b'#');
-    let mut digits = [0u8; 20];
-    let mut start = digits.len();
-    let mut rest = time;
-    loop {
-        start -= 1;
-        digits[start] = b'0' + (rest % 10).to_le_bytes()[0];
-        rest /= 10;
-        if rest == 0 {
-            break;
-        }
-    }
-    buffer.extend_from_slice(&digits[start..]);
-    buffer.push(b'\n');
-}
-
-fn value(buffer: &mut Vec<u8>, change: &Change) {
-    let digit = |bit: u32| b'0' + (change.last >> bit & 1).to_le_bytes()[0];
-    match change.vector {
-        None => buffer.push(digit(0)),
-        Some(width) => {
-            buffer.push(b'b');
-            buffer.extend((0..width).rev().map(digit));
-        }
-    }
-    buffer.extend_from_slice(&change.tail);
+/// Room for a line. The buffer holds the longest row behind any place where a row may begin.
+#[inline]
+fn window(buffer: &mut [u8], at: usize) -> &mut [u8; WINDOW] {
+    buffer[at..].first_chunk_mut().expect("the buffer holds the longest row")
 }

@@ -1,0 +1,92 @@
+//! The block loader and sequencer.
+
+use stepwave_kernel::dsl::Scope;
+
+use super::super::Block;
+use super::bench::{loader, numbers, on_every_engine};
+
+fn sequencer(m: Scope<'_>) {
+    let block = Block::new(m);
+    m.name("preset", block.preset_position);
+    block.close(block.load, m.input("step", 1), m.input("last", 1));
+}
+
+#[test]
+fn a_block_is_busy_from_its_load_to_its_last_step_and_done_until_the_next_load() {
+    on_every_engine(sequencer, |bench| {
+        bench.play(&[
+            ("load", "0100_0000_0100"),
+            ("step", "0001_0101_0000"),
+            // A last that comes without a step ends nothing.
+            ("last", "0000_1001_0000"),
+        ]);
+        assert_eq!(bench.row("busy"), "0011_1111_0011");
+        assert_eq!(bench.row("done"), "0000_0000_1100");
+        assert_eq!(bench.row("loaded"), "0010_0000_0010");
+        assert_eq!(bench.row("stepped"), "0000_1010_1000");
+    });
+}
+
+#[test]
+fn a_load_at_the_edge_of_the_last_step_starts_the_next_block() {
+    on_every_engine(sequencer, |bench| {
+        bench.play(&[("load", "0100_1000"), ("step", "0000_1000"), ("last", "0000_1000")]);
+        assert_eq!(bench.row("busy"), "0011_1111");
+        assert_eq!(bench.row("done"), "0000_0000");
+        assert_eq!(bench.row("loaded"), "0010_0100");
+    });
+}
+
+#[test]
+fn positions_are_preset_only_together_with_a_load() {
+    on_every_engine(sequencer, |bench| {
+        bench.play(&[("load", "0110_0"), ("preset_position", "1010_1"), ("step", "0000_0"), ("last", "0000_0")]);
+        assert_eq!(bench.row("preset"), "0010_0");
+        assert_eq!(bench.row("busy"), "0011_1");
+    });
+}
+
+#[test]
+fn loaded_rises_with_ready_which_may_come_long_after_the_load() {
+    on_every_engine(
+        |m| {
+            let block = Block::new(m);
+            let finish = m.input("finish", 1);
+            block.close(m.input("ready", 1), finish, finish);
+        },
+        |bench| {
+            bench.play(&[("load", "0100_0010_0000"), ("ready", "0010_0000_0010"), ("finish", "0000_1000_0000")]);
+            assert_eq!(bench.row("busy"), "0011_1001_1111");
+            assert_eq!(bench.row("done"), "0000_0110_0000");
+            assert_eq!(bench.row("loaded"), "0001_0000_0001");
+        },
+    );
+}
+
+#[test]
+fn a_held_register_takes_its_word_at_the_load_and_no_other() {
+    for bits in 1..=4 {
+        on_every_engine(
+            |m| {
+                let block = loader(m);
+                m.name("h", block.held(m, "held", bits));
+                m.name("s", block.held_signed(m, "held_signed", bits));
+            },
+            |bench| {
+                for (word, signed_word) in numbers(bits, false).zip(numbers(bits, true)) {
+                    bench.clock(&[("load", 1), ("held_in", word), ("held_signed_in", signed_word)]);
+                    bench.clock(&[
+                        ("load", 0),
+                        ("held_in", (1 << bits) - 1 - word),
+                        ("held_signed_in", -1 - signed_word),
+                    ]);
+                    for _ in 0..2 {
+                        assert_eq!((bench.value("h"), bench.value("held")), (word, word));
+                        assert_eq!((bench.value("s"), bench.value("held_signed")), (signed_word, signed_word));
+                        bench.clock(&[]);
+                    }
+                }
+            },
+        );
+    }
+}

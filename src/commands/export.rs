@@ -1,0 +1,58 @@
+//! `stepwave export`.
+
+use std::path::Path;
+
+use stepwave::kernel::export::{self, Options};
+use stepwave::kernel::trace::timescale::ClockTime;
+use stepwave::models::find;
+use stepwave::report;
+use stepwave::testbench::Testbench;
+
+use super::geometry::curve;
+use crate::cli::ExportArgs;
+use crate::failure::Failure;
+use crate::output::{self, Outputs};
+
+/// Writes a machine for other tools.
+pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
+    let model = find(&args.model)?;
+    let curve = curve(model, &args.geometry)?;
+    let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
+    let time = ClockTime::from_hz(args.hardware.clock_hz)?;
+    let comment = [
+        report::title(model, bench.hardware(), &curve),
+        format!("Written by stepwave {}; the geometry gives the widths.", env!("CARGO_PKG_VERSION")),
+    ];
+    let outputs = bench.outputs();
+    let options = Options { comment: &comment, outputs: &outputs };
+    let mut files = Outputs::default();
+    if let Some(path) = &args.verilog {
+        files.write(path, &export::verilog(bench.design(), &options))?;
+    }
+    if let Some(path) = &args.testbench {
+        let dump = dump_name(path, &bench.design().netlist().scopes[0].name);
+        files.write(path, &export::testbench(bench.design(), &options, &bench.stimulus(), time, &dump))?;
+    }
+    let quiet = files.uses_stdout();
+    files.commit()?;
+    if quiet { Ok(()) } else { output::print(&summary(&bench)) }
+}
+
+/// The wave that a test bench writes is named after it.
+fn dump_name(testbench: &Path, design: &str) -> String {
+    let stem = testbench.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let stem = stem.filter(|stem| stem != "-").unwrap_or_else(|| format!("{design}_tb"));
+    format!("{stem}.vcd")
+}
+
+fn summary(bench: &Testbench) -> String {
+    let (netlist, registers) = (bench.design().netlist(), bench.design().registers());
+    let bits: u32 = registers.iter().map(|&register| netlist.width(register).get()).sum();
+    format!(
+        "{}: {} registers of {bits} bits together, {} inputs, {} outputs\n",
+        netlist.scopes[0].name,
+        registers.len(),
+        bench.design().inputs().len(),
+        bench.outputs().len()
+    )
+}

@@ -1,0 +1,175 @@
+//! The waves of a run: the files asked for, and the viewer's files beside them.
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use stepwave::kernel::trace::fst::{FstBody, FstHeader};
+use stepwave::kernel::trace::gtkw::{View, side_files};
+use stepwave::kernel::trace::probe::{Probe, Selection};
+use stepwave::kernel::trace::timescale::ClockTime;
+use stepwave::kernel::trace::vcd::{Background, VcdBody, VcdHeader};
+use stepwave::report::Report;
+use stepwave::testbench::{Observer, Testbench, Trigger, WaveBody, WaveWriter, Window};
+
+use crate::cli::TraceArgs;
+use crate::failure::Failure;
+use crate::output::{self, Outputs, SeekSink, Sink};
+
+/// Where the waves go.
+pub(super) struct Sinks<'a> {
+    vcd: Option<(&'a Path, Sink)>,
+    fst: Option<(&'a Path, SeekSink)>,
+}
+
+impl<'a> Sinks<'a> {
+    /// Opens the outputs; nothing if no wave is asked for.
+    ///
+    /// # Errors
+    /// An output cannot be written.
+    pub(super) fn open(args: &'a TraceArgs, outputs: &mut Outputs) -> Result<Option<Sinks<'a>>, Failure> {
+        let vcd = args.vcd.as_deref().map(|path| Ok::<_, Failure>((path, outputs.open(path)?))).transpose()?;
+        let fst = args.fst.as_deref().map(|path| Ok::<_, Failure>((path, outputs.open_seekable(path)?))).transpose()?;
+        Ok((vcd.is_some() || fst.is_some()).then_some(Sinks { vcd, fst }))
+    }
+}
+
+/// Waves that are being written: the same samples of the same signals.
+pub(super) struct Waves<'a> {
+    vcd: Option<Wave<'a, VcdBody<Background<Sink>>>>,
+    fst: Option<Wave<'a, FstBody<SeekSink>>>,
+    probes: Vec<Probe>,
+    clk: bool,
+    time: ClockTime,
+}
+
+/// One of them.
+struct Wave<'a, B> {
+    path: &'a Path,
+    writer: WaveWriter<B>,
+}
+
+impl<'a> Waves<'a> {
+    /// Writes the headers.
+    ///
+    /// # Errors
+    /// The options name no signal, or an output cannot be written.
+    pub(super) fn new(
+        bench: &Testbench,
+        args: &TraceArgs,
+        sinks: Sinks<'a>,
+        time: ClockTime,
+        title: &str,
+    ) -> Result<Waves<'a>, Failure> {
+        let depth = args.trace_depth.map(|depth| usize::try_from(depth).unwrap_or(usize::MAX));
+        let selection = Selection::new(&args.trace, &args.trace_exclude, depth)?;
+        let probes = selection.probes(bench.design(), bench.columns().nets())?;
+        let trigger = match &args.trace_on {
+            Some(name) => Trigger::Column(flag_column(bench, name)?),
+            None => Trigger::Immediately,
+        };
+        let window = Window { from: args.trace_from, to: args.trace_to, trigger };
+        let clk = !args.no_clk;
+        let vcd = match sinks.vcd {
+            Some((path, sink)) => {
+                let header = VcdHeader { comment: title, probes: &probes, time, clk };
+                Some(Wave { path, writer: WaveWriter::new(header.write(Background::new(sink))?, window) })
+            }
+            None => None,
+        };
+        let fst = match sinks.fst {
+            Some((path, sink)) => {
+                let header = FstHeader { probes: &probes, time, clk };
+                Some(Wave { path, writer: WaveWriter::new(header.write(sink)?, window) })
+            }
+            None => None,
+        };
+        Ok(Waves { vcd, fst, probes, clk, time })
+    }
+
+    /// What takes the samples.
+    pub(super) fn observers(&mut self) -> impl Iterator<Item = &mut dyn Observer> {
+        let vcd = self.vcd.iter_mut().map(|wave| &mut wave.writer as &mut dyn Observer);
+        vcd.chain(self.fst.iter_mut().map(|wave| &mut wave.writer as &mut dyn Observer))
+    }
+
+    /// Ends the waves and stages the files beside them.
+    ///
+    /// # Errors
+    /// A wave is empty, or an output cannot be written.
+    pub(super) fn finish(mut self, report: &Report<'_>, outputs: &mut Outputs) -> Result<(), Failure> {
+        let (vcd, fst) = (self.vcd.take(), self.fst.take());
+        let vcd_stem = vcd.as_ref().and_then(|wave| wave.path.file_stem());
+        // The files beside two waves of one stem would bear the same names.
+        let twins = vcd_stem.is_some() && vcd_stem == fst.as_ref().and_then(|wave| wave.path.file_stem());
+        if let Some(Wave { path, writer }) = vcd {
+            let (written, background) = finish(writer, report)?;
+            background.finish()?;
+            self.beside(path, path.file_stem(), written, report, outputs)?;
+        }
+        if let Some(Wave { path, writer }) = fst {
+            let (written, _) = finish(writer, report)?;
+            let stem = if twins { path.file_name() } else { path.file_stem() };
+            self.beside(path, stem, written, report, outputs)?;
+        }
+        Ok(())
+    }
+
+    /// Stages the files beside a wave.
+    fn beside(
+        &self,
+        path: &Path,
+        stem: Option<&OsStr>,
+        (first_clock, last_clock): (u64, u64),
+        report: &Report<'_>,
+        outputs: &mut Outputs,
+    ) -> Result<(), Failure> {
+        if output::is_stream(path) {
+            return Ok(());
+        }
+        let text = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+        let marks: Vec<(u64, String)> = report
+            .overflows
+            .iter()
+            .filter(|event| (first_clock..=last_clock).contains(&event.clock()))
+            .take(1)
+            .map(|event| (event.clock(), "overflow".to_owned()))
+            .collect();
+        let view = View {
+            dump_name: &text(path.file_name()),
+            stem: &text(stem),
+            probes: &self.probes,
+            clk: self.clk,
+            time: self.time,
+            last_clock,
+            marks: &marks,
+        };
+        for file in side_files(&view) {
+            outputs.write(&path.with_file_name(&file.name), &file.text)?;
+        }
+        Ok(())
+    }
+}
+
+/// Ends a wave; tells its first and last clock.
+fn finish<B: WaveBody>(writer: WaveWriter<B>, report: &Report<'_>) -> Result<((u64, u64), B::Output), Failure> {
+    let Some(written) = writer.written else {
+        return Err(Failure::Trouble(format!(
+            "the wave would be empty: no clock from 0 to {} of this run falls into its window",
+            report.outcome.clocks
+        )));
+    };
+    Ok((written, writer.finish()?))
+}
+
+/// Column of a 1-bit net.
+fn flag_column(bench: &Testbench, name: &str) -> Result<usize, Failure> {
+    let netlist = bench.design().netlist();
+    let Some(named) = netlist.find(name) else {
+        return Err(Failure::Trouble(format!("--trace-on: there is no signal '{name}' in this netlist")));
+    };
+    if netlist.width(named.net).get() != 1 {
+        let width = netlist.width(named.net);
+        return Err(Failure::Trouble(format!("--trace-on: {name} has {width}, but a trigger is 1 bit wide")));
+    }
+    Ok(bench.columns().index(named.net))
+}

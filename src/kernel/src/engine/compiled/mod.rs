@@ -1,0 +1,220 @@
+//! The compiled engine: native code for long runs, the word engine for everything else.
+//!
+//! A run begins in the word engine. Once it has proved long, the clock loop is compiled (a millisecond or so) with
+//! what is known by then folded in: inputs of one bit (`load` = 0), and registers of few bits that have gone round in a
+//! short period all the time (a beat ring, `busy`). Guards leave the native loop where such a register does something
+//! else; the word engine then takes over, and a loop for the new circumstances is compiled, or one without assumptions
+//! after some tries. Every sample is recorded, so the outside sees no difference.
+
+mod codegen;
+mod native;
+mod operation;
+mod specialise;
+
+use std::collections::HashMap;
+
+use super::word::WordEngine;
+use super::{Engine, Rows, Stop, Watch};
+use crate::elaborate::Design;
+use crate::netlist::{Net, Op};
+use native::Native;
+use specialise::{History, Specialised};
+
+/// Clocks in the word engine before anything is compiled: they take about as long as compiling.
+const WARM_UP: u64 = 16 * 1024;
+/// Clocks looked back on when a loop is compiled.
+const LOOK_BACK: u64 = 1024;
+/// Loops compiled with assumptions on registers before one without is used.
+const TRIES: usize = 6;
+
+/// A compiled loop and what it takes for granted.
+struct Variant {
+    native: Native,
+    /// Values of the folded inputs.
+    inputs: HashMap<Net, u64>,
+    /// Values of the fixed registers in the last phase: a call may begin behind it.
+    last_phase: HashMap<Net, u64>,
+    assumes_registers: bool,
+    /// Times that a guard was left through.
+    guards: u64,
+    /// Clocks run.
+    clocks: u64,
+}
+
+impl Variant {
+    /// It leaves through its guards too often to pay.
+    fn is_poor(&self, warm_up: u64) -> bool {
+        self.guards >= 4 && self.clocks / self.guards < warm_up
+    }
+}
+
+pub(super) struct Compiled {
+    word: WordEngine,
+    design: Design,
+    watch: Watch,
+    registers: Vec<(Net, Net)>,
+    history: History,
+    warm_up: u64,
+    /// Clocks since an input changed or a guard failed.
+    quiet: u64,
+    variants: Vec<Variant>,
+    /// No code generator for this machine.
+    unavailable: bool,
+    state: Vec<u64>,
+}
+
+impl Compiled {
+    pub(super) fn new(design: &Design, watch: &Watch) -> Compiled {
+        Compiled::after(design, watch, WARM_UP)
+    }
+
+    /// Compiles once `warm_up` clocks were alike.
+    pub(super) fn after(design: &Design, watch: &Watch, warm_up: u64) -> Compiled {
+        let netlist = design.netlist();
+        let registers: Vec<(Net, Net)> = design
+            .registers()
+            .iter()
+            .filter_map(|&register| match netlist.cell(register).op {
+                Op::Register { next: Some(next), .. } => Some((register, next)),
+                _ => None,
+            })
+            .collect();
+        let words = registers.len() + design.inputs().len() + 1;
+        Compiled {
+            word: WordEngine::new(design, watch),
+            design: design.clone(),
+            watch: watch.clone(),
+            history: History::new(netlist, &registers, LOOK_BACK.min(warm_up)),
+            warm_up,
+            registers,
+            quiet: 0,
+            variants: Vec::new(),
+            unavailable: false,
+            state: vec![0; words],
+        }
+    }
+
+    /// One clock in the word engine, remembered.
+    fn step(&mut self, rows: &mut Rows) -> Stop {
+        if self.word.input_pending() {
+            self.quiet = 0;
+        }
+        let stop = self.word.run(1, rows);
+        self.quiet += 1;
+        if self.quiet + self.history.window() > self.warm_up {
+            self.history.remember(|net| self.word.value(net));
+        }
+        stop
+    }
+
+    /// The loop that may be entered behind the present sample.
+    fn fitting(&self) -> Option<usize> {
+        let holds = |values: &HashMap<Net, u64>| values.iter().all(|(&net, &value)| self.word.value(net) == value);
+        let fits = |variant: &Variant| holds(&variant.inputs) && holds(&variant.last_phase);
+        self.variants.iter().position(|variant| !variant.is_poor(self.warm_up) && fits(variant))
+    }
+
+    /// Compiles a loop for what the recent clocks were like.
+    fn compile(&mut self) {
+        let assumes_registers = self.variants.iter().filter(|variant| variant.assumes_registers).count() < TRIES;
+        let value = |net: Net| self.word.value(net);
+        let period = if assumes_registers { self.history.period() } else { None };
+        let specialised =
+            Specialised::new(self.design.netlist(), self.design.inputs(), &self.registers, period, value, |nets| {
+                nets.extend(&self.watch.columns);
+                nets.extend(&self.watch.stops);
+            });
+        let plan = codegen::Plan {
+            entry: &specialised.entry,
+            phases: &specialised.phases,
+            registers: &self.registers,
+            inputs: self.design.inputs(),
+            columns: &self.watch.columns,
+            stops: &self.watch.stops,
+        };
+        match Native::compile(&plan) {
+            Some(native) => {
+                let last_phase = specialised.phases.last().map(|phase| phase.fixed.clone()).unwrap_or_default();
+                let assumes_registers = !last_phase.is_empty();
+                let inputs = specialised.inputs;
+                self.variants.push(Variant { native, inputs, last_phase, assumes_registers, guards: 0, clocks: 0 });
+            }
+            None => self.unavailable = true,
+        }
+    }
+
+    /// Runs a loop behind the present sample, at most `clocks` clocks.
+    fn run_native(&mut self, variant: usize, clocks: u64, rows: &mut Rows) -> Option<Stop> {
+        let count = self.registers.len();
+        for (word, &(net, _)) in self.state.iter_mut().zip(&self.registers) {
+            *word = self.word.value(net);
+        }
+        for (word, &net) in self.state[count..].iter_mut().zip(self.design.inputs()) {
+            *word = self.word.value(net);
+        }
+        let recorded = self.variants[variant].native.call(&mut self.state, rows.spare(), clocks);
+        rows.grow(self.word.clock() + 1, recorded);
+        let edge = self.state[self.state.len() - 1] == 1;
+        self.word.continue_from(recorded, &self.state[..count]);
+        self.variants[variant].clocks += recorded;
+        if edge {
+            self.variants[variant].guards += 1;
+            // The word engine records the sample behind the edge that the loop left at.
+            self.word.finish_edge(rows);
+            self.quiet = self.warm_up.saturating_sub(self.history.window());
+            self.history.clear();
+        }
+        self.word.stopped()
+    }
+}
+
+impl Engine for Compiled {
+    fn set_input(&mut self, input: Net, value: u64) {
+        self.word.set_input(input, value);
+    }
+
+    fn reset(&mut self, rows: &mut Rows) {
+        self.quiet = 0;
+        self.history.clear();
+        self.word.reset(rows);
+    }
+
+    fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop {
+        let end = self.word.clock().saturating_add(clocks);
+        let records = !self.watch.columns.is_empty();
+        while self.word.clock() < end {
+            if records && rows.is_full() {
+                return Stop::RowsFull;
+            }
+            if self.quiet >= self.warm_up && !self.unavailable && !self.word.input_pending() {
+                let left = end - self.word.clock();
+                let room = if records { rows.room().min(left) } else { left.min(i64::MAX as u64) };
+                match self.fitting() {
+                    Some(variant) if self.variants[variant].native.phases() <= room => {
+                        if let Some(stop) = self.run_native(variant, room, rows) {
+                            return stop;
+                        }
+                        continue;
+                    }
+                    None if self.history.is_full() => {
+                        self.compile();
+                        self.history.clear();
+                    }
+                    _ => {}
+                }
+            }
+            if let Stop::Net(index) = self.step(rows) {
+                return Stop::Net(index);
+            }
+        }
+        Stop::Clocks
+    }
+
+    fn clock(&self) -> u64 {
+        self.word.clock()
+    }
+
+    fn value(&self, net: Net) -> u64 {
+        self.word.value(net)
+    }
+}

@@ -1,0 +1,89 @@
+//! Native code and the call into it: the one file with `unsafe`.
+//!
+//! What makes it sound: the code reads and writes only the `state` words and the row words that its plan names, both of
+//! which `call` checks the length of before it enters.
+#![allow(unsafe_code)]
+
+use cranelift_codegen::ir::{AbiParam, types};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
+use cranelift_jit::{JITBuilder, JITModule};
+use cranelift_module::{Linkage, Module, default_libcall_names};
+
+use super::codegen::{self, Plan};
+
+/// The compiled loop: state, rows, clocks → samples recorded.
+type Loop = unsafe extern "C" fn(*mut u64, *mut u64, u64) -> u64;
+
+/// A compiled plan.
+pub(super) struct Native {
+    /// Holds the memory of the code until it is dropped.
+    module: Option<JITModule>,
+    code: Loop,
+    state_words: usize,
+    columns: usize,
+    phases: u64,
+}
+
+impl Native {
+    /// Compiles a plan; `None` where this machine has no code generator.
+    pub(super) fn compile(plan: &Plan<'_>) -> Option<Native> {
+        let flags = [("opt_level", "speed"), ("enable_verifier", "false")];
+        let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
+        let mut module = JITModule::new(builder);
+        let mut context = module.make_context();
+        let signature = &mut context.func.signature;
+        signature.params.extend([AbiParam::new(types::I64); 3]);
+        signature.returns.push(AbiParam::new(types::I64));
+        let mut functions = FunctionBuilderContext::new();
+        let mut f = FunctionBuilder::new(&mut context.func, &mut functions);
+        let entry = f.create_block();
+        f.append_block_params_for_function_params(entry);
+        f.switch_to_block(entry);
+        codegen::generate(plan, &mut f, entry);
+        f.seal_all_blocks();
+        f.finalize();
+        let id = module.declare_function("clocks", Linkage::Export, &context.func.signature).ok()?;
+        module.define_function(id, &mut context).ok()?;
+        module.clear_context(&mut context);
+        module.finalize_definitions().ok()?;
+        let address = module.get_finalized_function(id);
+        // SAFETY: `address` is the start of the function just finalised, whose signature is that of `Loop` in the
+        // platform's C calling convention, the default of the module.
+        let code = unsafe { std::mem::transmute::<*const u8, Loop>(address) };
+        Some(Native {
+            module: Some(module),
+            code,
+            state_words: plan.registers.len() + plan.inputs.len() + 1,
+            columns: plan.columns.len(),
+            phases: plan.phases.len() as u64,
+        })
+    }
+
+    /// Number of phases: a call needs at least as many clocks.
+    pub(super) fn phases(&self) -> u64 {
+        self.phases
+    }
+
+    /// Runs up to `clocks` clocks, recording a row of each into `rows`; gives the number recorded.
+    ///
+    /// # Panics
+    /// If `state` or `rows` is too short, or `clocks` less than the number of phases.
+    pub(super) fn call(&self, state: &mut [u64], rows: &mut [u64], clocks: u64) -> u64 {
+        assert!(state.len() >= self.state_words, "state of {} words", state.len());
+        let room = (rows.len() as u64).checked_div(self.columns as u64).unwrap_or(u64::MAX);
+        assert!(self.phases <= clocks && clocks <= room, "{clocks} clocks, room for {room}");
+        assert!(i64::try_from(clocks).is_ok(), "{clocks} clocks");
+        // SAFETY: the code touches `state_words` words of `state` and at most `clocks` rows of `columns` words of `rows`,
+        // which the assertions have checked; it calls nothing and keeps no pointer. The module that holds it lives.
+        unsafe { (self.code)(state.as_mut_ptr(), rows.as_mut_ptr(), clocks) }
+    }
+}
+
+impl Drop for Native {
+    fn drop(&mut self) {
+        if let Some(module) = self.module.take() {
+            // SAFETY: the only pointer into the code is `self.code`, and nobody can call it any more.
+            unsafe { module.free_memory() };
+        }
+    }
+}

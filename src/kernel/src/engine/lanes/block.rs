@@ -1,0 +1,244 @@
+//! A block of lanes: its rows, and the loops that run over them.
+
+use std::mem::swap;
+
+use fearless_simd::{Level, dispatch};
+
+use super::code::{Code, Do, Operation, Slot};
+use super::lane::{GROUP, GROUPS, Lane, Row};
+
+/// A machine that runs the same code in every lane.
+pub(super) struct Block<T> {
+    rows: Vec<Box<Row<T>>>,
+    /// Takes the result of an operation, then changes places with the row that it is for.
+    spare: Box<Row<T>>,
+    level: Level,
+}
+
+impl<T: Lane> Block<T> {
+    pub(super) fn new(code: &Code) -> Block<T> {
+        let mut rows = vec![Row::filled(T::default()); code.rows];
+        for &(slot, pattern) in &code.constants {
+            rows[slot] = Row::filled(T::top(pattern));
+        }
+        Block { rows, spare: Row::filled(T::default()), level: Level::new() }
+    }
+
+    pub(super) fn row(&self, slot: Slot) -> &Row<T> {
+        &self.rows[slot]
+    }
+
+    pub(super) fn get(&self, slot: Slot, lane: usize) -> T {
+        self.rows[slot].get(lane)
+    }
+
+    pub(super) fn set(&mut self, slot: Slot, lane: usize, word: T) {
+        self.rows[slot].set(lane, word);
+    }
+
+    /// The operations, in the first `groups` groups.
+    pub(super) fn settle(&mut self, operations: &[Operation], groups: usize) {
+        dispatch!(self.level, _simd => settle(&mut self.rows, &mut self.spare, operations, groups));
+    }
+
+    /// Every register takes its next value.
+    #[inline(always)]
+    pub(super) fn edge(&mut self, code: &Code) {
+        edge(&mut self.rows, code);
+    }
+
+    /// Settles sample after sample, with an edge between them, until one of the first `lanes` lanes is not 0 in the row
+    /// `stop`, or `samples` of them are settled. Gives their number, at least 1.
+    pub(super) fn run(&mut self, code: &Code, lanes: usize, stop: Slot, samples: u64) -> u64 {
+        let groups = lanes.div_ceil(GROUP);
+        dispatch!(self.level, _simd => {
+            let mut done = 1;
+            settle(&mut self.rows, &mut self.spare, &code.operations, groups);
+            while done < samples && !any(&self.rows[stop], lanes) {
+                edge(&mut self.rows, code);
+                settle(&mut self.rows, &mut self.spare, &code.operations, groups);
+                done += 1;
+            }
+            done
+        })
+    }
+}
+
+#[inline(always)]
+fn edge<T: Lane>(rows: &mut [Box<Row<T>>], code: &Code) {
+    for register in &code.registers {
+        if let Some(next) = register.next {
+            rows.swap(register.row, next);
+        }
+    }
+}
+
+/// One of the first lanes is not 0.
+#[inline(always)]
+fn any<T: Lane>(row: &Row<T>, lanes: usize) -> bool {
+    let mut seen = [T::default(); GROUP];
+    let whole = (lanes / GROUP).min(GROUPS);
+    for group in &row.0[..whole] {
+        for (seen, &word) in seen.iter_mut().zip(group) {
+            *seen = seen.or(word);
+        }
+    }
+    if let Some(group) = row.0.get(whole) {
+        for (seen, &word) in seen.iter_mut().zip(&group[..lanes % GROUP]) {
+            *seen = seen.or(word);
+        }
+    }
+    seen.iter().fold(T::default(), |any, &word| any.or(word)) != T::default()
+}
+
+/// The rows that operations read. Operands are copied a group at a time: that tells the compiler that writing the result
+/// does not change them, so that it uses vectors, and the copies are registers.
+struct Operands<'a, T> {
+    rows: &'a [Box<Row<T>>],
+    groups: usize,
+}
+
+impl<T: Lane> Operands<'_, T> {
+    #[inline(always)]
+    fn one(&self, out: &mut Row<T>, a: Slot, of: impl Fn(T) -> T) {
+        for (out, a) in out.0.iter_mut().zip(&self.rows[a].0).take(self.groups) {
+            let a = *a;
+            for lane in 0..GROUP {
+                out[lane] = of(a[lane]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn two(&self, out: &mut Row<T>, a: Slot, b: Slot, of: impl Fn(T, T) -> T) {
+        let operands = self.rows[a].0.iter().zip(&self.rows[b].0);
+        for (out, (a, b)) in out.0.iter_mut().zip(operands).take(self.groups) {
+            let (a, b) = (*a, *b);
+            for lane in 0..GROUP {
+                out[lane] = of(a[lane], b[lane]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn three(&self, out: &mut Row<T>, [a, b, c]: [Slot; 3], of: impl Fn(T, T, T) -> T) {
+        let operands = self.rows[a].0.iter().zip(&self.rows[b].0).zip(&self.rows[c].0);
+        for (out, ((a, b), c)) in out.0.iter_mut().zip(operands).take(self.groups) {
+            let (a, b, c) = (*a, *b, *c);
+            for lane in 0..GROUP {
+                out[lane] = of(a[lane], b[lane], c[lane]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn four(&self, out: &mut Row<T>, [a, b, c, d]: [Slot; 4], of: impl Fn(T, T, T, T) -> T) {
+        let operands = self.rows[a].0.iter().zip(&self.rows[b].0).zip(&self.rows[c].0).zip(&self.rows[d].0);
+        for (out, (((a, b), c), d)) in out.0.iter_mut().zip(operands).take(self.groups) {
+            let (a, b, c, d) = (*a, *b, *c, *d);
+            for lane in 0..GROUP {
+                out[lane] = of(a[lane], b[lane], c[lane], d[lane]);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn settle<T: Lane>(rows: &mut [Box<Row<T>>], spare: &mut Box<Row<T>>, operations: &[Operation], groups: usize) {
+    for operation in operations {
+        perform(Operands { rows, groups }, spare, operation.what);
+        swap(&mut rows[operation.target], spare);
+    }
+}
+
+/// The meaning of every operation; the loops inside are unrolled and vectorised, none of them branches.
+#[inline(always)]
+fn perform<T: Lane>(on: Operands<'_, T>, out: &mut Row<T>, what: Do<Slot>) {
+    let top = T::BITS - 1;
+    match what {
+        Do::Copy(a) => on.one(out, a, |a| a),
+        Do::Invert(a, p) => {
+            let p = T::top(p);
+            on.one(out, a, |a| a.xor(p));
+        }
+        Do::Mask(a, p) => {
+            let p = T::top(p);
+            on.one(out, a, |a| a.and(p));
+        }
+        Do::And(a, b) => on.two(out, a, b, T::and),
+        Do::AndNot(a, b) => on.two(out, a, b, |a, b| a.and(b.not())),
+        Do::Or(a, b) => on.two(out, a, b, T::or),
+        Do::Xor(a, b) => on.two(out, a, b, T::xor),
+        Do::Select(select, high, low) => {
+            on.three(out, [select, high, low], |select, high, low| high.and(select).or(low.and(select.not())));
+        }
+        Do::Add(a, b) => on.two(out, a, b, T::add),
+        Do::Sub(a, b) => on.two(out, a, b, T::sub),
+        Do::AddWhere(a, condition, p) => {
+            let p = T::top(p);
+            on.two(out, a, condition, |a, condition| a.add(condition.and(p)));
+        }
+        Do::AddEither(a, b, p, c, q) => {
+            let (p, q) = (T::top(p), T::top(q));
+            on.three(out, [a, b, c], |a, b, c| a.add(b.and(p)).add(c.and(q)));
+        }
+        Do::AddIf(a, b, condition) => on.three(out, [a, b, condition], |a, b, condition| a.add(b.and(condition))),
+        Do::SubIf(a, b, condition) => on.three(out, [a, b, condition], |a, b, condition| a.sub(b.and(condition))),
+        Do::Carry(a, b) => on.two(out, a, b, |a, b| T::mask(a.add(b) < a)),
+        Do::Less(a, b) => on.two(out, a, b, |a, b| T::mask(a < b)),
+        Do::LessSigned(a, b) => on.two(out, a, b, |a, b| T::mask(a.less_signed(b))),
+        Do::LessIf(a, b, condition) => {
+            on.three(out, [a, b, condition], |a, b, condition| T::mask(a < b.and(condition)));
+        }
+        Do::Equal(a, b) => on.two(out, a, b, |a, b| T::mask(a == b)),
+        Do::EqualTo(a, p) => {
+            let p = T::top(p);
+            on.one(out, a, |a| T::mask(a == p));
+        }
+        Do::EqualIf(a, p, condition) => {
+            let p = T::top(p);
+            on.two(out, a, condition, |a, condition| T::mask(a == p).and(condition));
+        }
+        Do::EqualIfOr(a, p, condition, or) => {
+            let p = T::top(p);
+            on.three(out, [a, condition, or], |a, condition, or| T::mask(a == p).and(condition).or(or));
+        }
+        Do::EqualEitherOr(a, [(p, first), (q, second)], or) => {
+            let (p, q) = (T::top(p), T::top(q));
+            on.four(out, [a, first, second, or], |a, first, second, or| {
+                T::mask(a == p).and(first).or(T::mask(a == q).and(second)).or(or)
+            });
+        }
+        Do::AddOverflow(a, b) => on.two(out, a, b, |a, b| {
+            let sum = a.add(b);
+            a.xor(sum).and(b.xor(sum)).right_signed(top)
+        }),
+        Do::SubOverflow(a, b) => {
+            on.two(out, a, b, |a, b| a.xor(b).and(a.xor(a.sub(b))).right_signed(top));
+        }
+        Do::Left(a, by, p) => {
+            let p = T::top(p);
+            on.one(out, a, |a| a.left(by).and(p));
+        }
+        Do::Right(a, by) => on.one(out, a, |a| a.right(by)),
+        Do::RightSigned(a, by) => on.one(out, a, |a| a.right_signed(by)),
+        Do::Bit(a, by) => on.one(out, a, |a| a.left(by).right_signed(top)),
+        Do::Concat(high, low, by, p, q) => {
+            let (p, q) = (T::top(p), T::top(q));
+            on.two(out, high, low, |high, low| high.and(p).or(low.right(by).and(q)));
+        }
+        Do::Fits(a, by) => on.one(out, a, |a| T::mask(a.left(by).right_signed(by) == a)),
+        Do::UnfitIfOr(a, by, condition, or) => on.three(out, [a, condition, or], |a, condition, or| {
+            T::mask(a.left(by).right_signed(by) != a).and(condition).or(or)
+        }),
+        Do::Count(sum, a) => on.two(out, sum, a, |sum, a| sum.sub(T::mask(a != T::default()))),
+        Do::Idle(clocks, a, b) => {
+            let (zero, one) = (T::default(), T::number(1));
+            on.three(out, [clocks, a, b], |clocks, a, b| clocks.add(one).and(T::mask(a.or(b) == zero)));
+        }
+        Do::Least(a, b) => on.two(out, a, b, |a, b| if b < a { b } else { a }),
+        Do::Greatest(a, b) => on.two(out, a, b, |a, b| if a < b { b } else { a }),
+        Do::LeastSigned(a, b) => on.two(out, a, b, |a, b| if b.less_signed(a) { b } else { a }),
+        Do::GreatestSigned(a, b) => on.two(out, a, b, |a, b| if a.less_signed(b) { b } else { a }),
+    }
+}

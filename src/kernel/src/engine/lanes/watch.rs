@@ -1,0 +1,120 @@
+//! What lanes run and what they tell: jobs in, ends out.
+
+use super::lane::Lane;
+use crate::netlist::Net;
+
+/// A number that is gathered while a lane runs, over every sample from 0 to the last, or is read at its end.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Observe {
+    /// The value in the last sample.
+    Last(Net),
+    /// The least value, in two's complement if `signed`.
+    Min {
+        /// The net.
+        net: Net,
+        /// Two's complement.
+        signed: bool,
+    },
+    /// The greatest value, in two's complement if `signed`.
+    Max {
+        /// The net.
+        net: Net,
+        /// Two's complement.
+        signed: bool,
+    },
+    /// Number of samples in which one of the nets is not 0.
+    Count(Vec<Net>),
+}
+
+/// How an accumulator takes a sample.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Reduce {
+    Count,
+    Idle,
+    Least { signed: bool },
+    Greatest { signed: bool },
+}
+
+impl Reduce {
+    /// The word from which any first sample gives the right one.
+    pub(super) fn start<T: Lane>(self) -> T {
+        match self {
+            Reduce::Count | Reduce::Greatest { signed: false } => T::number(0),
+            Reduce::Idle | Reduce::Least { signed: false } => T::ONES,
+            Reduce::Least { signed: true } => T::ONES.right(1),
+            Reduce::Greatest { signed: true } => T::ONES.right(1).not(),
+        }
+    }
+}
+
+/// When a lane that has come to rest is given up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Quiet {
+    /// Nets that are not 0 as long as something happens.
+    pub nets: Vec<Net>,
+    /// So many clocks with all of them 0 are borne.
+    pub clocks: u64,
+    /// A lane is looked at in the samples whose clock plus 1 is a multiple of this; at least 1.
+    pub every: u64,
+}
+
+/// What is to be observed and what ends a run, fixed before a program is built.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LaneWatch {
+    /// 1 bit: 1 in a sample ends a block.
+    pub done: Net,
+    /// 1 bit each: 1 in a sample ends the job, unless `done` is 1 too.
+    pub traps: Vec<Net>,
+    /// Inputs that have the same value during every run, and only while a block is loaded another.
+    pub rest: Vec<(Net, u64)>,
+    /// Numbers that every job gives.
+    pub observe: Vec<Observe>,
+    /// Gives up lanes that have come to rest.
+    pub quiet: Option<Quiet>,
+    /// A job ends at the first sample of a run whose clock is at least this.
+    pub limit: u64,
+}
+
+impl LaneWatch {
+    /// Runs until `done`, observes nothing, and ends at clock 2^32 - 2 at the latest.
+    #[must_use]
+    pub fn new(done: Net) -> LaneWatch {
+        let limit = u64::from(u32::MAX) - 1;
+        LaneWatch { done, traps: Vec::new(), rest: Vec::new(), observe: Vec::new(), quiet: None, limit }
+    }
+}
+
+/// What one lane is to do: blocks, one after another, each a list of inputs and their values. An input keeps its value
+/// until a block changes it; before that it is 0.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Job {
+    /// Inputs of each block; bits above an input's width are ignored.
+    pub blocks: Vec<Vec<(Net, u64)>>,
+}
+
+/// Why a job ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum LaneStop {
+    /// The last block was done.
+    Done,
+    /// The net `LaneWatch::traps[_]` of this index was 1, the first of those that were.
+    Trap(usize),
+    /// Nothing happened for so many clocks.
+    Quiet {
+        /// Clocks since one of the nets was not 0.
+        clocks: u64,
+    },
+    /// The limit was reached.
+    Limit,
+}
+
+/// How a job ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LaneEnd {
+    /// Why.
+    pub stop: LaneStop,
+    /// Clock of the last sample.
+    pub clock: u64,
+    /// The numbers asked for, in the order of `LaneWatch::observe`.
+    pub values: Vec<u64>,
+}

@@ -1,0 +1,206 @@
+//! An output that is written by a thread of its own, so that the system copies one part while the next is made.
+
+use std::io::{self, Write};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
+use std::thread::{self, JoinHandle};
+
+/// Parts under way: one that is written, and one that waits.
+const PARTS: usize = 2;
+/// An output that stays below so many bytes never needs a thread.
+const SMALL: usize = 1 << 20;
+
+/// Writes to `W` in a thread, in order, byte by byte the same. An error of the thread comes out of the next call.
+pub struct Background<W: Write + Send + 'static> {
+    state: State<W>,
+}
+
+enum State<W> {
+    /// The first bytes are written directly: short outputs start no thread.
+    Direct {
+        out: W,
+        written: usize,
+    },
+    Thread(Worker<W>),
+    /// An error was told, or nothing is left.
+    Closed,
+}
+
+struct Worker<W> {
+    parts: SyncSender<Vec<u8>>,
+    /// Buffers that were written and can be used again.
+    empty: Receiver<Vec<u8>>,
+    thread: JoinHandle<io::Result<W>>,
+}
+
+impl<W: Write + Send + 'static> Background<W> {
+    /// Writes to `out`; a thread starts as soon as the output is large, and only where there is a second core.
+    #[must_use]
+    pub fn new(out: W) -> Background<W> {
+        Background { state: State::Direct { out, written: 0 } }
+    }
+
+    /// Waits until everything is written, and gives the output back.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn finish(mut self) -> io::Result<W> {
+        match std::mem::replace(&mut self.state, State::Closed) {
+            State::Direct { mut out, .. } => out.flush().map(|()| out),
+            State::Thread(worker) => worker.join(),
+            State::Closed => Err(closed()),
+        }
+    }
+
+    fn part(&mut self, part: &[u8]) -> io::Result<()> {
+        match &mut self.state {
+            State::Direct { out, written } => {
+                out.write_all(part)?;
+                *written += part.len();
+                if *written < SMALL {
+                    return Ok(());
+                }
+                let State::Direct { out, .. } = std::mem::replace(&mut self.state, State::Closed) else {
+                    return Err(closed());
+                };
+                self.state = if thread::available_parallelism().is_ok_and(|cores| cores.get() > 1) {
+                    State::Thread(Worker::start(out)?)
+                } else {
+                    State::Direct { out, written: 0 }
+                };
+                Ok(())
+            }
+            State::Thread(worker) => {
+                if worker.send(part) {
+                    return Ok(());
+                }
+                // The thread has ended, which it does only with an error.
+                match std::mem::replace(&mut self.state, State::Closed) {
+                    State::Thread(worker) => Err(worker.join().err().unwrap_or_else(closed)),
+                    _ => Err(closed()),
+                }
+            }
+            State::Closed => Err(closed()),
+        }
+    }
+}
+
+fn closed() -> io::Error {
+    io::Error::new(io::ErrorKind::BrokenPipe, "the output is closed")
+}
+
+impl<W: Write + Send + 'static> Worker<W> {
+    fn start(mut out: W) -> io::Result<Worker<W>> {
+        let (parts, incoming) = sync_channel::<Vec<u8>>(PARTS);
+        let (done, empty) = channel();
+        let thread = thread::Builder::new().name("wave writer".to_owned()).spawn(move || {
+            for part in incoming {
+                out.write_all(&part)?;
+                // Nobody takes it back any more when the sender has ended.
+                let _ = done.send(part);
+            }
+            out.flush()?;
+            Ok(out)
+        })?;
+        Ok(Worker { parts, empty, thread })
+    }
+
+    /// False if the thread has ended.
+    fn send(&self, part: &[u8]) -> bool {
+        let mut buffer = match self.empty.try_recv() {
+            Ok(buffer) => buffer,
+            Err(TryRecvError::Empty | TryRecvError::Disconnected) => Vec::with_capacity(part.len()),
+        };
+        buffer.clear();
+        buffer.extend_from_slice(part);
+        self.parts.send(buffer).is_ok()
+    }
+
+    fn join(self) -> io::Result<W> {
+        drop(self.parts);
+        self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the thread that writes the wave has panicked")))
+    }
+}
+
+impl<W: Write + Send + 'static> Write for Background<W> {
+    fn write(&mut self, part: &[u8]) -> io::Result<usize> {
+        self.part(part).map(|()| part.len())
+    }
+
+    /// What was handed over is written in order; [`Background::finish`] waits for it.
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.state {
+            State::Direct { out, .. } => out.flush(),
+            State::Thread(_) | State::Closed => Ok(()),
+        }
+    }
+}
+
+/// Waits, so that nothing writes any more when the output's owner removes the file.
+impl<W: Write + Send + 'static> Drop for Background<W> {
+    fn drop(&mut self) {
+        if let State::Thread(worker) = std::mem::replace(&mut self.state, State::Closed) {
+            let _ = worker.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Takes so many bytes, then fails.
+    struct Disk(Vec<u8>, usize);
+
+    impl Write for Disk {
+        fn write(&mut self, part: &[u8]) -> io::Result<usize> {
+            if self.0.len() + part.len() > self.1 {
+                return Err(io::Error::new(io::ErrorKind::StorageFull, "cannot write w.vcd: no space"));
+            }
+            self.0.extend_from_slice(part);
+            Ok(part.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    fn parts() -> impl Iterator<Item = Vec<u8>> {
+        (0..400).map(|index: u32| index.to_string().repeat(4000).into_bytes())
+    }
+
+    #[test]
+    fn a_large_output_arrives_whole_and_in_order() {
+        let mut background = Background::new(Vec::new());
+        for part in parts() {
+            background.write_all(&part).unwrap();
+        }
+        assert!(background.finish().unwrap() == parts().flatten().collect::<Vec<u8>>());
+    }
+
+    #[test]
+    fn a_full_disk_is_told_in_its_own_words_wherever_it_happens() {
+        for room in [0, 100_000, SMALL + 50_000, 3_000_000] {
+            let mut background = Background::new(Disk(Vec::new(), room));
+            let written = parts().try_for_each(|part| background.write_all(&part));
+            let error = written.and_then(|()| background.finish().map(drop)).unwrap_err();
+            assert_eq!(error.to_string(), "cannot write w.vcd: no space", "{room}");
+        }
+    }
+
+    #[test]
+    fn an_error_at_the_very_end_is_told_by_finish() {
+        let all = parts().map(|part| part.len()).sum::<usize>();
+        let mut background = Background::new(Disk(Vec::new(), all - 1));
+        let written = parts().try_for_each(|part| background.write_all(&part));
+        let error = written.and_then(|()| background.finish().map(drop)).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+    }
+
+    #[test]
+    fn what_is_dropped_unfinished_neither_waits_for_ever_nor_panics() {
+        let mut background = Background::new(Disk(Vec::new(), 3_000_000));
+        let _ = parts().try_for_each(|part| background.write_all(&part));
+        drop(background);
+    }
+}

@@ -1,0 +1,131 @@
+//! Many geometries of one hardware at once.
+
+use stepwave_kernel::bits::to_signed;
+use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, Quiet};
+use stepwave_kernel::{Net, OnOverflow};
+use stepwave_models::{Machine, Model, ModelError, find};
+use stepwave_nc::Curve;
+
+use super::{CHUNK, Ending, Testbench};
+
+/// What one geometry came to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LaneOutcome {
+    /// How it ended; `None` where the limit of clocks was reached.
+    pub ending: Option<Ending>,
+    /// Clocks since reset: the clock of the last sample.
+    pub clocks: u64,
+    /// Steps completed.
+    pub steps: u64,
+    /// Pulses of each axis, in either direction.
+    pub pulses: Vec<u64>,
+    /// Machine position of each axis in the last sample, in BLU.
+    pub reached: Vec<i64>,
+    /// Clocks at which a property did not hold.
+    pub overflows: u64,
+}
+
+/// One hardware, ready to run many geometries.
+#[derive(Debug)]
+pub struct Lanes<'b> {
+    bench: &'b Testbench,
+    model: &'static Model,
+    program: LaneProgram,
+}
+
+impl Testbench {
+    /// Makes this hardware ready to run many geometries, each for about `limit` clocks at most: the limit counts in the
+    /// samples in which a block runs.
+    ///
+    /// # Errors
+    /// The hardware is of no known model.
+    pub fn lanes(&self, limit: u64) -> Result<Lanes<'_>, ModelError> {
+        let model = find(self.hardware.model)?;
+        let machine = &self.machine;
+        let never: Vec<Net> = self.design().netlist().properties.iter().map(|property| property.never).collect();
+        let pulses: Vec<Net> = machine.pulses.iter().map(|port| port.net).collect();
+        let traps = if self.hardware.on_overflow == OnOverflow::Trap { never.clone() } else { Vec::new() };
+        let mut observe: Vec<Observe> = machine.positions.iter().map(|port| Observe::Last(port.net)).collect();
+        observe.extend(pulses.iter().map(|&net| Observe::Count(vec![net])));
+        observe.push(Observe::Count(vec![machine.stepped.net]));
+        if traps.is_empty() {
+            observe.push(Observe::Count(never));
+        }
+        let watch = LaneWatch {
+            traps,
+            rest: vec![(machine.load.net, 0), (machine.preset_position.net, 0)],
+            observe,
+            // A run of one geometry looks for rest when its rows are full.
+            quiet: Some(Quiet { nets: pulses, clocks: self.hardware.stall_clocks, every: CHUNK as u64 }),
+            limit,
+            ..LaneWatch::new(machine.done.net)
+        };
+        Ok(Lanes { bench: self, model, program: LaneProgram::new(self.design(), &watch) })
+    }
+
+    /// Runs many geometries of this hardware and gives what each came to, in their order, exactly as
+    /// [`run`](Testbench::run) does for each alone.
+    ///
+    /// # Errors
+    /// The hardware is of no known model; and for each geometry, that the hardware does not take it.
+    pub fn run_many(&self, curves: &[Curve], limit: u64) -> Result<Vec<Result<LaneOutcome, ModelError>>, ModelError> {
+        let mut outcomes = Vec::with_capacity(curves.len());
+        self.lanes(limit)?.run(curves.iter(), |outcome| outcomes.push(outcome));
+        Ok(outcomes)
+    }
+}
+
+impl Lanes<'_> {
+    /// Runs geometries on all threads; `sink` gets what each came to, in their order, one at a time. Memory does not
+    /// grow with their number.
+    pub fn run<C: std::borrow::Borrow<Curve> + Send>(
+        &self,
+        curves: impl Iterator<Item = C> + Send,
+        mut sink: impl FnMut(Result<LaneOutcome, ModelError>) + Send,
+    ) {
+        self.program.run(curves, |curve| self.job(curve.borrow()), |end| sink(end.map(|end| self.outcome(&end))));
+    }
+
+    /// The program that runs the lanes.
+    #[must_use]
+    pub fn program(&self) -> &LaneProgram {
+        &self.program
+    }
+
+    /// The blocks of a geometry, with the strobes that load them.
+    fn job(&self, curve: &Curve) -> Result<Job, ModelError> {
+        let (hardware, machine) = (self.bench.hardware(), self.bench.machine());
+        let words = if curve.axes() == hardware.axes { self.model.words(hardware, curve) } else { Vec::new() };
+        if words.is_empty() {
+            let given = format!("a curve of {} axes in hardware for {}", curve.axes(), hardware.axes);
+            return Err(ModelError::Curve { model: self.model.name, takes: self.model.curve.describe(), given });
+        }
+        let block = |(index, words)| {
+            let mut block = machine.encode(words)?;
+            block.push((machine.load.net, 1));
+            block.push((machine.preset_position.net, u64::from(index == 0)));
+            Ok(block)
+        };
+        Ok(Job { blocks: words.iter().enumerate().map(block).collect::<Result<_, ModelError>>()? })
+    }
+
+    fn outcome(&self, end: &LaneEnd) -> LaneOutcome {
+        let Machine { positions, pulses, .. } = self.bench.machine();
+        let (last, counts) = end.values.split_at(positions.len());
+        let ending = match end.stop {
+            LaneStop::Done => Some(Ending::Done),
+            LaneStop::Trap(_) => Some(Ending::Trapped),
+            LaneStop::Quiet { clocks } => Some(Ending::Stalled { clocks }),
+            LaneStop::Limit => None,
+        };
+        LaneOutcome {
+            ending,
+            clocks: end.clock,
+            steps: counts[pulses.len()],
+            pulses: counts[..pulses.len()].to_vec(),
+            reached: positions.iter().zip(last).map(|(port, &bits)| to_signed(port.width, bits)).collect(),
+            // A trap ends the run at the first.
+            overflows: counts.get(pulses.len() + 1).copied().unwrap_or(u64::from(ending == Some(Ending::Trapped))),
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Choices of hardware that cannot be are refused, and what a model does not take is never ignored.
+
+use super::{Folder, refused, refused_words, run_refused};
+
+#[test]
+fn a_width_that_is_no_number_from_1_to_64_is_refused() {
+    for (width, hint) in
+        [("0", "0 bits"), ("65", "65 bits"), ("f=0", "0 bits"), ("18446744073709551615", "bits is not possible")]
+    {
+        run_refused(&format!("ppc-line --to 6,4 --width {width}"), &[hint, "1 to 64 bits"]);
+    }
+    for width in ["abc", "f=", "=5", "f=x", "3.5", "f=3,", ",", "1e1", "99999999999999999999"] {
+        run_refused(&format!("ppc-line --to 6,4 --width {width}"), &["--width"]);
+    }
+    run_refused("ppc-line --to 6,4 --width abc", &["'abc' is no width", "such as 8 or f=9"]);
+    refused_words(&["run", "ppc-line", "--to", "6,4", "--width", ""], &["'' is no width"]);
+    refused_words(&["run", "ppc-line", "--to", "6,4", "--width=-3"], &["'-3' is no width"]);
+}
+
+#[test]
+fn a_register_that_the_model_does_not_have_is_refused_with_those_it_has() {
+    run_refused("ppc-line --to 6,4 --width jr=4", &["no register 'jr'", "--width", "xe, ye, f, e, x, y"]);
+    run_refused("dda-line --to 8,6 --width f=9", &["no register 'f'", "jvx, jrx, jvy, jry, e, x, y"]);
+    run_refused("dda-line --to 8,6 --preset jrz=1", &["no register 'jrz'", "--preset", "jrx, jry"]);
+    // The counters of the scheme that is not chosen do not exist.
+    run_refused("ppc-line --to 6,4 --width ex=4", &["no register 'ex'"]);
+    run_refused("ppc-line --to 6,4 --width ez=4 --end-point per-axis", &["no register 'ez'", "ex, ey"]);
+}
+
+#[test]
+fn a_width_too_narrow_for_the_geometry_is_refused_with_the_width_that_would_hold_it() {
+    for (words, hints) in [
+        ("ppc-line --to 6,4 --width 2", ["xe = 6", "2 bits", "3 bits would hold it", "--width xe=3"]),
+        ("ppc-line --to 6,4 --width e=3", ["e = 10", "3 bits", "4 bits would hold it", "--width e=4"]),
+        ("ppc-line --to -6,4 --form signed --width 2", ["xe = -6", "3 bits", "4 bits would hold it", "--width xe=4"]),
+        ("ppc-line --from 9,0 --to 6,4 --width x=4", ["x = 9", "4 bits", "5 bits would hold it", "--width x=5"]),
+        ("dda-line --to 8,6 --width 3", ["jvx = 8", "3 bits", "4 bits would hold it", "--width jvx=4"]),
+        ("dda-line --to 8,6 --width jv=3", ["jvx = 8", "3 bits", "4 bits would hold it", "--width jvx=4"]),
+        ("dda-line --to 8,6 --preset jry=16", ["jry = 16", "4 bits", "5 bits would hold it", "--width jry=5"]),
+        ("dda-line --to 8,6 --preset 99", ["jrx = 99", "4 bits", "7 bits would hold it", "--width jrx=7"]),
+        ("dda-arc --from 5,0 --to 0,5 --ccw --width 2", ["jvy = 5", "2 bits", "3 bits would hold it", "--width jvy=3"]),
+        (
+            "ppc-arc --from 5,0 --to 0,5 --ccw --width xi=2,yi=3",
+            ["xi = 5", "2 bits", "3 bits would hold it", "--width xi=3"],
+        ),
+    ] {
+        run_refused(words, &hints);
+    }
+}
+
+#[test]
+fn a_register_of_the_model_wider_than_64_bits_is_refused() {
+    // n + 1 bits of F, 2^n iterations.
+    run_refused("ppc-line --to 6,4 --width 64", &["register f would be 65 bits wide", "1 to 64 bits"]);
+    run_refused("dda-line --to 8,6 --width 64", &["register e would be 65 bits wide"]);
+}
+
+#[test]
+fn integrators_that_do_not_fit_each_other_are_refused() {
+    run_refused("dda-line --to 8,6 --width jr=3", &["jvx of 4 bits", "jrx of 3 bits", "--width"]);
+    run_refused("dda-line --to 8,6 --width jrx=5", &["jry of 4 bits and jrx of 5 bits", "same width"]);
+    run_refused("dda-line --to 8,6 --normalize --width jr=6,e=7", &["jvx of 4 bits", "jrx of 6 bits", "as wide as"]);
+}
+
+#[test]
+fn an_unknown_model_is_refused_with_those_there_are() {
+    for model in ["nope", "PPC-LINE", "ppc_line", "ppc-"] {
+        let hint = format!("there is no model '{model}'; the models are ");
+        run_refused(&format!("{model} --to 6,4"), &[&hint, "ppc-line", "ppc-arc", "dda-line", "dda-arc"]);
+    }
+    run_refused("--ppc-line --to 6,4", &["'--ppc-line'"]);
+    refused_words(&["run", "", "--to", "6,4"], &["there is no model ''"]);
+    refused("run --to 6,4", &["<MODEL>"]);
+}
+
+#[test]
+fn a_choice_that_the_model_does_not_take_is_refused_with_those_it_takes() {
+    let [ppc_line, ppc_arc] =
+        ["--width, --form, --end-point, --beats, --on-overflow", "--width, --end-point, --beats, --on-overflow"];
+    let dda = "--width, --preset, --normalize, --end-point, --on-overflow";
+    for (model, options, takes) in [
+        ("ppc-line --to 6,4", ["--preset half", "--normalize"].as_slice(), ppc_line),
+        ("ppc-arc --from 5,0 --to 0,5 --cw", &["--preset 0", "--normalize", "--form signed"], ppc_arc),
+        ("dda-line --to 8,6", &["--beats 1", "--beats 4", "--form signed", "--form magnitude"], dda),
+        ("dda-arc --from 5,0 --to 0,5 --ccw", &["--beats 4", "--form signed"], dda),
+    ] {
+        for option in options {
+            let [name, option_name] = [model, option].map(|words| words.split(' ').next().unwrap());
+            let hint = format!("{name} does not take {option_name}; it takes {takes}");
+            run_refused(&format!("{model} {option}"), &[&hint]);
+        }
+    }
+}
+
+#[test]
+fn an_end_point_scheme_that_the_model_does_not_have_is_refused_with_the_reason() {
+    run_refused(
+        "ppc-line --to 6,4 --end-point iterations",
+        &["no iterations beside its pulses", "total, per-axis, longest"],
+    );
+    for (model, taken) in [("ppc-arc", "total, per-axis"), ("dda-arc", "per-axis, total")] {
+        for scheme in ["longest", "iterations"] {
+            let refusal = format!("{model} does not take --end-point {scheme}: ");
+            let reason = "the longest axis of an arc may arrive while the other still has steps to go";
+            let words = format!("{model} --from 5,0 --to 0,5 --ccw --end-point {scheme}");
+            run_refused(&words, &[&refusal, reason, &format!("it takes {taken}")]);
+        }
+    }
+}
+
+#[test]
+fn a_value_outside_a_list_is_refused_with_the_list() {
+    for (option, values) in [
+        ("--end-point", "total, per-axis, longest, iterations"),
+        ("--form", "magnitude, signed"),
+        ("--beats", "4, 1"),
+        ("--on-overflow", "trap, saturate, wrap"),
+        ("--engine", "auto, "),
+    ] {
+        for value in ["wat", "2", "Total", "TRAP"] {
+            let quoted = format!("'{value}'");
+            run_refused(
+                &format!("ppc-line --to 6,4 {option} {value}"),
+                &[&quoted, option, &format!("possible values: {values}")],
+            );
+        }
+        refused_words(&["run", "ppc-line", "--to", "6,4", option, ""], &[option, values]);
+    }
+}
+
+#[test]
+fn a_preset_that_is_none_is_refused() {
+    for preset in ["nope", "1.5", "0x3", "Half", "jrx=", "jrx=nope", "99999999999999999999", "1,", "1;2"] {
+        run_refused(
+            &format!("dda-line --to 8,6 --preset {preset}"),
+            &["is no preset: give zero, half, full or a number from 0 on"],
+        );
+    }
+    run_refused("dda-line --to 8,6 --preset=-1", &["'-1' is no preset"]);
+    run_refused("dda-line --to 8,6 --preset -1", &["-1"]);
+}
+
+#[test]
+fn a_clock_that_no_wave_can_carry_is_refused() {
+    for clock in ["0", "-0", "nan", "inf", "1e30", "1e-9", "1e15", "-5"] {
+        run_refused(
+            &format!("dda-line --to 8,6 --clock-hz={clock}"),
+            &["a clock of ", "give a frequency from 1e-3 to 1e14 Hz"],
+        );
+    }
+    for clock in ["abc", "1MHz", "1,000", "0x10"] {
+        run_refused(&format!("dda-line --to 8,6 --clock-hz {clock}"), &[clock, "is no frequency: give Hz"]);
+    }
+    refused_words(&["run", "dda-line", "--to", "8,6", "--clock-hz", ""], &["'' is no frequency"]);
+    // The limits themselves are possible.
+    for clock in ["1e-3", "1e14"] {
+        Folder::new().good(&format!("run dda-line --to 8,6 --clock-hz {clock} --vcd w.vcd"));
+    }
+}
+
+#[test]
+fn a_blu_that_is_no_length_is_refused() {
+    for blu in ["0", "0mm", "1", "mm", "-1mm", "nanmm", "infmm", "1e400mm", "1cm", "abc", "1 2mm", "0um", "1e-400in"] {
+        let words = ["run", "dda-line", "--to", "8,6", &format!("--blu={blu}"), "--json", "r.json"];
+        refused_words(&words, &[&format!("'{blu}' is no length: give one such as 0.001mm, 1um or 0.0001in")]);
+    }
+    refused_words(&["run", "dda-line", "--to", "8,6", "--blu", ""], &["'' is no length"]);
+}
+
+#[test]
+fn a_subcommand_or_option_that_does_not_exist_is_refused_with_the_way_to_the_help() {
+    refused("frob", &["'frob'", "(see `stepwave --help`)"]);
+    refused("--frob", &["'--frob'", "(see `stepwave --help`)"]);
+    refused("run ppc-line --to 6,4 --frob", &["'--frob'", "(see `stepwave run --help`)"]);
+    refused("run ppc-line --to 6,4 extra", &["'extra'", "(see `stepwave run --help`)"]);
+    refused("run ppc-line --to 6,4 --to 5,3", &["--to", "(see `stepwave run --help`)"]);
+    refused("list --frob", &["'--frob'", "(see `stepwave list --help`)"]);
+    refused("completions tcsh", &["'tcsh'", "bash"]);
+    refused("diff one.vcd", &["<B>"]);
+    refused("golden frob", &["'frob'", "(see `stepwave golden --help`)"]);
+}
+
+#[test]
+fn without_a_command_the_help_is_shown_and_the_exit_code_is_2() {
+    for (words, usage) in [("", "Usage: stepwave <COMMAND>"), ("golden", "Usage: stepwave golden <COMMAND>")] {
+        let ran = Folder::new().run(words);
+        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{words}");
+        assert!(ran.err.contains(usage) && ran.err.contains("Commands:"), "{ran:?}");
+    }
+    let help = Folder::new().good("--help");
+    assert_eq!(Folder::new().run("").err, help, "what is shown is the help");
+}

@@ -1,0 +1,104 @@
+//! Good runs: every model reaches its end point, and says so.
+
+use super::{Csv, Folder, engines, good};
+
+/// Runs on every engine and wants the same good end; gives what is printed.
+fn reaches(words: &str, point: &str) -> String {
+    let printed = good(&format!("run {words}"));
+    for engine in engines().chain(["auto"]) {
+        assert_eq!(good(&format!("run {words} --engine {engine}")), printed, "{words} on {engine}");
+    }
+    assert!(printed.contains(&format!("end point {point} reached exactly\n")), "{words}: {printed}");
+    printed
+}
+
+#[test]
+fn lines_of_point_by_point_comparison_reach_their_ends_in_every_quadrant() {
+    for (to, shown) in [("3,2", "(3, 2)"), ("-3,2", "(-3, 2)"), ("-3,-2", "(-3, -2)"), ("3,-2", "(3, -2)")] {
+        for form in ["magnitude", "signed"] {
+            reaches(&format!("ppc-line --to {to} --form {form}"), shown);
+        }
+    }
+}
+
+#[test]
+fn lines_along_an_axis_take_no_step_beside_it() {
+    for (to, shown, moves) in [
+        ("4,0", "(4, 0)", "X X X X"),
+        ("0,3", "(0, 3)", "Y Y Y"),
+        ("0,-2", "(0, -2)", "-Y -Y"),
+        ("-1,0", "(-1, 0)", "-X"),
+    ] {
+        for end_point in ["total", "per-axis", "longest"] {
+            let words = format!("ppc-line --to {to} --end-point {end_point}");
+            reaches(&words, shown);
+            assert_eq!(Csv::of(&words).moves(), moves, "{words}");
+        }
+    }
+}
+
+#[test]
+fn arcs_of_point_by_point_comparison_reach_their_ends_also_about_a_centre_far_off() {
+    reaches("ppc-arc --from 5,0 --to 0,5 --ccw", "(0, 5)");
+    reaches("ppc-arc --from 105,-40 --to 97,-44 --center 100,-40 --cw", "(97, -44)");
+}
+
+#[test]
+fn an_arc_that_ends_where_it_starts_is_a_full_circle() {
+    let printed = reaches("ppc-arc --from 3,4 --to 3,4 --cw", "(3, 4)");
+    assert!(printed.contains("full circle") && printed.contains("40 steps"), "{printed}");
+    reaches("dda-arc --from 5,0 --to 5,0 --ccw --preset half", "(5, 0)");
+}
+
+#[test]
+fn dda_lines_run_in_two_to_six_axes() {
+    let axes = [("x", 8), ("y", 6), ("z", -3), ("a", 5), ("b", 0), ("c", -7)];
+    for count in 2..=6 {
+        let list =
+            |separator: &str| axes[..count].iter().map(|(_, end)| end.to_string()).collect::<Vec<_>>().join(separator);
+        let words = format!("dda-line --to {}", list(","));
+        reaches(&words, &format!("({})", list(", ")));
+        let table = Csv::of(&words);
+        for (axis, end) in &axes[..count] {
+            assert_eq!(table.column(axis).last(), Some(end), "{words}: {axis}");
+            assert_eq!(table.column(&format!("jv{axis}"))[0], end.abs(), "{words}: jv{axis}");
+            assert_eq!(table.pulses(axis).len(), usize::try_from(end.abs()).unwrap(), "{words}: pulses of {axis}");
+        }
+        assert!(axes[count..].iter().all(|(axis, _)| !table.heading.contains(&(*axis).to_owned())), "{words}");
+    }
+}
+
+#[test]
+fn a_line_from_a_start_point_moves_the_machine_from_there() {
+    let table = Csv::of("dda-line --from 10,-20 --to 12,-17");
+    assert_eq!((table.path()[0], table.path().last()), ((10, -20), Some(&(12, -17))));
+    reaches("dda-line --from 10,-20,5 --to 12,-17,5", "(12, -17, 5)");
+}
+
+#[test]
+fn an_arc_that_comes_to_a_stand_ends_soon_and_says_so() {
+    let ran = Folder::new().run("run dda-arc --from 3,7 --to 0,8 --ccw --width 4");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    let lines: Vec<&str> = ran.err.lines().collect();
+    assert!(lines[0].starts_with("stepwave: the motion came to a stand at (0, 7): no pulse for "), "{ran:?}");
+    assert!(lines[0].contains("--preset half"), "{ran:?}");
+    assert_eq!(lines[1], "stepwave: the end point (0, 8) was missed: the machine stands at (0, 7)");
+    // Four bits: after 16 additions without a pulse there will be none. The run may look up only now and then.
+    let clocks = ran.out.lines().find_map(|line| line.split_once(" steps in ")?.1.split_once(" clocks"));
+    let clocks: u64 = clocks.unwrap().0.parse().unwrap();
+    assert!(clocks < 2000, "{clocks} clocks");
+}
+
+#[test]
+fn the_preset_that_the_message_advises_brings_that_arc_to_its_end() {
+    reaches("dda-arc --from 3,7 --to 0,8 --ccw --width 4 --preset half", "(0, 8)");
+}
+
+#[test]
+fn an_end_point_missed_by_a_total_counter_is_exit_code_1() {
+    // (1, 5) lies beside the circle through (6, 0).
+    let ran = Folder::new().run("run ppc-arc --from 6,0 --to 1,5 --ccw --end-point total");
+    assert_eq!(ran.code, 1);
+    assert_eq!(ran.err, "stepwave: the end point (1, 5) was missed: the machine stands at (2, 6)\n");
+    reaches("ppc-arc --from 6,0 --to 1,5 --ccw", "(1, 5)");
+}

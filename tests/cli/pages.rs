@@ -1,0 +1,178 @@
+//! `list`, `--help`, completions and manual pages tell everything there is.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use super::{Folder, engines, good};
+
+const COMMANDS: [&str; 6] = ["list", "run", "diff", "golden", "completions", "man"];
+
+const RUN_OPTIONS: &str = "--from --to --center --cw --ccw --width --preset --normalize --end-point --form --beats \
+    --on-overflow --clock-hz --blu --engine --vcd --trace --trace-exclude --trace-depth --trace-from --trace-to --trace-on \
+    --no-clk --steps --json --plot --bits --help";
+
+/// The options that a text speaks of.
+fn options(text: &str) -> BTreeSet<String> {
+    let text = text.replace("\\-", "-");
+    let words = text.split(|c: char| !(c.is_ascii_lowercase() || c == '-'));
+    words.filter(|word| word.starts_with("--") && word.len() > 3).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_help_of_run_mentions_every_option() {
+    let expected: BTreeSet<String> = RUN_OPTIONS.split_whitespace().map(str::to_owned).collect();
+    let missing: Vec<_> = expected.difference(&options(&good("run --help"))).cloned().collect();
+    assert_eq!(missing, [""; 0]);
+}
+
+#[test]
+fn the_help_of_run_gives_the_values_of_every_list() {
+    let help = good("run --help").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(engines().chain(["auto"]).all(|engine| help.contains(engine)), "{help}");
+    for values in ["total, per-axis, longest, iterations", "magnitude, signed", "4, 1", "trap, saturate, wrap"] {
+        assert!(help.contains(&format!("[possible values: {values}]")), "{values}: {help}");
+    }
+}
+
+#[test]
+fn the_help_mentions_every_command_and_the_exit_codes() {
+    let help = good("--help");
+    for command in COMMANDS {
+        assert!(help.lines().any(|line| line.trim_start().starts_with(&format!("{command} "))), "{command}: {help}");
+        let own = good(&format!("{command} --help"));
+        assert!(own.contains(&format!("Usage: stepwave {command}")), "{own}");
+        assert_eq!(good(&format!("help {command}")), own);
+    }
+    assert!(help.contains("0 done and good; 1 the simulated hardware failed a check"), "{help}");
+    assert_eq!(good("help"), help);
+}
+
+#[test]
+fn the_examples_of_the_help_work_as_written() {
+    let help = good("run --help");
+    let examples: Vec<&str> = help.lines().filter_map(|line| line.trim().strip_prefix("stepwave run ")).collect();
+    assert_eq!(examples.len(), 3, "{help}");
+    for example in examples {
+        // The last one shows a trap.
+        let code = i32::from(example.contains("trap"));
+        assert_eq!(Folder::new().run(&format!("run {example}")).code, code, "{example}");
+    }
+}
+
+#[test]
+fn the_version_is_that_of_the_package() {
+    for option in ["--version", "-V"] {
+        assert_eq!(good(option), format!("stepwave {}\n", env!("CARGO_PKG_VERSION")));
+    }
+}
+
+#[test]
+fn the_list_names_every_model_with_its_registers_and_options() {
+    let list = good("list");
+    let models: Vec<Value> = serde_json::from_str(&good("list --json")).unwrap();
+    let names: Vec<&str> = models.iter().map(|model| model["name"].as_str().unwrap()).collect();
+    assert!(["ppc-line", "ppc-arc", "dda-line", "dda-arc"].iter().all(|name| names.contains(name)), "{names:?}");
+    let run = options(&good("run --help"));
+    for model in &models {
+        let name = model["name"].as_str().unwrap();
+        let begin = list.find(&format!("\n  {name}  ")).unwrap_or_else(|| panic!("{name} is not in the list: {list}"));
+        let part = list[begin + 1..].split("\n\n").next().unwrap();
+        for (kind, fields) in
+            [("registers", ["name", "default_width", "about"].as_slice()), ("options", &["option", "values"])]
+        {
+            let entries = model[kind].as_array().unwrap();
+            assert!(entries.len() >= 4, "{name}: {kind}");
+            for entry in entries {
+                for field in fields {
+                    assert!(part.contains(entry[field].as_str().unwrap()), "{name}: {entry} is not in:\n{part}");
+                }
+                if let Some(option) = entry["option"].as_str() {
+                    assert!(run.contains(option), "{name}: {option}");
+                }
+            }
+        }
+        assert!(model["title"].is_string() && model["method"].is_string() && model["source"].is_string(), "{name}");
+    }
+    let most_axes = |name| models[names.iter().position(|known| *known == name).unwrap()]["curve"]["max_axes"].as_u64();
+    assert_eq!((most_axes("dda-line"), most_axes("ppc-line"), most_axes("dda-arc")), (Some(6), Some(2), Some(2)));
+}
+
+#[test]
+fn the_list_tells_which_choices_a_model_takes() {
+    // A choice in the list is taken, one that is not there is refused.
+    let values = [
+        ("--width", "9"),
+        ("--preset", "zero"),
+        ("--normalize", ""),
+        ("--end-point", "total"),
+        ("--form", "signed"),
+        ("--beats", "1"),
+        ("--on-overflow", "wrap"),
+    ];
+    let models: Vec<Value> = serde_json::from_str(&good("list --json")).unwrap();
+    for model in &models {
+        let name = model["name"].as_str().unwrap();
+        let geometry = if name.ends_with("arc") { "--from 5,0 --to 0,5 --ccw" } else { "--to 6,4" };
+        let listed: Vec<&str> =
+            model["options"].as_array().unwrap().iter().map(|doc| doc["option"].as_str().unwrap()).collect();
+        for (option, value) in values {
+            let ran = Folder::new().run(&format!("run {name} {geometry} {option} {value}"));
+            assert_eq!(ran.code == 2, !listed.contains(&option), "{name} {option} {value}: {ran:?}");
+        }
+    }
+}
+
+#[test]
+fn completions_know_every_command_and_option() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = good(&format!("completions {shell}"));
+        for command in COMMANDS {
+            assert!(script.contains(command), "{shell}: {command}");
+        }
+        // fish writes options without their hyphens.
+        for option in options(&good("run --help")) {
+            let written = if shell == "fish" { format!("-l {}", &option[2..]) } else { option.clone() };
+            assert!(script.contains(&written), "{shell}: {option}");
+        }
+    }
+}
+
+#[test]
+fn the_bash_completions_are_a_script_that_bash_can_read() {
+    let folder = Folder::new();
+    folder.write("completions.bash", &good("completions bash"));
+    let test = "source ./completions.bash && COMP_WORDS=(stepwave run --tra) COMP_CWORD=2 && _stepwave stepwave --tra run \
+                && printf '%s\\n' \"${COMPREPLY[@]}\"";
+    let output = std::process::Command::new("bash").args(["-c", test]).current_dir(folder.path("")).output().unwrap();
+    let offered: BTreeSet<String> = String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect();
+    let expected = ["--trace", "--trace-depth", "--trace-exclude", "--trace-from", "--trace-on", "--trace-to"];
+    assert_eq!(offered, expected.map(str::to_owned).into(), "{output:?}");
+}
+
+#[test]
+fn every_command_has_a_manual_page_with_all_its_options() {
+    let folder = Folder::new();
+    folder.good("man .");
+    let program = folder.read("stepwave.1").replace("\\-", "-");
+    for command in COMMANDS {
+        assert!(program.contains(&format!("stepwave-{command}(1)")), "{command} is not in the page of the program");
+        let page = folder.read(&format!("stepwave-{command}.1"));
+        assert!(page.contains(&format!(".TH STEPWAVE-{}", command.to_uppercase())), "{page}");
+        let help = options(&good(&format!("{command} --help")));
+        assert!(
+            options(&page).is_superset(&help),
+            "{command}: {help:?} are in the help, in the page {:?}",
+            options(&page)
+        );
+    }
+}
+
+#[test]
+fn manual_pages_are_written_into_the_folder_given() {
+    let folder = Folder::new();
+    folder.make("pages");
+    assert_eq!(folder.good("man pages"), "");
+    assert!(folder.path("pages/stepwave-run.1").is_file());
+    assert_eq!(folder.files(), ["pages"]);
+}

@@ -1,0 +1,282 @@
+//! Diagnostics: every kind of mistake once, and what is said of it.
+
+use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::{Code, Diagnostics, Place, elaborate, text};
+
+use super::mistakes;
+
+const CODES: [Code; 12] = [
+    Code::WidthMismatch,
+    Code::NotOneBit,
+    Code::OutOfRange,
+    Code::BadWidth,
+    Code::ValueTooWide,
+    Code::UndrivenRegister,
+    Code::DrivenTwice,
+    Code::DuplicateName,
+    Code::BadName,
+    Code::Order,
+    Code::Unnamed,
+    Code::Syntax,
+];
+
+/// What is said of a description in a module `m`.
+fn described(describe: impl FnOnce(Scope<'_>)) -> Diagnostics {
+    let module = Module::new("m");
+    describe(module.top());
+    module.finish().expect_err("a mistake is reported")
+}
+
+/// What is said of the lines behind `netlist m`.
+fn parsed(lines: &str) -> Diagnostics {
+    match text::parse(&format!("netlist m\n{lines}")) {
+        Ok(netlist) => elaborate(netlist).expect_err("a mistake is reported"),
+        Err(diagnostics) => diagnostics,
+    }
+}
+
+fn messages(diagnostics: &Diagnostics) -> Vec<&str> {
+    diagnostics.0.iter().map(|diagnostic| diagnostic.message.as_str()).collect()
+}
+
+/// One mistake of each kind, and its message.
+fn example(code: Code) -> (Diagnostics, &'static str) {
+    match code {
+        Code::WidthMismatch => (
+            described(|m| m.reg("r", 4).set(m.scope("part").input("a", 3))),
+            "next value of register m.r (4 bits): m.part.a (3 bits) stands where 4 bits belong",
+        ),
+        Code::NotOneBit => (
+            described(|m| {
+                let (a, b) = (m.input("a", 4), m.input("b", 2));
+                m.name("chosen", b.mux(a, a));
+            }),
+            "m.b (2 bits) selects, so it must be 1 bit",
+        ),
+        Code::OutOfRange => (
+            described(|m| {
+                m.name("part", m.input("a", 4).slice(2, 3));
+            }),
+            "a slice of 3 bits from bit 2 of m.a (4 bits) reaches past its top",
+        ),
+        Code::BadWidth => (
+            described(|m| {
+                let _ = m.input("a", 65);
+            }),
+            "a width of 65 bits is not possible: a register holds 1 to 64 bits",
+        ),
+        Code::ValueTooWide => (
+            described(|m| {
+                m.name("minus_nine", m.lit_signed(4, -9));
+            }),
+            "the value -9 does not fit in 4 bits",
+        ),
+        Code::UndrivenRegister => (
+            described(|m| {
+                let _ = m.scope("part").reg("r", 4);
+            }),
+            "register m.part.r (4 bits) never gets a next value",
+        ),
+        Code::DrivenTwice => (
+            described(|m| {
+                let r = m.reg("r", 4);
+                r.set(m.input("a", 4));
+                r.set(m.input("b", 4));
+            }),
+            "register m.r (4 bits) has a next value already",
+        ),
+        Code::DuplicateName => (
+            described(|m| {
+                let part = m.scope("part");
+                part.name("a", part.input("a", 4));
+            }),
+            "'a' is already a name in m.part",
+        ),
+        Code::BadName => (
+            described(|m| {
+                let _ = m.input("2nd", 4);
+            }),
+            "'2nd' is no name: letters, digits and _ only, not beginning with a digit",
+        ),
+        Code::Order => (parsed("%0:4 = not %1\n%1:4 = input"), "net %0 reads a net that does not come before it"),
+        Code::Unnamed => (
+            described(|m| {
+                m.name("sum", (!m.input("a", 4)).strict_add(m.input("b", 4), m.lit(1, 1)));
+            }),
+            "a strict operator needs a named left operand to report",
+        ),
+        Code::Syntax => (parsed("%0:4 = turn %0"), "expected an operator in '%0:4 = turn %0'"),
+    }
+}
+
+#[test]
+fn each_kind_of_mistake_is_reported_once_and_names_what_it_concerns() {
+    for code in CODES {
+        let (diagnostics, message) = example(code);
+        let codes: Vec<Code> = diagnostics.0.iter().map(|diagnostic| diagnostic.code).collect();
+        assert_eq!(codes, [code], "{diagnostics}");
+        assert_eq!(messages(&diagnostics), [message]);
+    }
+}
+
+#[test]
+fn a_mistake_in_a_description_is_placed_at_the_line_that_made_it() {
+    for code in CODES {
+        let (diagnostics, _) = example(code);
+        match (code, &diagnostics.0[0].place) {
+            (Code::Order, place) => assert_eq!(*place, Place::Component("net %0".to_owned())),
+            (Code::Syntax, place) => assert_eq!(*place, Place::Line(2)),
+            (_, Place::Source(location)) => {
+                assert!(location.file().ends_with("diagnostics.rs"), "{code:?} is placed at {location}");
+            }
+            (_, place) => panic!("{code:?} is placed at {place}"),
+        }
+    }
+}
+
+#[test]
+fn a_mismatch_names_both_sides_with_their_paths_and_widths() {
+    let cases: [(Diagnostics, &str); 6] = [
+        (
+            described(|m| {
+                let _ = m.scope("x").input("a", 4) & m.scope("y").input("b", 5);
+            }),
+            "m.x.a (4 bits) and m.y.b (5 bits) are not equally wide",
+        ),
+        (
+            described(|m| {
+                let _ = m.input("a", 4).less_than(m.input("b", 1));
+            }),
+            "m.a (4 bits) and m.b (1 bit) are not equally wide",
+        ),
+        (
+            described(|m| {
+                let _ = m.input("s", 1).mux(m.input("a", 4), m.input("b", 3));
+            }),
+            "m.a (4 bits) and m.b (3 bits) are not equally wide",
+        ),
+        (
+            described(|m| {
+                let _ = m.input("a", 9).extend(8);
+            }),
+            "m.a (9 bits) cannot be extended to 8 bits",
+        ),
+        (
+            described(|m| {
+                let _ = m.input("a", 40).concat(m.input("b", 25));
+            }),
+            "concatenation: a width of 65 bits is not possible: a register holds 1 to 64 bits",
+        ),
+        (described(|m| m.invariant("never", m.input("a", 2))), "a property is 1 bit wide, not 2 bits"),
+    ];
+    for (diagnostics, message) in cases {
+        assert_eq!(messages(&diagnostics), [message]);
+    }
+}
+
+#[test]
+fn every_rule_of_widths_is_checked_on_a_parsed_netlist_too() {
+    for (cell, code, message) in [
+        ("%3:4 = not %1", Code::WidthMismatch, "m.three (3 bits) stands where 4 bits belong"),
+        ("%3:4 = and %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
+        ("%3:3 = xor %0 %0", Code::WidthMismatch, "m.four (4 bits) stands where 3 bits belong"),
+        ("%3:4 = sub %1 %0", Code::WidthMismatch, "m.three (3 bits) and m.four (4 bits) are not equally wide"),
+        ("%3:1 = carry %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
+        ("%3:4 = equal %0 %0", Code::NotOneBit, "a yes-or-no result is 1 bit wide, not 4 bits"),
+        ("%3:4 = mux %1 %0 %0", Code::NotOneBit, "m.three (3 bits) selects, so it must be 1 bit"),
+        ("%3:4 = mux %2 %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
+        ("%3:3 = mux %2 %0 %0", Code::WidthMismatch, "m.four (4 bits) stands where 3 bits belong"),
+        ("%3:2 = slice %0 3", Code::OutOfRange, "a slice of 2 bits from bit 3 of m.four (4 bits) reaches past its top"),
+        ("%3:8 = concat %0 %1", Code::WidthMismatch, "m.four (4 bits) above m.three (3 bits) do not make 8 bits"),
+        ("%3:3 = zero-extend %0", Code::OutOfRange, "m.four (4 bits) cannot be extended to 3 bits"),
+        ("%3:3 = sign-extend %0", Code::OutOfRange, "m.four (4 bits) cannot be extended to 3 bits"),
+        ("%3:4 = const 0x10", Code::ValueTooWide, "the value 16 does not fit in 4 bits"),
+        ("%3:4 = register reset 0x10 next %0", Code::ValueTooWide, "the value 16 does not fit in 4 bits"),
+        ("%3:4 = register reset 0x0 next %1", Code::WidthMismatch, "m.three (3 bits) stands where 4 bits belong"),
+        ("%3:4 = register reset 0x0", Code::UndrivenRegister, "register %3 never gets a next value"),
+        ("%3:4 = register reset 0x0 next %4", Code::Order, "net %3 reads a net that does not come before it"),
+        ("%3:4 = not %3", Code::Order, "net %3 reads a net that does not come before it"),
+        ("property \"p\" never %0 invariant", Code::NotOneBit, "a property is 1 bit wide"),
+        ("property \"p\" never %9 invariant", Code::Order, "the property's net does not exist"),
+        ("property \"p\" never %2 add %0 signed %9 unsigned", Code::Order, "an operand of the property does not exist"),
+        ("property \"p\" never %2 sub %9 signed %0 unsigned", Code::Order, "an operand of the property does not exist"),
+        ("name %0 in 0 \"a b\" unsigned", Code::BadName, "'a b' is no name for a wave"),
+        ("name %0 in 0 \"one\" unsigned", Code::DuplicateName, "'one' is given twice in its scope"),
+        (
+            "name %9 in 0 \"ghost\" unsigned",
+            Code::Order,
+            "the name 'ghost' is given to a net or in a scope that does not exist",
+        ),
+        (
+            "name %0 in 7 \"ghost\" unsigned",
+            Code::Order,
+            "the name 'ghost' is given to a net or in a scope that does not exist",
+        ),
+        ("scope 1 in 0 \"a b\"", Code::BadName, "'a b' is no name for a wave"),
+        ("scope 1 in 0 \"one\"", Code::DuplicateName, "'one' is given twice in its scope"),
+    ] {
+        let inputs = "%0:4 = input\n%1:3 = input\n%2:1 = input\n";
+        let names = "name %0 in 0 \"four\" unsigned\nname %1 in 0 \"three\" signed\nname %2 in 0 \"one\" unsigned\n";
+        let diagnostics = parsed(&format!("{inputs}{names}{cell}\n"));
+        let found: Vec<(Code, &str)> = diagnostics.0.iter().map(|d| (d.code, d.message.as_str())).collect();
+        assert_eq!(found, [(code, message)], "{cell}");
+    }
+}
+
+#[test]
+fn a_name_in_no_scope_is_reported_alone_where_a_mistake_would_be_described_by_it() {
+    let diagnostics = parsed("%0:3 = input\n%1:4 = not %0\nname %0 in 7 \"ghost\" unsigned\n");
+    let message = "the name 'ghost' is given to a net or in a scope that does not exist";
+    assert_eq!(messages(&diagnostics), [message]);
+}
+
+#[test]
+fn a_module_and_its_scopes_bear_names_that_a_wave_can_carry() {
+    for name in ["two words", "", "1st", "é", "a.b"] {
+        let diagnostics = Module::new(name).finish().unwrap_err();
+        assert_eq!(diagnostics.0[0].code, Code::BadName, "'{name}'");
+        let diagnostics = described(|m| {
+            let _ = m.scope(name);
+        });
+        assert_eq!(diagnostics.0[0].code, Code::BadName, "'{name}'");
+    }
+    for name in ["a", "_", "A_1", "jrx"] {
+        let module = Module::new(name);
+        let _ = module.top().scope(name).input(name, 1);
+        assert!(module.finish().is_ok(), "'{name}'");
+    }
+}
+
+#[test]
+fn every_line_that_cannot_be_read_is_named_with_its_number() {
+    let text = "netlist m\n\n%0:4 = input extra\nscope 5 in 0 \"x\"\nnonsense\nname %0 in 0 \"a\" green\n";
+    let said = text::parse(text).unwrap_err().to_string();
+    assert_eq!(
+        said.lines().collect::<Vec<&str>>(),
+        [
+            "line 3: expected the end of the line in '%0:4 = input extra' [Syntax]",
+            "line 4: expected scope 1 in an earlier one in 'scope 5 in 0 \"x\"' [Syntax]",
+            "line 5: expected a cell, 'netlist' (once, first), 'scope', 'name' or 'property' in 'nonsense' [Syntax]",
+            "line 6: expected a format in 'name %0 in 0 \"a\" green' [Syntax]",
+        ]
+    );
+}
+
+#[test]
+fn a_description_with_many_mistakes_is_told_all_of_them_at_once() {
+    let said = described(mistakes::describe).to_string().replace('\\', "/");
+    let want = include_str!("mistakes.expect");
+    assert!(said.lines().eq(want.lines()), "mistakes.expect no longer holds what is said:\n{said}\n");
+}
+
+#[test]
+fn one_mistake_does_not_hide_the_netlist_behind_it() {
+    // The mistaken cell is replaced by a constant of the width asked for, so its users bring no further complaints.
+    let diagnostics = described(|m| {
+        let sum = m.input("a", 4).wrapping_add(m.input("b", 5));
+        let r = m.reg("r", 4);
+        r.set(sum.wrapping_add(r.q));
+        m.name("sum", sum);
+    });
+    assert_eq!(messages(&diagnostics), ["m.a (4 bits) and m.b (5 bits) are not equally wide"]);
+}

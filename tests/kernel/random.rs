@@ -1,0 +1,278 @@
+//! Random netlists: every engine agrees with `gates` on every net at every clock, and the text form loses nothing.
+
+mod recipe;
+
+use std::collections::{BTreeMap, HashMap};
+
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{RngSeed, TestRunner};
+use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
+use stepwave_kernel::netlist::Op;
+use stepwave_kernel::passes::simplify;
+use stepwave_kernel::{Design, Net, elaborate, text};
+
+use recipe::{build, recipe, value};
+
+/// What a test bench does to an engine.
+#[derive(Clone, Debug)]
+enum Action {
+    /// Sets one of the inputs.
+    Set(u16, u64),
+    /// Runs, and makes room behind it if told so.
+    Run { clocks: u64, clear: bool },
+    /// Resets in the middle.
+    Reset,
+}
+
+fn action() -> impl Strategy<Value = Action> {
+    prop_oneof![
+        4 => (any::<u16>(), value()).prop_map(|(input, value)| Action::Set(input, value)),
+        4 => (0u64..9, prop::bool::weighted(0.8)).prop_map(|(clocks, clear)| Action::Run { clocks, clear }),
+        1 => Just(Action::Reset),
+    ]
+}
+
+/// What a run is watched for, and what happens in it.
+#[derive(Clone, Debug)]
+struct Script {
+    /// Stop nets, taken from the one-bit nets.
+    stops: Vec<u16>,
+    /// Rows between engine and observer.
+    room: usize,
+    actions: Vec<Action>,
+}
+
+fn script() -> impl Strategy<Value = Script> {
+    (prop::collection::vec(any::<u16>(), 0..3), 1usize..12, prop::collection::vec(action(), 1..16))
+        .prop_map(|(stops, room, actions)| Script { stops, room, actions })
+}
+
+/// Everything that an engine shows after one action.
+#[derive(Debug, PartialEq)]
+struct Seen {
+    stop: Option<Stop>,
+    clock: u64,
+    rows: Vec<(u64, Vec<u64>)>,
+    values: Vec<u64>,
+}
+
+/// The nets that every engine has to evaluate, in creation order: those in the design's order, and in any case what
+/// names, properties and registers refer to.
+fn live(design: &Design) -> Vec<Net> {
+    let netlist = design.netlist();
+    let mut live = [design.inputs(), design.registers(), design.order()].concat();
+    live.extend(netlist.names.iter().map(|named| named.net));
+    live.extend(netlist.properties.iter().map(|property| property.never));
+    live.extend(design.registers().iter().filter_map(|&register| match netlist.cell(register).op {
+        Op::Register { next, .. } => next,
+        _ => None,
+    }));
+    live.sort();
+    live.dedup();
+    live
+}
+
+fn play(design: &Design, kind: EngineKind, script: &Script) -> Vec<Seen> {
+    play_on(design, |watch| kind.build(design, watch), script)
+}
+
+fn play_on(design: &Design, engine: impl Fn(&Watch) -> Box<dyn Engine>, script: &Script) -> Vec<Seen> {
+    let columns = live(design);
+    let flags: Vec<Net> = columns.iter().copied().filter(|&net| design.netlist().width(net).get() == 1).collect();
+    let stops = script.stops.iter().filter_map(|&stop| flags.get(usize::from(stop) % flags.len().max(1)).copied());
+    let watch = Watch { columns: columns.clone(), stops: stops.collect() };
+    let mut engine = engine(&watch);
+    let mut rows = Rows::new(columns.len(), script.room);
+    engine.reset(&mut rows);
+    let mut seen = Vec::new();
+    for action in &script.actions {
+        let (mut stop, mut clear_after) = (None, false);
+        match *action {
+            Action::Set(input, value) => {
+                let inputs = design.inputs();
+                engine.set_input(inputs[usize::from(input) % inputs.len()], value);
+            }
+            Action::Run { clocks, clear } => {
+                stop = Some(engine.run(clocks, &mut rows));
+                clear_after = clear;
+            }
+            Action::Reset => {
+                rows.clear();
+                engine.reset(&mut rows);
+            }
+        }
+        seen.push(Seen {
+            stop,
+            clock: engine.clock(),
+            rows: rows.iter().map(|(clock, row)| (clock, row.to_vec())).collect(),
+            values: columns.iter().map(|&net| engine.value(net)).collect(),
+        });
+        if clear_after {
+            rows.clear();
+        }
+    }
+    seen
+}
+
+/// Fails with the first action after which the two differ, and the netlist.
+fn assert_same(design: &Design, script: &Script, want: &[Seen], got: &[Seen], what: &str) -> Result<(), TestCaseError> {
+    for (index, (want, got)) in want.iter().zip(got).enumerate() {
+        let before = &script.actions[..=index];
+        prop_assert_eq!(want, got, "{} after {:?}, columns {:?}\n{}", what, before, live(design), design.netlist());
+    }
+    prop_assert_eq!(want.len(), got.len());
+    Ok(())
+}
+
+fn config(cases: u32) -> ProptestConfig {
+    ProptestConfig { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(0x57e9), ..ProptestConfig::default() }
+}
+
+proptest! {
+    #![proptest_config(config(1000))]
+
+    #[test]
+    fn every_engine_agrees_with_gates_on_every_net_at_every_clock(recipe in recipe(), script in script()) {
+        let design = elaborate(build(&recipe)).unwrap();
+        let gates = play(&design, EngineKind::Gates, &script);
+        for kind in EngineKind::ALL {
+            assert_same(&design, &script, &gates, &play(&design, kind, &script), kind.name())?;
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(config(300))]
+
+    #[test]
+    fn native_code_compiled_after_a_few_clocks_agrees_with_gates(
+        recipe in recipe(), script in script(), warm_up in 0u64..6,
+    ) {
+        let design = elaborate(build(&recipe)).unwrap();
+        let gates = play(&design, EngineKind::Gates, &script);
+        let compiled = play_on(&design, |watch| compiled_after(&design, watch, warm_up), &script);
+        assert_same(&design, &script, &gates, &compiled, "native code")?;
+    }
+
+    #[test]
+    fn simplified_netlists_behave_as_the_original(recipe in recipe(), script in script()) {
+        let netlist = build(&recipe);
+        let simplified = simplify(&netlist, &HashMap::new());
+        let (before, after) = (elaborate(netlist).unwrap(), elaborate(simplified.netlist.clone()).unwrap());
+        let columns = |design: &Design, go: &dyn Fn(Net) -> Net| -> Vec<Net> {
+            before.netlist().names.iter().map(|named| go(named.net)).filter(|net| design.netlist().nets().any(|other| other == *net)).collect()
+        };
+        let watch = |design: &Design, go: &dyn Fn(Net) -> Net| Watch { columns: columns(design, go), stops: Vec::new() };
+        let (old, new) = (watch(&before, &|net| net), watch(&after, &|net| simplified.net(net)));
+        let (mut a, mut b) = (EngineKind::Gates.build(&before, &old), EngineKind::Word.build(&after, &new));
+        let (mut a_rows, mut b_rows) = (Rows::new(old.columns.len(), 200), Rows::new(new.columns.len(), 200));
+        for action in &script.actions {
+            match *action {
+                Action::Set(input, value) => {
+                    let input = before.inputs()[usize::from(input) % before.inputs().len()];
+                    a.set_input(input, value);
+                    b.set_input(simplified.net(input), value);
+                }
+                Action::Run { clocks, .. } => {
+                    a.run(clocks, &mut a_rows);
+                    b.run(clocks, &mut b_rows);
+                }
+                Action::Reset => {}
+            }
+        }
+        for (a, b) in a_rows.iter().zip(b_rows.iter()) {
+            prop_assert_eq!(a, b, "{}\n{}", before.netlist(), after.netlist());
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(config(300))]
+
+    #[test]
+    fn a_netlist_printed_and_parsed_is_the_same_and_behaves_the_same(recipe in recipe(), script in script()) {
+        let netlist = build(&recipe);
+        let printed = text::print(&netlist);
+        let parsed = text::parse(&printed).unwrap();
+        prop_assert_eq!(&parsed, &netlist);
+        prop_assert_eq!(text::print(&parsed), printed);
+        let (design, again) = (elaborate(netlist).unwrap(), elaborate(parsed).unwrap());
+        prop_assert_eq!(design.order(), again.order());
+        for kind in EngineKind::ALL {
+            let described = play(&design, kind, &script);
+            assert_same(&design, &script, &described, &play(&again, kind, &script), "parsed")?;
+        }
+    }
+}
+
+/// A kind of cell, as the text form spells it.
+fn word(op: Op) -> String {
+    op.to_string().split(' ').next().unwrap_or_default().to_owned()
+}
+
+#[test]
+fn the_random_netlists_use_every_operator_where_an_engine_has_to_evaluate_it() {
+    let mut runner = TestRunner::new(config(1));
+    let mut used: BTreeMap<String, usize> = BTreeMap::new();
+    let (mut full_width, mut properties, mut feedback) = (0, 0, 0);
+    for _ in 0..200 {
+        let design = elaborate(build(&recipe().new_tree(&mut runner).unwrap().current())).unwrap();
+        let netlist = design.netlist();
+        for net in live(&design) {
+            let op = netlist.cell(net).op;
+            if !matches!(op, Op::Const(_)) {
+                *used.entry(word(op)).or_default() += 1;
+            }
+            full_width += usize::from(netlist.width(net).get() == 64);
+        }
+        properties += netlist.properties.len();
+        let registers = design.registers().iter().map(|&register| (register, netlist.cell(register).op));
+        feedback += registers.filter(|(q, op)| matches!(op, Op::Register { next: Some(d), .. } if d > q)).count();
+    }
+    let all = [
+        "input",
+        "register",
+        "not",
+        "and",
+        "or",
+        "xor",
+        "mux",
+        "add",
+        "sub",
+        "carry",
+        "borrow",
+        "add-overflow",
+        "sub-overflow",
+        "equal",
+        "less-signed",
+        "slice",
+        "concat",
+        "zero-extend",
+        "sign-extend",
+    ];
+    for operator in all {
+        assert!(used.get(operator).is_some_and(|&count| count >= 20), "'{operator}' is rare: {used:?}");
+    }
+    assert_eq!(used.len(), all.len(), "{used:?}");
+    assert!(full_width >= 100 && properties >= 50 && feedback >= 50, "{full_width} {properties} {feedback}");
+}
+
+#[test]
+fn the_random_scripts_meet_every_reason_to_stop() {
+    let mut runner = TestRunner::new(config(1));
+    let mut reasons = [0; 3];
+    for _ in 0..60 {
+        let design = elaborate(build(&recipe().new_tree(&mut runner).unwrap().current())).unwrap();
+        let script = script().new_tree(&mut runner).unwrap().current();
+        for seen in play(&design, EngineKind::Word, &script) {
+            match seen.stop {
+                None => {}
+                Some(Stop::Clocks) => reasons[0] += 1,
+                Some(Stop::RowsFull) => reasons[1] += 1,
+                Some(Stop::Net(_)) => reasons[2] += 1,
+            }
+        }
+    }
+    assert!(reasons.iter().all(|&count| count >= 20), "{reasons:?}");
+}

@@ -1,0 +1,82 @@
+//! The runs whose waves are tested.
+
+use stepwave_kernel::OnOverflow;
+use stepwave_models::{Beats, Choices, EndPoint, Form, Preset};
+use stepwave_nc::{Arc, Curve, Direction, Line};
+
+use super::GOOD;
+
+/// A run whose wave is tested.
+pub(super) struct Case {
+    pub(super) what: &'static str,
+    pub(super) model: &'static str,
+    pub(super) curve: Curve,
+    pub(super) choices: Choices,
+}
+
+pub(super) fn line(to: &[i64]) -> Curve {
+    Curve::Line(Line::new(vec![0; to.len()], to.to_vec()).expect(GOOD))
+}
+
+fn arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], direction: Direction) -> Curve {
+    Curve::Arc(Arc::new(from, to, center, direction).expect(GOOD))
+}
+
+fn widths(list: &[(&str, u64)]) -> Choices {
+    let width = |bits| stepwave_kernel::Width::new(bits).expect(GOOD);
+    Choices {
+        widths: list.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits))).collect(),
+        ..Choices::default()
+    }
+}
+
+/// All models, in four beats and one, with every end-point scheme, overflows, negative positions and wide registers.
+pub(super) fn cases() -> Vec<Case> {
+    use Direction::{Clockwise, CounterClockwise};
+    let (usual, one_beat) = (Choices::default(), Choices { beats: Some(Beats::One), ..Choices::default() });
+    let case = |what, model, curve, choices: &Choices| Case { what, model, curve, choices: choices.clone() };
+    let ending = |end_point| Choices { end_point: Some(end_point), ..Choices::default() };
+    let overflowing = |on_overflow| Choices { on_overflow: Some(on_overflow), ..widths(&[("f", 3)]) };
+    let preset = |preset| Choices { preset: Some(preset), ..Choices::default() };
+    let six_axes = [9, -30, 4, 0, -17, 31];
+    vec![
+        case("line in four beats", "ppc-line", line(&[6, 4]), &usual),
+        case("line in one beat", "ppc-line", line(&[-5, 3]), &one_beat),
+        case("signed line", "ppc-line", line(&[-3, -7]), &Choices { form: Some(Form::Signed), ..usual.clone() }),
+        case("line counted per axis", "ppc-line", line(&[4, -4]), &ending(EndPoint::PerAxis)),
+        case("line counted on the longest axis", "ppc-line", line(&[4, 9]), &ending(EndPoint::Longest)),
+        case("line of one step", "ppc-line", line(&[0, -1]), &one_beat),
+        case("line in wide registers", "ppc-line", line(&[6, 4]), &widths(&[("f", 63), ("x", 64), ("e", 64)])),
+        case("trapped line", "ppc-line", line(&[6, 4]), &overflowing(OnOverflow::Trap)),
+        case("wrapped line", "ppc-line", line(&[6, 4]), &overflowing(OnOverflow::Wrap)),
+        case("saturated line", "ppc-line", line(&[6, 4]), &overflowing(OnOverflow::Saturate)),
+        case("arc in four beats", "ppc-arc", arc([6, 0], [0, 6], [0, 0], CounterClockwise), &usual),
+        case("full circle in one beat", "ppc-arc", arc([-3, 4], [-3, 4], [0, 0], Clockwise), &one_beat),
+        case("arc far off", "ppc-arc", arc([-95, 70], [-104, 67], [-100, 70], Clockwise), &usual),
+        case("arc that ends beside its circle", "ppc-arc", arc([6, 0], [-5, -4], [0, 0], CounterClockwise), &usual),
+        case("dda line", "dda-line", line(&[8, 6]), &usual),
+        case("dda line of 256 iterations", "dda-line", line(&[200, -131]), &preset(Preset::Half)),
+        case("dda line of six axes", "dda-line", line(&six_axes), &ending(EndPoint::PerAxis)),
+        case("dda line of three axes", "dda-line", line(&[1, 2, -3]), &ending(EndPoint::Total)),
+        case(
+            "normalised dda line",
+            "dda-line",
+            line(&[3, 2]),
+            &Choices { normalize: true, ..widths(&[("jv", 9), ("jr", 9)]) },
+        ),
+        case("dda arc", "dda-arc", arc([5, 0], [0, 5], [0, 0], CounterClockwise), &usual),
+        case("dda full circle", "dda-arc", arc([0, -9], [0, -9], [0, 0], Clockwise), &preset(Preset::Half)),
+        case("dda arc far off", "dda-arc", arc([-103, -4], [-104, 3], [-100, 0], Clockwise), &preset(Preset::Full)),
+        case(
+            "normalised dda arc",
+            "dda-arc",
+            arc([5, 0], [0, 5], [0, 0], CounterClockwise),
+            &Choices {
+                normalize: true,
+                end_point: Some(EndPoint::Total),
+                preset: Some(Preset::Half),
+                ..widths(&[("jv", 6), ("jr", 6)])
+            },
+        ),
+    ]
+}

@@ -1,0 +1,105 @@
+//! Designs that no model has: aliases, every width, quiet nets.
+
+use stepwave_kernel::dsl::Module;
+use stepwave_kernel::elaborate;
+use stepwave_kernel::engine::EngineKind;
+
+use super::written::read;
+use super::{compare, compare_clock, record_design};
+
+#[test]
+fn a_net_with_two_names_is_dumped_once() {
+    let module = Module::new("m");
+    let m = module.top();
+    let inner = m.scope("inner");
+    let count = inner.reg("count", 3);
+    let next = count.q.wrapping_add(m.lit(3, 1));
+    count.set(next);
+    m.name("alias", count.q);
+    m.name("next", next);
+    m.name("far", count.q);
+    let design = elaborate(module.finish().unwrap()).unwrap();
+    let text = String::from_utf8(record_design(&design, 2, EngineKind::Word).vcd).unwrap();
+    let expected = "\
+$scope module m $end
+$var wire 1 ! clk $end
+$var reg 3 \" alias [2:0] $end
+$var wire 3 # next [2:0] $end
+$var reg 3 \" far [2:0] $end
+$scope module inner $end
+$var reg 3 \" count [2:0] $end
+$upscope $end
+$upscope $end
+$enddefinitions $end
+#0
+$dumpvars
+0!
+b000 \"
+b001 #
+$end
+#10
+1!
+b001 \"
+b010 #
+#15
+0!
+#20
+1!
+b010 \"
+b011 #
+#25
+0!
+#30
+";
+    assert_eq!(text.split_once("100 ns $end\n").unwrap().1, expected);
+}
+
+#[test]
+fn every_bit_of_every_width_reads_back() {
+    let module = Module::new("m");
+    let m = module.top();
+    let (unsigned, signed) = (m.scope("unsigned"), m.scope("signed"));
+    for width in 1..=64 {
+        // Shifts a 1 in where the top bit and the one in the middle are alike: every bit moves, and both values last.
+        let (plain, read_signed) =
+            (unsigned.reg(&format!("r{width}"), width), signed.reg_signed(&format!("r{width}"), width));
+        let new = !(plain.q.bit(width - 1) ^ plain.q.bit(width / 2));
+        let next = if width == 1 { !plain.q } else { plain.q.slice(0, width - 1).concat(new) };
+        plain.set(next);
+        read_signed.set(next.as_signed());
+    }
+    let design = elaborate(module.finish().unwrap()).unwrap();
+    for engine in EngineKind::ALL {
+        let recording = record_design(&design, 350, engine);
+        for signal in recording.signals.iter().filter(|signal| signal.width > 2) {
+            let seen = |bit: char| {
+                (0..signal.width as usize).all(|at| signal.samples.iter().any(|bits| bits[at..].starts_with(bit)))
+            };
+            assert!(seen('0') && seen('1'), "{} does not move enough to be a test", signal.path);
+        }
+        let shown = read(&recording.vcd);
+        compare(engine.name(), &shown, &recording.signals, 0, 350);
+        compare_clock(engine.name(), &shown, 0, 350);
+    }
+}
+
+#[test]
+fn nets_that_rest_for_long_and_move_once_read_back() {
+    // Bit k of a counter moves every 2^k clocks, so that blocks of samples pass in which it rests.
+    let module = Module::new("m");
+    let m = module.top();
+    let count = m.reg("count", 12);
+    count.set(count.q.wrapping_add(m.lit(12, 1)));
+    for bit in 0..12 {
+        m.name(&format!("bit{bit}"), count.q.bit(bit));
+        m.name(&format!("from{bit}"), count.q.slice(bit, 12 - bit));
+    }
+    let design = elaborate(module.finish().unwrap()).unwrap();
+    let recording = record_design(&design, 3000, EngineKind::Word);
+    let shown = read(&recording.vcd);
+    compare("resting nets", &shown, &recording.signals, 0, 3000);
+    for bit in 0..12u64 {
+        let changes = &shown.variables[&format!("m.bit{bit}")].changes;
+        assert_eq!(changes.len() as u64, 1 + 3000 / (1 << bit), "bit {bit}: one line a change");
+    }
+}
