@@ -151,19 +151,6 @@ fn settle<T: Lane>(rows: &mut [Box<Row<T>>], spare: &mut Box<Row<T>>, operations
     }
 }
 
-/// The top bit says that a + b leaves the range in two's complement.
-#[inline(always)]
-fn add_overflow<T: Lane>(a: T, b: T) -> T {
-    let sum = a.add(b);
-    a.xor(sum).and(b.xor(sum))
-}
-
-/// The top bit says that a - b leaves the range in two's complement.
-#[inline(always)]
-fn sub_overflow<T: Lane>(a: T, b: T) -> T {
-    a.xor(b).and(a.xor(a.sub(b)))
-}
-
 /// The meaning of every operation; the loops inside are unrolled and vectorised, none of them branches.
 #[inline(always)]
 fn perform<T: Lane>(on: Operands<'_, T>, out: &mut Row<T>, what: Do<Slot>) {
@@ -200,6 +187,9 @@ fn perform<T: Lane>(on: Operands<'_, T>, out: &mut Row<T>, what: Do<Slot>) {
         Do::Carry(a, b) => on.two(out, a, b, |a, b| T::mask(a.add(b) < a)),
         Do::Less(a, b) => on.two(out, a, b, |a, b| T::mask(a < b)),
         Do::LessSigned(a, b) => on.two(out, a, b, |a, b| T::mask(a.less_signed(b))),
+        Do::LessIf(a, b, condition) => {
+            on.three(out, [a, b, condition], |a, b, condition| T::mask(a < b.and(condition)));
+        }
         Do::Equal(a, b) => on.two(out, a, b, |a, b| T::mask(a == b)),
         Do::EqualTo(a, p) => {
             let p = T::top(p);
@@ -219,14 +209,13 @@ fn perform<T: Lane>(on: Operands<'_, T>, out: &mut Row<T>, what: Do<Slot>) {
                 T::mask(a == p).and(first).or(T::mask(a == q).and(second)).or(or)
             });
         }
-        Do::AddOverflow(a, b) => on.two(out, a, b, |a, b| add_overflow(a, b).right_signed(top)),
-        Do::SubOverflow(a, b) => on.two(out, a, b, |a, b| sub_overflow(a, b).right_signed(top)),
-        Do::AddOverflowIfOr(a, b, condition, or) => on.four(out, [a, b, condition, or], |a, b, condition, or| {
-            add_overflow(a, b).right_signed(top).and(condition).or(or)
+        Do::AddOverflow(a, b) => on.two(out, a, b, |a, b| {
+            let sum = a.add(b);
+            a.xor(sum).and(b.xor(sum)).right_signed(top)
         }),
-        Do::SubOverflowIfOr(a, b, condition, or) => on.four(out, [a, b, condition, or], |a, b, condition, or| {
-            sub_overflow(a, b).right_signed(top).and(condition).or(or)
-        }),
+        Do::SubOverflow(a, b) => {
+            on.two(out, a, b, |a, b| a.xor(b).and(a.xor(a.sub(b))).right_signed(top));
+        }
         Do::Left(a, by, p) => {
             let p = T::top(p);
             on.one(out, a, |a| a.left(by).and(p));

@@ -43,14 +43,8 @@ impl Wanted<'_> {
             .enumerate()
             .map(|(index, (reduce, nets))| accumulate(&mut lowering, index, *reduce, nets))
             .collect();
-        // An edge exchanges the rows of these.
-        let changing: Vec<Value> = next.iter().flatten().copied().collect();
         let roots = next.iter().flatten().chain(&outputs).copied();
         let mut rows = Rows::new(&lowering, roots.collect(), &accumulators);
-        let mut held = vec![false; lowering.nodes.len()];
-        for (own, next) in registers.iter().zip(&next) {
-            held[own.0] = next.is_none();
-        }
         let mut code = Code::default();
         let leaves: Vec<Value> = registers.iter().copied().chain(accumulators.iter().map(|(own, _)| *own)).collect();
         leaves.iter().for_each(|&leaf| _ = rows.keep(leaf));
@@ -58,27 +52,15 @@ impl Wanted<'_> {
             let value = Value(index);
             match *node {
                 _ if !rows.is_live(value) => {}
-                Node::Constant(pattern) => {
-                    held[index] = true;
-                    code.constants.push((rows.keep(value), pattern));
-                }
+                Node::Constant(pattern) => code.constants.push((rows.keep(value), pattern)),
                 Node::Input(net) => {
-                    held[index] = true;
                     let row = rows.keep(value);
                     code.inputs.extend(self.inputs.iter().position(|&input| input == net).map(|index| (index, row)));
                 }
                 Node::Register(_) | Node::Accumulator(_) => {}
                 Node::Do(what) => {
-                    let mut constant = true;
-                    what.map(|operand| constant &= held[operand.0]);
-                    held[index] = constant && !changing.contains(&value);
-                    if held[index] {
-                        let operation = Operation { target: rows.keep(value), what: what.map(|value| rows.of(value)) };
-                        code.invariants.push(operation);
-                    } else {
-                        let operation = rows.place(value, what);
-                        code.operations.push(operation);
-                    }
+                    let operation = rows.place(value, what);
+                    code.operations.push(operation);
                 }
             }
         }

@@ -41,6 +41,8 @@ pub(super) enum Do<V> {
     Less(V, V),
     /// a < b, in two's complement.
     LessSigned(V, V),
+    /// a < (b where the third is ones), unsigned.
+    LessIf(V, V, V),
     /// a = b
     Equal(V, V),
     /// a = pattern
@@ -55,10 +57,6 @@ pub(super) enum Do<V> {
     AddOverflow(V, V),
     /// a - b leaves the range in two's complement.
     SubOverflow(V, V),
-    /// a + b leaves the range, where the third is ones; or the last is.
-    AddOverflowIfOr(V, V, V, V),
-    /// a - b leaves the range, where the third is ones; or the last is.
-    SubOverflowIfOr(V, V, V, V),
     /// (a << by) & pattern
     Left(V, u32, u64),
     /// a >> by
@@ -108,6 +106,7 @@ impl<V: Copy> Do<V> {
             Do::Carry(a, b) => Do::Carry(go(a), go(b)),
             Do::Less(a, b) => Do::Less(go(a), go(b)),
             Do::LessSigned(a, b) => Do::LessSigned(go(a), go(b)),
+            Do::LessIf(a, b, c) => Do::LessIf(go(a), go(b), go(c)),
             Do::Equal(a, b) => Do::Equal(go(a), go(b)),
             Do::EqualTo(a, p) => Do::EqualTo(go(a), p),
             Do::EqualIf(a, p, b) => Do::EqualIf(go(a), p, go(b)),
@@ -115,8 +114,6 @@ impl<V: Copy> Do<V> {
             Do::EqualEitherOr(a, [(p, b), (q, c)], d) => Do::EqualEitherOr(go(a), [(p, go(b)), (q, go(c))], go(d)),
             Do::AddOverflow(a, b) => Do::AddOverflow(go(a), go(b)),
             Do::SubOverflow(a, b) => Do::SubOverflow(go(a), go(b)),
-            Do::AddOverflowIfOr(a, b, c, d) => Do::AddOverflowIfOr(go(a), go(b), go(c), go(d)),
-            Do::SubOverflowIfOr(a, b, c, d) => Do::SubOverflowIfOr(go(a), go(b), go(c), go(d)),
             Do::Left(a, by, p) => Do::Left(go(a), by, p),
             Do::Right(a, by) => Do::Right(go(a), by),
             Do::RightSigned(a, by) => Do::RightSigned(go(a), by),
@@ -166,9 +163,7 @@ pub(super) struct Code {
     pub(super) registers: Vec<RegisterRow>,
     /// Accumulators, in the order that the builder was given.
     pub(super) accumulators: Vec<Slot>,
-    /// Operations on values that change only when a lane is loaded.
-    pub(super) invariants: Vec<Operation>,
-    /// All other operations; those from `observers` on update the accumulators.
+    /// All operations; those from `observers` on update the accumulators.
     pub(super) operations: Vec<Operation>,
     /// Index of the first accumulator's operation.
     pub(super) observers: usize,

@@ -21,11 +21,6 @@ pub(super) fn simpler(lowering: &mut Lowering, what: Do<Value>) -> Option<Simple
             Some(Do::Invert(inner, q)) if p == q => Some(Same(inner)),
             _ => None,
         },
-        Do::AndNot(a, b) => match lowering.what(b)? {
-            Do::Invert(inner, u64::MAX) => Some(As(Do::And(a, inner))),
-            _ => None,
-        },
-        Do::Xor(a, b) => xor(lowering, a, b).or_else(|| xor(lowering, b, a)),
         Do::And(a, b) => and(lowering, a, b).or_else(|| and(lowering, b, a)),
         Do::Or(a, b) => {
             if constant(a) == Some(0) {
@@ -66,17 +61,7 @@ fn and(lowering: &mut Lowering, a: Value, b: Value) -> Option<Simpler> {
             let sum = lowering.make(Do::AddIf(x, y, b));
             Some(As(Do::Less(sum, x)))
         }
-        _ => None,
-    }
-}
-
-/// a ^ b, looked at from `a`: an inversion goes behind, where it may meet another or vanish in a condition.
-fn xor(lowering: &mut Lowering, a: Value, b: Value) -> Option<Simpler> {
-    match lowering.what(a)? {
-        Do::Invert(inner, p) => {
-            let xor = lowering.make(Do::Xor(inner, b));
-            Some(As(Do::Invert(xor, p)))
-        }
+        Do::Less(x, y) => Some(As(Do::LessIf(x, y, b))),
         _ => None,
     }
 }
@@ -90,11 +75,6 @@ fn or(lowering: &mut Lowering, a: Value, b: Value) -> Option<Simpler> {
             }
             _ => Some(As(Do::EqualIfOr(inner, p, first, b))),
         },
-        Do::And(x, y) => [(x, y), (y, x)].into_iter().find_map(|(flag, condition)| match lowering.what(flag)? {
-            Do::AddOverflow(x, y) => Some(As(Do::AddOverflowIfOr(x, y, condition, b))),
-            Do::SubOverflow(x, y) => Some(As(Do::SubOverflowIfOr(x, y, condition, b))),
-            _ => None,
-        }),
         Do::AndNot(condition, fits) => match lowering.what(fits)? {
             Do::Fits(inner, by) => Some(As(Do::UnfitIfOr(inner, by, condition, b))),
             _ => None,

@@ -134,9 +134,6 @@ impl<'n> Lowering<'n> {
         let of = |net: Net| self.netlist.width(net);
         let single = |net: Net| of(net) == Width::ONE;
         let v = |net: Net| self.of(net);
-        if let Some((counter, last)) = self.counted(cell.op) {
-            return self.make(Do::EqualTo(self.of(counter), pattern(of(counter), last)));
-        }
         let what = match cell.op {
             Op::Input => return self.leaf(Node::Input(net)),
             Op::Register { .. } => return self.leaf(Node::Register(net)),
@@ -151,6 +148,18 @@ impl<'n> Lowering<'n> {
             Op::Carry(a, b) | Op::AddOverflow(a, b) if single(a) => Do::And(v(a), v(b)),
             Op::Borrow(a, b) | Op::SubOverflow(a, b) if single(a) => Do::AndNot(v(b), v(a)),
             Op::LessSigned(a, b) if single(a) => Do::AndNot(v(a), v(b)),
+            // Counting by one leaves the range at its end only.
+            Op::Carry(a, b) | Op::AddOverflow(a, b) | Op::Borrow(a, b) | Op::SubOverflow(a, b)
+                if self.constant(v(b)) == Some(pattern(of(b), 1)) =>
+            {
+                let last = match cell.op {
+                    Op::Carry(..) => of(a).mask(),
+                    Op::Borrow(..) => 0,
+                    Op::AddOverflow(..) => of(a).mask() >> 1,
+                    _ => of(a).sign_bit(),
+                };
+                Do::EqualTo(v(a), pattern(of(a), last))
+            }
             Op::Add(a, b) => Do::Add(v(a), v(b)),
             Op::Sub(a, b) => Do::Sub(v(a), v(b)),
             Op::Carry(a, b) => Do::Carry(v(a), v(b)),
@@ -181,27 +190,5 @@ impl<'n> Lowering<'n> {
             Op::SignExtend(a) => Do::RightSigned(v(a), width.get() - of(a).get()),
         };
         self.make(what)
-    }
-
-    /// The counter and its last value, where the cell is the flag of counting by one: there it leaves its range.
-    fn counted(&self, flag: Op) -> Option<(Net, u64)> {
-        let (Op::Carry(a, b) | Op::AddOverflow(a, b) | Op::Borrow(a, b) | Op::SubOverflow(a, b)) = flag else {
-            return None;
-        };
-        let width = self.netlist.width(a);
-        if width == Width::ONE {
-            return None;
-        }
-        let (commutes, last) = match flag {
-            Op::Carry(..) => (true, width.mask()),
-            Op::AddOverflow(..) => (true, width.mask() >> 1),
-            Op::Borrow(..) => (false, 0),
-            _ => (false, width.sign_bit()),
-        };
-        let is_one = |net: Net| self.constant(self.of(net)) == Some(pattern(width, 1));
-        if is_one(b) {
-            return Some((a, last));
-        }
-        (commutes && is_one(a)).then_some((b, last))
     }
 }

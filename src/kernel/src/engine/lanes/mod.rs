@@ -157,7 +157,6 @@ impl LaneProgram {
             self.wide,
             self.running.registers.iter().map(|r| (r.row, r.next)).collect::<Vec<_>>()
         );
-        for o in &self.running.invariants { let _ = writeln!(t, "inv {} = {:?}", o.target, o.what); }
         for o in &self.running.operations {
             let _ = writeln!(t, "{} = {:?}", o.target, o.what);
         }

@@ -111,9 +111,6 @@ impl<'p, T: Lane> Worker<'p, T> {
         for lanes in new.chunks(GROUP) {
             self.load(lanes);
         }
-        if !new.is_empty() {
-            self.settle_invariants();
-        }
     }
 
     fn fresh(&self, (number, job): (u64, Job)) -> Busy {
@@ -138,16 +135,9 @@ impl<'p, T: Lane> Worker<'p, T> {
             self.busy.swap_remove(lane);
             self.move_lane(self.busy.len(), lane);
         }
-        self.settle_invariants();
         if self.next_due <= self.tick {
             self.next_due = self.busy.iter().map(|busy| busy.due).min().unwrap_or(u64::MAX);
         }
-    }
-
-    /// What changes only with a load, in all lanes: one of them has been loaded or moved.
-    fn settle_invariants(&mut self) {
-        let groups = self.busy.len().div_ceil(GROUP);
-        self.lanes.settle(&self.program.running.invariants, groups);
     }
 
     /// Reads the sample before the last edge in up to a group of lanes: they end, load, or go on.
@@ -161,7 +151,6 @@ impl<'p, T: Lane> Worker<'p, T> {
             }
             self.set_inputs(place, lane);
         }
-        self.loader.settle(&whole.invariants, 1);
         self.loader.settle(&whole.operations[..whole.observers], 1);
         let verdicts: Vec<Verdict> = lanes.iter().enumerate().map(|(place, &lane)| self.verdict(place, lane)).collect();
         let mut loading = Vec::new();
@@ -248,7 +237,6 @@ impl<'p, T: Lane> Worker<'p, T> {
             self.next_block(lane);
             self.set_inputs(place, lane);
         }
-        self.loader.settle(&whole.invariants, 1);
         self.loader.settle(&whole.operations, 1);
         self.loader.edge(whole);
         for (place, &lane) in lanes.iter().enumerate() {
