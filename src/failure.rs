@@ -53,7 +53,8 @@ impl fmt::Display for Failure {
                 let lines: Vec<_> = sentences.iter().map(|sentence| format!("stepwave: {sentence}")).collect();
                 f.write_str(&lines.join("\n"))
             }
-            Failure::Trouble(sentence) => write!(f, "stepwave: {sentence}"),
+            // One line, whatever the words that it quotes hold.
+            Failure::Trouble(sentence) => write!(f, "stepwave: {}", sentence.replace(char::is_control, " ")),
             Failure::Help(text) => f.write_str(text),
         }
     }
