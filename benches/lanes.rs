@@ -101,12 +101,11 @@ fn bare(model: &str, name: &str, threads: usize) {
     let model = find(model).unwrap();
     let job = |index| {
         let words = model.words(bench.hardware(), &curve(model.name, 24, index));
-        let block = |(block, words)| {
-            let mut inputs = machine.encode(words).unwrap();
-            inputs.extend([(machine.load.net, 1), (machine.preset_position.net, u64::from(block == 0))]);
-            inputs
-        };
-        Job { blocks: words.iter().enumerate().map(block).collect() }
+        let mut blocks = machine.encode(bench.hardware(), &words).unwrap();
+        for (index, block) in blocks.iter_mut().enumerate() {
+            block.extend([(machine.load.net, 1), (machine.preset_position.net, u64::from(index == 0))]);
+        }
+        Job { blocks }
     };
     let jobs: Vec<Job> = (0..JOBS).map(job).collect();
     let watch = Watch::start();

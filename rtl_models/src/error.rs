@@ -1,5 +1,6 @@
 //! Why a model cannot be built or loaded for a geometry.
 
+use stepwave_kernel::diag::Code;
 use stepwave_kernel::{Diagnostics, Width};
 
 use crate::choices::Choice;
@@ -70,9 +71,7 @@ pub enum ModelError {
         way_out: String,
     },
     /// A load value does not fit in its register.
-    #[error(
-        "{register} = {value} does not fit in its {width}; {needed} bits would hold it: give --width {option}={needed}"
-    )]
+    #[error("{register} = {value} does not fit in its {width}; {needed} bits would hold it: give --width {option}")]
     DoesNotFit {
         /// The register.
         register: String,
@@ -82,7 +81,7 @@ pub enum ModelError {
         width: Width,
         /// Bits that would hold it.
         needed: u32,
-        /// Name for `--width`.
+        /// What to give as `--width`.
         option: String,
     },
     /// Registers that must be equally wide, or ordered, are not.
@@ -90,8 +89,22 @@ pub enum ModelError {
     Widths(String),
     /// A model describes a netlist that does not elaborate: a defect of the model.
     #[error("the model's netlist is wrong; please report this:\n{0}")]
-    Netlist(#[from] Diagnostics),
+    Netlist(Diagnostics),
     /// A model lacks a port that every machine has: a defect of the model.
     #[error("the model has no net named {0}; please report this")]
     MissingPort(String),
+}
+
+impl From<Diagnostics> for ModelError {
+    fn from(diagnostics: Diagnostics) -> ModelError {
+        // No model asks for an impossible width by itself: the chosen ones lead to it, such as an exact sum of f in 4
+        // bits and xe in 64.
+        match diagnostics.0.iter().find(|diagnostic| diagnostic.code == Code::BadWidth) {
+            Some(diagnostic) => ModelError::Widths(format!(
+                "these registers are too wide to be added: {}: change --width",
+                diagnostic.message
+            )),
+            None => ModelError::Netlist(diagnostics),
+        }
+    }
 }

@@ -56,6 +56,15 @@ impl Hardware {
         }
     }
 
+    /// What to give as `--width` for a register to have `bits`. Integrators are widened together, to the `all` bits that
+    /// the widest of them needs, where one alone would no longer fit the others.
+    #[must_use]
+    pub fn widening(&self, register: &str, bits: u32, all: u32) -> String {
+        let room = register.strip_prefix("jv").map(|axis| self.bits(&format!("jr{axis}")));
+        let fits = room.is_some_and(|room| bits <= room) && !self.normalize;
+        if is_integrator(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
+    }
+
     /// Letters of the axes.
     #[must_use]
     pub fn letters(&self) -> &'static [&'static str] {
@@ -124,6 +133,11 @@ impl<'a> Widths<'a> {
         });
         resolved.collect()
     }
+}
+
+/// An integrand or a remainder: registers that share one scale (see [`check_integrators`]).
+pub(crate) fn is_integrator(register: &str) -> bool {
+    register.starts_with("jv") || register.starts_with("jr")
 }
 
 /// `jr` for `jrx`: the name without the axis letter, for registers that each axis has.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use stepwave_kernel::{Design, Net, Netlist, Width, elaborate};
 
 use crate::error::ModelError;
-use crate::hardware::Hardware;
+use crate::hardware::{self, Hardware};
 
 /// A net as a number: its width and reading.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -79,23 +79,34 @@ impl Machine {
         })
     }
 
-    /// The bits of every word, checked against the inputs.
+    /// The bits of every word of every block, checked against the inputs.
     ///
     /// # Errors
     /// A value does not fit in its register.
-    pub fn encode(&self, words: &Words) -> Result<Vec<(Net, u64)>, ModelError> {
+    pub fn encode(&self, hardware: &Hardware, blocks: &[Words]) -> Result<Vec<Vec<(Net, u64)>>, ModelError> {
         let encode = |&(register, value): &(&'static str, i128)| {
             let port = self.inputs.get(register).ok_or_else(|| ModelError::MissingPort(register.to_owned()))?;
             let bits = stepwave_kernel::Bits::exact(port.width, value, port.signed);
-            let bits = bits.ok_or_else(|| ModelError::DoesNotFit {
-                register: register.to_owned(),
-                value,
-                width: port.width,
-                needed: Width::needed(value, port.signed),
-                option: register.to_owned(),
-            })?;
-            Ok((port.net, bits.value()))
+            Ok((port.net, bits.ok_or_else(|| does_not_fit(register, port, hardware, blocks))?.value()))
         };
-        words.iter().map(encode).collect()
+        blocks.iter().map(|words| words.iter().map(encode).collect()).collect()
+    }
+}
+
+/// The refusal of a register that cannot hold one of its load values: it names the one that needs most, and a width
+/// with which all blocks can be loaded into it.
+fn does_not_fit(register: &str, port: &Port, hardware: &Hardware, blocks: &[Words]) -> ModelError {
+    let words = || blocks.iter().flatten().copied();
+    let need = |value| Width::needed(value, port.signed);
+    let own = words().filter(|&(name, _)| name == register).map(|(_, value)| value);
+    let value = own.max_by_key(|&value| need(value)).unwrap_or_default();
+    let integrators = words().filter(|(name, _)| hardware::is_integrator(name));
+    let all = integrators.map(|(_, value)| need(value)).max().unwrap_or(1);
+    ModelError::DoesNotFit {
+        register: register.to_owned(),
+        value,
+        width: port.width,
+        needed: need(value),
+        option: hardware.widening(register, need(value), all),
     }
 }

@@ -137,7 +137,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
 
     // Compute: an X step takes ye off F, a Y step puts xe on; signed, against the direction of the step.
     let subtract = if signed { take_x.mux(!sx, sy) } else { take_x };
-    f.close(&block, beat.compute, subtract, take_x.mux(ye, xe));
+    let wide = xe.bits().max(ye.bits());
+    f.close(&block, beat.compute, subtract, take_x.mux(ye.extend(wide), xe.extend(wide)));
 
     // Compare.
     let last = match per_axis {

@@ -81,7 +81,7 @@ impl Report<'_> {
         match self.outcome.ending {
             Ending::Trapped => {
                 if let Some(event) = self.overflows.last() {
-                    failures.push(event.to_string() + &way_out(event));
+                    failures.push(event.to_string() + &way_out(event, self.hardware));
                 }
                 return failures;
             }
@@ -115,11 +115,12 @@ impl Report<'_> {
     }
 }
 
-fn way_out(event: &OverflowEvent) -> String {
-    let leaf = event.component().rsplit('.').next().unwrap_or_default().to_owned();
+fn way_out(event: &OverflowEvent, hardware: &Hardware) -> String {
+    let leaf = event.component().rsplit('.').next().unwrap_or_default();
     match (event, event.exact()) {
         (OverflowEvent::Overflow { signed, .. }, Some((exact, needed))) if *signed || exact >= 0 => {
-            format!(": give --width {leaf}={needed}, or go on with --on-overflow wrap or saturate")
+            let width = hardware.widening(leaf, needed, needed);
+            format!(": give --width {width}, or go on with --on-overflow wrap or saturate")
         }
         (OverflowEvent::Overflow { .. }, _) => "; go on with --on-overflow wrap or saturate".to_owned(),
         (OverflowEvent::Invariant { .. }, _) => ": the model is wrong, please report this".to_owned(),

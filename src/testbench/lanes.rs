@@ -100,13 +100,12 @@ impl Lanes<'_> {
             let given = format!("a curve of {} axes in hardware for {}", curve.axes(), hardware.axes);
             return Err(ModelError::Curve { model: self.model.name, takes: self.model.curve.describe(), given });
         }
-        let block = |(index, words)| {
-            let mut block = machine.encode(words)?;
+        let mut blocks = machine.encode(hardware, &words)?;
+        for (index, block) in blocks.iter_mut().enumerate() {
             block.push((machine.load.net, 1));
             block.push((machine.preset_position.net, u64::from(index == 0)));
-            Ok(block)
-        };
-        Ok(Job { blocks: words.iter().enumerate().map(block).collect::<Result<_, ModelError>>()? })
+        }
+        Ok(Job { blocks })
     }
 
     fn outcome(&self, end: &LaneEnd) -> LaneOutcome {

@@ -109,8 +109,7 @@ impl Testbench {
     pub fn new(model: &Model, curve: &Curve, choices: &Choices) -> Result<Testbench, ModelError> {
         let hardware = model.plan(curve, choices)?;
         let machine = model.machine(&hardware)?;
-        let words = model.words(&hardware, curve);
-        let blocks = words.iter().map(|words| machine.encode(words)).collect::<Result<_, _>>()?;
+        let blocks = machine.encode(&hardware, &model.words(&hardware, curve))?;
         let columns = Columns::of(&machine);
         Ok(Testbench { hardware, machine, blocks, columns })
     }
@@ -120,8 +119,7 @@ impl Testbench {
     /// # Errors
     /// A value does not fit in its register.
     pub fn of(&self, model: &Model, curve: &Curve) -> Result<Testbench, ModelError> {
-        let words = model.words(&self.hardware, curve);
-        let blocks = words.iter().map(|words| self.machine.encode(words)).collect::<Result<_, _>>()?;
+        let blocks = self.machine.encode(&self.hardware, &model.words(&self.hardware, curve))?;
         Ok(Testbench { blocks, ..self.clone() })
     }
 

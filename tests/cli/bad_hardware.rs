@@ -34,17 +34,46 @@ fn a_width_too_narrow_for_the_geometry_is_refused_with_the_width_that_would_hold
         ("ppc-line --to 6,4 --width e=3", ["e = 10", "3 bits", "4 bits would hold it", "--width e=4"]),
         ("ppc-line --to -6,4 --form signed --width 2", ["xe = -6", "3 bits", "4 bits would hold it", "--width xe=4"]),
         ("ppc-line --from 9,0 --to 6,4 --width x=4", ["x = 9", "4 bits", "5 bits would hold it", "--width x=5"]),
-        ("dda-line --to 8,6 --width 3", ["jvx = 8", "3 bits", "4 bits would hold it", "--width jvx=4"]),
+        ("dda-line --to 8,6 --width 3", ["jvx = 8", "3 bits", "4 bits would hold it", "--width 4"]),
         ("dda-line --to 8,6 --width jv=3", ["jvx = 8", "3 bits", "4 bits would hold it", "--width jvx=4"]),
-        ("dda-line --to 8,6 --preset jry=16", ["jry = 16", "4 bits", "5 bits would hold it", "--width jry=5"]),
-        ("dda-line --to 8,6 --preset 99", ["jrx = 99", "4 bits", "7 bits would hold it", "--width jrx=7"]),
-        ("dda-arc --from 5,0 --to 0,5 --ccw --width 2", ["jvy = 5", "2 bits", "3 bits would hold it", "--width jvy=3"]),
+        ("dda-line --to 8,6 --preset jry=16", ["jry = 16", "4 bits", "5 bits would hold it", "--width 5"]),
+        ("dda-line --to 8,6 --preset 99", ["jrx = 99", "4 bits", "7 bits would hold it", "--width 7"]),
+        ("dda-arc --from 5,0 --to 0,5 --ccw --width 2", ["jvy = 5", "2 bits", "3 bits would hold it", "--width 3"]),
+        // The first sector begins at (6, 6), the second at (0, 8): the advice is for both.
+        ("dda-arc --from 6,6 --to -6,6 --ccw --width 2", ["jvx = 8", "2 bits", "4 bits would hold it", "--width 4"]),
+        ("ppc-line --to 6,4 --width xe=2", ["xe = 6", "2 bits", "3 bits would hold it", "--width xe=3"]),
         (
             "ppc-arc --from 5,0 --to 0,5 --ccw --width xi=2,yi=3",
             ["xi = 5", "2 bits", "3 bits would hold it", "--width xi=3"],
         ),
     ] {
         run_refused(words, &hints);
+    }
+}
+
+#[test]
+fn the_width_that_a_message_advises_is_taken() {
+    for (words, width) in [
+        ("ppc-line --to 6,4", "2"),
+        ("ppc-line --to 6,4", "xe=2"),
+        ("ppc-line --to -6,4 --form signed", "ye=1"),
+        ("ppc-line --to 6,4", "f=3"),
+        ("ppc-arc --from 5,0 --to 0,5 --ccw", "xi=2,yi=3"),
+        ("dda-line --to 8,6", "3"),
+        ("dda-line --to 8,6", "jv=3"),
+        ("dda-line --to 8,6 --normalize", "3"),
+        ("dda-line --to 8,6 --preset jry=16", "4"),
+        ("dda-line --to 8,6,3 --preset 99 --end-point per-axis", "4"),
+        ("dda-arc --from 6,6 --to -6,6 --ccw", "2"),
+        ("dda-arc --from 4,3 --to 0,5 --ccw", "jvx=2"),
+        ("dda-arc --from 6,2 --to 2,6 --ccw --preset 3", "jv=2,jr=3"),
+    ] {
+        let refused = Folder::new().run(&format!("run {words} --width {width}"));
+        assert!(refused.code > 0, "{words} --width {width}: {refused:?}");
+        let (_, advice) = refused.err.split_once("give --width ").unwrap_or_else(|| panic!("no advice: {refused:?}"));
+        let advice = advice.split([',', '\n']).next().unwrap();
+        let taken = Folder::new().run(&format!("run {words} --width {advice}"));
+        assert_eq!((taken.code, taken.err.as_str()), (0, ""), "{words} --width {width}, then {advice}");
     }
 }
 

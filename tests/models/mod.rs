@@ -2,6 +2,7 @@
 
 mod dda;
 mod ppc;
+mod widths;
 
 use stepwave::testbench::{Ending, Observer, ObserverError, Outcome, Step, Testbench};
 use stepwave_kernel::engine::EngineKind;

@@ -1,0 +1,61 @@
+//! Whatever widths are chosen, a model builds, or refuses them with the user's way out: its netlist is never wrong.
+
+use stepwave_kernel::Width;
+use stepwave_models::{Beats, Choices, EndPoint, Form, Model, ModelError, catalogue};
+use stepwave_nc::Curve;
+
+use super::{arc, line};
+
+/// Every form of every model: geometry, and the choices beside the widths.
+fn forms(model: &Model) -> Vec<(Curve, Choices)> {
+    let curves = match model.name {
+        "dda-line" => vec![line(&[0, 0], &[8, -6]), line(&[1, 2, 3], &[4, -9, 12])],
+        name if name.ends_with("line") => vec![line(&[0, 0], &[6, -4])],
+        _ => vec![arc([5, 0], [0, 5], [0, 0], false), arc([7, -2], [-2, 7], [0, 0], true)],
+    };
+    let mut forms = Vec::new();
+    for curve in curves {
+        for end_point in [None, Some(EndPoint::Total), Some(EndPoint::PerAxis), Some(EndPoint::Longest)] {
+            for form in [None, Some(Form::Signed)] {
+                for beats in [None, Some(Beats::One)] {
+                    for normalize in [false, true] {
+                        let choices = Choices { end_point, form, beats, normalize, ..Choices::default() };
+                        if model.plan(&curve, &choices).is_ok() {
+                            forms.push((curve.clone(), choices));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    forms
+}
+
+#[test]
+fn any_two_registers_of_any_width_build_or_are_refused() {
+    const WIDTHS: [u64; 6] = [1, 2, 3, 5, 33, 64];
+    let (mut built, mut refused) = (0, 0);
+    for model in catalogue() {
+        for (curve, choices) in forms(model) {
+            let names: Vec<String> = model.plan(&curve, &choices).unwrap().widths.into_keys().collect();
+            for (index, first) in names.iter().enumerate() {
+                for second in &names[index..] {
+                    for (a, b) in WIDTHS.iter().flat_map(|a| WIDTHS.iter().map(move |b| (*a, *b))) {
+                        let widths =
+                            [(first, a), (second, b)].map(|(name, bits)| (name.clone(), Width::new(bits).unwrap()));
+                        let choices = Choices { widths: widths.into(), ..choices.clone() };
+                        let machine = model.plan(&curve, &choices).and_then(|hardware| model.machine(&hardware));
+                        match machine {
+                            Ok(_) => built += 1,
+                            Err(error @ (ModelError::Netlist(_) | ModelError::MissingPort(_))) => {
+                                panic!("{} {choices:?}: {error}", model.name)
+                            }
+                            Err(_) => refused += 1,
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(built > 10_000 && refused > 1_000, "{built} built, {refused} refused");
+}
