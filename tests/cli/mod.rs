@@ -5,6 +5,7 @@ mod bad_hardware;
 mod bad_outputs;
 mod choices;
 mod files;
+mod golden;
 mod models;
 mod outputs;
 mod overflow;

@@ -1,0 +1,113 @@
+//! Recorded waves: made anew, compared bit by bit, and the first difference named.
+
+use super::Folder;
+
+const LINE: &str = "[[case]]\nname = \"line\"\nsource = \"by hand\"\nargs = [\"ppc-line\", \"--to\", \"6,4\"]\n";
+
+/// A folder with these cases in `w/cases.toml`.
+fn folder(cases: &str) -> Folder {
+    let folder = Folder::new();
+    folder.make("w");
+    folder.write("w/cases.toml", cases);
+    folder
+}
+
+fn recorded(cases: &str) -> Folder {
+    let folder = folder(cases);
+    folder.good("golden record w");
+    folder
+}
+
+#[test]
+fn what_was_recorded_is_found_the_same() {
+    let folder = folder(LINE);
+    assert_eq!(folder.good("golden record w"), "1 cases recorded, from 3 engines\n");
+    assert_eq!(folder.good("golden check w"), "1 cases same, bit by bit, from 3 engines\n");
+    for file in ["line.vcd", "line.gtkw", "line.beat.states", "line.csv"] {
+        assert!(folder.path("w").join(file).is_file(), "{file}");
+    }
+    // And what a run writes is what was recorded.
+    folder.good("run ppc-line --to 6,4 --vcd line.vcd");
+    assert_eq!(folder.read("line.vcd"), folder.read("w/line.vcd"));
+}
+
+#[test]
+fn one_flipped_bit_is_found_with_its_clock_its_signal_and_both_values() {
+    let folder = recorded(LINE);
+    let wave = folder.read("w/line.vcd");
+    let var = wave.lines().find(|line| line.starts_with("$var") && line.contains(" f ")).unwrap();
+    let id = var.split(' ').nth(3).unwrap();
+    // F becomes 2 in the compute beat of step 2, at clock 8, which is time 80.
+    let (before, after) = wave.split_once("#80\n").unwrap();
+    let flipped = after.replacen(&format!("b0010 {id}\n"), &format!("b0011 {id}\n"), 1);
+    assert_ne!(flipped, after);
+    folder.write("w/line.vcd", &format!("{before}#80\n{flipped}"));
+    let ran = folder.run("golden check w");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    for hint in [
+        "case line on gates: line.vcd differs",
+        "first divergence: clock 8, signal ppc_line.f",
+        "A  0011 (3)",
+        "B  0010 (2)",
+    ] {
+        assert!(ran.err.contains(hint), "{hint}: {ran:?}");
+    }
+    assert_eq!(ran.err.matches("first divergence").count(), 1, "what all engines agree on is told once: {ran:?}");
+    let ran = folder.run("golden record w");
+    assert_eq!(ran.code, 0, "{ran:?}");
+    assert_eq!(folder.read("w/line.vcd"), wave);
+}
+
+#[test]
+fn a_changed_table_and_a_wave_of_no_case_are_differences() {
+    let folder = recorded(LINE);
+    folder.write("w/line.csv", &folder.read("w/line.csv").replace("\n1,5,", "\n1,6,"));
+    folder.write("w/old.vcd", &folder.read("w/line.vcd"));
+    let ran = folder.run("golden check w");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert!(ran.err.contains("line.csv differs: line 3: recorded '1,6,"), "{ran:?}");
+    assert!(ran.err.contains("w/old.vcd belongs to no case"), "{ran:?}");
+}
+
+#[test]
+fn every_case_with_another_exit_code_is_told_and_the_others_are_checked() {
+    let trap = LINE.replace("\"line\"", "\"trap\"").replace("\"6,4\"", "\"6,4\", \"--width\", \"f=3\"");
+    let folder = folder(&format!("{trap}{LINE}"));
+    let ran = folder.run("golden record w");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert!(ran.err.starts_with("stepwave: case trap: exit code 1, not 0: overflow of ppc_line.f"), "{ran:?}");
+    assert!(folder.path("w/line.vcd").is_file() && !folder.path("w/trap.vcd").exists());
+    let folder = recorded(&format!("{trap}exit = 1\n{LINE}"));
+    assert_eq!(folder.good("golden check w"), "2 cases same, bit by bit, from 3 engines\n");
+}
+
+#[test]
+fn cases_that_cannot_be_are_refused_in_one_line_and_nothing_is_written() {
+    let with = |from: &str, to: &str| LINE.replace(from, to);
+    for (cases, hint) in [
+        (with("\"line\"", "\"../line\""), "'../line' cannot name files"),
+        (with("\"line\"", "\"a/b\""), "'a/b' cannot name files"),
+        (with("\"line\"", "'a\\b'"), "cannot name files"),
+        (with("\"line\"", "\"\""), "'' cannot name files"),
+        (with("\"line\"", "\".line\""), "'.line' cannot name files"),
+        (format!("{LINE}{LINE}"), "two cases are named 'line'"),
+        (with("ppc-line", "nope"), "case line: there is no model 'nope'"),
+        (with("\"6,4\"", "\"6\""), "case line: "),
+        (with("\"6,4\"", "\"6,4\", \"--frob\""), "case line: unexpected argument '--frob'"),
+        (with("\"6,4\"", "\"6,4\", \"--json\", \"r.json\""), "leave out --fst, --json and --plot"),
+        (with("\"6,4\"", "\"6,4\", \"--vcd\", \"v.vcd\""), "case line: "),
+        (with("source", "sauce"), "cases.toml"),
+        ("case = 3".to_owned(), "cases.toml"),
+    ] {
+        let folder = folder(&cases);
+        for command in ["record", "check"] {
+            let ran = folder.run(&format!("golden {command} w"));
+            assert_eq!((ran.code, ran.err.lines().count()), (2, 1), "{cases}: {ran:?}");
+            assert!(ran.err.starts_with("stepwave: ") && ran.err.contains(hint), "{hint}: {ran:?}");
+            assert_eq!(ran.err.matches("stepwave: ").count(), 1, "{ran:?}");
+        }
+        assert_eq!(folder.files(), ["w"]);
+        assert_eq!(std::fs::read_dir(folder.path("w")).unwrap().count(), 1, "{cases}");
+    }
+    super::refused("golden check nowhere", &["cannot read nowhere/cases.toml"]);
+}
