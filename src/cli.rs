@@ -8,7 +8,7 @@ use crate::commands::diff::DiffArgs;
 
 mod values;
 
-pub(crate) use values::{HardwareArgs, Point};
+pub(crate) use values::{ClockArgs, HardwareArgs, Point, SimulationArgs};
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware
 #[derive(Debug, Parser)]
@@ -81,6 +81,10 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) hardware: HardwareArgs,
     #[command(flatten)]
+    pub(crate) clock: ClockArgs,
+    #[command(flatten)]
+    pub(crate) simulation: SimulationArgs,
+    #[command(flatten)]
     pub(crate) trace: TraceArgs,
     #[command(flatten)]
     pub(crate) outputs: OutputArgs,
@@ -100,6 +104,8 @@ pub(crate) struct ExportArgs {
     pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
     pub(crate) hardware: HardwareArgs,
+    #[command(flatten)]
+    pub(crate) clock: ClockArgs,
     /// Write the netlist as a Verilog module
     #[arg(long, value_name = "FILE", group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) verilog: Option<PathBuf>,

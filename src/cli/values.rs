@@ -121,9 +121,21 @@ pub(crate) struct HardwareArgs {
     #[arg(long, value_parser = one_of(&[
         ("trap", OnOverflow::Trap), ("saturate", OnOverflow::Saturate), ("wrap", OnOverflow::Wrap)]))]
     on_overflow: Option<OnOverflow>,
+}
+
+/// The clock frequency, for commands that write waves.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Time")]
+pub(crate) struct ClockArgs {
     /// Clock frequency in Hz, for the time axis and the feed
     #[arg(long, value_name = "HZ", default_value = "1e6", value_parser = parse_clock)]
     pub(crate) clock_hz: f64,
+}
+
+/// How a run is simulated and reported.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Simulation")]
+pub(crate) struct SimulationArgs {
     /// Length of one BLU, for the feed
     #[arg(long, value_name = "LENGTH", default_value = "0.001mm", value_parser = parse_blu)]
     pub(crate) blu: f64,

@@ -18,7 +18,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
     let curve = curve(model, &args.geometry)?;
     let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
-    let time = ClockTime::from_hz(args.hardware.clock_hz)?;
+    let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let comment = [
         report::title(model, bench.hardware(), &curve),
         format!("Written by stepwave {}; the geometry gives the widths.", env!("CARGO_PKG_VERSION")),

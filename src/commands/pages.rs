@@ -15,20 +15,22 @@ pub(crate) fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     output::print(&String::from_utf8_lossy(&script))
 }
 
-/// Writes a manual page for the program and for each command.
+/// Writes a manual page for the program, for each command and for each command of a command.
 pub(crate) fn manual(dir: &Path) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
-    let mut program = Cli::command();
+    // Pages speak of `stepwave help` in its own place; a page each for `help run`, `help list`, … would say nothing.
+    let mut program = Cli::command().disable_help_subcommand(true);
     program.build();
-    page(&mut outputs, dir, &program, "stepwave")?;
-    for command in program.get_subcommands() {
-        page(&mut outputs, dir, command, &format!("stepwave-{}", command.get_name()))?;
-    }
+    pages(&mut outputs, dir, &program, "stepwave")?;
     outputs.commit()
 }
 
-fn page(outputs: &mut Outputs, dir: &Path, command: &clap::Command, name: &str) -> Result<(), Failure> {
+fn pages(outputs: &mut Outputs, dir: &Path, command: &clap::Command, name: &str) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_mangen::Man::new(command.clone()).title(name.to_uppercase()).render(&mut text)?;
-    outputs.write(&dir.join(format!("{name}.1")), &String::from_utf8_lossy(&text))
+    outputs.write(&dir.join(format!("{name}.1")), &String::from_utf8_lossy(&text))?;
+    for inner in command.get_subcommands() {
+        pages(outputs, dir, inner, &format!("{name}-{}", inner.get_name()))?;
+    }
+    Ok(())
 }

@@ -44,7 +44,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let model = find(&args.model)?;
     let curve = curve(model, &args.geometry)?;
     let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
-    let time = ClockTime::from_hz(args.hardware.clock_hz)?;
+    let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);
 
     // All are opened before the first is written: where one is refused, nothing stands on standard output.
@@ -62,7 +62,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     observers.extend(waves.iter_mut().flat_map(Waves::observers));
     observers.extend(csv.as_mut().map(|csv| csv as &mut dyn Observer));
     observers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Observer));
-    let outcome = bench.run(args.hardware.engine, &mut observers)?;
+    let outcome = bench.run(args.simulation.engine, &mut observers)?;
     drop(observers);
     progress.finish();
 
@@ -70,14 +70,14 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         model,
         curve: &curve,
         hardware: bench.hardware(),
-        engine: args.hardware.engine,
+        engine: args.simulation.engine,
         outcome,
         ranges: ranges.finish(),
         worst: path.worst,
         overflows: overflow.events,
         overflow_count: overflow.count,
-        clock_hz: args.hardware.clock_hz,
-        blu_mm: args.hardware.blu,
+        clock_hz: args.clock.clock_hz,
+        blu_mm: args.simulation.blu,
     };
     if let Some(waves) = waves {
         waves.finish(&report, outputs)?;

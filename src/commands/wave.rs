@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
+use stepwave::kernel::Net;
 use stepwave::kernel::trace::fst::{FstBody, FstHeader};
 use stepwave::kernel::trace::gtkw::{View, side_files};
 use stepwave::kernel::trace::probe::{Probe, Selection};
@@ -161,15 +162,21 @@ fn finish<B: WaveBody>(writer: WaveWriter<B>, report: &Report<'_>) -> Result<((u
     Ok((written, writer.finish()?))
 }
 
-/// Column of a 1-bit net.
+/// Column of the 1-bit net of this name, path, or end of a path.
 fn flag_column(bench: &Testbench, name: &str) -> Result<usize, Failure> {
+    let refuse = |why: String| Err(Failure::Trouble(format!("--trace-on: {why}")));
     let netlist = bench.design().netlist();
-    let Some(named) = netlist.find(name) else {
-        return Err(Failure::Trouble(format!("--trace-on: there is no signal '{name}' in this netlist")));
-    };
-    if netlist.width(named.net).get() != 1 {
-        let width = netlist.width(named.net);
-        return Err(Failure::Trouble(format!("--trace-on: {name} has {width}, but a trigger is 1 bit wide")));
+    let end = format!(".{name}");
+    let all = netlist.names.iter().map(|named| (netlist.path(named), named.net));
+    let mut found: Vec<(String, Net)> = all.filter(|(path, _)| path == name || path.ends_with(&end)).collect();
+    found.dedup_by_key(|(_, net)| *net);
+    match found.as_slice() {
+        [] => refuse(format!("there is no signal '{name}' in this netlist")),
+        [(_, net)] if netlist.width(*net).get() == 1 => Ok(bench.columns().index(*net)),
+        [(_, net)] => refuse(format!("{name} has {}, but a trigger is 1 bit wide", netlist.width(*net))),
+        several => {
+            let paths: Vec<&str> = several.iter().map(|(path, _)| path.as_str()).collect();
+            refuse(format!("'{name}' is the name of several signals: give one of {}", paths.join(", ")))
+        }
     }
-    Ok(bench.columns().index(named.net))
 }

@@ -7,6 +7,20 @@ fn a_trigger_must_be_a_signal_of_one_bit() {
     refused("run dda-line --to 8,6 --vcd w.vcd --trace-on nope", &["--trace-on", "no signal 'nope'"]);
     refused("run dda-line --to 8,6 --vcd w.vcd --trace-on jrx", &["--trace-on", "jrx has 4 bits", "1 bit wide"]);
     refused("run dda-line --to 8,6 --vcd w.vcd --trace-on dda_line.axis_x.dx", &["has 2 bits"]);
+    let both = "give one of dda_line.axis_x.carry, dda_line.axis_y.carry";
+    refused("run dda-line --to 8,6 --vcd w.vcd --trace-on carry", &["'carry' is the name of several signals", both]);
+}
+
+#[test]
+fn a_trigger_may_be_given_by_its_name_its_path_or_the_end_of_its_path() {
+    let wave = |name: &str| {
+        let folder = Folder::new();
+        folder.good(&format!("run dda-line --to 8,6 --vcd w.vcd --trace-on {name}"));
+        folder.read("w.vcd")
+    };
+    assert_eq!(wave("axis_y.carry"), wave("dda_line.axis_y.carry"));
+    assert_ne!(wave("axis_y.carry"), wave("axis_x.carry"));
+    assert_eq!(wave("done"), wave("dda_line.block.done"));
 }
 
 #[test]

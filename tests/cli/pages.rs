@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::{Folder, engines, good};
 
-const COMMANDS: [&str; 6] = ["list", "run", "diff", "golden", "completions", "man"];
+const COMMANDS: [&str; 7] = ["list", "run", "diff", "export", "golden", "completions", "man"];
 
 const RUN_OPTIONS: &str = "--from --to --center --cw --ccw --width --preset --normalize --end-point --form --beats \
     --on-overflow --clock-hz --blu --engine --vcd --trace --trace-exclude --trace-depth --trace-from --trace-to --trace-on \
@@ -166,6 +166,21 @@ fn every_command_has_a_manual_page_with_all_its_options() {
             options(&page)
         );
     }
+}
+
+#[test]
+fn every_page_that_a_page_refers_to_is_written() {
+    let folder = Folder::new();
+    folder.good("man .");
+    let files = folder.files();
+    for file in &files {
+        let page = folder.read(file).replace("\\-", "-");
+        let pages = page.split(|c: char| c.is_whitespace()).filter_map(|word| word.strip_suffix("(1)"));
+        for name in pages.map(|name| name.trim_start_matches(|c: char| !c.is_ascii_lowercase())) {
+            assert!(files.contains(&format!("{name}.1")), "{file} refers to {name}(1)");
+        }
+    }
+    assert!(files.contains(&"stepwave-golden-record.1".to_owned()), "{files:?}");
 }
 
 #[test]

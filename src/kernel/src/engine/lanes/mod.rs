@@ -148,21 +148,6 @@ impl LaneProgram {
         ends
     }
 
-    #[doc(hidden)]
-    pub fn dump(&self) -> String {
-        use std::fmt::Write;
-        let mut t = format!(
-            "rows {} wide {} regs {:?}\n",
-            self.running.rows,
-            self.wide,
-            self.running.registers.iter().map(|r| (r.row, r.next)).collect::<Vec<_>>()
-        );
-        for o in &self.running.operations {
-            let _ = writeln!(t, "{} = {:?}", o.target, o.what);
-        }
-        t
-    }
-
     /// Operations done for every lane and clock.
     #[must_use]
     pub fn operations(&self) -> usize {
