@@ -9,7 +9,7 @@ mod ranges;
 mod stimulus;
 mod wave;
 
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
+use stepwave_kernel::engine::{self, Engine, EngineKind, Rows, Stop, Watch};
 use stepwave_kernel::{Design, Net, OnOverflow};
 use stepwave_models::{Choices, Hardware, Machine, Model, ModelError};
 use stepwave_nc::Curve;
@@ -229,7 +229,8 @@ impl Run<'_, '_> {
                 Stop::RowsFull | Stop::Clocks => self.drain()?,
             }
             let quiet = self.engine.clock().saturating_sub(self.steps.last_pulse);
-            if quiet > stall {
+            let at_rest = || engine::at_rest(self.engine.as_ref(), self.bench.design());
+            if quiet > stall || quiet >= CHUNK as u64 && at_rest() {
                 return Ok(Ending::Stalled { clocks: quiet });
             }
         }

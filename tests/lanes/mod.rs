@@ -1,6 +1,6 @@
 //! Many geometries at once come to what each comes to alone.
 
-use stepwave::testbench::Testbench;
+use stepwave::testbench::{Ending, Testbench};
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Choices, Preset, find};
@@ -56,4 +56,16 @@ fn full_circles_of_several_blocks_in_lanes_end_as_each_alone() {
 fn lanes_stop_at_an_overflow_as_each_alone() {
     let narrow = Choices { widths: [("f".to_owned(), Width::new(4).unwrap())].into(), ..width(4) };
     assert_lanes_equal_single_runs("ppc-line", &lines(15), &narrow);
+}
+
+#[test]
+fn lanes_that_come_to_rest_are_given_up_as_each_alone() {
+    // In 11 bits a motion that has come to a stand is at rest long before 2^11 clocks are over.
+    let arcs = circles(8);
+    assert_lanes_equal_single_runs("dda-arc", &arcs, &width(11));
+    let bench = Testbench::new(find("dda-arc").unwrap(), arcs.last().unwrap(), &width(11)).unwrap();
+    let stalled = |bench: &Testbench| bench.run(EngineKind::Word, &mut []).unwrap().ending;
+    let endings = arcs.iter().map(|arc| stalled(&bench.of(find("dda-arc").unwrap(), arc).unwrap()));
+    let given_up = endings.filter(|ending| matches!(ending, Ending::Stalled { clocks } if *clocks < 1 << 11)).count();
+    assert!(given_up > 0 && given_up < arcs.len(), "{given_up} of {}", arcs.len());
 }

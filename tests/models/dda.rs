@@ -77,6 +77,18 @@ fn check_arc(n: u32, curve: &Curve, preset: Preset, normalize: bool, engine: Eng
 }
 
 #[test]
+fn an_arc_that_has_come_to_rest_is_given_up_without_waiting_for_all_iterations() {
+    let curve = arc([3, 7], [0, 8], [0, 0], false);
+    for engine in EngineKind::ALL {
+        let ran = run("dda-arc", &curve, &choices(16, Preset::Zero, false, EndPoint::PerAxis), engine);
+        let Ending::Stalled { clocks } = ran.outcome.ending else { panic!("{:?}", ran.outcome) };
+        // J_VX is 7, 6, … and J_VY 0 from (0, 7) on, which is reached after 7/16 of 2^16 iterations at most.
+        assert!((256..1024).contains(&clocks) && ran.outcome.clocks < 32_000, "{:?}", ran.outcome);
+        assert_eq!(ran.outcome.reached, [0, 7]);
+    }
+}
+
+#[test]
 fn every_line_of_up_to_four_bits_with_every_preset_scheme_and_normalisation() {
     for x in -15..=15 {
         for y in [-15, -11, -8, -3, -1, 0, 1, 2, 5, 10, 15] {

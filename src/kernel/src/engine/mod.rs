@@ -12,7 +12,7 @@ mod rows;
 mod word;
 
 use crate::elaborate::Design;
-use crate::netlist::Net;
+use crate::netlist::{Net, Op};
 
 pub use rows::Rows;
 
@@ -54,6 +54,15 @@ pub trait Engine: Send {
 
     /// Value of any net in the present sample.
     fn value(&self, net: Net) -> u64;
+}
+
+/// No register will change any more, as long as no input does: the present sample is how it stays.
+#[must_use]
+pub fn at_rest(engine: &dyn Engine, design: &Design) -> bool {
+    design.registers().iter().all(|&register| match design.netlist().cell(register).op {
+        Op::Register { next: Some(next), .. } => engine.value(next) == engine.value(register),
+        _ => true,
+    })
 }
 
 /// The engines, for a choice at run time.

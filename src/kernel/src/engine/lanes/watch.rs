@@ -47,14 +47,16 @@ impl Reduce {
     }
 }
 
-/// When a lane that has come to rest is given up.
+/// When a lane in which nothing happens any more is given up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Quiet {
     /// Nets that are not 0 as long as something happens.
     pub nets: Vec<Net>,
-    /// So many clocks with all of them 0 are borne.
+    /// So many clocks with all of them 0 are borne, as long as registers change.
     pub clocks: u64,
-    /// A lane is looked at in the samples whose clock plus 1 is a multiple of this; at least 1.
+    /// A lane is looked at in the samples whose clock plus 1 is a multiple of this; at least 1. With all of the nets 0
+    /// for as many clocks it is given up if no register changes at the next edge. (A register that nothing observed
+    /// depends on does not count.)
     pub every: u64,
 }
 

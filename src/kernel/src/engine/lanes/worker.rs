@@ -187,12 +187,26 @@ impl<'p, T: Lane> Worker<'p, T> {
         if clock >= watch.limit {
             return Verdict::Ends(LaneStop::Limit);
         }
+        let idle = self.idle(lane);
         match &watch.quiet {
-            Some(quiet) if self.idle(lane) > quiet.clocks && (clock + 1).is_multiple_of(quiet.every) => {
-                Verdict::Ends(LaneStop::Quiet { clocks: self.idle(lane) })
+            Some(quiet)
+                if (clock + 1).is_multiple_of(quiet.every)
+                    && (idle > quiet.clocks || idle >= quiet.every && self.at_rest(lane)) =>
+            {
+                Verdict::Ends(LaneStop::Quiet { clocks: idle })
             }
             _ => Verdict::Goes,
         }
+    }
+
+    /// The last edge changed no register.
+    fn at_rest(&self, lane: usize) -> bool {
+        let row = |row| self.lanes.get(row, lane);
+        self.program
+            .running
+            .registers
+            .iter()
+            .all(|register| register.next.is_none_or(|old| row(old) == row(register.row)))
     }
 
     /// Clocks since one of the quiet nets was not 0.
@@ -288,7 +302,8 @@ impl<'p, T: Lane> Worker<'p, T> {
         let mut clock = watch.limit;
         if let Some(quiet) = &watch.quiet {
             let since = (next - 1).saturating_sub(self.idle(lane));
-            let least = since.saturating_add(quiet.clocks).saturating_add(1).max(next);
+            let borne = quiet.clocks.min(quiet.every - 1);
+            let least = since.saturating_add(borne).saturating_add(1).max(next);
             clock = clock.min(least.saturating_add(1).div_ceil(quiet.every).saturating_mul(quiet.every) - 1);
         }
         let due = (self.tick + 1).saturating_add(clock.max(next) - next);
