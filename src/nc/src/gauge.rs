@@ -1,0 +1,120 @@
+//! The deviation of many positions from one curve, with all that they share worked out before.
+
+use crate::{Arc, Curve, Line};
+
+/// Relative coordinates below this have squares and products of which two together fit in an `i64`.
+const NEAR: i64 = 1 << 31;
+
+/// Measures the distance of positions from one curve: the values of [`Curve::deviation`], quickly.
+///
+/// ```
+/// use stepwave_nc::{Curve, Line};
+///
+/// let curve: Curve = Line::new(vec![0, 0], vec![4, 3])?.into();
+/// let gauge = curve.gauge();
+/// assert_eq!(gauge.deviation(&[0, 5]), 4.0);
+/// # Ok::<(), stepwave_nc::GeometryError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Gauge<'a> {
+    curve: &'a Curve,
+    plane: Option<Plane>,
+}
+
+/// A curve of two axes that spans less than [`NEAR`] on each.
+#[derive(Clone, Copy, Debug)]
+enum Plane {
+    Line { from: [i64; 2], delta: [i64; 2], length: f64 },
+    Circle { center: [i64; 2], radius_squared: u64, radius: f64 },
+}
+
+fn near(ways: [i64; 2]) -> bool {
+    ways.iter().all(|way| way.unsigned_abs() < NEAR.unsigned_abs())
+}
+
+fn line(line: &Line) -> Option<Plane> {
+    let delta = <[i64; 2]>::try_from(line.delta()).ok().filter(|delta| near(*delta))?;
+    Some(Plane::Line { from: [line.from()[0], line.from()[1]], delta, length: line.length() })
+}
+
+fn circle(arc: &Arc) -> Option<Plane> {
+    let radius_squared = u64::try_from(arc.radius_squared()).ok()?;
+    Some(Plane::Circle { center: arc.center(), radius_squared, radius: arc.radius() })
+}
+
+impl Curve {
+    /// A gauge of this curve.
+    #[must_use]
+    pub fn gauge(&self) -> Gauge<'_> {
+        let plane = match self {
+            Curve::Line(given) => line(given),
+            Curve::Arc(arc) => circle(arc),
+        };
+        Gauge { curve: self, plane }
+    }
+}
+
+impl Gauge<'_> {
+    /// The distance of a position from the infinite line or the whole circle, in BLU: [`Curve::deviation`], to the bit.
+    #[inline]
+    #[must_use]
+    pub fn deviation(&self, position: &[i64]) -> f64 {
+        let from = |[x0, y0]: [i64; 2]| match *position {
+            [x, y, ..] => Some([x.checked_sub(x0)?, y.checked_sub(y0)?]).filter(|way| near(*way)),
+            _ => None,
+        };
+        match self.plane {
+            Some(Plane::Line { from: start, delta: [dx, dy], length }) => {
+                if let Some([x, y]) = from(start) {
+                    return (dx * y - dy * x).unsigned_abs() as f64 / length;
+                }
+            }
+            Some(Plane::Circle { center, radius_squared, radius }) => {
+                if let Some([x, y]) = from(center) {
+                    let reached = (x * x + y * y).unsigned_abs();
+                    return reached.abs_diff(radius_squared) as f64 / ((reached as f64).sqrt() + radius);
+                }
+            }
+            None => {}
+        }
+        self.curve.deviation(position)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{COORDINATE_LIMIT, Direction, GeometryError};
+
+    /// Positions around the origin and around a far point, near and far from it.
+    fn positions(around: [i64; 2]) -> Vec<[i64; 2]> {
+        let ways = [0, 1, -1, 2, 5, -7, 100, (1 << 31) - 1, -(1 << 31) + 1, 1 << 31, 1 << 33, i64::MAX, i64::MIN];
+        let each = ways.iter().flat_map(|x| ways.iter().map(move |y| [*x, *y]));
+        each.map(|[x, y]| [around[0].saturating_add(x), around[1].saturating_add(y)]).collect()
+    }
+
+    fn assert_same(curve: &Curve) {
+        let gauge = curve.gauge();
+        let from = [curve.from()[0], curve.from()[1]];
+        let to = [curve.to()[0], curve.to()[1]];
+        for position in [positions([0, 0]), positions(from), positions(to)].concat() {
+            let [quick, plain] = [gauge.deviation(&position), curve.deviation(&position)];
+            assert!(quick == plain || quick.is_nan() && plain.is_nan(), "{curve:?} {position:?}: {quick} {plain}");
+        }
+        assert!(gauge.deviation(&[1]).is_nan());
+    }
+
+    #[test]
+    fn a_gauge_measures_what_the_curve_does() -> Result<(), GeometryError> {
+        const L: i64 = COORDINATE_LIMIT;
+        for (from, to) in [([0, 0], [6, 4]), ([-3, 9], [100, -77]), ([0, 0], [1 << 31, 1]), ([-L, -L], [L, L - 1])] {
+            assert_same(&Line::new(from.to_vec(), to.to_vec())?.into());
+        }
+        for (start, center) in [([5, 0], [0, 0]), ([3, 7], [0, 0]), ([L, 0], [0, 0]), ([L, 5 - L], [L, -L])] {
+            assert_same(&Arc::new(start, start, center, Direction::Clockwise)?.into());
+        }
+        let spatial: Curve = Line::new(vec![0, 0, 0], vec![3, 4, 5])?.into();
+        assert_eq!(spatial.gauge().deviation(&[1, 2, 4]), spatial.deviation(&[1, 2, 4]));
+        Ok(())
+    }
+}
