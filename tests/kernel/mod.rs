@@ -9,6 +9,7 @@ mod operators;
 mod random;
 mod semantics;
 mod strict;
+mod unnamed;
 
 use stepwave_kernel::dsl::{Module, Scope};
 use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};

@@ -52,7 +52,7 @@ pub trait Engine: Send {
     /// Number of edges since reset.
     fn clock(&self) -> u64;
 
-    /// Value of any net in the present sample.
+    /// Value of any net in the present sample, watched or not, named or not.
     fn value(&self, net: Net) -> u64;
 }
 

@@ -39,6 +39,7 @@ pub(super) struct WordEngine {
     design: Design,
     clock: u64,
     values: Vec<u64>,
+    /// Of every cell, so that any net can be watched.
     operations: Vec<Operation>,
     /// Each register and the net of its next value.
     registers: Vec<(u32, u32)>,
@@ -97,12 +98,16 @@ impl WordEngine {
                 *value = constant;
             }
         }
+        // Cells that nothing depends on stand behind all others; a description leaves next to none.
+        let mut seen = vec![false; netlist.cells.len()];
+        design.order().iter().for_each(|net| seen[net.index()] = true);
+        let order = design.order().iter().copied().chain(netlist.nets().filter(|net| !seen[net.index()]));
         let indices = |nets: &[Net]| nets.iter().map(|net| net.0).collect();
         let mut engine = WordEngine {
             design: design.clone(),
             clock: 0,
             values,
-            operations: design.order().iter().filter_map(|&net| lower(design, net)).collect(),
+            operations: order.filter_map(|net| lower(design, net)).collect(),
             next: vec![0; registers.len()],
             registers,
             columns: indices(&watch.columns),
