@@ -244,6 +244,21 @@ fn a_reset_in_the_middle_takes_registers_and_clock_back_but_leaves_the_inputs() 
 }
 
 #[test]
+fn a_reset_forgets_the_rows_held_so_that_every_row_keeps_its_clock() {
+    let design = counter(4, 2);
+    on_every_engine(|kind| {
+        let mut run = Run::new(kind, &design, &["count"], &[], 4);
+        run.set("enable", 1);
+        run.run(3);
+        assert_eq!((run.clocks(), run.rows.is_full()), (vec![0, 1, 2, 3], true));
+        // Not cleared before.
+        run.engine.reset(&mut run.rows);
+        run.run(2);
+        assert_eq!((run.clocks(), run.column(0)), (vec![0, 1, 2], vec![2, 3, 4]));
+    });
+}
+
+#[test]
 fn a_run_of_0_clocks_changes_and_records_nothing() {
     let design = counter(4, 5);
     on_every_engine(|kind| {

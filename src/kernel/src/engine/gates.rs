@@ -192,6 +192,7 @@ impl Engine for Gates {
     }
 
     fn reset(&mut self, rows: &mut Rows) {
+        rows.clear();
         self.clock = 0;
         let design = self.design.clone();
         for &register in design.registers() {

@@ -42,11 +42,13 @@ pub trait Engine: Send {
     /// that is no input.
     fn set_input(&mut self, input: Net, value: u64);
 
-    /// Registers take their reset values, clock 0; records sample 0 if there is room for a row.
+    /// Registers take their reset values, clock 0; `rows` forgets what it holds, whose clocks end here, and sample 0 is
+    /// recorded if there is room for a row.
     fn reset(&mut self, rows: &mut Rows);
 
     /// Runs until `clocks` clocks are done, `rows` is full, or a stop net is 1 in a sample; at least one clock is done
-    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded.
+    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded; what `rows` holds already must be
+    /// the samples right before.
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
 
     /// Number of edges since reset.

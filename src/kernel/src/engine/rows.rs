@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// Rows of equally many values, one row a sample, with room for a fixed number.
+/// Rows of equally many values, one row a sample, with room for a fixed number. The clocks of the rows follow one
+/// another without a gap.
 #[derive(Clone, Debug)]
 pub struct Rows {
     columns: usize,
@@ -92,6 +93,7 @@ impl Rows {
         if self.len == 0 {
             self.first_clock = clock;
         }
+        debug_assert_eq!(self.first_clock + self.len as u64, clock, "a row of another time");
         // No more than `room`, which is a usize.
         self.len += usize::try_from(rows).unwrap_or(0);
     }
@@ -105,6 +107,7 @@ impl Rows {
         if self.len == 0 {
             self.first_clock = clock;
         }
+        debug_assert_eq!(self.first_clock + self.len as u64, clock, "a row of another time");
         let start = self.len * self.columns;
         self.len += 1;
         Some(&mut self.values[start..start + self.columns])

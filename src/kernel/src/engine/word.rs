@@ -224,6 +224,7 @@ impl Engine for WordEngine {
     }
 
     fn reset(&mut self, rows: &mut Rows) {
+        rows.clear();
         self.clock = 0;
         for &(register, _) in &self.registers {
             if let Op::Register { reset, .. } = self.design.netlist().cell(Net(register)).op {
