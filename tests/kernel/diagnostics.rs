@@ -5,7 +5,7 @@ use stepwave_kernel::{Code, Diagnostics, Place, elaborate, text};
 
 use super::mistakes;
 
-const CODES: [Code; 12] = [
+const CODES: [Code; 13] = [
     Code::WidthMismatch,
     Code::NotOneBit,
     Code::OutOfRange,
@@ -16,6 +16,7 @@ const CODES: [Code; 12] = [
     Code::DuplicateName,
     Code::BadName,
     Code::Order,
+    Code::ForeignSignal,
     Code::Unnamed,
     Code::Syntax,
 ];
@@ -39,9 +40,14 @@ fn messages(diagnostics: &Diagnostics) -> Vec<&str> {
     diagnostics.0.iter().map(|diagnostic| diagnostic.message.as_str()).collect()
 }
 
+/// A line of this file, so many below `line`, as messages tell it.
+fn below(line: u32, lines: u32) -> String {
+    format!("{}:{}", file!(), line + lines)
+}
+
 /// One mistake of each kind, and its message.
-fn example(code: Code) -> (Diagnostics, &'static str) {
-    match code {
+fn example(code: Code) -> (Diagnostics, String) {
+    let (diagnostics, message) = match code {
         Code::WidthMismatch => (
             described(|m| m.reg("r", 4).set(m.scope("part").input("a", 3))),
             "next value of register m.r (4 bits): m.part.a (3 bits) stands where 4 bits belong",
@@ -77,21 +83,24 @@ fn example(code: Code) -> (Diagnostics, &'static str) {
             }),
             "register m.part.r (4 bits) never gets a next value",
         ),
-        Code::DrivenTwice => (
-            described(|m| {
+        Code::DrivenTwice => {
+            let first = below(line!(), 3);
+            let twice = described(|m| {
                 let r = m.reg("r", 4);
-                r.set(m.input("a", 4));
+                r.when(m.input("load", 1), m.input("a", 4)).else_hold();
                 r.set(m.input("b", 4));
-            }),
-            "register m.r (4 bits) has a next value already",
-        ),
-        Code::DuplicateName => (
-            described(|m| {
+            });
+            return (twice, format!("register m.r (4 bits) has a next value already, given at {first}"));
+        }
+        Code::DuplicateName => {
+            let first = below(line!(), 3);
+            let twice = described(|m| {
                 let part = m.scope("part");
-                part.name("a", part.input("a", 4));
-            }),
-            "'a' is already a name in m.part",
-        ),
+                let a = part.input("a", 4);
+                part.name("a", a);
+            });
+            return (twice, format!("'a' is already a name in m.part, given at {first}"));
+        }
         Code::BadName => (
             described(|m| {
                 let _ = m.input("2nd", 4);
@@ -99,6 +108,13 @@ fn example(code: Code) -> (Diagnostics, &'static str) {
             "'2nd' is no name: letters, digits and _ only, not beginning with a digit",
         ),
         Code::Order => (parsed("%0:4 = not %1\n%1:4 = input"), "net %0 reads a net that does not come before it"),
+        Code::ForeignSignal => {
+            let other = Module::new("other");
+            let foreign = described(|m| {
+                m.name("a", other.top().scope("part").input("x", 3));
+            });
+            (foreign, "other.part.x (3 bits) is a signal of another module, not of m")
+        }
         Code::Unnamed => (
             described(|m| {
                 m.name("sum", (!m.input("a", 4)).strict_add(m.input("b", 4), m.lit(1, 1)));
@@ -106,7 +122,8 @@ fn example(code: Code) -> (Diagnostics, &'static str) {
             "a strict operator needs a named left operand to report",
         ),
         Code::Syntax => (parsed("%0:4 = turn %0"), "expected an operator in '%0:4 = turn %0'"),
-    }
+    };
+    (diagnostics, message.to_owned())
 }
 
 #[test]
@@ -165,7 +182,7 @@ fn a_mismatch_names_both_sides_with_their_paths_and_widths() {
             described(|m| {
                 let _ = m.input("a", 40).concat(m.input("b", 25));
             }),
-            "concatenation: a width of 65 bits is not possible: a register holds 1 to 64 bits",
+            "a width of 65 bits is not possible: a register holds 1 to 64 bits",
         ),
         (described(|m| m.invariant("never", m.input("a", 2))), "a property is 1 bit wide, not 2 bits"),
     ];
@@ -201,7 +218,7 @@ fn every_rule_of_widths_is_checked_on_a_parsed_netlist_too() {
         ("property \"p\" never %2 add %0 signed %9 unsigned", Code::Order, "an operand of the property does not exist"),
         ("property \"p\" never %2 sub %9 signed %0 unsigned", Code::Order, "an operand of the property does not exist"),
         ("name %0 in 0 \"a b\" unsigned", Code::BadName, "'a b' is no name for a wave"),
-        ("name %0 in 0 \"one\" unsigned", Code::DuplicateName, "'one' is given twice in its scope"),
+        ("name %0 in 0 \"one\" unsigned", Code::DuplicateName, "'m.one' is given to net %2 and to net %0"),
         (
             "name %9 in 0 \"ghost\" unsigned",
             Code::Order,
@@ -213,7 +230,12 @@ fn every_rule_of_widths_is_checked_on_a_parsed_netlist_too() {
             "the name 'ghost' is given to a net or in a scope that does not exist",
         ),
         ("scope 1 in 0 \"a b\"", Code::BadName, "'a b' is no name for a wave"),
-        ("scope 1 in 0 \"one\"", Code::DuplicateName, "'one' is given twice in its scope"),
+        ("scope 1 in 0 \"one\"", Code::DuplicateName, "'m.one' is given to scope 1 and to net %2"),
+        (
+            "scope 1 in 0 \"x\"\nscope 2 in 1 \"y\"\nscope 3 in 1 \"y\"",
+            Code::DuplicateName,
+            "'m.x.y' is given to scope 2 and to scope 3",
+        ),
     ] {
         let inputs = "%0:4 = input\n%1:3 = input\n%2:1 = input\n";
         let names = "name %0 in 0 \"four\" unsigned\nname %1 in 0 \"three\" signed\nname %2 in 0 \"one\" unsigned\n";

@@ -5,6 +5,7 @@
 
 mod diagnostics;
 mod mistakes;
+mod one_mistake;
 mod operators;
 mod random;
 mod semantics;

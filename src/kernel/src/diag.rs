@@ -27,6 +27,8 @@ pub enum Code {
     BadName,
     /// An operand is created after its user, and no register is between them.
     Order,
+    /// A signal of another module.
+    ForeignSignal,
     /// A strict operator on a net that has no name to report.
     Unnamed,
     /// The text form of a netlist cannot be read.

@@ -5,13 +5,13 @@
 //! nets and scopes fit and are unique in their scope. All mistakes are reported at once; only where a name belongs to
 //! nothing are such names reported alone.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::bits::Width;
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::dsl::is_identifier;
-use crate::netlist::{Claim, NamedNet, Net, Netlist, Op};
+use crate::netlist::{Claim, NamedNet, Net, Netlist, Op, ScopeId};
 
 /// A netlist that any engine can run. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -122,16 +122,22 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
             report(code, place(net), message);
         }
     }
-    let scopes = netlist.scopes.iter().map(|scope| (scope.parent, scope.name.as_str()));
-    let names = netlist.names.iter().map(|named| (Some(named.scope), named.name.as_str()));
-    let mut used = HashSet::new();
-    for (scope, name) in scopes.chain(names) {
+    let scopes = netlist.scopes.iter().enumerate();
+    let scopes = scopes.map(|(index, scope)| (scope.parent, scope.name.as_str(), format!("scope {index}")));
+    let nets = netlist.names.iter();
+    let nets = nets.map(|named| (Some(named.scope), named.name.as_str(), format!("net {}", named.net)));
+    // What bears each name.
+    let mut used: HashMap<(Option<ScopeId>, &str), String> = HashMap::new();
+    for (scope, name, bearer) in scopes.chain(nets) {
         let place = Place::Component(name.to_owned());
         if !is_identifier(name) {
             report(Code::BadName, place.clone(), format!("'{name}' is no name for a wave"));
         }
-        if !used.insert((scope, name)) {
-            report(Code::DuplicateName, place, format!("'{name}' is given twice in its scope"));
+        if let Some(first) = used.get(&(scope, name)) {
+            let path = scope.map_or_else(String::new, |scope| netlist.scope_path(scope) + ".");
+            report(Code::DuplicateName, place, format!("'{path}{name}' is given to {first} and to {bearer}"));
+        } else {
+            used.insert((scope, name), bearer);
         }
     }
     for property in &netlist.properties {

@@ -6,14 +6,16 @@
 //! sees where the carry goes.
 //!
 //! Mistakes (unequal widths, a register without next value, a name used twice) never panic; they are collected and
-//! come out of [`Module::finish`], each with the source line that made it.
+//! come out of [`Module::finish`], each with the source line that made it. What only follows from a mistake is not
+//! told: a cell that breaks a rule is replaced by a constant of the width asked for; where that width is the mistake,
+//! the constant is a *guess*, and what is made from a guess is one too, without a further word.
 
 mod register;
 mod signal;
 mod strict;
 
 use std::cell::RefCell;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::panic::Location;
 
 use crate::bits::{Bits, Width};
@@ -34,7 +36,12 @@ pub struct Module {
 struct State {
     netlist: Netlist,
     diagnostics: Vec<Diagnostic>,
-    used_names: HashSet<(ScopeId, String)>,
+    /// Where each name was given first.
+    used_names: HashMap<(ScopeId, String), Place>,
+    /// Where each register got its next value.
+    driven: HashMap<Net, Place>,
+    /// Nets whose width means nothing, because of a mistake that has been told.
+    guesses: HashSet<Net>,
 }
 
 impl Module {
@@ -49,7 +56,13 @@ impl Module {
     #[track_caller]
     #[must_use]
     pub fn with_overflow(name: &str, on_overflow: OnOverflow) -> Module {
-        let state = State { netlist: Netlist::new(name), diagnostics: Vec::new(), used_names: HashSet::new() };
+        let state = State {
+            netlist: Netlist::new(name),
+            diagnostics: Vec::new(),
+            used_names: HashMap::new(),
+            driven: HashMap::new(),
+            guesses: HashSet::new(),
+        };
         let module = Module { state: RefCell::new(state), on_overflow };
         module.check_name(name);
         module
@@ -77,21 +90,51 @@ impl Module {
         if diagnostics.is_empty() { Ok(netlist) } else { Err(Diagnostics(diagnostics)) }
     }
 
-    /// Appends a cell; a broken width rule becomes a diagnostic and a constant 0 of the width asked for.
+    /// Appends a cell. A width that is not possible becomes a diagnostic and a guess, another broken rule a diagnostic
+    /// and a constant 0 of the width asked for.
     #[track_caller]
-    fn push(&self, op: Op, width: Width) -> Net {
+    fn push(&self, op: Op, bits: u32) -> Net {
+        let mut guessed = false;
+        op.visit_inputs(|input| guessed |= self.is_guess(input));
+        if guessed {
+            return self.guess();
+        }
+        let width = match Width::new(u64::from(bits)) {
+            Ok(width) => width,
+            Err(error) => {
+                self.report(Code::BadWidth, error.to_string());
+                return self.guess();
+            }
+        };
         let mut cell = Cell { op, width };
         let checked = self.state.borrow().netlist.check_cell(&cell);
         if let Err((code, message)) = checked {
             self.report(code, message);
             cell.op = Op::Const(0);
         }
+        self.append(cell)
+    }
+
+    #[track_caller]
+    fn append(&self, cell: Cell) -> Net {
         let netlist = &mut self.state.borrow_mut().netlist;
         // More than 2^32 cells do not fit in memory.
         let net = Net(u32::try_from(netlist.cells.len()).unwrap_or(u32::MAX));
         netlist.cells.push(cell);
         netlist.sources.push(Some(Location::caller()));
         net
+    }
+
+    /// A net in the place of one that cannot be.
+    #[track_caller]
+    fn guess(&self) -> Net {
+        let net = self.append(Cell { op: Op::Const(0), width: Width::ONE });
+        self.state.borrow_mut().guesses.insert(net);
+        net
+    }
+
+    fn is_guess(&self, net: Net) -> bool {
+        self.state.borrow().guesses.contains(&net)
     }
 
     #[track_caller]
@@ -105,19 +148,6 @@ impl Module {
         if !is_identifier(name) {
             let message = format!("'{name}' is no name: letters, digits and _ only, not beginning with a digit");
             self.report(Code::BadName, message);
-        }
-    }
-
-    /// A width, or a diagnostic and one bit.
-    #[track_caller]
-    fn width(&self, bits: u32) -> Width {
-        // No closure: it would put its own line into the diagnostic.
-        match Width::new(u64::from(bits)) {
-            Ok(width) => width,
-            Err(error) => {
-                self.report(Code::BadWidth, error.to_string());
-                Width::ONE
-            }
         }
     }
 }
@@ -152,7 +182,7 @@ impl<'m> Scope<'m> {
     #[track_caller]
     #[must_use]
     pub fn input(self, name: &str, bits: u32) -> Signal<'m> {
-        let signal = self.new_signal(Op::Input, self.module.width(bits), false);
+        let signal = self.new_signal(Op::Input, bits, false);
         self.name(name, signal)
     }
 
@@ -160,7 +190,7 @@ impl<'m> Scope<'m> {
     #[track_caller]
     #[must_use]
     pub fn input_signed(self, name: &str, bits: u32) -> Signal<'m> {
-        let signal = self.new_signal(Op::Input, self.module.width(bits), true);
+        let signal = self.new_signal(Op::Input, bits, true);
         self.name(name, signal)
     }
 
@@ -179,7 +209,7 @@ impl<'m> Scope<'m> {
     #[track_caller]
     fn register(self, name: &str, bits: u32, signed: bool) -> Register<'m> {
         let op = Op::Register { next: None, reset: 0 };
-        let q = self.new_signal(op, self.module.width(bits), signed);
+        let q = self.new_signal(op, bits, signed);
         self.name(name, q);
         Register { q }
     }
@@ -188,19 +218,20 @@ impl<'m> Scope<'m> {
     #[track_caller]
     #[must_use]
     pub fn lit(self, bits: u32, value: u64) -> Signal<'m> {
-        self.new_signal(Op::Const(value), self.module.width(bits), false)
+        self.new_signal(Op::Const(value), bits, false)
     }
 
     /// A two's-complement constant.
     #[track_caller]
     #[must_use]
     pub fn lit_signed(self, bits: u32, value: i64) -> Signal<'m> {
-        let width = self.module.width(bits);
-        let bits = Bits::exact(width, i128::from(value), true);
-        if bits.is_none() {
+        // That there is no such width is told with the cell.
+        let width = Width::new(u64::from(bits)).unwrap_or(Width::MAX);
+        let constant = Bits::exact(width, i128::from(value), true);
+        if constant.is_none() {
             self.module.report(Code::ValueTooWide, format!("the value {value} does not fit in {width}"));
         }
-        self.new_signal(Op::Const(bits.map_or(0, Bits::value)), width, true)
+        self.new_signal(Op::Const(constant.map_or(0, Bits::value)), bits, true)
     }
 
     /// Gives a net a name in this scope, shown as its reading says; returns it.
@@ -214,6 +245,7 @@ impl<'m> Scope<'m> {
     #[track_caller]
     pub fn show(self, name: &str, signal: Signal<'m>, format: Format) -> Signal<'m> {
         self.claim_name(name);
+        let signal = self.own(signal);
         let named = NamedNet { net: signal.net(), scope: self.id, name: name.to_owned(), format };
         self.module.state.borrow_mut().netlist.names.push(named);
         signal
@@ -222,7 +254,7 @@ impl<'m> Scope<'m> {
     /// Claims that a net is 1 at every clock: the simulator watches it, a prover proves it.
     #[track_caller]
     pub fn invariant(self, name: &str, holds: Signal<'m>) {
-        let never = !holds;
+        let never = !self.own(holds);
         let name = format!("{}.{name}", self.module.state.borrow().netlist.scope_path(self.id));
         self.add_property(Property { name, never: never.net(), claim: Claim::Invariant });
     }
@@ -230,7 +262,9 @@ impl<'m> Scope<'m> {
     #[track_caller]
     fn add_property(self, property: Property) {
         let width = self.module.state.borrow().netlist.width(property.never);
-        if width == Width::ONE {
+        if self.module.is_guess(property.never) {
+            // Its mistake has been told.
+        } else if width == Width::ONE {
             self.module.state.borrow_mut().netlist.properties.push(property);
         } else {
             self.module.report(Code::NotOneBit, format!("a property is 1 bit wide, not {width}"));
@@ -238,17 +272,33 @@ impl<'m> Scope<'m> {
     }
 
     #[track_caller]
-    fn new_signal(self, op: Op, width: Width, signed: bool) -> Signal<'m> {
-        Signal::new(self, self.module.push(op, width), signed)
+    fn new_signal(self, op: Op, bits: u32, signed: bool) -> Signal<'m> {
+        Signal::new(self, self.module.push(op, bits), signed)
+    }
+
+    /// The signal, if it is of this module; else a diagnostic and a guess. Every signal that comes from outside goes
+    /// through this: the nets of modules are numbered alike.
+    #[track_caller]
+    fn own(self, signal: Signal<'m>) -> Signal<'m> {
+        if std::ptr::eq(self.module, signal.scope().module) {
+            return signal;
+        }
+        let foreign = signal.scope().module.state.borrow().netlist.describe(signal.net());
+        let here = self.module.state.borrow().netlist.scope_path(ScopeId::TOP);
+        self.module.report(Code::ForeignSignal, format!("{foreign} is a signal of another module, not of {here}"));
+        Signal::new(self, self.module.guess(), signal.is_signed())
     }
 
     #[track_caller]
     fn claim_name(self, name: &str) {
         self.module.check_name(name);
-        let fresh = self.module.state.borrow_mut().used_names.insert((self.id, name.to_owned()));
-        if !fresh {
+        let here = Place::Source(Location::caller());
+        let before = self.module.state.borrow().used_names.get(&(self.id, name.to_owned())).cloned();
+        if let Some(first) = before {
             let scope = self.module.state.borrow().netlist.scope_path(self.id);
-            self.module.report(Code::DuplicateName, format!("'{name}' is already a name in {scope}"));
+            self.module.report(Code::DuplicateName, format!("'{name}' is already a name in {scope}, given at {first}"));
+        } else {
+            self.module.state.borrow_mut().used_names.insert((self.id, name.to_owned()), here);
         }
     }
 }
@@ -313,14 +363,7 @@ mod tests {
         let _ = m.lit_signed(3, 4);
         let _ = m.lit(4, 1).slice(3, 2);
         let _ = m.lit(40, 1).concat(m.lit(40, 1));
-        let expected = [
-            Code::BadWidth,
-            Code::ValueTooWide,
-            Code::ValueTooWide,
-            Code::OutOfRange,
-            Code::BadWidth,
-            Code::UndrivenRegister,
-        ];
+        let expected = [Code::BadWidth, Code::ValueTooWide, Code::ValueTooWide, Code::OutOfRange, Code::BadWidth];
         assert_eq!(codes(module), expected);
     }
 }

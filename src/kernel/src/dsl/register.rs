@@ -1,7 +1,9 @@
 //! Registers and their next-value chains.
 
+use std::panic::Location;
+
 use super::Signal;
-use crate::diag::Code;
+use crate::diag::{Code, Place};
 use crate::netlist::{Format, Op};
 
 /// A clocked register. Its output is `q`; a chain of [`when`](Register::when)s says what it takes at the edge.
@@ -27,14 +29,20 @@ impl<'m> Register<'m> {
         let Op::Register { next, reset } = cell.op else { return };
         if next.is_some() {
             let name = module.state.borrow().netlist.describe(net);
-            module.report(Code::DrivenTwice, format!("register {name} has a next value already"));
+            let first =
+                module.state.borrow().driven.get(&net).map_or_else(String::new, |at| format!(", given at {at}"));
+            module.report(Code::DrivenTwice, format!("register {name} has a next value already{first}"));
             return;
         }
+        module.state.borrow_mut().driven.insert(net, Place::Source(Location::caller()));
+        let value = self.q.own(value);
         cell.op = Op::Register { next: Some(value.net()), reset };
         let checked = module.state.borrow().netlist.check_cell(&cell);
         if let Err((code, message)) = checked {
-            let name = module.state.borrow().netlist.describe(net);
-            module.report(code, format!("next value of register {name}: {message}"));
+            if !value.is_guess() {
+                let name = module.state.borrow().netlist.describe(net);
+                module.report(code, format!("next value of register {name}: {message}"));
+            }
             // Closed with its own value, so that the same mistake is not reported as a missing value too.
             cell.op = Op::Register { next: Some(net), reset };
         }
@@ -93,9 +101,10 @@ impl<'m> Chain<'m> {
     /// Where no condition is 1 the register takes `value`.
     #[track_caller]
     pub fn otherwise(self, value: Signal<'m>) {
-        let mut next = value;
+        let q = self.register.q;
+        let mut next = q.own(value);
         for (condition, value) in self.arms.into_iter().rev() {
-            next = condition.mux(value, next);
+            next = q.own(condition).mux(q.own(value), next);
         }
         self.register.set(next);
     }

@@ -4,7 +4,6 @@ use std::ops::{BitAnd, BitOr, BitXor, Not};
 
 use super::Scope;
 use crate::bits::Width;
-use crate::diag::Code;
 use crate::netlist::{Net, Op};
 
 /// A net, read as unsigned or two's complement. Operators keep the reading of their left operand.
@@ -60,53 +59,91 @@ impl<'m> Signal<'m> {
     }
 
     #[track_caller]
-    fn cell(self, op: Op, width: Width, signed: bool) -> Signal<'m> {
-        Signal::new(self.scope, self.scope.module.push(op, width), signed)
+    fn cell(self, op: Op, bits: u32, signed: bool) -> Signal<'m> {
+        Signal::new(self.scope, self.scope.module.push(op, bits), signed)
+    }
+
+    /// A signal that stands beside this one, if it is of the same module; else a diagnostic and a guess.
+    #[track_caller]
+    pub(super) fn own(self, other: Signal<'m>) -> Signal<'m> {
+        self.scope.own(other)
+    }
+
+    /// Stands for a signal that cannot be, of which a diagnostic has been told.
+    pub(super) fn is_guess(self) -> bool {
+        self.scope.module.is_guess(self.net)
     }
 
     #[track_caller]
     fn same_width(self, op: Op) -> Signal<'m> {
-        self.cell(op, self.width(), self.signed)
+        self.cell(op, self.bits(), self.signed)
+    }
+
+    /// An operator whose result is as wide as both operands.
+    #[track_caller]
+    fn with(self, rhs: Signal<'m>, make: fn(Net, Net) -> Op) -> Signal<'m> {
+        self.same_width(make(self.net, self.own(rhs).net))
+    }
+
+    /// An operator that says yes or no of two operands.
+    #[track_caller]
+    fn compared(self, rhs: Signal<'m>, make: fn(Net, Net) -> Op) -> Signal<'m> {
+        self.flag(make(self.net, self.own(rhs).net))
+    }
+
+    /// A yes or no, and a result as wide as both operands.
+    #[track_caller]
+    fn with_flag(
+        self,
+        rhs: Signal<'m>,
+        flag: fn(Net, Net) -> Op,
+        make: fn(Net, Net) -> Op,
+    ) -> (Signal<'m>, Signal<'m>) {
+        let rhs = self.own(rhs);
+        // That the operands are not equally wide is told of the result alone.
+        let equally_wide = self.bits() == rhs.bits();
+        let flag = if equally_wide { self.compared(rhs, flag) } else { self.scope.lit(1, 0) };
+        (flag, self.with(rhs, make))
     }
 
     #[track_caller]
     pub(super) fn flag(self, op: Op) -> Signal<'m> {
-        self.cell(op, Width::ONE, false)
+        self.cell(op, 1, false)
     }
 
     /// Sum modulo 2^width, on purpose. Operands are equally wide.
     #[track_caller]
     #[must_use]
     pub fn wrapping_add(self, rhs: Signal<'m>) -> Signal<'m> {
-        self.same_width(Op::Add(self.net, rhs.net))
+        self.with(rhs, Op::Add)
     }
 
     /// Difference modulo 2^width, on purpose. Operands are equally wide.
     #[track_caller]
     #[must_use]
     pub fn wrapping_sub(self, rhs: Signal<'m>) -> Signal<'m> {
-        self.same_width(Op::Sub(self.net, rhs.net))
+        self.with(rhs, Op::Sub)
     }
 
     /// Carry (1 bit) and sum modulo 2^width. Operands are equally wide.
     #[track_caller]
     #[must_use]
     pub fn carrying_add(self, rhs: Signal<'m>) -> (Signal<'m>, Signal<'m>) {
-        (self.flag(Op::Carry(self.net, rhs.net)), self.wrapping_add(rhs))
+        self.with_flag(rhs, Op::Carry, Op::Add)
     }
 
     /// Borrow (1 bit) and difference modulo 2^width. Operands are equally wide.
     #[track_caller]
     #[must_use]
     pub fn borrowing_sub(self, rhs: Signal<'m>) -> (Signal<'m>, Signal<'m>) {
-        (self.flag(Op::Borrow(self.net, rhs.net)), self.wrapping_sub(rhs))
+        self.with_flag(rhs, Op::Borrow, Op::Sub)
     }
 
     /// 1 where both are equal.
     #[track_caller]
     #[must_use]
     pub fn equals(self, rhs: Signal<'m>) -> Signal<'m> {
-        self.flag(Op::Equal(self.net, rhs.net))
+        self.compared(rhs, Op::Equal)
     }
 
     /// 1 where all bits are 0.
@@ -127,7 +164,7 @@ impl<'m> Signal<'m> {
     #[track_caller]
     #[must_use]
     pub fn less_than(self, rhs: Signal<'m>) -> Signal<'m> {
-        self.flag(if self.signed { Op::LessSigned(self.net, rhs.net) } else { Op::Borrow(self.net, rhs.net) })
+        self.compared(rhs, if self.signed { Op::LessSigned } else { Op::Borrow })
     }
 
     /// The most significant bit.
@@ -148,24 +185,17 @@ impl<'m> Signal<'m> {
     #[track_caller]
     #[must_use]
     pub fn slice(self, low: u32, bits: u32) -> Signal<'m> {
-        let width = self.scope.module.width(bits);
         // A start above 255 is past the top of every net, as 255 is.
         let low = u8::try_from(low).unwrap_or(u8::MAX);
-        self.cell(Op::Slice { of: self.net, low }, width, false)
+        self.cell(Op::Slice { of: self.net, low }, bits, false)
     }
 
     /// This above `low`; keeps the reading of this.
     #[track_caller]
     #[must_use]
     pub fn concat(self, low: Signal<'m>) -> Signal<'m> {
-        let total = self.bits() + low.bits();
-        match Width::new(u64::from(total)) {
-            Ok(width) => self.cell(Op::Concat { high: self.net, low: low.net }, width, self.signed),
-            Err(error) => {
-                self.scope.module.report(Code::BadWidth, format!("concatenation: {error}"));
-                self
-            }
-        }
+        let low = self.own(low);
+        self.cell(Op::Concat { high: self.net, low: low.net }, self.bits() + low.bits(), self.signed)
     }
 
     /// The same number in `bits` bits, at least as wide: sign or zeros above, as this is read.
@@ -175,15 +205,17 @@ impl<'m> Signal<'m> {
         if bits == self.bits() {
             return self;
         }
-        let width = self.scope.module.width(bits);
         let op = if self.signed { Op::SignExtend(self.net) } else { Op::ZeroExtend(self.net) };
-        self.cell(op, width, self.signed)
+        self.cell(op, bits, self.signed)
     }
 
     /// Of this select bit: 1 gives `high`, 0 gives `low`. Reading of `high`.
     #[track_caller]
     #[must_use]
     pub fn mux(self, high: Signal<'m>, low: Signal<'m>) -> Signal<'m> {
+        let high = self.own(high);
+        // Where the select is the one of another module, it is told once.
+        let low = if high.is_guess() { high } else { self.own(low) };
         high.same_width(Op::Mux { select: self.net, high: high.net, low: low.net })
     }
 }
@@ -192,7 +224,7 @@ impl<'m> BitAnd for Signal<'m> {
     type Output = Signal<'m>;
     #[track_caller]
     fn bitand(self, rhs: Signal<'m>) -> Signal<'m> {
-        self.same_width(Op::And(self.net, rhs.net))
+        self.with(rhs, Op::And)
     }
 }
 
@@ -200,7 +232,7 @@ impl<'m> BitOr for Signal<'m> {
     type Output = Signal<'m>;
     #[track_caller]
     fn bitor(self, rhs: Signal<'m>) -> Signal<'m> {
-        self.same_width(Op::Or(self.net, rhs.net))
+        self.with(rhs, Op::Or)
     }
 }
 
@@ -208,7 +240,7 @@ impl<'m> BitXor for Signal<'m> {
     type Output = Signal<'m>;
     #[track_caller]
     fn bitxor(self, rhs: Signal<'m>) -> Signal<'m> {
-        self.same_width(Op::Xor(self.net, rhs.net))
+        self.with(rhs, Op::Xor)
     }
 }
 

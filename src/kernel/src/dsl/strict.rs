@@ -4,6 +4,7 @@
 //! The flag, gated by an enable, becomes a property that must never be 1.
 
 use super::Signal;
+use crate::bits::Width;
 use crate::diag::Code;
 use crate::netlist::{Arithmetic, Claim, Net, OnOverflow, Op, Operand, Property};
 
@@ -49,7 +50,9 @@ impl<'m> Signal<'m> {
     #[track_caller]
     fn strict(self, operation: Arithmetic, rhs: Signal<'m>, enable: Signal<'m>) -> Signal<'m> {
         let module = self.scope().module;
+        let rhs = self.own(rhs);
         let narrowed = self.exact(operation, rhs);
+        let enable = self.enabling(enable);
         let never = enable & narrowed.overflow;
         let named = {
             let state = module.state.borrow();
@@ -77,6 +80,19 @@ impl<'m> Signal<'m> {
         }
     }
 
+    /// The enable of a strict cell, or a diagnostic and a 0.
+    #[track_caller]
+    fn enabling(self, enable: Signal<'m>) -> Signal<'m> {
+        let enable = self.own(enable);
+        if enable.bits() == 1 {
+            return enable;
+        }
+        let module = self.scope().module;
+        let what = module.state.borrow().netlist.describe(enable.net());
+        module.report(Code::NotOneBit, format!("{what} enables, so it must be 1 bit"));
+        self.scope().lit(1, 0)
+    }
+
     #[track_caller]
     fn saturated(self, narrowed: &Narrowed<'m>) -> Signal<'m> {
         let width = self.width();
@@ -91,6 +107,7 @@ impl<'m> Signal<'m> {
     /// The result cut to the width of this signal, and whether that lost anything.
     #[track_caller]
     fn exact(self, operation: Arithmetic, rhs: Signal<'m>) -> Narrowed<'m> {
+        let rhs = self.own(rhs);
         let fits = if self.is_signed() == rhs.is_signed() {
             rhs.bits() <= self.bits()
         } else {
@@ -129,6 +146,9 @@ impl<'m> Signal<'m> {
     fn exact_widened(self, operation: Arithmetic, rhs: Signal<'m>) -> Narrowed<'m> {
         let signed_bits = |signal: Signal<'m>| signal.bits() + u32::from(!signal.is_signed());
         let wide = signed_bits(self).max(signed_bits(rhs)) + 1;
+        if wide > Width::MAX.get() {
+            return self.too_wide(operation, rhs, wide);
+        }
         let (a, b) = (self.extend(wide).as_signed(), rhs.extend(wide).as_signed());
         let exact = match operation {
             Arithmetic::Add => a.wrapping_add(b),
@@ -139,5 +159,25 @@ impl<'m> Signal<'m> {
         // It fits exactly where extending the cut result gives the exact one again.
         let overflow = !result.extend(wide).equals(exact);
         Narrowed { result, overflow, negative: exact.msb() }
+    }
+
+    /// No adder is wide enough for the exact result: a diagnostic, and a 0 that always fits.
+    #[track_caller]
+    fn too_wide(self, operation: Arithmetic, rhs: Signal<'m>, wide: u32) -> Narrowed<'m> {
+        let module = self.scope().module;
+        if !self.is_guess() && !rhs.is_guess() {
+            let [a, b] = [self, rhs].map(|operand| module.state.borrow().netlist.describe(operand.net()));
+            let what = match operation {
+                Arithmetic::Add => "sum",
+                Arithmetic::Sub => "difference",
+            };
+            let most = Width::MAX.get();
+            let message =
+                format!("the exact {what} of {a} and {b} needs two's complement of {wide} bits; {most} is the most");
+            module.report(Code::BadWidth, message);
+        }
+        let zero = |bits| self.scope().lit(bits, 0);
+        let result = if self.is_signed() { zero(self.bits()).as_signed() } else { zero(self.bits()) };
+        Narrowed { result, overflow: zero(1), negative: zero(1) }
     }
 }
