@@ -84,9 +84,7 @@ fn wave(design: &Design, stimulus: &Stimulus, time: ClockTime, out: File) -> Res
         }
         engine.run(if index == 0 { clocks - 1 } else { clocks }, &mut rows);
     }
-    for (clock, row) in rows.iter() {
-        body.sample(clock, row)?;
-    }
+    body.rows(&rows, 0..rows.len())?;
     body.finish()?;
     Ok(())
 }

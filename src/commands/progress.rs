@@ -33,6 +33,10 @@ impl Progress {
 }
 
 impl Observer for Progress {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         self.since_look += rows.len();
         if self.since_look >= INTERVAL {

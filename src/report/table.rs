@@ -115,6 +115,10 @@ impl TextbookTable {
 }
 
 impl Observer for TextbookTable {
+    fn wants_steps(&self) -> bool {
+        self.complete
+    }
+
     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
         if step.number > TEXTBOOK_STEPS {
             self.complete = false;

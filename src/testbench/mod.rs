@@ -6,6 +6,7 @@ mod lanes;
 mod overflow;
 mod path;
 mod ranges;
+mod steps;
 mod stimulus;
 mod wave;
 
@@ -19,6 +20,8 @@ pub use lanes::{LaneOutcome, Lanes};
 pub use overflow::{OverflowEvent, OverflowWatch};
 pub use path::{PathWatch, WorstError};
 pub use ranges::{RangeWatch, RegisterRange};
+pub use steps::Step;
+use steps::{StepColumns, StepReader};
 pub use wave::{Trigger, WaveBody, WaveWriter, Window};
 
 /// Samples held between engine and observers.
@@ -26,21 +29,6 @@ const CHUNK: usize = 256;
 
 /// Trouble while running: what an observer could not do.
 pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
-
-/// A row of the step table: row 0 is the state after load, row k that after step k.
-#[derive(Clone, Debug)]
-pub struct Step {
-    /// Number of the step, from 0.
-    pub number: u64,
-    /// Clock of the sample.
-    pub clock: u64,
-    /// Registers of the machine's table, in its order.
-    pub registers: Vec<i128>,
-    /// Pulses of the step: -1, 0 or +1 of each axis.
-    pub pulses: Vec<i64>,
-    /// Machine position of each axis behind the step, in BLU.
-    pub position: Vec<i64>,
-}
 
 /// Looks on while a machine runs.
 pub trait Observer {
@@ -53,7 +41,13 @@ pub trait Observer {
         Ok(())
     }
 
-    /// A row of the step table.
+    /// This observer wants the rows of the step table: a run without anybody who does is much faster. Asked before
+    /// every block of samples; who wants no more gets no more.
+    fn wants_steps(&self) -> bool {
+        true
+    }
+
+    /// A row of the step table, for those that want them.
     ///
     /// # Errors
     /// Whatever keeps the observer from its work; the run ends.
@@ -163,6 +157,7 @@ impl Testbench {
             engine: engine.build(self.design(), &watch),
             rows: Rows::new(watch.columns.len(), CHUNK),
             steps: StepReader::new(self),
+            wants_steps: true,
             observers,
         };
         run.all_blocks()
@@ -175,6 +170,8 @@ struct Run<'a, 'o> {
     engine: Box<dyn Engine>,
     rows: Rows,
     steps: StepReader<'a>,
+    /// Somebody wants the rows of the step table.
+    wants_steps: bool,
     observers: &'a mut [&'o mut dyn Observer],
 }
 
@@ -250,114 +247,24 @@ impl Run<'_, '_> {
         for observer in self.observers.iter_mut() {
             observer.samples(&self.rows)?;
         }
-        for (clock, row) in self.rows.iter() {
-            if self.steps.sample(clock, row) {
-                for observer in self.observers.iter_mut() {
-                    observer.step(&self.steps.step)?;
-                }
-            }
+        self.wants_steps &= self.observers.iter().any(|observer| observer.wants_steps());
+        if self.wants_steps {
+            self.show_steps()?;
+        } else {
+            self.steps.count(&self.rows);
         }
         self.rows.clear();
         Ok(())
     }
-}
 
-/// Reads the step table out of samples.
-struct StepReader<'a> {
-    bench: &'a Testbench,
-    step: Step,
-    /// Rows of the table so far.
-    rows: u64,
-    /// The sample before completed a row: the pulses of the next step are counted anew.
-    row_complete: bool,
-    pulses: Vec<u64>,
-    last_pulse: u64,
-    position: Vec<i64>,
-    columns: ReaderColumns,
-}
-
-struct ReaderColumns {
-    loaded: usize,
-    stepped: usize,
-    pulses: Vec<usize>,
-    positions: Vec<usize>,
-    table: Vec<usize>,
-}
-
-impl<'a> StepReader<'a> {
-    fn new(bench: &'a Testbench) -> StepReader<'a> {
-        let machine = &bench.machine;
-        let at = |net: Net| bench.columns.index(net);
-        let axes = machine.pulses.len();
-        let columns = ReaderColumns {
-            loaded: at(machine.loaded.net),
-            stepped: at(machine.stepped.net),
-            pulses: machine.pulses.iter().map(|port| at(port.net)).collect(),
-            positions: machine.positions.iter().map(|port| at(port.net)).collect(),
-            table: machine.table.iter().map(|(_, port)| at(port.net)).collect(),
-        };
-        let step = Step {
-            number: 0,
-            clock: 0,
-            registers: vec![0; machine.table.len()],
-            pulses: vec![0; axes],
-            position: vec![0; axes],
-        };
-        StepReader {
-            bench,
-            step,
-            rows: 0,
-            row_complete: false,
-            pulses: vec![0; axes],
-            last_pulse: 0,
-            position: vec![0; axes],
-            columns,
+    fn show_steps(&mut self) -> Result<(), ObserverError> {
+        for row in 0..self.rows.len() {
+            if self.steps.sample(&self.rows, row) {
+                for observer in self.observers.iter_mut().filter(|observer| observer.wants_steps()) {
+                    observer.step(&self.steps.step)?;
+                }
+            }
         }
-    }
-
-    /// Takes a sample; true if it completes a row of the table, which then stands in `step`.
-    fn sample(&mut self, clock: u64, row: &[u64]) -> bool {
-        let machine = &self.bench.machine;
-        if std::mem::take(&mut self.row_complete) || self.rows == 0 {
-            self.step.pulses.fill(0);
-        }
-        for (axis, &column) in self.columns.pulses.iter().enumerate() {
-            // Two bits, two's complement: 1 is +1, 3 is -1.
-            let pulse = match row[column] {
-                0 => continue,
-                3 => -1,
-                _ => 1,
-            };
-            self.step.pulses[axis] += pulse;
-            self.pulses[axis] += 1;
-            self.last_pulse = clock;
-        }
-        let complete = row[self.columns.stepped] == 1 || (self.rows == 0 && row[self.columns.loaded] == 1);
-        for (axis, &column) in self.columns.positions.iter().enumerate() {
-            self.position[axis] = stepwave_kernel::bits::to_signed(machine.positions[axis].width, row[column]);
-        }
-        if !complete {
-            return false;
-        }
-        for ((value, &column), (_, port)) in self.step.registers.iter_mut().zip(&self.columns.table).zip(&machine.table)
-        {
-            *value = stepwave_kernel::bits::number(port.width, row[column], port.signed);
-        }
-        self.step.position.copy_from_slice(&self.position);
-        self.step.number = self.rows;
-        self.step.clock = clock;
-        self.rows += 1;
-        self.row_complete = true;
-        true
-    }
-
-    fn outcome(&self, ending: Ending, clocks: u64) -> Outcome {
-        Outcome {
-            ending,
-            clocks,
-            steps: self.rows.saturating_sub(1),
-            pulses: self.pulses.clone(),
-            reached: self.position.clone(),
-        }
+        Ok(())
     }
 }

@@ -132,7 +132,8 @@ impl OverflowWatch {
     }
 }
 
-fn event(watched: &Watched, clock: u64, row: &[u64]) -> OverflowEvent {
+fn event(watched: &Watched, rows: &Rows, row: usize) -> OverflowEvent {
+    let clock = rows.first_clock() + row as u64;
     let component = watched.property.name.clone();
     let (Claim::NoOverflow { operation, left, right }, Some((a, a_width, b, b_width))) =
         (watched.property.claim, watched.operands)
@@ -144,25 +145,26 @@ fn event(watched: &Watched, clock: u64, row: &[u64]) -> OverflowEvent {
         width: a_width,
         signed: left.signed,
         operation,
-        left: bits::number(a_width, row[a], left.signed),
-        right: bits::number(b_width, row[b], right.signed),
+        left: bits::number(a_width, rows.value(a, row), left.signed),
+        right: bits::number(b_width, rows.value(b, row), right.signed),
         clock,
     }
 }
 
 impl Observer for OverflowWatch {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
-        let violated = |watched: &Watched| rows.column(watched.never, 0..rows.len()).any(|value| value == 1);
-        if !self.watched.iter().any(violated) {
+        if !self.watched.iter().any(|watched| rows.any(watched.never)) {
             return Ok(());
         }
-        for (clock, row) in rows.iter() {
-            for watched in &self.watched {
-                if row[watched.never] == 1 {
-                    self.count += 1;
-                    if self.events.len() < KEPT {
-                        self.events.push(event(watched, clock, row));
-                    }
+        for row in 0..rows.len() {
+            for watched in self.watched.iter().filter(|watched| rows.value(watched.never, row) == 1) {
+                self.count += 1;
+                if self.events.len() < KEPT {
+                    self.events.push(event(watched, rows, row));
                 }
             }
         }

@@ -1,8 +1,11 @@
 //! Path error: how far each position lies off the ideal curve.
 
-use stepwave_nc::Curve;
+use stepwave_kernel::bits::to_signed;
+use stepwave_kernel::engine::Rows;
+use stepwave_models::Port;
+use stepwave_nc::{Curve, Gauge};
 
-use super::{Observer, ObserverError, Step};
+use super::{Observer, ObserverError, StepColumns, Testbench};
 
 /// The greatest path error of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,26 +18,60 @@ pub struct WorstError {
     pub position: Vec<i64>,
 }
 
-/// Finds the greatest path error.
+/// Finds the greatest path error behind all steps.
 pub struct PathWatch<'a> {
-    curve: &'a Curve,
+    gauge: Gauge<'a>,
+    columns: StepColumns,
+    ports: Vec<Port>,
+    /// Rows of the step table so far.
+    rows: u64,
+    /// Where the machine stood behind the last of them.
+    position: Vec<i64>,
     /// The first greatest so far.
     pub worst: Option<WorstError>,
 }
 
 impl<'a> PathWatch<'a> {
-    /// Against this curve.
+    /// Of a machine against this curve.
     #[must_use]
-    pub fn new(curve: &'a Curve) -> PathWatch<'a> {
-        PathWatch { curve, worst: None }
+    pub fn new(bench: &Testbench, curve: &'a Curve) -> PathWatch<'a> {
+        let ports = bench.machine().positions.clone();
+        let position = vec![0; ports.len()];
+        PathWatch { gauge: curve.gauge(), columns: StepColumns::of(bench), ports, rows: 0, position, worst: None }
+    }
+
+    /// Reads the position in a sample; true if it is another than before.
+    #[inline]
+    fn moved(&mut self, rows: &Rows, row: usize) -> bool {
+        let mut moved = false;
+        for ((place, &column), port) in self.position.iter_mut().zip(&self.columns.positions).zip(&self.ports) {
+            let now = to_signed(port.width, rows.value(column, row));
+            moved |= now != *place;
+            *place = now;
+        }
+        moved
     }
 }
 
 impl Observer for PathWatch<'_> {
-    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
-        let error = self.curve.deviation(&step.position);
-        if self.worst.as_ref().is_none_or(|worst| error > worst.error) {
-            self.worst = Some(WorstError { error, step: step.number, position: step.position.clone() });
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        for row in 0..rows.len() {
+            let first = self.rows == 0;
+            if !self.columns.completes(rows, row, first) {
+                continue;
+            }
+            self.rows += 1;
+            if !self.moved(rows, row) && !first {
+                continue;
+            }
+            let error = self.gauge.deviation(&self.position);
+            if self.worst.as_ref().is_none_or(|worst| error > worst.error) {
+                self.worst = Some(WorstError { error, step: self.rows - 1, position: self.position.clone() });
+            }
         }
         Ok(())
     }

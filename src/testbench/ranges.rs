@@ -72,7 +72,7 @@ impl RangeWatch {
     pub fn finish(mut self) -> Vec<RegisterRange> {
         for (range, watched) in self.registers.iter_mut().zip(&self.watched) {
             if watched.least <= watched.greatest {
-                let number = |biased| bits::number(range.width, unbiased(range, biased), range.signed);
+                let number = |value| bits::number(range.width, value ^ turned(range), range.signed);
                 (range.least, range.greatest) = (number(watched.least), number(watched.greatest));
             }
         }
@@ -80,20 +80,22 @@ impl RangeWatch {
     }
 }
 
-/// Two's complement with the sign bit turned over sorts as unsigned; so both readings compare alike.
-fn unbiased(range: &RegisterRange, biased: u64) -> u64 {
-    if range.signed { biased ^ range.width.sign_bit() } else { biased }
+/// What makes both readings sort alike: two's complement has its sign bit turned over.
+fn turned(range: &RegisterRange) -> u64 {
+    if range.signed { range.width.sign_bit() } else { 0 }
 }
 
 impl Observer for RangeWatch {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         for (watched, range) in self.watched.iter_mut().zip(&self.registers) {
-            let (mut least, mut greatest) = (watched.least, watched.greatest);
-            for value in rows.column(watched.column, 0..rows.len()) {
-                let biased = unbiased(range, value);
-                (least, greatest) = (least.min(biased), greatest.max(biased));
+            if let Some((least, greatest)) = rows.extremes(watched.column, turned(range)) {
+                watched.least = watched.least.min(least);
+                watched.greatest = watched.greatest.max(greatest);
             }
-            (watched.least, watched.greatest) = (least, greatest);
         }
         Ok(())
     }

@@ -112,10 +112,14 @@ impl<B: WaveBody> WaveWriter<B> {
 }
 
 impl<B: WaveBody> Observer for WaveWriter<B> {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         let mut range = self.window.rows(rows);
         if let (Trigger::Column(column), false) = (self.window.trigger, self.open) {
-            match rows.column(column, range.clone()).position(|value| value == 1) {
+            match rows.column(column)[range.clone()].iter().position(|&value| value == 1) {
                 Some(index) => range.start += index,
                 None => return Ok(()),
             }

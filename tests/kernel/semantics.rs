@@ -206,10 +206,10 @@ fn sample_0_is_the_state_behind_reset_with_the_inputs_set_before_it() {
     let design = counter(4, 4);
     on_every_engine(|kind| {
         let mut run = Run::new(kind, &design, &["enable", "count", "next"], &[], 4);
-        assert_eq!((run.clocks(), run.rows.row(0)), (vec![0], &[0, 4, 5][..]));
+        assert_eq!((run.clocks(), run.rows.row(0)), (vec![0], vec![0, 4, 5]));
         run.set("enable", 1);
         run.reset();
-        assert_eq!((run.clocks(), run.rows.row(0)), (vec![0], &[1, 4, 5][..]));
+        assert_eq!((run.clocks(), run.rows.row(0)), (vec![0], vec![1, 4, 5]));
         run.run(1);
         assert_eq!(run.rows.row(1), [1, 5, 6]);
     });

@@ -26,7 +26,7 @@
 //! engine.set_input(enable, 1);
 //! engine.reset(&mut rows);
 //! engine.run(18, &mut rows);
-//! assert_eq!(rows.row(18), &[2]); // 18 modulo 16
+//! assert_eq!(rows.row(18), [2]); // 18 modulo 16
 //! ```
 
 pub mod bits;

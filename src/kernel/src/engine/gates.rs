@@ -169,14 +169,7 @@ impl Gates {
     }
 
     fn record(&self, rows: &mut Rows) {
-        if self.watch.columns.is_empty() {
-            return;
-        }
-        if let Some(row) = rows.push(self.clock) {
-            for (value, &net) in row.iter_mut().zip(&self.watch.columns) {
-                *value = self.value(net);
-            }
-        }
+        rows.push(self.clock, |column| self.value(self.watch.columns[column]));
     }
 }
 

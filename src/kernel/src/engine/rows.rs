@@ -1,23 +1,31 @@
-//! Recorded samples: a flat block of rows that is filled by an engine, read by observers, and used again.
+//! Recorded samples: a block with a column for each net, filled by an engine, read by observers, and used again.
+//!
+//! Column by column, because whoever looks for a change, a least value or a flag reads one net over many clocks.
 
-use std::ops::Range;
+use fearless_simd::{Level, dispatch};
 
-/// Rows of equally many values, one row a sample, with room for a fixed number. The clocks of the rows follow one
-/// another without a gap.
+/// Rows of equally many values, one row a sample, with room for a fixed number.
 #[derive(Clone, Debug)]
 pub struct Rows {
     columns: usize,
     capacity: usize,
+    /// From one column to the next.
+    stride: usize,
     len: usize,
     first_clock: u64,
+    /// Column `c` begins at `c * stride`.
     values: Vec<u64>,
+    level: Level,
 }
 
 impl Rows {
     /// Room for `capacity` rows of `columns` values.
     #[must_use]
     pub fn new(columns: usize, capacity: usize) -> Rows {
-        Rows { columns, capacity, len: 0, first_clock: 0, values: vec![0; columns * capacity] }
+        // A line of the cache more, so that the columns of one row do not all fall into the same set of it.
+        let stride = capacity + 8;
+        let values = vec![0; columns * stride];
+        Rows { columns, capacity, stride, len: 0, first_clock: 0, values, level: Level::new() }
     }
 
     /// Number of rows held.
@@ -44,30 +52,62 @@ impl Rows {
         self.first_clock
     }
 
-    /// The values of a row, in the order of the columns.
+    /// The values of a column, one a row held.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[inline]
+    #[must_use]
+    pub fn column(&self, column: usize) -> &[u64] {
+        assert!(column < self.columns, "column {column} of {}", self.columns);
+        &self.values[column * self.stride..][..self.len]
+    }
+
+    /// One of the values of a column is not 0.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[must_use]
+    pub fn any(&self, column: usize) -> bool {
+        self.column(column).iter().fold(0, |seen, value| seen | value) != 0
+    }
+
+    /// Least and greatest value of a column, all taken with the bits of `turned` turned over; `None` without a row. With
+    /// the sign bit turned over, two's complement sorts as unsigned numbers do.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[must_use]
+    pub fn extremes(&self, column: usize, turned: u64) -> Option<(u64, u64)> {
+        let values = self.column(column);
+        let extremes = dispatch!(self.level, _simd => extremes(values, turned));
+        (!values.is_empty()).then_some(extremes)
+    }
+
+    /// The value of a column in a row.
+    ///
+    /// # Panics
+    /// If there is no such column, or no such row.
+    #[inline]
+    #[must_use]
+    pub fn value(&self, column: usize, row: usize) -> u64 {
+        assert!(row < self.len, "row {row} of {}", self.len);
+        self.values[column * self.stride + row]
+    }
+
+    /// The values of a row, in the order of the columns; gathered one by one, so not for hot loops.
     ///
     /// # Panics
     /// If there is no such row.
     #[must_use]
-    pub fn row(&self, index: usize) -> &[u64] {
+    pub fn row(&self, index: usize) -> Vec<u64> {
         assert!(index < self.len, "row {index} of {}", self.len);
-        &self.values[index * self.columns..(index + 1) * self.columns]
+        (0..self.columns).map(|column| self.values[column * self.stride + index]).collect()
     }
 
-    /// Every row with its clock.
-    pub fn iter(&self) -> impl Iterator<Item = (u64, &[u64])> {
+    /// Every row with its clock, as [`row`](Self::row).
+    pub fn iter(&self) -> impl Iterator<Item = (u64, Vec<u64>)> {
         (0..self.len).map(|index| (self.first_clock + index as u64, self.row(index)))
-    }
-
-    /// The values of a column in some of the rows.
-    ///
-    /// # Panics
-    /// If there is no such column, or a row of `rows` is not held.
-    #[inline]
-    pub fn column(&self, column: usize, rows: Range<usize>) -> impl Iterator<Item = u64> {
-        assert!(column < self.columns && rows.end <= self.len, "column {column}, rows {rows:?} of {}", self.len);
-        let held = &self.values[rows.start * self.columns..rows.end * self.columns];
-        held.get(column..).unwrap_or_default().iter().step_by(self.columns).copied()
     }
 
     /// Forgets the rows; the room stays.
@@ -75,14 +115,19 @@ impl Rows {
         self.len = 0;
     }
 
+    /// From one column to the next, in values.
+    pub(super) fn stride(&self) -> usize {
+        self.stride
+    }
+
     /// Number of rows that still fit.
     pub(super) fn room(&self) -> u64 {
         (self.capacity - self.len) as u64
     }
 
-    /// The values of the rows that still fit, to be filled by native code.
-    pub(super) fn spare(&mut self) -> &mut [u64] {
-        &mut self.values[self.len * self.columns..]
+    /// All values, and the index of the next row, to be filled by native code.
+    pub(super) fn spare(&mut self) -> (&mut [u64], usize) {
+        (&mut self.values, self.len)
     }
 
     /// Counts `rows` more as held, which native code has filled; the first is the sample of `clock`.
@@ -98,18 +143,25 @@ impl Rows {
         self.len += usize::try_from(rows).unwrap_or(0);
     }
 
-    /// Room for the sample of `clock`, to be filled by the engine; `None` if full.
+    /// Records the sample of `clock`, if there is room and something to record: `value` gives that of each column.
     #[inline]
-    pub(super) fn push(&mut self, clock: u64) -> Option<&mut [u64]> {
-        if self.len == self.capacity {
-            return None;
+    pub(super) fn push(&mut self, clock: u64, value: impl Fn(usize) -> u64) {
+        if self.len == self.capacity || self.columns == 0 {
+            return;
         }
         if self.len == 0 {
             self.first_clock = clock;
         }
         debug_assert_eq!(self.first_clock + self.len as u64, clock, "a row of another time");
-        let start = self.len * self.columns;
+        for (column, place) in self.values[self.len..].iter_mut().step_by(self.stride).enumerate() {
+            *place = value(column);
+        }
         self.len += 1;
-        Some(&mut self.values[start..start + self.columns])
     }
+}
+
+#[inline(always)]
+fn extremes(values: &[u64], turned: u64) -> (u64, u64) {
+    let turn = |value: &u64| value ^ turned;
+    values.iter().map(turn).fold((u64::MAX, 0), |(least, greatest), value| (least.min(value), greatest.max(value)))
 }

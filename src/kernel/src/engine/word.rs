@@ -174,14 +174,7 @@ impl WordEngine {
 
     #[inline]
     fn record(&self, rows: &mut Rows) {
-        if self.columns.is_empty() {
-            return;
-        }
-        if let Some(row) = rows.push(self.clock) {
-            for (value, &column) in row.iter_mut().zip(&self.columns) {
-                *value = self.values[column as usize];
-            }
-        }
+        rows.push(self.clock, |column| self.values[self.columns[column] as usize]);
     }
 }
 
@@ -204,9 +197,7 @@ impl WordEngine {
     /// Counts and records the edge whose register values were taken over last.
     pub(super) fn finish_edge(&mut self, rows: &mut Rows) {
         self.clock += 1;
-        if !self.columns.is_empty() {
-            self.record(rows);
-        }
+        self.record(rows);
     }
 
     /// The stop net that is 1 in the present sample.
@@ -245,9 +236,7 @@ impl Engine for WordEngine {
             self.edge();
             self.apply_inputs();
             self.settle();
-            if records {
-                self.record(rows);
-            }
+            self.record(rows);
             if let Some(stop) = self.stopped() {
                 return stop;
             }

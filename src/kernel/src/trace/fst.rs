@@ -12,6 +12,7 @@ use fst_writer::{
     FstVarType, FstWriteError,
 };
 
+use super::moves::{Moves, SPAN};
 use super::probe::Probe;
 use super::timescale::ClockTime;
 use super::vcd::{digits, has_range, variable_type};
@@ -55,8 +56,7 @@ pub struct FstBody<W: Write + Seek> {
     body: FstBodyWriter<W>,
     clk: Option<FstSignalId>,
     changes: Vec<Change>,
-    /// Indices of the changes that happen in the present block.
-    busy: Vec<usize>,
+    moves: Moves,
     ticks: u64,
     /// Place of the first block of changes in the file.
     first_section: u64,
@@ -93,8 +93,8 @@ impl FstHeader<'_> {
         let Declared { mut body, clk, changes } = self.declare(out).map_err(io_error)?;
         // Only changes are handed over.
         body.set_deduplicate(false);
-        let busy = Vec::with_capacity(changes.len());
-        Ok(FstBody { body, clk, changes, busy, ticks: self.time.ticks(), first_section, written: None })
+        let moves = Moves::new(changes.len());
+        Ok(FstBody { body, clk, changes, moves, ticks: self.time.ticks(), first_section, written: None })
     }
 
     fn declare<W: Write + Seek>(&self, out: W) -> Result<Declared<W>, FstWriteError> {
@@ -161,18 +161,20 @@ impl<W: Write + Seek> FstBody<W> {
         if range.is_empty() {
             return Ok(());
         }
-        let clock = |index: usize| rows.first_clock() + index as u64;
+        let clock = |row: usize| rows.first_clock() + row as u64;
         let last = clock(range.end - 1);
         if self.written.is_none() {
-            self.first(clock(range.start), rows.row(range.start)).map_err(io_error)?;
+            self.first(clock(range.start), rows, range.start).map_err(io_error)?;
             self.written = Some((clock(range.start), last));
             range.start += 1;
         }
-        let moves = |change: &Change| rows.column(change.column, range.clone()).any(|value| value != change.last);
-        self.busy.clear();
-        self.busy.extend(self.changes.iter().enumerate().filter(|(_, change)| moves(change)).map(|(index, _)| index));
-        for index in range {
-            self.row(clock(index), rows.row(index)).map_err(io_error)?;
+        for start in range.clone().step_by(SPAN) {
+            let end = range.end.min(start + SPAN);
+            let nets = self.changes.iter_mut();
+            self.moves.scan(nets.map(|change| (&rows.column(change.column)[start..end], &mut change.last)));
+            for row in start..end {
+                self.row(clock(row), rows, row, row - start).map_err(io_error)?;
+            }
         }
         self.written = self.written.map(|(first, _)| (first, last));
         // The crate takes the end of a section only in front of a new time.
@@ -181,12 +183,12 @@ impl<W: Write + Seek> FstBody<W> {
 
     /// The state with which the file begins. What is told before the first time counts from the beginning, which
     /// `finish` sets.
-    fn first(&mut self, clock: u64, row: &[u64]) -> Result<(), FstWriteError> {
+    fn first(&mut self, clock: u64, rows: &Rows, row: usize) -> Result<(), FstWriteError> {
         if let Some(clk) = self.clk {
             self.body.signal_change(clk, if clock == 0 { b"0" } else { b"1" })?;
         }
         for change in &mut self.changes {
-            change.last = row[change.column];
+            change.last = rows.value(change.column, row);
             self.body.signal_change(change.id, digits(change.width, change.last, &mut [0; 64]))?;
         }
         if let (Some(clk), true) = (self.clk, clock > 0) {
@@ -196,24 +198,20 @@ impl<W: Write + Seek> FstBody<W> {
         Ok(())
     }
 
-    fn row(&mut self, clock: u64, row: &[u64]) -> Result<(), FstWriteError> {
+    /// Writes a row, the `sample`th of those scanned last.
+    fn row(&mut self, clock: u64, rows: &Rows, row: usize, sample: usize) -> Result<(), FstWriteError> {
         let time = clock * self.ticks;
-        let mut stamped = false;
-        if let Some(clk) = self.clk {
+        let mut changes = self.moves.of(sample).peekable();
+        if self.clk.is_some() || changes.peek().is_some() {
             self.body.time_change(time)?;
-            self.body.signal_change(clk, b"1")?;
-            stamped = true;
         }
-        for &index in &self.busy {
-            let change = &mut self.changes[index];
-            let now = row[change.column];
-            if now != change.last {
-                change.last = now;
-                if !std::mem::replace(&mut stamped, true) {
-                    self.body.time_change(time)?;
-                }
-                self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
-            }
+        if let Some(clk) = self.clk {
+            self.body.signal_change(clk, b"1")?;
+        }
+        for index in changes {
+            let change = &self.changes[index];
+            let now = rows.value(change.column, row);
+            self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
         }
         if let Some(clk) = self.clk {
             self.body.time_change(time + self.ticks / 2)?;

@@ -4,6 +4,7 @@ pub mod diverge;
 pub mod fst;
 pub mod gtkw;
 pub mod merge;
+mod moves;
 pub mod probe;
 pub mod read;
 pub mod timescale;

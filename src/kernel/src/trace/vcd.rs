@@ -3,9 +3,7 @@
 //! Edge k stands at k periods; the clock falls half a period later. Only changes are written, apart from the first
 //! sample, which holds every variable. There is no date: the same run gives the same bytes on any machine.
 //!
-//! Samples come in blocks. A net that keeps its value through a block is found once and costs nothing in its rows; of
-//! the others, each row writes every line, changed or not, and goes on behind those that changed: a line costs less
-//! than a branch that cannot be foreseen.
+//! Samples come in blocks, in which [`Moves`] finds the nets that change; a row costs what changes in it.
 
 mod background;
 mod text;
@@ -15,6 +13,7 @@ use std::ops::Range;
 
 use ::vcd::{IdCode, ReferenceIndex, VarType, Writer};
 
+use super::moves::{Moves, SPAN};
 use super::probe::{Probe, Role};
 use super::timescale::ClockTime;
 use crate::engine::Rows;
@@ -53,8 +52,7 @@ pub struct VcdBody<W: Write> {
     buffer: Vec<u8>,
     filled: usize,
     changes: Vec<Change>,
-    /// Indices of the changes that happen in the present block.
-    busy: Vec<usize>,
+    moves: Moves,
     /// Value lines of the clock, high and low, if it is dumped.
     clk: Option<[Tail; 2]>,
     /// Times of the next rising edge and of the falling one behind it.
@@ -139,7 +137,7 @@ impl VcdHeader<'_> {
             // Two stamps and `$dumpvars` fit into a window too.
             buffer: vec![0; BUFFER + longest + 3 * WINDOW],
             filled: 0,
-            busy: Vec::with_capacity(changes.len()),
+            moves: Moves::new(changes.len()),
             changes,
             clk,
             rise: Stamps::new(ticks),
@@ -151,44 +149,29 @@ impl VcdHeader<'_> {
 }
 
 impl<W: Write> VcdBody<W> {
-    /// Writes the sample of `clock`, which is later than that of the sample before; `row` holds every column of the
-    /// probes.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    pub fn sample(&mut self, clock: u64, row: &[u64]) -> io::Result<()> {
-        if self.seek(clock) {
-            self.first(clock, row);
-        } else {
-            self.busy.clear();
-            self.busy.extend(0..self.changes.len());
-            self.row(row);
-        }
-        self.last_clock = Some(clock);
-        self.spill()
-    }
-
-    /// Writes some rows of a block, as [`sample`](Self::sample) does row by row.
+    /// Writes some rows of a block, which are later than those written before; a row holds every column of the probes.
     ///
     /// # Errors
     /// The output cannot be written.
     pub fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
-        if self.last_clock.is_none() && !range.is_empty() {
-            self.sample(rows.first_clock() + range.start as u64, rows.row(range.start))?;
-            range.start += 1;
-        }
         if range.is_empty() {
             return Ok(());
         }
-        self.seek(rows.first_clock() + range.start as u64);
-        let moves = |change: &Change| rows.column(change.column, range.clone()).any(|value| value != change.last);
-        self.busy.clear();
-        self.busy.extend(self.changes.iter().enumerate().filter(|(_, change)| moves(change)).map(|(index, _)| index));
-        for index in range.clone() {
-            self.row(rows.row(index));
-            self.spill()?;
+        let clock = |row: usize| rows.first_clock() + row as u64;
+        if self.seek(clock(range.start)) {
+            self.first(clock(range.start), rows, range.start);
+            range.start += 1;
         }
-        self.last_clock = Some(rows.first_clock() + range.end as u64 - 1);
+        for start in range.clone().step_by(SPAN) {
+            let end = range.end.min(start + SPAN);
+            let nets = self.changes.iter_mut();
+            self.moves.scan(nets.map(|change| (&rows.column(change.column)[start..end], &mut change.last)));
+            for row in start..end {
+                self.row(rows, row, row - start);
+                self.spill()?;
+            }
+        }
+        self.last_clock = Some(clock(range.end) - 1);
         Ok(())
     }
 
@@ -201,7 +184,7 @@ impl<W: Write> VcdBody<W> {
         self.last_clock.is_none()
     }
 
-    fn first(&mut self, clock: u64, row: &[u64]) {
+    fn first(&mut self, clock: u64, rows: &Rows, row: usize) {
         self.filled += self.rise.put(Tail::new("\n"), &mut self.buffer[self.filled..]);
         self.text(b"$dumpvars\n");
         if let Some([high, low]) = self.clk {
@@ -211,7 +194,7 @@ impl<W: Write> VcdBody<W> {
             self.filled += line.put(&mut self.buffer[self.filled..]);
         }
         for change in &mut self.changes {
-            change.last = row[change.column];
+            change.last = rows.value(change.column, row);
             change.line.put(change.last, window(&mut self.buffer, self.filled));
             self.filled += change.line.len();
         }
@@ -224,22 +207,18 @@ impl<W: Write> VcdBody<W> {
         self.fall.advance();
     }
 
+    /// Writes a row, the `sample`th of those scanned last.
     #[inline]
-    fn row(&mut self, row: &[u64]) {
+    fn row(&mut self, rows: &Rows, row: usize, sample: usize) {
         let start = self.filled;
         let buffer = &mut self.buffer[..];
         let stamp = self.clk.map_or_else(|| Tail::new("\n"), |[high, _]| high);
         let mut at = start + self.rise.put(stamp, &mut buffer[start..]);
         let changed = at;
-        for &index in &self.busy {
-            let change = &mut self.changes[index];
-            let now = row[change.column];
-            if change.line.is_long() && now == change.last {
-                continue;
-            }
-            change.line.put(now, window(buffer, at));
-            at += if now == change.last { 0 } else { change.line.len() };
-            change.last = now;
+        for index in self.moves.of(sample) {
+            let change = &self.changes[index];
+            change.line.put(rows.value(change.column, row), window(buffer, at));
+            at += change.line.len();
         }
         match self.clk {
             Some([_, low]) => at += self.fall.put(low, &mut buffer[at..]),

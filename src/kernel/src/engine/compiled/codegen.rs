@@ -42,6 +42,8 @@ pub(super) struct Plan<'a> {
     /// Inputs, behind the registers in the state.
     pub(super) inputs: &'a [Net],
     pub(super) columns: &'a [Net],
+    /// Rows from one column to the next.
+    pub(super) stride: usize,
     pub(super) stops: &'a [Net],
 }
 
@@ -74,7 +76,8 @@ pub(super) fn immediate(value: u64) -> i64 {
     value.cast_signed()
 }
 
-/// Generates the body of `fn(state, rows, clocks) -> recorded`; the builder stands in the entry block with those
+/// Generates the body of `fn(state, rows, clocks) -> recorded`, `rows` being the place of the next row in the first
+/// column; the builder stands in the entry block with those
 /// parameters. `clocks` is at least the number of phases.
 pub(super) fn generate(plan: &Plan<'_>, f: &mut FunctionBuilder<'_>, entry: Block) {
     let parameters = f.block_params(entry).to_vec();
@@ -230,9 +233,9 @@ impl Generator<'_, '_> {
     fn record(&mut self, logic: &Simplified, values: &HashMap<Net, Value>, row: Value) -> Value {
         for (column, &net) in self.plan.columns.iter().enumerate() {
             let value = self.wide(values[&logic.net(net)]);
-            self.f.ins().store(trusted(), value, row, offset(column));
+            self.f.ins().store(trusted(), value, row, offset(column * self.plan.stride));
         }
-        self.f.ins().iadd_imm(row, i64::from(offset(self.plan.columns.len())))
+        self.f.ins().iadd_imm(row, i64::from(offset(1)))
     }
 
     fn any_stop(&mut self, logic: &Simplified, values: &HashMap<Net, Value>) -> Option<Value> {

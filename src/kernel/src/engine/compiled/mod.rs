@@ -107,15 +107,17 @@ impl Compiled {
         stop
     }
 
-    /// The loop that may be entered behind the present sample.
-    fn fitting(&self) -> Option<usize> {
+    /// The loop that may be entered behind the present sample and fills rows of this room.
+    fn fitting(&self, stride: usize) -> Option<usize> {
         let holds = |values: &HashMap<Net, u64>| values.iter().all(|(&net, &value)| self.word.value(net) == value);
-        let fits = |variant: &Variant| holds(&variant.inputs) && holds(&variant.last_phase);
+        let fits = |variant: &Variant| {
+            variant.native.stride() == stride && holds(&variant.inputs) && holds(&variant.last_phase)
+        };
         self.variants.iter().position(|variant| !variant.is_poor(self.warm_up) && fits(variant))
     }
 
     /// Compiles a loop for what the recent clocks were like.
-    fn compile(&mut self) {
+    fn compile(&mut self, stride: usize) {
         let assumes_registers = self.variants.iter().filter(|variant| variant.assumes_registers).count() < TRIES;
         let value = |net: Net| self.word.value(net);
         let period = if assumes_registers { self.history.period() } else { None };
@@ -130,6 +132,7 @@ impl Compiled {
             registers: &self.registers,
             inputs: self.design.inputs(),
             columns: &self.watch.columns,
+            stride,
             stops: &self.watch.stops,
         };
         match Native::compile(&plan) {
@@ -152,7 +155,8 @@ impl Compiled {
         for (word, &net) in self.state[count..].iter_mut().zip(self.design.inputs()) {
             *word = self.word.value(net);
         }
-        let recorded = self.variants[variant].native.call(&mut self.state, rows.spare(), clocks);
+        let (values, first) = rows.spare();
+        let recorded = self.variants[variant].native.call(&mut self.state, values, first, clocks);
         rows.grow(self.word.clock() + 1, recorded);
         let edge = self.state[self.state.len() - 1] == 1;
         self.word.continue_from(recorded, &self.state[..count]);
@@ -189,7 +193,7 @@ impl Engine for Compiled {
             if self.quiet >= self.warm_up && !self.unavailable && !self.word.input_pending() {
                 let left = end - self.word.clock();
                 let room = if records { rows.room().min(left) } else { left.min(i64::MAX as u64) };
-                match self.fitting() {
+                match self.fitting(rows.stride()) {
                     Some(variant) if self.variants[variant].native.phases() <= room => {
                         if let Some(stop) = self.run_native(variant, room, rows) {
                             return stop;
@@ -197,7 +201,7 @@ impl Engine for Compiled {
                         continue;
                     }
                     None if self.history.is_full() => {
-                        self.compile();
+                        self.compile(rows.stride());
                         self.history.clear();
                     }
                     _ => {}

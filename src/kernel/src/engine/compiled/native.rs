@@ -11,6 +11,9 @@ use cranelift_module::{Linkage, Module, default_libcall_names};
 
 use super::codegen::{self, Plan};
 
+/// Values that an offset of 31 bits reaches.
+const FARTHEST: usize = 1 << 28;
+
 /// The compiled loop: state, rows, clocks → samples recorded.
 type Loop = unsafe extern "C" fn(*mut u64, *mut u64, u64) -> u64;
 
@@ -21,12 +24,17 @@ pub(super) struct Native {
     code: Loop,
     state_words: usize,
     columns: usize,
+    stride: usize,
     phases: u64,
 }
 
 impl Native {
-    /// Compiles a plan; `None` where this machine has no code generator.
+    /// Compiles a plan; `None` where this machine has no code generator, or the rows are too large for one.
     pub(super) fn compile(plan: &Plan<'_>) -> Option<Native> {
+        let values = plan.columns.len().checked_mul(plan.stride)?;
+        if values > FARTHEST {
+            return None;
+        }
         let flags = [("opt_level", "speed"), ("enable_verifier", "false")];
         let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
         let mut module = JITModule::new(builder);
@@ -55,6 +63,7 @@ impl Native {
             code,
             state_words: plan.registers.len() + plan.inputs.len() + 1,
             columns: plan.columns.len(),
+            stride: plan.stride,
             phases: plan.phases.len() as u64,
         })
     }
@@ -64,18 +73,27 @@ impl Native {
         self.phases
     }
 
-    /// Runs up to `clocks` clocks, recording a row of each into `rows`; gives the number recorded.
+    /// Rows from one column to the next, for which the code was made.
+    pub(super) fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// Runs up to `clocks` clocks, recording a row of each into `rows` from row `first` on; gives the number recorded.
     ///
     /// # Panics
     /// If `state` or `rows` is too short, or `clocks` less than the number of phases.
-    pub(super) fn call(&self, state: &mut [u64], rows: &mut [u64], clocks: u64) -> u64 {
+    pub(super) fn call(&self, state: &mut [u64], rows: &mut [u64], first: usize, clocks: u64) -> u64 {
         assert!(state.len() >= self.state_words, "state of {} words", state.len());
-        let room = (rows.len() as u64).checked_div(self.columns as u64).unwrap_or(u64::MAX);
-        assert!(self.phases <= clocks && clocks <= room, "{clocks} clocks, room for {room}");
-        assert!(i64::try_from(clocks).is_ok(), "{clocks} clocks");
-        // SAFETY: the code touches `state_words` words of `state` and at most `clocks` rows of `columns` words of `rows`,
-        // which the assertions have checked; it calls nothing and keeps no pointer. The module that holds it lives.
-        unsafe { (self.code)(state.as_mut_ptr(), rows.as_mut_ptr(), clocks) }
+        assert!(self.phases <= clocks && i64::try_from(clocks).is_ok(), "{clocks} clocks");
+        if self.columns > 0 {
+            let room = self.stride.saturating_sub(first) as u64;
+            assert!(clocks <= room, "{clocks} clocks, room for {room}");
+            assert!(rows.len() >= self.columns * self.stride, "{} values", rows.len());
+        }
+        // SAFETY: the code touches `state_words` words of `state`, and in each of `columns` columns of `stride` values at
+        // most `clocks` values behind `first`, all of which the assertions have checked; it calls nothing and keeps no
+        // pointer. The module that holds it lives.
+        unsafe { (self.code)(state.as_mut_ptr(), rows[first..].as_mut_ptr(), clocks) }
     }
 }
 

@@ -86,12 +86,6 @@ impl Line {
         self.tail_at + self.tail.len
     }
 
-    /// More than eight digits.
-    #[inline]
-    pub(super) fn is_long(&self) -> bool {
-        self.shift < 56
-    }
-
     /// Writes the line for `value` at the start of `out`.
     #[inline]
     pub(super) fn put(&self, value: u64, out: &mut [u8; WINDOW]) {

@@ -1,0 +1,161 @@
+//! The step table, read out of samples: row 0 is the state after load, row k that after step k.
+
+use stepwave_kernel::bits::{number, to_signed};
+use stepwave_kernel::engine::Rows;
+
+use super::{Ending, Outcome, Testbench};
+
+/// A row of the step table.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Number of the step, from 0.
+    pub number: u64,
+    /// Clock of the sample.
+    pub clock: u64,
+    /// Registers of the machine's table, in its order.
+    pub registers: Vec<i128>,
+    /// Pulses of the step: -1, 0 or +1 of each axis.
+    pub pulses: Vec<i64>,
+    /// Machine position of each axis behind the step, in BLU.
+    pub position: Vec<i64>,
+}
+
+/// Columns of the nets that make the step table.
+#[derive(Clone, Debug)]
+pub(super) struct StepColumns {
+    loaded: usize,
+    stepped: usize,
+    pulses: Vec<usize>,
+    pub(super) positions: Vec<usize>,
+    table: Vec<usize>,
+}
+
+impl StepColumns {
+    pub(super) fn of(bench: &Testbench) -> StepColumns {
+        let machine = bench.machine();
+        let at = |net| bench.columns().index(net);
+        StepColumns {
+            loaded: at(machine.loaded.net),
+            stepped: at(machine.stepped.net),
+            pulses: machine.pulses.iter().map(|port| at(port.net)).collect(),
+            positions: machine.positions.iter().map(|port| at(port.net)).collect(),
+            table: machine.table.iter().map(|(_, port)| at(port.net)).collect(),
+        }
+    }
+
+    /// A sample completes a row of the table; `first` if there was none before.
+    #[inline]
+    pub(super) fn completes(&self, rows: &Rows, row: usize, first: bool) -> bool {
+        rows.value(self.stepped, row) == 1 || first && rows.value(self.loaded, row) == 1
+    }
+}
+
+/// Counts steps and pulses, and makes the rows of the table where somebody wants them.
+pub(super) struct StepReader<'a> {
+    bench: &'a Testbench,
+    columns: StepColumns,
+    pub(super) step: Step,
+    /// Rows of the table so far.
+    rows: u64,
+    /// The sample before completed a row: the pulses of the next step are counted anew.
+    row_complete: bool,
+    pulses: Vec<u64>,
+    pub(super) last_pulse: u64,
+    position: Vec<i64>,
+}
+
+impl<'a> StepReader<'a> {
+    pub(super) fn new(bench: &'a Testbench) -> StepReader<'a> {
+        let machine = bench.machine();
+        let axes = machine.pulses.len();
+        let step = Step {
+            number: 0,
+            clock: 0,
+            registers: vec![0; machine.table.len()],
+            pulses: vec![0; axes],
+            position: vec![0; axes],
+        };
+        StepReader {
+            bench,
+            columns: StepColumns::of(bench),
+            step,
+            rows: 0,
+            row_complete: false,
+            pulses: vec![0; axes],
+            last_pulse: 0,
+            position: vec![0; axes],
+        }
+    }
+
+    /// Counts what a block of samples holds.
+    pub(super) fn count(&mut self, rows: &Rows) {
+        for (pulses, &column) in self.pulses.iter_mut().zip(&self.columns.pulses) {
+            let values = rows.column(column);
+            *pulses += values.iter().map(|&pulse| u64::from(pulse != 0)).sum::<u64>();
+            if let Some(last) = values.iter().rposition(|&pulse| pulse != 0) {
+                self.last_pulse = self.last_pulse.max(rows.first_clock() + last as u64);
+            }
+        }
+        let mut from = 0;
+        if self.rows == 0 {
+            let first = (0..rows.len()).find(|&row| self.columns.completes(rows, row, true));
+            self.rows += u64::from(first.is_some());
+            from = first.map_or(rows.len(), |row| row + 1);
+        }
+        self.rows += rows.column(self.columns.stepped)[from..].iter().sum::<u64>();
+        if !rows.is_empty() {
+            self.place(rows, rows.len() - 1);
+        }
+    }
+
+    fn place(&mut self, rows: &Rows, row: usize) {
+        let ports = &self.bench.machine().positions;
+        for ((place, &column), port) in self.position.iter_mut().zip(&self.columns.positions).zip(ports) {
+            *place = to_signed(port.width, rows.value(column, row));
+        }
+    }
+
+    /// Takes a sample; true if it completes a row of the table, which then stands in `step`. In the place of
+    /// [`count`](Self::count), for every sample from the first on.
+    pub(super) fn sample(&mut self, rows: &Rows, row: usize) -> bool {
+        if std::mem::take(&mut self.row_complete) || self.rows == 0 {
+            self.step.pulses.fill(0);
+        }
+        let clock = rows.first_clock() + row as u64;
+        for (axis, &column) in self.columns.pulses.iter().enumerate() {
+            // Two bits, two's complement: 1 is +1, 3 is -1.
+            let pulse = match rows.value(column, row) {
+                0 => continue,
+                3 => -1,
+                _ => 1,
+            };
+            self.step.pulses[axis] += pulse;
+            self.pulses[axis] += 1;
+            self.last_pulse = clock;
+        }
+        self.place(rows, row);
+        if !self.columns.completes(rows, row, self.rows == 0) {
+            return false;
+        }
+        let table = self.columns.table.iter().zip(&self.bench.machine().table);
+        for (value, (&column, (_, port))) in self.step.registers.iter_mut().zip(table) {
+            *value = number(port.width, rows.value(column, row), port.signed);
+        }
+        self.step.position.copy_from_slice(&self.position);
+        self.step.number = self.rows;
+        self.step.clock = clock;
+        self.rows += 1;
+        self.row_complete = true;
+        true
+    }
+
+    pub(super) fn outcome(&self, ending: Ending, clocks: u64) -> Outcome {
+        Outcome {
+            ending,
+            clocks,
+            steps: self.rows.saturating_sub(1),
+            pulses: self.pulses.clone(),
+            reached: self.position.clone(),
+        }
+    }
+}
