@@ -24,11 +24,13 @@ impl<'m> DeviationAccumulator<'m> {
     }
 
     /// Closes the accumulator: loaded with its word; at an edge with `compute` = 1 the operand is subtracted where
-    /// `subtract` is 1, else added. The exact result must fit; the operand may have any width and either reading.
+    /// `subtract` is 1, else added. A load wins; the exact result must fit where it does not. The operand may have any
+    /// width and either reading.
     pub fn close(self, block: &Block<'m>, compute: Signal<'m>, subtract: Signal<'m>, operand: Signal<'m>) {
         let f = self.f;
         let (plus, minus) = (compute & !subtract, compute & subtract);
-        let (sum, difference) = (f.q.strict_add(operand, plus), f.q.strict_sub(operand, minus));
+        let counts = !block.load;
+        let (sum, difference) = (f.q.strict_add(operand, plus & counts), f.q.strict_sub(operand, minus & counts));
         let word = block.word_signed("f", f.q.bits());
         f.when(block.load, word).when(plus, sum).when(minus, difference).else_hold();
     }

@@ -4,7 +4,8 @@ use stepwave_kernel::dsl::{Register, Scope, Signal};
 
 use super::{Block, shifted_right};
 
-/// A register that is loaded with a number of steps and counts them down.
+/// A register that is loaded with a number of steps and counts them down. At an edge that loads nothing is counted, so
+/// that neither an overflow nor a 0 is told there.
 #[derive(Clone, Copy, Debug)]
 pub struct DownCounter<'m> {
     m: Scope<'m>,
@@ -28,10 +29,10 @@ impl<'m> DownCounter<'m> {
     }
 
     /// Closes the counter: at an edge with `count` = 1 it goes down by one, which must not take it below 0. Returns 1
-    /// bit: it stands at 0 behind this edge.
+    /// bit: it is counted or held at this edge and stands at 0 behind it.
     #[must_use]
     pub fn count(self, count: Signal<'m>) -> Signal<'m> {
-        let less = self.register.q.strict_sub(self.m.lit(1, 1), count);
+        let less = self.less(count);
         self.close(count.mux(less, self.register.q))
     }
 
@@ -44,14 +45,19 @@ impl<'m> DownCounter<'m> {
     /// As [`count`](DownCounter::count), and halved at an edge with `halve` = 1.
     #[must_use]
     pub fn count_or_halve(self, count: Signal<'m>, halve: Signal<'m>) -> Signal<'m> {
-        let less = self.register.q.strict_sub(self.m.lit(1, 1), count);
+        let less = self.less(count);
         let half = shifted_right(self.m, self.register.q);
         self.close(count.mux(less, halve.mux(half, self.register.q)))
     }
 
+    /// One less, which must fit where it is taken.
+    fn less(&self, count: Signal<'m>) -> Signal<'m> {
+        self.register.q.strict_sub(self.m.lit(1, 1), count & !self.load)
+    }
+
     fn close(self, next: Signal<'m>) -> Signal<'m> {
         self.register.when(self.load, self.word).otherwise(next);
-        next.is_zero()
+        next.is_zero() & !self.load
     }
 }
 

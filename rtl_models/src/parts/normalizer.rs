@@ -33,14 +33,17 @@ impl<'m> Normalizer<'m> {
         Normalizer { shifting, load: block.load, busy: block.busy, none: m.lit(1, 0) }
     }
 
-    /// Closes it: shifts until the or of all integrands has a 1 among its `top` highest bits.
+    /// Closes it: shifts until the or of all integrands, which are equally wide, has a 1 among its `top` highest bits.
+    /// More bits than they have, or none, are a mistake that [`finish`](stepwave_kernel::dsl::Module::finish) tells.
+    #[track_caller]
     #[must_use]
     pub fn close(self, integrands: &[Signal<'m>], top: u32) -> Normalized<'m> {
         let Some(shifting) = self.shifting else {
             return Normalized { shift: self.none, ready: self.load, run: self.busy };
         };
         let any = integrands.iter().copied().reduce(|a, b| a | b).unwrap_or(self.none);
-        let large = any.slice(any.bits() - top, top).is_nonzero();
+        // Too many from bit 0 on are as many too many as from below it.
+        let large = any.slice(any.bits().saturating_sub(top), top).is_nonzero();
         shifting.when(self.load, !self.none).when(large, self.none).else_hold();
         Normalized { shift: shifting.q & !large, ready: shifting.q & large, run: self.busy & !shifting.q }
     }

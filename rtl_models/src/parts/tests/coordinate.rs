@@ -107,6 +107,29 @@ fn the_first_load_wins_over_the_second_and_either_over_the_count() {
 }
 
 #[test]
+fn a_count_is_flagged_only_where_the_register_takes_it() {
+    on_every_engine(
+        |m| {
+            let register = m.reg("c", 2);
+            let loads = [(m.input("first", 1), m.lit(2, 3)), (m.input("second", 1), m.lit(2, 0))];
+            up_down_counter(register, &loads, m.input("up", 1), m.input("down", 1), m.lit(1, 1));
+        },
+        |bench| {
+            // At 3, then at 0, a load wins over the count that would not fit; then the count itself.
+            bench.play(&[
+                ("first", "1100_0000_0"),
+                ("second", "0010_0110_0"),
+                ("up", "0111_0000_0"),
+                ("down", "0000_1111_0"),
+            ]);
+            assert_eq!(bench.row("c"), "0330_1000_3");
+            assert_eq!(bench.row("c_add_overflow"), "0000_0000_0");
+            assert_eq!(bench.row("c_sub_overflow"), "0000_0001_0");
+        },
+    );
+}
+
+#[test]
 fn a_counter_without_loads_counts_from_reset() {
     on_every_engine(
         |m| up_down_counter(m.reg("c", 3), &[], m.input("up", 1), m.input("down", 1), m.lit(2, 3)),

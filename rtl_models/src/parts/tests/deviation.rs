@@ -81,3 +81,23 @@ fn the_deviation_holds_without_compute_and_a_load_wins_over_it() {
         },
     );
 }
+
+#[test]
+fn a_deviation_is_flagged_only_where_the_register_takes_it() {
+    on_every_engine(
+        |m| accumulator(m, 3, (3, false)),
+        |bench| {
+            // 3 + 7 and -1 - 7 at a load, then 0 + 7 and -1 - 7 where they are taken.
+            bench.play(&[
+                ("load", "0101_0100_0"),
+                ("f_in", "030-_0000_0"),
+                ("compute", "0001_0111_0"),
+                ("subtract", "0000_0101_0"),
+                ("operand", "0007_0777_0"),
+            ]);
+            assert_eq!(bench.numbers("f"), [0, 0, 3, 3, -1, -1, 0, -1, 0]);
+            assert_eq!(bench.row("f_add_overflow"), "0000_0010_0");
+            assert_eq!(bench.row("f_sub_overflow"), "0000_0001_0");
+        },
+    );
+}

@@ -1,6 +1,7 @@
 //! Left-shift normalisation.
 
-use stepwave_kernel::dsl::Scope;
+use stepwave_kernel::Code;
+use stepwave_kernel::dsl::{Module, Scope};
 
 use super::super::{Block, Normalizer, shifted_left, shifted_right};
 use super::bench::{Bench, numbers, on_every_engine};
@@ -72,6 +73,22 @@ fn every_pair_of_integrands_takes_as_many_clocks_as_it_has_leading_zeros_and_one
             );
         }
     }
+}
+
+#[test]
+fn more_top_bits_than_the_integrands_have_is_a_mistake_of_who_asks_for_them() {
+    for (bits, top) in [(4, 5), (1, 2), (4, u32::MAX)] {
+        let module = Module::new("m");
+        normalized(module.top(), bits, top, true);
+        let said = module.finish().unwrap_err().0;
+        let codes: Vec<Code> = said.iter().map(|diagnostic| diagnostic.code).collect();
+        assert_eq!(codes, [if top > 64 { Code::BadWidth } else { Code::OutOfRange }], "{said:?}");
+        assert!(said[0].place.to_string().contains("tests/normalizer.rs:"), "{}", said[0]);
+    }
+    // None at all.
+    let module = Module::new("m");
+    normalized(module.top(), 4, 0, true);
+    assert_eq!(module.finish().unwrap_err().0.len(), 1);
 }
 
 #[test]
