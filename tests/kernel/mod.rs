@@ -10,6 +10,7 @@ mod operators;
 mod random;
 mod semantics;
 mod strict;
+mod text_form;
 mod unnamed;
 
 use stepwave_kernel::dsl::{Module, Scope};

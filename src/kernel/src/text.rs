@@ -134,110 +134,126 @@ impl fmt::Display for Netlist {
 /// Reads the text form. Only the form is checked here; [`elaborate`](crate::elaborate) checks the netlist.
 ///
 /// # Errors
-/// Every line that cannot be read.
+/// Every line that cannot be read, once.
 pub fn parse(text: &str) -> Result<Netlist, Diagnostics> {
-    let mut netlist = Netlist::default();
+    let mut parser = Parser { netlist: Netlist::new(""), named: false, next_net: Some(0), next_scope: Some(1) };
     let mut diagnostics = Vec::new();
-    for (index, line) in text.lines().enumerate() {
-        let mut words = Words { rest: line.trim() };
-        if words.rest.is_empty() {
-            continue;
+    let mut report = |line: usize, message: String| {
+        diagnostics.push(Diagnostic { code: Code::Syntax, place: Place::Line(line), message });
+    };
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()).peekable();
+    match lines.peek() {
+        None => report(1, "expected 'netlist NAME' in the first line".to_owned()),
+        Some((index, line)) if line.split_whitespace().next() != Some("netlist") => {
+            report(index + 1, format!("expected 'netlist NAME' first in '{line}'"));
+            // Whatever else it is, it has been told of.
+            let (_, line) = lines.next().unwrap_or_default();
+            _ = parser.line(line);
         }
-        if let Err(expected) = parse_line(&mut netlist, &mut words) {
-            let message = format!("expected {expected} in '{line}'");
-            diagnostics.push(Diagnostic { code: Code::Syntax, place: Place::Line(index + 1), message });
+        Some(_) => {}
+    }
+    for (index, line) in lines {
+        if let Err(expected) = parser.line(line) {
+            report(index + 1, format!("expected {expected} in '{line}'"));
         }
     }
-    if netlist.scopes.is_empty() && diagnostics.is_empty() {
-        let message = "expected 'netlist NAME' in the first line".to_owned();
-        diagnostics.push(Diagnostic { code: Code::Syntax, place: Place::Line(1), message });
-    }
-    if diagnostics.is_empty() { Ok(netlist) } else { Err(Diagnostics(diagnostics)) }
+    if diagnostics.is_empty() { Ok(parser.netlist) } else { Err(Diagnostics(diagnostics)) }
 }
 
 /// What was expected but not found.
 type Expected = String;
 
-fn parse_line(netlist: &mut Netlist, words: &mut Words<'_>) -> Result<(), Expected> {
-    if words.rest.starts_with('%') {
-        return parse_cell(netlist, words);
-    }
-    match words.word()? {
-        "netlist" if netlist.scopes.is_empty() => {
-            netlist.scopes.push(ScopeData { parent: None, name: words.word()?.to_owned() });
-        }
-        "scope" => {
-            let index: usize = words.number()?;
-            words.keyword("in")?;
-            let parent: u32 = words.number()?;
-            if index != netlist.scopes.len() || parent as usize >= index {
-                return Err(format!("scope {} in an earlier one", netlist.scopes.len()));
-            }
-            netlist.scopes.push(ScopeData { parent: Some(ScopeId(parent)), name: words.quoted()? });
-        }
-        "name" => {
-            let net = words.net()?;
-            words.keyword("in")?;
-            let scope = ScopeId(words.number()?);
-            let name = words.quoted()?;
-            let format = words.format()?;
-            netlist.names.push(NamedNet { net, scope, name, format });
-        }
-        "property" => {
-            let name = words.quoted()?;
-            words.keyword("never")?;
-            let never = words.net()?;
-            let claim = match words.word()? {
-                "invariant" => Claim::Invariant,
-                "add" => words.strict(Arithmetic::Add)?,
-                "sub" => words.strict(Arithmetic::Sub)?,
-                _ => return Err("'invariant', 'add' or 'sub'".to_owned()),
-            };
-            netlist.properties.push(Property { name, never, claim });
-        }
-        _ => return Err("a cell, 'netlist' (once, first), 'scope', 'name' or 'property'".to_owned()),
-    }
-    words.end()
+/// What has been read. Behind a line whose number is wrong or cannot be read the next one is not known, and what is
+/// given is taken for right, so that the line alone is told of.
+struct Parser {
+    netlist: Netlist,
+    /// The line `netlist` was there.
+    named: bool,
+    /// The number that the next net must have, if it is known.
+    next_net: Option<u32>,
+    /// The number that the next scope must have, if it is known.
+    next_scope: Option<u32>,
 }
 
-fn parse_cell(netlist: &mut Netlist, words: &mut Words<'_>) -> Result<(), Expected> {
-    let (head, rest) = words.rest.split_once('=').ok_or("'='")?;
-    let (net, bits) = head.trim().split_once(':').ok_or("':' and a width")?;
-    let expected = netlist.cells.len();
-    if net != format!("%{expected}") {
-        return Err(format!("the next net, %{expected}"));
+impl Parser {
+    fn line(&mut self, line: &str) -> Result<(), Expected> {
+        let mut words = Words { rest: line.trim() };
+        if words.rest.starts_with('%') { self.cell(&mut words) } else { self.other(&mut words) }
     }
-    let bits: u64 = bits.parse().map_err(|_| "a width".to_owned())?;
-    let width = Width::new(bits).map_err(|error| format!("a width of 1 to 64 bits ({error})"))?;
-    words.rest = rest.trim_start();
-    let op = match words.word()? {
-        "input" => Op::Input,
-        "const" => Op::Const(words.value()?),
-        "register" => {
-            words.keyword("reset")?;
-            let reset = words.value()?;
-            let next = if words.rest.is_empty() {
-                None
-            } else {
-                words.keyword("next")?;
-                Some(words.net()?)
-            };
-            Op::Register { next, reset }
+
+    fn other(&mut self, words: &mut Words<'_>) -> Result<(), Expected> {
+        match words.word()? {
+            "netlist" if !self.named => {
+                self.named = true;
+                words.word()?.clone_into(&mut self.netlist.scopes[0].name);
+            }
+            "scope" => {
+                let next = self.next_scope.take();
+                let index: u32 = words.number()?;
+                let next = next.unwrap_or(index);
+                if index != next {
+                    return Err(format!("scope {next} in an earlier one"));
+                }
+                self.next_scope = index.checked_add(1);
+                words.keyword("in")?;
+                let parent: u32 = words.number()?;
+                if parent >= index {
+                    return Err(format!("scope {next} in an earlier one"));
+                }
+                self.netlist.scopes.push(ScopeData { parent: Some(ScopeId(parent)), name: words.quoted()? });
+            }
+            "name" => {
+                let net = words.net()?;
+                words.keyword("in")?;
+                let scope = ScopeId(words.number()?);
+                let name = words.quoted()?;
+                let format = words.format()?;
+                self.netlist.names.push(NamedNet { net, scope, name, format });
+            }
+            "property" => {
+                let name = words.quoted()?;
+                words.keyword("never")?;
+                let never = words.net()?;
+                let claim = match words.word()? {
+                    "invariant" => Claim::Invariant,
+                    "add" => words.strict(Arithmetic::Add)?,
+                    "sub" => words.strict(Arithmetic::Sub)?,
+                    _ => return Err("'invariant', 'add' or 'sub'".to_owned()),
+                };
+                self.netlist.properties.push(Property { name, never, claim });
+            }
+            _ => {
+                // It may have been meant for a cell or a scope.
+                (self.next_net, self.next_scope) = (None, None);
+                return Err("a cell, 'netlist' (once, first), 'scope', 'name' or 'property'".to_owned());
+            }
         }
-        "not" => Op::Not(words.net()?),
-        "mux" => Op::Mux { select: words.net()?, high: words.net()?, low: words.net()? },
-        "slice" => Op::Slice { of: words.net()?, low: words.number()? },
-        "concat" => Op::Concat { high: words.net()?, low: words.net()? },
-        "zero-extend" => Op::ZeroExtend(words.net()?),
-        "sign-extend" => Op::SignExtend(words.net()?),
-        word => {
-            let (_, make) = BINARY.iter().find(|(known, _)| *known == word).ok_or("an operator")?;
-            make(words.net()?, words.net()?)
+        words.end()
+    }
+
+    fn cell(&mut self, words: &mut Words<'_>) -> Result<(), Expected> {
+        let next = self.next_net.take();
+        let (head, rest) = words.rest.split_once('=').ok_or("'='")?;
+        let (net, bits) = head.trim().split_once(':').ok_or("':' and a width")?;
+        let net = Words { rest: net }.net()?;
+        if let Some(next) = next.filter(|next| *next != net.0) {
+            return Err(format!("the next net, %{next}"));
         }
-    };
-    netlist.cells.push(Cell { op, width });
-    netlist.sources.push(None);
-    words.end()
+        self.next_net = net.0.checked_add(1);
+        let bits = digits(bits, 10).ok_or("a width")?;
+        let width = Width::new(bits).map_err(|error| format!("a width of 1 to 64 bits ({error})"))?;
+        words.rest = rest.trim_start();
+        let op = words.op()?;
+        self.netlist.cells.push(Cell { op, width });
+        self.netlist.sources.push(None);
+        words.end()
+    }
+}
+
+/// A number, written in digits and nothing else.
+fn digits(word: &str, radix: u32) -> Option<u64> {
+    let all = word.chars().all(|c| c.is_digit(radix));
+    u64::from_str_radix(word, radix).ok().filter(|_| all)
 }
 
 /// The rest of a line, taken word by word.
@@ -256,19 +272,48 @@ impl<'a> Words<'a> {
         if self.word()? == keyword { Ok(()) } else { Err(format!("'{keyword}'")) }
     }
 
-    fn number<T: std::str::FromStr>(&mut self) -> Result<T, Expected> {
-        self.word()?.parse().map_err(|_| "a number".to_owned())
+    fn number<T: TryFrom<u64>>(&mut self) -> Result<T, Expected> {
+        let number = digits(self.word()?, 10).and_then(|number| T::try_from(number).ok());
+        number.ok_or_else(|| "a number".to_owned())
     }
 
     fn value(&mut self) -> Result<u64, Expected> {
         let word = self.word()?;
-        let digits = word.strip_prefix("0x").ok_or("a value that begins with 0x")?;
-        u64::from_str_radix(digits, 16).map_err(|_| "a hexadecimal value of at most 64 bits".to_owned())
+        let value = word.strip_prefix("0x").ok_or("a value that begins with 0x")?;
+        digits(value, 16).ok_or_else(|| "a hexadecimal value of at most 64 bits".to_owned())
     }
 
     fn net(&mut self) -> Result<Net, Expected> {
-        let digits = self.word()?.strip_prefix('%').ok_or("a net such as %4")?;
-        digits.parse().map(Net).map_err(|_| "a net such as %4".to_owned())
+        let number = self.word()?.strip_prefix('%').and_then(|number| digits(number, 10));
+        number.and_then(|number| u32::try_from(number).ok()).map(Net).ok_or_else(|| "a net such as %4".to_owned())
+    }
+
+    fn op(&mut self) -> Result<Op, Expected> {
+        Ok(match self.word()? {
+            "input" => Op::Input,
+            "const" => Op::Const(self.value()?),
+            "register" => {
+                self.keyword("reset")?;
+                let reset = self.value()?;
+                let next = if self.rest.is_empty() {
+                    None
+                } else {
+                    self.keyword("next")?;
+                    Some(self.net()?)
+                };
+                Op::Register { next, reset }
+            }
+            "not" => Op::Not(self.net()?),
+            "mux" => Op::Mux { select: self.net()?, high: self.net()?, low: self.net()? },
+            "slice" => Op::Slice { of: self.net()?, low: self.number()? },
+            "concat" => Op::Concat { high: self.net()?, low: self.net()? },
+            "zero-extend" => Op::ZeroExtend(self.net()?),
+            "sign-extend" => Op::SignExtend(self.net()?),
+            word => {
+                let (_, make) = BINARY.iter().find(|(known, _)| *known == word).ok_or("an operator")?;
+                make(self.net()?, self.net()?)
+            }
+        })
     }
 
     fn quoted(&mut self) -> Result<String, Expected> {
@@ -332,8 +377,9 @@ fn escaped(chars: &mut CharIndices<'_>) -> Option<char> {
         't' => '\t',
         '0' => '\0',
         'u' => {
-            let digits: String = chars.map(|(_, c)| c).take_while(|&c| c != '}').filter(|&c| c != '{').collect();
-            char::from_u32(u32::from_str_radix(&digits, 16).ok()?)?
+            let (_, '{') = chars.next()? else { return None };
+            let code: String = chars.map(|(_, c)| c).take_while(|&c| c != '}').collect();
+            char::from_u32(u32::try_from(digits(&code, 16)?).ok()?)?
         }
         c @ ('"' | '\\' | '\'') => c,
         _ => return None,
