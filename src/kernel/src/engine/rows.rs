@@ -130,6 +130,13 @@ impl Rows {
         (&mut self.values, self.len)
     }
 
+    /// Gives a column the same value in the next `rows` rows, which fit.
+    pub(super) fn fill(&mut self, column: usize, rows: u64, value: u64) {
+        // No more than `room`, which is a usize.
+        let rows = usize::try_from(rows).unwrap_or(0);
+        self.values[column * self.stride + self.len..][..rows].fill(value);
+    }
+
     /// Counts `rows` more as held, which native code has filled; the first is the sample of `clock`.
     pub(super) fn grow(&mut self, clock: u64, rows: u64) {
         if self.columns == 0 || rows == 0 {

@@ -14,7 +14,7 @@
 //! Left in two ways: *behind a recorded sample* (a stop net, or the budget), or *behind an edge* whose sample is not
 //! recorded yet (a guard failed), which the last word of the state says.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, MemFlags, Type, Value, types};
@@ -47,6 +47,39 @@ pub(super) struct Plan<'a> {
     pub(super) stops: &'a [Net],
 }
 
+impl Plan<'_> {
+    /// The register is its own next value in every phase, and fixed in none.
+    fn is_held(&self, index: usize) -> bool {
+        let (net, next) = self.registers[index];
+        let holds = |logic: &Simplified| logic.net(net) == logic.net(next);
+        holds(self.entry) && self.phases.iter().all(|phase| !phase.fixed.contains_key(&net) && holds(&phase.logic))
+    }
+
+    /// The columns, by index, whose nets have in every sample of the loop the value that they had in the sample before
+    /// it: they depend on inputs and held registers alone, or are the same constant in all phases.
+    pub(super) fn resting(&self) -> Vec<usize> {
+        let netlist = &self.entry.netlist;
+        let held = (0..self.registers.len()).filter(|&index| self.is_held(index));
+        let held: HashSet<Net> = held.map(|index| self.entry.net(self.registers[index].0)).collect();
+        let mut rests: Vec<bool> = Vec::with_capacity(netlist.cells.len());
+        for (net, cell) in netlist.nets().zip(&netlist.cells) {
+            let mut all = true;
+            cell.op.visit_inputs(|input| all &= rests[input.index()]);
+            rests.push(if matches!(cell.op, Op::Register { .. }) { held.contains(&net) } else { all });
+        }
+        let constant = |net: Net| {
+            let mut values = self.phases.iter().map(|phase| phase.logic.constant(net));
+            let first = values.next().flatten();
+            first.is_some() && values.all(|value| value == first)
+        };
+        let resting = |&column: &usize| {
+            let net = self.columns[column];
+            rests[self.entry.net(net).index()] || constant(net)
+        };
+        (0..self.columns.len()).filter(resting).collect()
+    }
+}
+
 /// Register values in one sample, by index into `Plan::registers`.
 type Sample = Vec<Value>;
 
@@ -55,6 +88,8 @@ pub(super) struct Generator<'a, 'c> {
     pub(super) f: &'a mut FunctionBuilder<'c>,
     state: Value,
     inputs: Vec<Value>,
+    /// Columns that are stored in every row, by index.
+    busy: Vec<usize>,
 }
 
 /// Type of the value of a net.
@@ -78,11 +113,12 @@ pub(super) fn immediate(value: u64) -> i64 {
 
 /// Generates the body of `fn(state, rows, clocks) -> recorded`, `rows` being the place of the next row in the first
 /// column; the builder stands in the entry block with those
-/// parameters. `clocks` is at least the number of phases.
-pub(super) fn generate(plan: &Plan<'_>, f: &mut FunctionBuilder<'_>, entry: Block) {
+/// parameters. `clocks` is at least the number of phases. Columns that are `resting` are not stored.
+pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuilder<'_>, entry: Block) {
     let parameters = f.block_params(entry).to_vec();
     let [state, rows, clocks] = parameters[..] else { return };
-    let mut generator = Generator { plan, f, state, inputs: Vec::new() };
+    let busy = (0..plan.columns.len()).filter(|column| !resting.contains(column)).collect();
+    let mut generator = Generator { plan, f, state, inputs: Vec::new(), busy };
     let widths: Vec<Width> =
         plan.registers.iter().map(|&(net, _)| plan.entry.netlist.width(plan.entry.net(net))).collect();
     let start: Sample = widths.iter().enumerate().map(|(word, &width)| generator.load(word, width)).collect();
@@ -96,7 +132,7 @@ pub(super) fn generate(plan: &Plan<'_>, f: &mut FunctionBuilder<'_>, entry: Bloc
         .collect();
 
     // Registers that keep their value throughout are read once and not carried.
-    let carried: Vec<usize> = (0..plan.registers.len()).filter(|&index| !generator.is_held(index)).collect();
+    let carried: Vec<usize> = (0..plan.registers.len()).filter(|&index| !plan.is_held(index)).collect();
     let zero = generator.f.ins().iconst(types::I64, 0);
     let values = generator.settle(plan.entry, &start, &[]);
     let first = generator.edge(plan.entry, &values, &start);
@@ -122,7 +158,8 @@ pub(super) fn generate(plan: &Plan<'_>, f: &mut FunctionBuilder<'_>, entry: Bloc
     let rounds = i64::try_from(plan.phases.len()).unwrap_or(i64::MAX);
     for (number, phase) in plan.phases.iter().enumerate() {
         generator.pin(&mut sample, phase, &widths);
-        let values = generator.settle(&phase.logic, &sample, &[plan.columns, plan.stops].concat());
+        let observed: Vec<Net> = generator.busy.iter().map(|&column| plan.columns[column]).collect();
+        let values = generator.settle(&phase.logic, &sample, &[&observed, plan.stops].concat());
         row = generator.record(&phase.logic, &values, row);
         recorded = generator.f.ins().iadd_imm(recorded, 1);
         if let Some(stop) = generator.any_stop(&phase.logic, &values) {
@@ -155,14 +192,6 @@ impl Generator<'_, '_> {
 
     pub(super) fn wide(&mut self, value: Value) -> Value {
         if self.f.func.dfg.value_type(value) == types::I8 { self.f.ins().uextend(types::I64, value) } else { value }
-    }
-
-    /// The register is its own next value in every phase, and fixed in none.
-    fn is_held(&self, index: usize) -> bool {
-        let (net, next) = self.plan.registers[index];
-        let holds = |logic: &Simplified| logic.net(net) == logic.net(next);
-        holds(self.plan.entry)
-            && self.plan.phases.iter().all(|phase| !phase.fixed.contains_key(&net) && holds(&phase.logic))
     }
 
     /// Fixed registers are constants in this phase.
@@ -231,8 +260,9 @@ impl Generator<'_, '_> {
     }
 
     fn record(&mut self, logic: &Simplified, values: &HashMap<Net, Value>, row: Value) -> Value {
-        for (column, &net) in self.plan.columns.iter().enumerate() {
-            let value = self.wide(values[&logic.net(net)]);
+        for index in 0..self.busy.len() {
+            let column = self.busy[index];
+            let value = self.wide(values[&logic.net(self.plan.columns[column])]);
             self.f.ins().store(trusted(), value, row, offset(column * self.plan.stride));
         }
         self.f.ins().iadd_imm(row, i64::from(offset(1)))

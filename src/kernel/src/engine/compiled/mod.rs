@@ -157,6 +157,9 @@ impl Compiled {
         }
         let (values, first) = rows.spare();
         let recorded = self.variants[variant].native.call(&mut self.state, values, first, clocks);
+        for &column in self.variants[variant].native.resting() {
+            rows.fill(column, recorded, self.word.value(self.watch.columns[column]));
+        }
         rows.grow(self.word.clock() + 1, recorded);
         let edge = self.state[self.state.len() - 1] == 1;
         self.word.continue_from(recorded, &self.state[..count]);

@@ -25,6 +25,7 @@ pub(super) struct Native {
     state_words: usize,
     columns: usize,
     stride: usize,
+    resting: Vec<usize>,
     phases: u64,
 }
 
@@ -47,7 +48,8 @@ impl Native {
         let entry = f.create_block();
         f.append_block_params_for_function_params(entry);
         f.switch_to_block(entry);
-        codegen::generate(plan, &mut f, entry);
+        let resting = plan.resting();
+        codegen::generate(plan, &resting, &mut f, entry);
         f.seal_all_blocks();
         f.finalize();
         let id = module.declare_function("clocks", Linkage::Export, &context.func.signature).ok()?;
@@ -64,6 +66,7 @@ impl Native {
             state_words: plan.registers.len() + plan.inputs.len() + 1,
             columns: plan.columns.len(),
             stride: plan.stride,
+            resting,
             phases: plan.phases.len() as u64,
         })
     }
@@ -71,6 +74,11 @@ impl Native {
     /// Number of phases: a call needs at least as many clocks.
     pub(super) fn phases(&self) -> u64 {
         self.phases
+    }
+
+    /// Columns, by index, that the code does not store: they stay as they are.
+    pub(super) fn resting(&self) -> &[usize] {
+        &self.resting
     }
 
     /// Rows from one column to the next, for which the code was made.
