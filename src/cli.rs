@@ -163,6 +163,10 @@ pub(crate) struct TraceArgs {
     /// Begin the wave at the first clock on which this 1-bit signal is 1
     #[arg(long, requires = "wave", value_name = "SIGNAL")]
     pub(crate) trace_on: Option<String>,
+    /// Keep states of the run in this file; where it exists, begin at the last state before --trace-from instead of at
+    /// clock 0
+    #[arg(long, value_name = "FILE")]
+    pub(crate) checkpoints: Option<PathBuf>,
     /// Do not dump the clock (saves about 15 bytes a cycle)
     #[arg(long, requires = "wave")]
     pub(crate) no_clk: bool,

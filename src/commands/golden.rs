@@ -121,8 +121,10 @@ fn simulate(case: &Case, engine: EngineKind) -> Result<Files, Failure> {
     let cli = Cli::try_parse_from(words).map_err(|error| in_words(Failure::usage(&error)))?;
     let Command::Run(args) = cli.command else { return Err(wrong("is no run".to_owned())) };
     let args: &RunArgs = &args;
-    if args.trace.fst.is_some() || args.outputs.json.is_some() || args.outputs.plot.is_some() {
-        return Err(wrong("a wave and a step table are recorded; leave out --fst, --json and --plot".to_owned()));
+    let others = [&args.trace.fst, &args.trace.checkpoints, &args.outputs.json, &args.outputs.plot];
+    if others.iter().any(|path| path.is_some()) {
+        let rest = "leave out --fst, --checkpoints, --json and --plot";
+        return Err(wrong(format!("a wave and a step table are recorded; {rest}")));
     }
     let mut outputs = Outputs::default();
     let finished = run::simulate(args, &mut outputs).map_err(in_words)?;

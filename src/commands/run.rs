@@ -1,13 +1,16 @@
 //! `stepwave run`.
 
-use std::io::Write;
-use std::path::PathBuf;
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
 use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::models::find;
 use stepwave::report::plot::Plot;
 use stepwave::report::{self, CsvTable, Report, TEXTBOOK_STEPS, TextbookTable};
-use stepwave::testbench::{Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, Step, Testbench};
+use stepwave::testbench::{
+    Checkpoints, Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, State, Step, Testbench,
+};
 
 use super::geometry::curve;
 use super::progress::Progress;
@@ -54,6 +57,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let mut waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &title)).transpose()?;
     let mut csv = steps.map(|sink| CsvTable::new(&bench, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Picture(Plot::new(&curve)), sink));
+    let mut states = States::of(args, &bench)?;
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
     let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.outputs.bits));
     let mut progress = Progress::new();
@@ -62,7 +66,12 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     observers.extend(waves.iter_mut().flat_map(Waves::observers));
     observers.extend(csv.as_mut().map(|csv| csv as &mut dyn Observer));
     observers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Observer));
-    let outcome = bench.run(args.simulation.engine, &mut observers)?;
+    let engine = args.simulation.engine;
+    let outcome = match &mut states {
+        Some(States::Kept(_, states)) => bench.run_keeping(engine, &mut observers, states)?,
+        Some(States::Resumed(state)) => bench.run_from(engine, &mut observers, state)?,
+        None => bench.run(engine, &mut observers)?,
+    };
     drop(observers);
     progress.finish();
 
@@ -74,11 +83,14 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         outcome,
         ranges: ranges.finish(),
         worst: path.worst,
-        overflows: overflow.events,
+        overflows: overflow.events(),
         overflow_count: overflow.count,
         clock_hz: args.clock.clock_hz,
         blu_mm: args.simulation.blu,
     };
+    if let Some(States::Kept(path, states)) = &states {
+        outputs.write(path, &states.write()?)?;
+    }
     if let Some(waves) = waves {
         waves.finish(&report, outputs)?;
     }
@@ -96,7 +108,42 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         sink.write_all(plot.svg(&title_of_picture(&report)).as_bytes())?;
         sink.flush()?;
     }
-    Ok(Finished { text: text(&report, &table), failures: report.failures() })
+    let mut text = text(&report, &table);
+    if let Some(States::Resumed(state)) = &states {
+        text += &format!("begun from the state at clock {}; the report is that of the whole run\n", state.clock());
+    }
+    Ok(Finished { text, failures: report.failures() })
+}
+
+/// What a file of states is for.
+enum States<'a> {
+    /// It does not exist yet: this run writes it.
+    Kept(&'a Path, Checkpoints),
+    /// It holds a state shortly before the window of the wave: this run begins there.
+    Resumed(State),
+}
+
+impl<'a> States<'a> {
+    /// What the options ask for; nothing where the file holds no state before the window.
+    fn of(args: &'a RunArgs, bench: &Testbench) -> Result<Option<States<'a>>, Failure> {
+        let Some(path) = &args.trace.checkpoints else { return Ok(None) };
+        if args.outputs.steps.is_some() || args.outputs.plot.is_some() {
+            let need = "the step table and the picture need every step, from the first";
+            return Err(Failure::Trouble(format!("--checkpoints: {need}: leave out --steps and --plot")));
+        }
+        let read = |what: &dyn std::fmt::Display| {
+            let way_out = "name another file, or delete it";
+            Failure::Trouble(format!("--checkpoints {}: {what}: {way_out}", path.display()))
+        };
+        match fs::read_to_string(path) {
+            Ok(text) => {
+                let states = Checkpoints::read(&text, bench).map_err(|error| read(&error))?;
+                Ok(states.before(args.trace.trace_from).cloned().map(States::Resumed))
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Some(States::Kept(path, Checkpoints::new(bench)))),
+            Err(error) => Err(read(&error)),
+        }
+    }
 }
 
 fn title_of_picture(report: &Report<'_>) -> String {

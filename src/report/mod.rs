@@ -9,7 +9,7 @@ use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Hardware, Model};
 use stepwave_nc::Curve;
 
-use crate::testbench::{Ending, Outcome, OverflowEvent, OverflowWatch, RegisterRange, WorstError};
+use crate::testbench::{Ending, Outcome, OverflowEvent, RegisterRange, WorstError};
 
 pub use summary::{choices, geometry, title};
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
@@ -45,12 +45,6 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Takes the overflows of a watch.
-    #[must_use]
-    pub fn with_overflows(self, watch: OverflowWatch) -> Self {
-        Report { overflows: watch.events, overflow_count: watch.count, ..self }
-    }
-
     /// The end point was reached exactly.
     #[must_use]
     pub fn end_exact(&self) -> bool {

@@ -5,7 +5,7 @@ use std::io::Write;
 use stepwave_kernel::Bits;
 use stepwave_models::Port;
 
-use crate::testbench::{Observer, ObserverError, Step, Testbench};
+use crate::testbench::{Memory, Observer, ObserverError, Step, Testbench};
 
 /// Most steps that a textbook table shows.
 pub const TEXTBOOK_STEPS: u64 = 64;
@@ -117,6 +117,11 @@ impl TextbookTable {
 impl Observer for TextbookTable {
     fn wants_steps(&self) -> bool {
         self.complete
+    }
+
+    fn recall(&mut self, _: &Memory) {
+        // The run began elsewhere: its first steps are not to be seen.
+        self.complete = false;
     }
 
     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {

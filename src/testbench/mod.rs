@@ -1,6 +1,7 @@
 //! The test bench: the one place where geometry, model, engine and observers meet. It loads the blocks, runs the clock
 //! until the machine says `done`, and hands every sample and every step to the observers.
 
+mod checkpoint;
 mod columns;
 mod lanes;
 mod overflow;
@@ -15,6 +16,7 @@ use stepwave_kernel::{Design, Net, OnOverflow};
 use stepwave_models::{Choices, Hardware, Machine, Model, ModelError};
 use stepwave_nc::Curve;
 
+pub use checkpoint::{CheckpointError, Checkpoints, Memory, State};
 pub use columns::Columns;
 pub use lanes::{LaneOutcome, Lanes};
 pub use overflow::{OverflowEvent, OverflowWatch};
@@ -39,6 +41,17 @@ pub trait Observer {
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         let _ = rows;
         Ok(())
+    }
+
+    /// Writes down what this observer has gathered, under a name of its own, for [`recall`](Self::recall) of a run that
+    /// goes on from here.
+    fn remember(&self, memory: &mut Memory) {
+        let _ = memory;
+    }
+
+    /// Takes over what [`remember`](Self::remember) wrote down; what is missing or cannot be read counts as nothing.
+    fn recall(&mut self, memory: &Memory) {
+        let _ = memory;
     }
 
     /// This observer wants the rows of the step table: a run without anybody who does is much faster. Asked before
@@ -146,21 +159,58 @@ impl Testbench {
     /// # Errors
     /// An observer fails.
     pub fn run(&self, engine: EngineKind, observers: &mut [&mut dyn Observer]) -> Result<Outcome, ObserverError> {
+        self.begin(engine, observers).all_blocks()
+    }
+
+    /// Runs as [`run`](Self::run) does and keeps states of the run, once no observer wants rows of the step table.
+    ///
+    /// # Errors
+    /// An observer fails.
+    pub fn run_keeping(
+        &self,
+        engine: EngineKind,
+        observers: &mut [&mut dyn Observer],
+        states: &mut Checkpoints,
+    ) -> Result<Outcome, ObserverError> {
+        let mut run = self.begin(engine, observers);
+        run.states = Some(states);
+        run.all_blocks()
+    }
+
+    /// Goes on from a state of a run of this bench to its end. Samples up to the state are not seen again; the outcome
+    /// and what observers have gathered is that of the whole run.
+    ///
+    /// # Errors
+    /// An observer fails.
+    pub fn run_from(
+        &self,
+        engine: EngineKind,
+        observers: &mut [&mut dyn Observer],
+        state: &State,
+    ) -> Result<Outcome, ObserverError> {
+        let mut run = self.begin(engine, observers);
+        run.restore(state);
+        run.all_blocks()
+    }
+
+    fn begin<'a, 'o>(&'a self, engine: EngineKind, observers: &'a mut [&'o mut dyn Observer]) -> Run<'a, 'o> {
         let properties = &self.design().netlist().properties;
         let mut stops = vec![self.machine.done.net];
         if self.hardware.on_overflow == OnOverflow::Trap {
             stops.extend(properties.iter().map(|property| property.never));
         }
         let watch = Watch { columns: self.columns.nets().to_vec(), stops };
-        let mut run = Run {
+        Run {
             bench: self,
             engine: engine.build(self.design(), &watch),
             rows: Rows::new(watch.columns.len(), CHUNK),
             steps: StepReader::new(self),
             wants_steps: true,
             observers,
-        };
-        run.all_blocks()
+            first_block: 0,
+            goes_on: false,
+            states: None,
+        }
     }
 }
 
@@ -173,34 +223,47 @@ struct Run<'a, 'o> {
     /// Somebody wants the rows of the step table.
     wants_steps: bool,
     observers: &'a mut [&'o mut dyn Observer],
+    /// The block that the run begins with.
+    first_block: usize,
+    /// That block is loaded and running.
+    goes_on: bool,
+    /// Takes states of the run.
+    states: Option<&'a mut Checkpoints>,
 }
 
 impl Run<'_, '_> {
     fn all_blocks(&mut self) -> Result<Outcome, ObserverError> {
-        let machine = &self.bench.machine;
         let mut ending = Ending::Done;
-        for (index, words) in self.bench.blocks.iter().enumerate() {
-            for &(input, value) in words {
-                self.engine.set_input(input, value);
+        for (index, words) in self.bench.blocks.iter().enumerate().skip(self.first_block) {
+            if !std::mem::take(&mut self.goes_on) {
+                self.load(index, words)?;
             }
-            self.engine.set_input(machine.load.net, 1);
-            self.engine.set_input(machine.preset_position.net, u64::from(index == 0));
-            if index == 0 {
-                self.engine.reset(&mut self.rows);
-            } else {
-                self.clock()?;
-            }
-            self.engine.set_input(machine.load.net, 0);
-            self.engine.set_input(machine.preset_position.net, 0);
-            // The edge that loads; `done` of the block before falls with it.
-            self.clock()?;
-            ending = self.finish_block()?;
+            ending = self.finish_block(index)?;
             if ending != Ending::Done {
                 break;
             }
         }
         self.drain()?;
         Ok(self.steps.outcome(ending, self.engine.clock()))
+    }
+
+    /// Loads a block: sets the inputs, and does the clock behind which the machine runs.
+    fn load(&mut self, index: usize, words: &[(Net, u64)]) -> Result<(), ObserverError> {
+        let machine = &self.bench.machine;
+        for &(input, value) in words {
+            self.engine.set_input(input, value);
+        }
+        self.engine.set_input(machine.load.net, 1);
+        self.engine.set_input(machine.preset_position.net, u64::from(index == 0));
+        if index == 0 {
+            self.engine.reset(&mut self.rows);
+        } else {
+            self.clock()?;
+        }
+        self.engine.set_input(machine.load.net, 0);
+        self.engine.set_input(machine.preset_position.net, 0);
+        // The edge that loads; `done` of the block before falls with it.
+        self.clock()
     }
 
     /// One clock, whatever the machine says.
@@ -212,7 +275,7 @@ impl Run<'_, '_> {
         Ok(())
     }
 
-    fn finish_block(&mut self) -> Result<Ending, ObserverError> {
+    fn finish_block(&mut self, index: usize) -> Result<Ending, ObserverError> {
         let stall = self.bench.hardware.stall_clocks;
         // A trap may be seen in the very sample behind the load already.
         if let Some(ending) = self.ended() {
@@ -230,7 +293,31 @@ impl Run<'_, '_> {
             if quiet > stall || quiet >= CHUNK as u64 && at_rest() {
                 return Ok(Ending::Stalled { clocks: quiet });
             }
+            self.keep_state(index);
         }
+    }
+
+    /// Keeps the present state, if one is wanted. All samples up to it have been shown.
+    fn keep_state(&mut self, block: usize) {
+        let clock = self.engine.clock();
+        let Some(states) = self.states.as_mut().filter(|states| !self.wants_steps && states.wants(clock)) else {
+            return;
+        };
+        let mut memory = Memory::new();
+        self.steps.remember(&mut memory);
+        for observer in self.observers.iter() {
+            observer.remember(&mut memory);
+        }
+        states.keep(State::of(self.engine.as_ref(), self.bench, block, memory));
+    }
+
+    fn restore(&mut self, state: &State) {
+        self.engine.restore(state.clock, &state.registers, &state.inputs);
+        self.steps.recall(&state.memory);
+        for observer in self.observers.iter_mut() {
+            observer.recall(&state.memory);
+        }
+        (self.first_block, self.goes_on) = (state.block, true);
     }
 
     /// What the present sample says by itself.

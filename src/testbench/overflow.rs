@@ -2,11 +2,14 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use stepwave_kernel::bits;
 use stepwave_kernel::engine::Rows;
 use stepwave_kernel::netlist::{Arithmetic, Claim, Property};
 use stepwave_kernel::{OnOverflow, Width};
 
+use super::checkpoint::{Memory, recalled};
 use super::{Observer, ObserverError, Testbench};
 
 /// Events kept in full; further ones are counted.
@@ -101,11 +104,20 @@ struct Watched {
     operands: Option<(usize, Width, usize, Width)>,
 }
 
+/// A violation as it was seen.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Seen {
+    property: usize,
+    clock: u64,
+    /// Bits of both operands, where the property has some.
+    operands: Option<(u64, u64)>,
+}
+
 /// Records the violations of every property.
 pub struct OverflowWatch {
     watched: Vec<Watched>,
-    /// The first of them, in full.
-    pub events: Vec<OverflowEvent>,
+    /// The first of them.
+    seen: Vec<Seen>,
     /// All of them.
     pub count: u64,
     /// What the strict cells do.
@@ -128,25 +140,30 @@ impl OverflowWatch {
             Watched { property: property.clone(), never: at(property.never), operands }
         });
         let mode = bench.hardware().on_overflow;
-        OverflowWatch { watched: watched.collect(), events: Vec::new(), count: 0, mode }
+        OverflowWatch { watched: watched.collect(), seen: Vec::new(), count: 0, mode }
+    }
+
+    /// The first violations, in full.
+    #[must_use]
+    pub fn events(&self) -> Vec<OverflowEvent> {
+        self.seen.iter().filter_map(|seen| Some(event(self.watched.get(seen.property)?, seen))).collect()
     }
 }
 
-fn event(watched: &Watched, rows: &Rows, row: usize) -> OverflowEvent {
-    let clock = rows.first_clock() + row as u64;
-    let component = watched.property.name.clone();
-    let (Claim::NoOverflow { operation, left, right }, Some((a, a_width, b, b_width))) =
-        (watched.property.claim, watched.operands)
+fn event(watched: &Watched, seen: &Seen) -> OverflowEvent {
+    let (component, clock) = (watched.property.name.clone(), seen.clock);
+    let (Claim::NoOverflow { operation, left, right }, Some((_, width, _, right_width)), Some((a, b))) =
+        (watched.property.claim, watched.operands, seen.operands)
     else {
         return OverflowEvent::Invariant { component, clock };
     };
     OverflowEvent::Overflow {
         component,
-        width: a_width,
+        width,
         signed: left.signed,
         operation,
-        left: bits::number(a_width, rows.value(a, row), left.signed),
-        right: bits::number(b_width, rows.value(b, row), right.signed),
+        left: bits::number(width, a, left.signed),
+        right: bits::number(right_width, b, right.signed),
         clock,
     }
 }
@@ -156,15 +173,27 @@ impl Observer for OverflowWatch {
         false
     }
 
+    fn remember(&self, memory: &mut Memory) {
+        memory.insert("overflows".to_owned(), json!([self.count, self.seen]));
+    }
+
+    fn recall(&mut self, memory: &Memory) {
+        (self.count, self.seen) = recalled(memory, "overflows").unwrap_or_default();
+    }
+
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         if !self.watched.iter().any(|watched| rows.any(watched.never)) {
             return Ok(());
         }
         for row in 0..rows.len() {
-            for watched in self.watched.iter().filter(|watched| rows.value(watched.never, row) == 1) {
+            for (property, watched) in self.watched.iter().enumerate() {
+                if rows.value(watched.never, row) == 0 {
+                    continue;
+                }
                 self.count += 1;
-                if self.events.len() < KEPT {
-                    self.events.push(event(watched, rows, row));
+                if self.seen.len() < KEPT {
+                    let operands = watched.operands.map(|(a, _, b, _)| (rows.value(a, row), rows.value(b, row)));
+                    self.seen.push(Seen { property, clock: rows.first_clock() + row as u64, operands });
                 }
             }
         }

@@ -1,10 +1,12 @@
 //! Path error: how far each position lies off the ideal curve.
 
+use serde_json::json;
 use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::Rows;
 use stepwave_models::Port;
 use stepwave_nc::{Curve, Gauge};
 
+use super::checkpoint::{Memory, recalled};
 use super::{Observer, ObserverError, StepColumns, Testbench};
 
 /// The greatest path error of a run.
@@ -56,6 +58,23 @@ impl<'a> PathWatch<'a> {
 impl Observer for PathWatch<'_> {
     fn wants_steps(&self) -> bool {
         false
+    }
+
+    fn remember(&self, memory: &mut Memory) {
+        let worst = self.worst.as_ref().map(|worst| (worst.step, &worst.position));
+        memory.insert("path".to_owned(), json!([self.rows, self.position, worst]));
+    }
+
+    fn recall(&mut self, memory: &Memory) {
+        if let Some((rows, position, worst)) = recalled(memory, "path") {
+            let worst: Option<(u64, Vec<i64>)> = worst;
+            let known = |(step, position): (u64, Vec<i64>)| WorstError {
+                error: self.gauge.deviation(&position),
+                step,
+                position,
+            };
+            (self.rows, self.position, self.worst) = (rows, position, worst.map(known));
+        }
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {

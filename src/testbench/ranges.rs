@@ -1,10 +1,12 @@
 //! Range watch: the least and greatest value that each register held.
 
+use serde_json::json;
 use stepwave_kernel::Width;
 use stepwave_kernel::bits;
 use stepwave_kernel::engine::Rows;
 use stepwave_kernel::netlist::Op;
 
+use super::checkpoint::{Memory, recalled};
 use super::{Observer, ObserverError, Testbench};
 
 /// What a register held during a run.
@@ -88,6 +90,18 @@ fn turned(range: &RegisterRange) -> u64 {
 impl Observer for RangeWatch {
     fn wants_steps(&self) -> bool {
         false
+    }
+
+    fn remember(&self, memory: &mut Memory) {
+        let extremes: Vec<_> = self.watched.iter().map(|watched| (watched.least, watched.greatest)).collect();
+        memory.insert("ranges".to_owned(), json!(extremes));
+    }
+
+    fn recall(&mut self, memory: &Memory) {
+        let extremes: Vec<(u64, u64)> = recalled(memory, "ranges").unwrap_or_default();
+        for (watched, extremes) in self.watched.iter_mut().zip(extremes) {
+            (watched.least, watched.greatest) = extremes;
+        }
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {

@@ -3,6 +3,9 @@
 use stepwave_kernel::bits::{number, to_signed};
 use stepwave_kernel::engine::Rows;
 
+use serde_json::json;
+
+use super::checkpoint::{Memory, recalled};
 use super::{Ending, Outcome, Testbench};
 
 /// A row of the step table.
@@ -147,6 +150,16 @@ impl<'a> StepReader<'a> {
         self.rows += 1;
         self.row_complete = true;
         true
+    }
+
+    pub(super) fn remember(&self, memory: &mut Memory) {
+        memory.insert("steps".to_owned(), json!([self.rows, self.pulses, self.last_pulse, self.position]));
+    }
+
+    pub(super) fn recall(&mut self, memory: &Memory) {
+        if let Some(gathered) = recalled(memory, "steps") {
+            (self.rows, self.pulses, self.last_pulse, self.position) = gathered;
+        }
     }
 
     pub(super) fn outcome(&self, ending: Ending, clocks: u64) -> Outcome {

@@ -94,7 +94,7 @@ fn cases_that_cannot_be_are_refused_in_one_line_and_nothing_is_written() {
         (with("ppc-line", "nope"), "case line: there is no model 'nope'"),
         (with("\"6,4\"", "\"6\""), "case line: "),
         (with("\"6,4\"", "\"6,4\", \"--frob\""), "case line: unexpected argument '--frob'"),
-        (with("\"6,4\"", "\"6,4\", \"--json\", \"r.json\""), "leave out --fst, --json and --plot"),
+        (with("\"6,4\"", "\"6,4\", \"--json\", \"r.json\""), "leave out --fst, --checkpoints, --json and --plot"),
         (with("\"6,4\"", "\"6,4\", \"--vcd\", \"v.vcd\""), "case line: "),
         (with("source", "sauce"), "cases.toml"),
         ("case = 3".to_owned(), "cases.toml"),

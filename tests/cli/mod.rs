@@ -3,6 +3,7 @@
 mod bad_geometry;
 mod bad_hardware;
 mod bad_outputs;
+mod checkpoints;
 mod choices;
 mod files;
 mod golden;

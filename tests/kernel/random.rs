@@ -23,6 +23,8 @@ enum Action {
     Run { clocks: u64, clear: bool },
     /// Resets in the middle.
     Reset,
+    /// Goes back to the state behind an earlier action.
+    Restore(u16),
 }
 
 fn action() -> impl Strategy<Value = Action> {
@@ -30,6 +32,7 @@ fn action() -> impl Strategy<Value = Action> {
         4 => (any::<u16>(), value()).prop_map(|(input, value)| Action::Set(input, value)),
         4 => (0u64..9, prop::bool::weighted(0.8)).prop_map(|(clocks, clear)| Action::Run { clocks, clear }),
         1 => Just(Action::Reset),
+        1 => any::<u16>().prop_map(Action::Restore),
     ]
 }
 
@@ -86,7 +89,7 @@ fn play_on(design: &Design, engine: impl Fn(&Watch) -> Box<dyn Engine>, script: 
     let mut engine = engine(&watch);
     let mut rows = Rows::new(columns.len(), script.room);
     engine.reset(&mut rows);
-    let mut seen = Vec::new();
+    let mut seen: Vec<Seen> = Vec::new();
     for action in &script.actions {
         let (mut stop, mut clear_after) = (None, false);
         match *action {
@@ -101,6 +104,13 @@ fn play_on(design: &Design, engine: impl Fn(&Watch) -> Box<dyn Engine>, script: 
             Action::Reset => {
                 rows.clear();
                 engine.reset(&mut rows);
+            }
+            Action::Restore(index) => {
+                rows.clear();
+                if let Some(earlier) = seen.get(usize::from(index) % seen.len().max(1)) {
+                    let of = |nets: &[Net]| nets.iter().map(|net| earlier.values[net.index()]).collect::<Vec<_>>();
+                    engine.restore(earlier.clock, &of(design.registers()), &of(design.inputs()));
+                }
             }
         }
         seen.push(Seen {
@@ -126,7 +136,10 @@ fn assert_same(design: &Design, script: &Script, want: &[Seen], got: &[Seen], wh
     Ok(())
 }
 
+/// So many cases, or what the variable PROPTEST_CASES says.
 fn config(cases: u32) -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
+    let cases = asked.unwrap_or(cases);
     ProptestConfig { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(0x57e9), ..ProptestConfig::default() }
 }
 
@@ -179,7 +192,7 @@ proptest! {
                     a.run(clocks, &mut a_rows);
                     b.run(clocks, &mut b_rows);
                 }
-                Action::Reset => {}
+                Action::Reset | Action::Restore(_) => {}
             }
         }
         for (a, b) in a_rows.iter().zip(b_rows.iter()) {

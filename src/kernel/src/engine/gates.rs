@@ -198,6 +198,18 @@ impl Engine for Gates {
         self.record(rows);
     }
 
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]) {
+        let design = self.design.clone();
+        assert_eq!((registers.len(), inputs.len()), (design.registers().len(), design.inputs().len()));
+        for (&register, &value) in design.registers().iter().zip(registers) {
+            let bits = word(value, self.bits(register).len());
+            self.put(register, &bits);
+        }
+        self.pending.copy_from_slice(inputs);
+        self.clock = clock;
+        self.settle();
+    }
+
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop {
         for _ in 0..clocks {
             if rows.is_full() && !self.watch.columns.is_empty() {

@@ -46,6 +46,13 @@ pub trait Engine: Send {
     /// recorded if there is room for a row.
     fn reset(&mut self, rows: &mut Rows);
 
+    /// Takes the state that an engine of the same design had in the sample of `clock`: the values of all registers and
+    /// of all inputs, in the order of the design. Records nothing.
+    ///
+    /// # Panics
+    /// If there are not as many values.
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]);
+
     /// Runs until `clocks` clocks are done, `rows` is full, or a stop net is 1 in a sample; at least one clock is done
     /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded; what `rows` holds already must be
     /// the samples right before.

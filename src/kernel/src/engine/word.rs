@@ -227,6 +227,17 @@ impl Engine for WordEngine {
         self.record(rows);
     }
 
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]) {
+        let design = self.design.clone();
+        assert_eq!((registers.len(), inputs.len()), (design.registers().len(), design.inputs().len()));
+        for (&net, &value) in design.registers().iter().chain(design.inputs()).zip(registers.iter().chain(inputs)) {
+            self.values[net.index()] = value;
+        }
+        self.pending.clear();
+        self.clock = clock;
+        self.settle();
+    }
+
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop {
         let records = !self.columns.is_empty();
         for _ in 0..clocks {

@@ -186,6 +186,12 @@ impl Engine for Compiled {
         self.word.reset(rows);
     }
 
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]) {
+        self.quiet = 0;
+        self.history.clear();
+        self.word.restore(clock, registers, inputs);
+    }
+
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop {
         let end = self.word.clock().saturating_add(clocks);
         let records = !self.watch.columns.is_empty();

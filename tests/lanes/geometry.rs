@@ -1,0 +1,182 @@
+//! The four models: many geometries of one hardware against the test bench, one geometry at a time.
+
+use std::collections::BTreeMap;
+
+use stepwave::testbench::{Ending, LaneOutcome, Observer, ObserverError, Testbench};
+use stepwave_kernel::engine::{EngineKind, Rows};
+use stepwave_kernel::{OnOverflow, Width};
+use stepwave_models::{Beats, Choices, EndPoint, ModelError, Preset, find};
+use stepwave_nc::{Arc, Curve, Direction, Line};
+
+const LIMIT: u64 = 1 << 20;
+
+fn width(bits: u64) -> Width {
+    Width::new(bits).unwrap()
+}
+
+/// The same hardware for every geometry: all widths are given.
+fn choices(bits: u64, position: u64) -> Choices {
+    let positions = ["x", "y"].map(|axis| (axis.to_owned(), width(position)));
+    Choices { width: Some(width(bits)), widths: BTreeMap::from(positions), ..Choices::default() }
+}
+
+fn line(to: [i64; 2]) -> Curve {
+    Curve::Line(Line::new(vec![0, 0], to.to_vec()).unwrap())
+}
+
+/// All lines of up to `bits` bits, in every quadrant.
+fn lines(bits: u32) -> Vec<Curve> {
+    let most = (1i64 << bits) - 1;
+    let ends = (-most..=most).flat_map(|x| (-most..=most).map(move |y| [x, y]));
+    ends.filter(|end| *end != [0, 0]).map(line).collect()
+}
+
+/// All arcs between points of the lattice on circles of up to this radius, in both directions.
+fn arcs(radius: i64) -> Vec<Curve> {
+    let mut arcs = Vec::new();
+    for squared in 1..=radius * radius {
+        let on = |[x, y]: &[i64; 2]| x * x + y * y == squared;
+        let points: Vec<[i64; 2]> =
+            (-radius..=radius).flat_map(|x| (-radius..=radius).map(move |y| [x, y])).filter(on).collect();
+        for &from in &points {
+            for &to in &points {
+                for direction in [Direction::Clockwise, Direction::CounterClockwise] {
+                    arcs.push(Curve::Arc(Arc::new(from, to, [0, 0], direction).unwrap()));
+                }
+            }
+        }
+    }
+    arcs
+}
+
+/// Counts the samples in which a property does not hold.
+struct Violations<'b> {
+    bench: &'b Testbench,
+    clocks: u64,
+}
+
+impl Observer for Violations<'_> {
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        let properties = &self.bench.design().netlist().properties;
+        for (_, row) in rows.iter() {
+            let violated = |index: usize| row[index] == 1;
+            let mut columns = properties.iter().map(|property| self.bench.columns().index(property.never));
+            self.clocks += u64::from(columns.any(violated));
+        }
+        Ok(())
+    }
+}
+
+fn alone(bench: &Testbench) -> LaneOutcome {
+    let mut violations = Violations { bench, clocks: 0 };
+    let outcome = bench.run(EngineKind::Word, &mut [&mut violations]).unwrap();
+    LaneOutcome {
+        ending: Some(outcome.ending),
+        clocks: outcome.clocks,
+        steps: outcome.steps,
+        pulses: outcome.pulses,
+        reached: outcome.reached,
+        overflows: violations.clocks,
+    }
+}
+
+/// Runs all at once and each alone; gives what they came to.
+fn assert_each_as_alone(model: &str, curves: &[Curve], choices: &Choices) -> Vec<LaneOutcome> {
+    let model = find(model).unwrap();
+    let bench = Testbench::new(model, &curves[0], choices).unwrap();
+    let outcomes = bench.run_many(curves, LIMIT).unwrap();
+    assert_eq!(outcomes.len(), curves.len());
+    let compare = |(curve, outcome): (&Curve, Result<LaneOutcome, ModelError>)| {
+        let single = Testbench::new(model, curve, choices).unwrap();
+        assert_eq!(single.hardware().widths, bench.hardware().widths, "{curve:?}");
+        let outcome = outcome.unwrap();
+        assert_eq!(outcome, alone(&single), "{} {curve:?} {choices:?}", model.name);
+        outcome
+    };
+    curves.iter().zip(outcomes).map(compare).collect()
+}
+
+fn all_done(outcomes: &[LaneOutcome]) -> bool {
+    outcomes.iter().all(|outcome| outcome.ending == Some(Ending::Done) && outcome.overflows == 0)
+}
+
+#[test]
+fn every_line_of_up_to_five_bits_in_all_quadrants_ends_as_alone() {
+    let curves = lines(5);
+    assert!(all_done(&assert_each_as_alone("dda-line", &curves, &choices(5, 7))));
+    assert!(all_done(&assert_each_as_alone("ppc-line", &curves, &choices(5, 7))));
+}
+
+#[test]
+fn lines_with_other_choices_end_as_alone() {
+    let curves = lines(3);
+    for end_point in [EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest] {
+        let choices = Choices { end_point: Some(end_point), ..choices(4, 6) };
+        let normalized = Choices { normalize: true, preset: Some(Preset::Half), ..choices.clone() };
+        assert_each_as_alone("dda-line", &curves, &normalized);
+        let one_beat = Choices { beats: Some(Beats::One), ..choices };
+        assert!(all_done(&assert_each_as_alone("ppc-line", &curves, &one_beat)));
+    }
+}
+
+#[test]
+fn every_lattice_arc_of_one_or_many_blocks_ends_as_alone() {
+    let curves = arcs(5);
+    assert!(all_done(&assert_each_as_alone("ppc-arc", &curves, &choices(5, 8))));
+    for end_point in [EndPoint::PerAxis, EndPoint::Total] {
+        let choices = Choices { end_point: Some(end_point), ..choices(5, 8) };
+        assert_each_as_alone("ppc-arc", &curves, &choices);
+        assert_each_as_alone("dda-arc", &curves, &choices);
+    }
+}
+
+#[test]
+fn arcs_that_stall_are_given_up_at_the_clock_at_which_one_alone_is() {
+    let stalls = Choices { preset: Some(Preset::Full), normalize: true, ..choices(4, 8) };
+    let outcomes = assert_each_as_alone("dda-arc", &arcs(8), &stalls);
+    let stalled = |outcome: &&LaneOutcome| matches!(outcome.ending, Some(Ending::Stalled { .. }));
+    let count = outcomes.iter().filter(stalled).count();
+    assert!(count > 0 && count < outcomes.len(), "{count} of {}", outcomes.len());
+}
+
+#[test]
+fn overflows_trap_at_their_clock_or_are_counted() {
+    for (mode, traps) in [(OnOverflow::Trap, true), (OnOverflow::Wrap, false), (OnOverflow::Saturate, false)] {
+        // Positions of four bits, and lines of up to 15 to either side.
+        let choices = Choices { on_overflow: Some(mode), ..choices(4, 4) };
+        for model in ["dda-line", "ppc-line"] {
+            let outcomes = assert_each_as_alone(model, &lines(4), &choices);
+            let overflows = outcomes.iter().filter(|outcome| outcome.overflows > 0).count();
+            assert!(overflows > 100 && overflows < outcomes.len(), "{overflows}");
+            let trapped = outcomes.iter().filter(|outcome| outcome.ending == Some(Ending::Trapped)).count();
+            assert_eq!(trapped, if traps { overflows } else { 0 });
+        }
+    }
+}
+
+#[test]
+fn a_machine_with_registers_of_more_than_32_bits_ends_as_alone() {
+    assert!(all_done(&assert_each_as_alone("ppc-line", &lines(3), &choices(40, 50))));
+    assert!(all_done(&assert_each_as_alone("ppc-arc", &arcs(3), &choices(31, 33))));
+}
+
+#[test]
+fn a_geometry_that_the_hardware_does_not_take_is_refused_and_the_others_run() {
+    let bench = Testbench::new(find("ppc-line").unwrap(), &line([5, 3]), &choices(4, 6)).unwrap();
+    let other_axes = Curve::Line(Line::new(vec![0; 3], vec![1, 2, 3]).unwrap());
+    let curves = [line([5, 3]), line([16, 0]), arcs(1)[0].clone(), other_axes, line([-15, 15])];
+    let outcomes = bench.run_many(&curves, LIMIT).unwrap();
+    assert_eq!(outcomes[0].as_ref().unwrap().reached, [5, 3]);
+    assert!(matches!(outcomes[1], Err(ModelError::DoesNotFit { value: 16, .. })), "{:?}", outcomes[1]);
+    assert!(matches!(outcomes[2], Err(ModelError::Curve { .. })), "{:?}", outcomes[2]);
+    assert!(matches!(outcomes[3], Err(ModelError::Curve { .. })), "{:?}", outcomes[3]);
+    assert_eq!(outcomes[4].as_ref().unwrap().reached, [-15, 15]);
+}
+
+#[test]
+fn a_geometry_that_takes_too_long_ends_at_the_limit() {
+    let bench = Testbench::new(find("dda-line").unwrap(), &line([5, 3]), &choices(10, 12)).unwrap();
+    let outcomes = bench.run_many(&[line([5, 3])], 500).unwrap();
+    let outcome = outcomes[0].as_ref().unwrap();
+    assert_eq!((outcome.ending, outcome.clocks, outcome.steps), (None, 500, 499));
+}
