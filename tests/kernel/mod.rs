@@ -7,7 +7,7 @@ mod diagnostics;
 mod mistakes;
 mod one_mistake;
 mod operators;
-mod random;
+pub(crate) mod random;
 mod semantics;
 mod strict;
 mod text_form;

@@ -1,6 +1,6 @@
 //! Random netlists: every engine agrees with `gates` on every net at every clock, and the text form loses nothing.
 
-mod recipe;
+pub(crate) mod recipe;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -137,7 +137,7 @@ fn assert_same(design: &Design, script: &Script, want: &[Seen], got: &[Seen], wh
 }
 
 /// So many cases, or what the variable PROPTEST_CASES says.
-fn config(cases: u32) -> ProptestConfig {
+pub(crate) fn config(cases: u32) -> ProptestConfig {
     let asked = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
     let cases = asked.unwrap_or(cases);
     ProptestConfig { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(0x57e9), ..ProptestConfig::default() }

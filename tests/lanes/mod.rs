@@ -1,71 +1,163 @@
-//! Many geometries at once come to what each comes to alone.
+//! Lanes: many jobs of one netlist at once come to what each comes to alone.
 
-use stepwave::testbench::{Ending, Testbench};
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, Preset, find};
-use stepwave_nc::{Arc, Curve, Direction, Line};
+mod geometry;
+mod programs;
+mod random;
 
-fn lines(reach: i64) -> Vec<Curve> {
-    let ends = (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| vec![x, y]));
-    ends.filter_map(|to| Line::new(vec![0, 0], to).ok()).map(Curve::Line).collect()
+use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe};
+use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};
+use stepwave_kernel::netlist::Op;
+use stepwave_kernel::{Design, Net};
+
+/// One job on an engine of its own, clock by clock, as the documentation of lanes tells it.
+struct Alone<'d> {
+    design: &'d Design,
+    watch: &'d LaneWatch,
+    engine: Box<dyn Engine>,
+    /// Registers that what is observed depends on.
+    registers: Vec<(Net, Net)>,
+    values: Vec<u64>,
+    last_alive: u64,
 }
 
-fn circles(reach: i64) -> Vec<Curve> {
-    let starts = (-reach..=reach).flat_map(|x| (-reach..=reach).map(move |y| [x, y]));
-    let directions = [Direction::Clockwise, Direction::CounterClockwise];
-    let arcs = starts.flat_map(|start| directions.map(|direction| Arc::new(start, start, [0, 0], direction)));
-    arcs.filter_map(Result::ok).map(Curve::Arc).collect()
-}
+impl<'d> Alone<'d> {
+    fn new(design: &'d Design, watch: &'d LaneWatch, kind: EngineKind) -> Alone<'d> {
+        let start = |observe: &Observe| match observe {
+            Observe::Min { net, signed } => design.netlist().width(*net).mask() >> u32::from(*signed),
+            Observe::Max { net, signed: true } => design.netlist().width(*net).sign_bit(),
+            _ => 0,
+        };
+        Alone {
+            design,
+            watch,
+            engine: kind.build(design, &Watch::default()),
+            registers: needed(design, watch),
+            values: watch.observe.iter().map(start).collect(),
+            last_alive: 0,
+        }
+    }
 
-/// Runs all curves in lanes and each alone, on hardware wide enough for the largest.
-fn assert_lanes_equal_single_runs(model: &str, curves: &[Curve], choices: &Choices) {
-    let model = find(model).unwrap();
-    let widest = Testbench::new(model, curves.last().unwrap(), choices).unwrap();
-    let together = widest.run_many(curves, 1 << 20).unwrap();
-    assert_eq!(together.len(), curves.len());
-    for (curve, lane) in curves.iter().zip(together) {
-        let lane = lane.unwrap();
-        let alone = widest.of(model, curve).unwrap().run(EngineKind::Word, &mut []).unwrap();
-        let what = format!("{} {curve:?}", model.name);
-        assert_eq!((lane.ending, lane.clocks), (Some(alone.ending), alone.clocks), "{what}");
-        assert_eq!((lane.steps, lane.pulses), (alone.steps, alone.pulses), "{what}");
-        assert_eq!(lane.reached, alone.reached, "{what}");
+    fn is(&self, net: Net) -> bool {
+        self.engine.value(net) != 0
+    }
+
+    fn sample(&mut self) {
+        let netlist = self.design.netlist();
+        let mut values = std::mem::take(&mut self.values);
+        for (value, observe) in values.iter_mut().zip(&self.watch.observe) {
+            let now = |net: &Net| self.engine.value(*net);
+            let key =
+                |net: &Net, signed: bool, bits: u64| if signed { bits ^ netlist.width(*net).sign_bit() } else { bits };
+            match observe {
+                Observe::Last(net) => *value = now(net),
+                Observe::Min { net, signed } => *value = (*value).min_by_key(now(net), |bits| key(net, *signed, *bits)),
+                Observe::Max { net, signed } => *value = (*value).max_by_key(now(net), |bits| key(net, *signed, *bits)),
+                Observe::Count(nets) => *value += u64::from(nets.iter().any(|net| now(net) != 0)),
+            }
+        }
+        self.values = values;
+        if self.watch.quiet.as_ref().is_some_and(|quiet| quiet.nets.iter().any(|&net| self.is(net))) {
+            self.last_alive = self.engine.clock();
+        }
+    }
+
+    fn clock(&mut self) {
+        self.engine.run(1, &mut Rows::new(0, 0));
+        self.sample();
+    }
+
+    fn set(&mut self, inputs: &[(Net, u64)]) {
+        inputs.iter().for_each(|&(net, value)| self.engine.set_input(net, value));
+    }
+
+    fn run(mut self, job: &Job) -> LaneEnd {
+        let mut blocks = job.blocks.iter();
+        self.set(blocks.next().map_or(&[], Vec::as_slice));
+        self.engine.reset(&mut Rows::new(0, 0));
+        self.sample();
+        let rest = self.watch.rest.clone();
+        self.set(&rest);
+        loop {
+            self.clock();
+            let clock = self.engine.clock();
+            let done = self.is(self.watch.done);
+            if done && blocks.len() == 0 {
+                return self.end(LaneStop::Done);
+            }
+            if done && clock < self.watch.limit {
+                let block = blocks.next().cloned().unwrap_or_default();
+                self.set(&block);
+                self.clock();
+                self.set(&rest);
+                continue;
+            }
+            if let (false, Some(trap)) = (done, self.watch.traps.iter().position(|&net| self.is(net))) {
+                return self.end(LaneStop::Trap(trap));
+            }
+            if clock >= self.watch.limit {
+                return self.end(LaneStop::Limit);
+            }
+            if let Some(quiet) = self.watch.quiet.as_ref().filter(|quiet| (clock + 1) % quiet.every == 0) {
+                let idle = clock - self.last_alive;
+                let value = |net: Net| self.engine.value(net);
+                let at_rest = || self.registers.iter().all(|&(register, next)| value(register) == value(next));
+                if idle > quiet.clocks || idle >= quiet.every && at_rest() {
+                    return self.end(LaneStop::Quiet { clocks: idle });
+                }
+            }
+        }
+    }
+
+    fn end(self, stop: LaneStop) -> LaneEnd {
+        LaneEnd { stop, clock: self.engine.clock(), values: self.values }
     }
 }
 
-fn width(bits: u64) -> Choices {
-    Choices { width: Some(Width::new(bits).unwrap()), ..Choices::default() }
+/// The registers that what is observed depends on, with the nets of their next values.
+fn needed(design: &Design, watch: &LaneWatch) -> Vec<(Net, Net)> {
+    let netlist = design.netlist();
+    let mut pending = [&[watch.done], &watch.traps[..]].concat();
+    pending.extend(watch.quiet.iter().flat_map(|quiet| &quiet.nets));
+    for observe in &watch.observe {
+        match observe {
+            Observe::Last(net) | Observe::Min { net, .. } | Observe::Max { net, .. } => pending.push(*net),
+            Observe::Count(nets) => pending.extend(nets),
+        }
+    }
+    let mut registers = Vec::new();
+    let mut seen = vec![false; netlist.cells.len()];
+    while let Some(net) = pending.pop() {
+        if !std::mem::replace(&mut seen[net.index()], true) {
+            let op = netlist.cell(net).op;
+            op.visit_inputs(|input| pending.push(input));
+            if let Op::Register { next: Some(next), .. } = op {
+                registers.push((net, next));
+                pending.push(next);
+            }
+        }
+    }
+    registers
 }
 
-#[test]
-fn lines_in_lanes_end_as_each_alone() {
-    for model in ["ppc-line", "dda-line"] {
-        assert_lanes_equal_single_runs(model, &lines(15), &width(4));
+/// Least and greatest by a key.
+trait ByKey: Sized {
+    fn min_by_key<K: Ord>(self, other: Self, key: impl Fn(&Self) -> K) -> Self {
+        if key(&other) < key(&self) { other } else { self }
+    }
+    fn max_by_key<K: Ord>(self, other: Self, key: impl Fn(&Self) -> K) -> Self {
+        if key(&other) > key(&self) { other } else { self }
     }
 }
 
-#[test]
-fn full_circles_of_several_blocks_in_lanes_end_as_each_alone() {
-    let half = Choices { preset: Some(Preset::Half), ..width(5) };
-    assert_lanes_equal_single_runs("dda-arc", &circles(9), &half);
-    assert_lanes_equal_single_runs("ppc-arc", &circles(9), &width(5));
-}
+impl ByKey for u64 {}
 
-#[test]
-fn lanes_stop_at_an_overflow_as_each_alone() {
-    let narrow = Choices { widths: [("f".to_owned(), Width::new(4).unwrap())].into(), ..width(4) };
-    assert_lanes_equal_single_runs("ppc-line", &lines(15), &narrow);
-}
-
-#[test]
-fn lanes_that_come_to_rest_are_given_up_as_each_alone() {
-    // In 11 bits a motion that has come to a stand is at rest long before 2^11 clocks are over.
-    let arcs = circles(8);
-    assert_lanes_equal_single_runs("dda-arc", &arcs, &width(11));
-    let bench = Testbench::new(find("dda-arc").unwrap(), arcs.last().unwrap(), &width(11)).unwrap();
-    let stalled = |bench: &Testbench| bench.run(EngineKind::Word, &mut []).unwrap().ending;
-    let endings = arcs.iter().map(|arc| stalled(&bench.of(find("dda-arc").unwrap(), arc).unwrap()));
-    let given_up = endings.filter(|ending| matches!(ending, Ending::Stalled { clocks } if *clocks < 1 << 11)).count();
-    assert!(given_up > 0 && given_up < arcs.len(), "{given_up} of {}", arcs.len());
+/// Runs all jobs in lanes and each alone, and wants the same of both.
+fn assert_each_as_alone(design: &Design, watch: &LaneWatch, jobs: &[Job], kind: EngineKind) -> Vec<LaneEnd> {
+    let together = LaneProgram::new(design, watch).run_all(jobs.to_vec());
+    assert_eq!(together.len(), jobs.len());
+    for (index, (job, end)) in jobs.iter().zip(&together).enumerate() {
+        let alone = Alone::new(design, watch, kind).run(job);
+        assert_eq!(*end, alone, "job {index}, {job:?}, {watch:?}\n{}", design.netlist());
+    }
+    together
 }

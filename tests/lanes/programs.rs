@@ -44,7 +44,8 @@ fn no_job_one_job_and_any_number_of_jobs_around_full_blocks_each_end_as_alone() 
         let (design, watch, job) = countdown(bits);
         for jobs in [0, 1, 2, 31, 32, 33, 255, 256, 257, 300, 600] {
             // Long ones among short ones, so that lanes are free at unlike times and take further jobs.
-            let jobs: Vec<Job> = (0..jobs).map(|index| job(index * 37 % 53 + if index % 64 == 3 { 150 } else { 0 })).collect();
+            let jobs: Vec<Job> =
+                (0..jobs).map(|index| job(index * 37 % 53 + if index % 64 == 3 { 150 } else { 0 })).collect();
             assert_each_as_alone(&design, &watch, &jobs, EngineKind::Word);
         }
     }
@@ -59,10 +60,14 @@ fn the_results_come_in_the_order_of_the_jobs_whatever_the_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut clocks = Vec::new();
         pool.install(|| {
-            program.run(0..5000, |index| Ok::<_, Infallible>(job(length(index))), |end| {
-                let Ok(end) = end;
-                clocks.push(end.clock);
-            });
+            program.run(
+                0..5000,
+                |index| Ok::<_, Infallible>(job(length(index))),
+                |end| {
+                    let Ok(end) = end;
+                    clocks.push(end.clock);
+                },
+            );
         });
         let want: Vec<u64> = (0..5000).map(|index| length(index) + 1).collect();
         assert_eq!(clocks, want, "{threads} threads");

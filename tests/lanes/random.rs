@@ -1,14 +1,14 @@
 //! Random netlists with random jobs.
 
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use stepwave_kernel::engine::EngineKind;
 use stepwave_kernel::engine::lanes::{Job, LaneStop, LaneWatch, Observe, Quiet};
 use stepwave_kernel::netlist::Op;
 use stepwave_kernel::{Design, Net, elaborate};
 
 use super::assert_each_as_alone;
-use super::recipe::{build, recipe, value};
+use crate::kernel::random::config;
+use crate::kernel::random::recipe::{build, recipe, value};
 
 /// Numbers that pick nets of whatever netlist there is.
 #[derive(Clone, Debug)]
@@ -34,7 +34,15 @@ fn plan() -> impl Strategy<Value = Plan> {
         any::<bool>(),
         prop::collection::vec(prop::collection::vec(inputs(), 0..4), 0..40),
     )
-        .prop_map(|(done, traps, rest, quiet, limit, wide, jobs)| Plan { done, traps, rest, quiet, limit, wide, jobs })
+        .prop_map(|(done, traps, rest, quiet, limit, wide, jobs)| Plan {
+            done,
+            traps,
+            rest,
+            quiet,
+            limit,
+            wide,
+            jobs,
+        })
 }
 
 /// The nets that every engine evaluates.
@@ -67,7 +75,11 @@ fn watch(design: &Design, plan: &Plan) -> LaneWatch {
         observe,
         quiet: plan.quiet.as_ref().map(quiet),
         // A high limit makes lanes wide; a quiet net ends those runs.
-        limit: if plan.quiet.as_ref().is_some_and(|(nets, ..)| nets.is_empty()) { plan.limit + more } else { plan.limit },
+        limit: if plan.quiet.as_ref().is_some_and(|(nets, ..)| nets.is_empty()) {
+            plan.limit + more
+        } else {
+            plan.limit
+        },
         ..LaneWatch::new(done)
     }
 }
@@ -81,9 +93,7 @@ fn jobs(design: &Design, plan: &Plan) -> Vec<Job> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 600, failure_persistence: None, rng_seed: RngSeed::Fixed(0x57e9), ..ProptestConfig::default()
-    })]
+    #![proptest_config(config(600))]
 
     #[test]
     fn every_lane_of_a_random_netlist_ends_as_its_job_alone(recipe in recipe(), plan in plan()) {

@@ -10,7 +10,7 @@ use stepwave_kernel::{Netlist, OnOverflow};
 
 /// A random netlist.
 #[derive(Clone, Debug)]
-pub(super) struct Recipe {
+pub(crate) struct Recipe {
     on_overflow: OnOverflow,
     inputs: Vec<Shape>,
     registers: Vec<RegisterRecipe>,
@@ -104,7 +104,7 @@ fn bits() -> impl Strategy<Value = u32> {
 }
 
 /// A word whose low bits are often all ones, all zeros, or a sign bit.
-pub(super) fn value() -> impl Strategy<Value = u64> {
+pub(crate) fn value() -> impl Strategy<Value = u64> {
     let edge = (0u32..64, -1i64..=1).prop_map(|(bit, beside)| (1u64 << bit).wrapping_add_signed(beside));
     prop_oneof![any::<u64>(), 0u64..16, edge, Just(0), Just(u64::MAX)]
 }
@@ -132,7 +132,7 @@ fn cell() -> impl Strategy<Value = CellRecipe> {
 }
 
 /// Random netlists.
-pub(super) fn recipe() -> impl Strategy<Value = Recipe> {
+pub(crate) fn recipe() -> impl Strategy<Value = Recipe> {
     (
         prop::sample::select(&[OnOverflow::Trap, OnOverflow::Saturate, OnOverflow::Wrap][..]),
         prop::collection::vec(shape(), 1..4),
@@ -150,7 +150,7 @@ pub(super) fn recipe() -> impl Strategy<Value = Recipe> {
 }
 
 /// The netlist of a recipe.
-pub(super) fn build(recipe: &Recipe) -> Netlist {
+pub(crate) fn build(recipe: &Recipe) -> Netlist {
     let module = Module::with_overflow("random", recipe.on_overflow);
     let top = module.top();
     let outer = top.scope("outer");

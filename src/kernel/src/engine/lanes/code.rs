@@ -131,6 +131,22 @@ impl<V: Copy> Do<V> {
     }
 }
 
+impl<V> Do<V> {
+    /// The result is all ones or all zeros, given which operands are.
+    pub(super) fn is_single(self, of: impl Fn(V) -> bool) -> bool {
+        match self {
+            Do::Carry(..) | Do::Less(..) | Do::LessSigned(..) | Do::LessIf(..) => true,
+            Do::Equal(..) | Do::EqualTo(..) | Do::Fits(..) | Do::Bit(..) => true,
+            Do::AddOverflow(..) | Do::SubOverflow(..) => true,
+            Do::Copy(a) | Do::Invert(a, u64::MAX) | Do::EqualIf(_, _, a) => of(a),
+            Do::And(a, b) | Do::AndNot(a, b) | Do::Or(a, b) | Do::Xor(a, b) | Do::Select(_, a, b) => of(a) && of(b),
+            Do::EqualIfOr(_, _, a, b) | Do::UnfitIfOr(_, _, a, b) => of(a) && of(b),
+            Do::EqualEitherOr(_, [(_, a), (_, b)], c) => of(a) && of(b) && of(c),
+            _ => false,
+        }
+    }
+}
+
 /// A row of words in the machine.
 pub(super) type Slot = usize;
 

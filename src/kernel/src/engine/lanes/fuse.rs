@@ -56,12 +56,13 @@ fn and(lowering: &mut Lowering, a: Value, b: Value) -> Option<Simpler> {
     match lowering.what(a)? {
         Do::Invert(inner, u64::MAX) => Some(As(Do::AndNot(b, inner))),
         Do::EqualTo(inner, p) => Some(As(Do::EqualIf(inner, p, b))),
-        // Adding nothing carries nothing, so the condition may stand before the adder, where its sum is needed too.
-        Do::Carry(x, y) => {
+        // Adding nothing carries nothing, so the condition may stand before the adder, where its sum is needed too. But
+        // a number under the condition of a carry is no condition.
+        Do::Carry(x, y) if lowering.is_single(b) => {
             let sum = lowering.make(Do::AddIf(x, y, b));
             Some(As(Do::Less(sum, x)))
         }
-        Do::Less(x, y) => Some(As(Do::LessIf(x, y, b))),
+        Do::Less(x, y) if lowering.is_single(b) => Some(As(Do::LessIf(x, y, b))),
         _ => None,
     }
 }

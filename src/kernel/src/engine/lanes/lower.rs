@@ -32,6 +32,8 @@ pub(super) enum Node {
 pub(super) struct Lowering<'n> {
     netlist: &'n Netlist,
     pub(super) nodes: Vec<Node>,
+    /// Of each node: it is of one bit, so that its word is all ones or all zeros.
+    single: Vec<bool>,
     made: HashMap<Node, Value>,
     of_net: Vec<Option<Value>>,
 }
@@ -44,7 +46,7 @@ fn ones(width: Width) -> u64 {
 impl<'n> Lowering<'n> {
     pub(super) fn new(netlist: &'n Netlist) -> Lowering<'n> {
         let of_net = vec![None; netlist.cells.len()];
-        Lowering { netlist, nodes: Vec::new(), made: HashMap::new(), of_net }
+        Lowering { netlist, nodes: Vec::new(), single: Vec::new(), made: HashMap::new(), of_net }
     }
 
     /// The value of a net.
@@ -94,8 +96,19 @@ impl<'n> Lowering<'n> {
 
     /// A value of its own, even if there is an equal one.
     pub(super) fn unshared(&mut self, node: Node) -> Value {
+        self.single.push(match node {
+            Node::Constant(pattern) => pattern == 0 || pattern == u64::MAX,
+            Node::Input(net) | Node::Register(net) => self.netlist.width(net) == Width::ONE,
+            Node::Accumulator(_) => false,
+            Node::Do(what) => what.is_single(|value| self.is_single(value)),
+        });
         self.nodes.push(node);
         Value(self.nodes.len() - 1)
+    }
+
+    /// The word of a value is all ones or all zeros.
+    pub(super) fn is_single(&self, value: Value) -> bool {
+        self.single[value.0]
     }
 
     /// The result of an operation, in its simplest form.
