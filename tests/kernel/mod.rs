@@ -5,10 +5,12 @@
 
 mod diagnostics;
 mod mistakes;
+mod native;
 mod one_mistake;
 mod operators;
 pub(crate) mod random;
 mod semantics;
+mod simplified;
 mod strict;
 mod text_form;
 mod unnamed;
@@ -22,7 +24,7 @@ fn design(describe: impl FnOnce(Scope<'_>)) -> Design {
     design_with(OnOverflow::Trap, describe)
 }
 
-fn design_with(on_overflow: OnOverflow, describe: impl FnOnce(Scope<'_>)) -> Design {
+pub(crate) fn design_with(on_overflow: OnOverflow, describe: impl FnOnce(Scope<'_>)) -> Design {
     let module = Module::with_overflow("m", on_overflow);
     describe(module.top());
     elaborate(module.finish().unwrap()).unwrap()
@@ -32,7 +34,7 @@ fn design_of_text(netlist: &str) -> Design {
     elaborate(text::parse(netlist).unwrap()).unwrap()
 }
 
-fn net(design: &Design, name: &str) -> Net {
+pub(crate) fn net(design: &Design, name: &str) -> Net {
     design.netlist().find(name).unwrap_or_else(|| panic!("there is no net '{name}'")).net
 }
 
@@ -52,7 +54,7 @@ fn decode(value: u64, bits: u32, signed: bool) -> i128 {
 }
 
 /// All values of a width.
-fn values(bits: u32) -> std::ops::Range<u64> {
+pub(crate) fn values(bits: u32) -> std::ops::Range<u64> {
     0..1 << bits
 }
 

@@ -1,5 +1,6 @@
 //! Lanes: many jobs of one netlist at once come to what each comes to alone.
 
+mod arithmetic;
 mod geometry;
 mod programs;
 mod random;
@@ -97,7 +98,7 @@ impl<'d> Alone<'d> {
             if clock >= self.watch.limit {
                 return self.end(LaneStop::Limit);
             }
-            if let Some(quiet) = self.watch.quiet.as_ref().filter(|quiet| (clock + 1) % quiet.every == 0) {
+            if let Some(quiet) = self.watch.quiet.as_ref().filter(|quiet| (clock + 1).is_multiple_of(quiet.every)) {
                 let idle = clock - self.last_alive;
                 let value = |net: Net| self.engine.value(net);
                 let at_rest = || self.registers.iter().all(|&(register, next)| value(register) == value(next));

@@ -55,7 +55,7 @@ fn no_job_one_job_and_any_number_of_jobs_around_full_blocks_each_end_as_alone() 
 fn the_results_come_in_the_order_of_the_jobs_whatever_the_number_of_threads() {
     let (design, watch, job) = countdown(12);
     let program = LaneProgram::new(&design, &watch);
-    let length = |index: u64| index * 7919 % 301 + if index % 500 == 0 { 3500 } else { 0 };
+    let length = |index: u64| index * 7919 % 301 + if index.is_multiple_of(500) { 3500 } else { 0 };
     for threads in [1, 2, 5] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let mut clocks = Vec::new();

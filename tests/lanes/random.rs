@@ -67,7 +67,8 @@ fn watch(design: &Design, plan: &Plan) -> LaneWatch {
         [Observe::Last(net), Observe::Min { net, signed }, Observe::Max { net, signed }, Observe::Count(counted)]
     });
     // Sometimes little is observed, so that much of the netlist is dead.
-    let observe: Vec<Observe> = if plan.limit % 3 == 0 { observe.take(3).collect() } else { observe.collect() };
+    let observe: Vec<Observe> =
+        if plan.limit.is_multiple_of(3) { observe.take(3).collect() } else { observe.collect() };
     let more = if plan.wide { 1 << 40 } else { 0 };
     LaneWatch {
         traps,

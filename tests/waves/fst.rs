@@ -3,7 +3,9 @@
 use std::io::Cursor;
 
 use stepwave::testbench::{Testbench, WaveWriter, Window};
-use stepwave_kernel::engine::EngineKind;
+use stepwave_kernel::dsl::Module;
+use stepwave_kernel::elaborate;
+use stepwave_kernel::engine::{EngineKind, Rows, Watch};
 use stepwave_kernel::trace::fst::FstHeader;
 use stepwave_kernel::trace::probe::Selection;
 use stepwave_kernel::trace::timescale::ClockTime;
@@ -42,6 +44,32 @@ fn an_fst_holds_the_changes_of_the_vcd() {
         compare(case.what, &shown, &recording.signals, 0, recording.samples - 1);
         compare_clock(case.what, &shown, 0, recording.samples - 1);
     }
+}
+
+#[test]
+fn a_net_with_two_names_changes_under_both() {
+    let module = Module::new("m");
+    let m = module.top();
+    let count = m.scope("inner").reg("count", 3);
+    count.set(count.q.wrapping_add(m.lit(3, 1)));
+    m.name("alias", count.q);
+    m.name("inverse", !count.q);
+    let design = elaborate(module.finish().unwrap()).unwrap();
+    let columns: Vec<_> = design.netlist().names[..3].iter().map(|named| named.net).collect();
+    let columns = vec![columns[0], columns[2]];
+    let mut engine = EngineKind::Word.build(&design, &Watch { columns: columns.clone(), stops: vec![] });
+    let mut rows = Rows::new(2, 30);
+    engine.reset(&mut rows);
+    engine.run(20, &mut rows);
+    let probes = Selection::default().probes(&design, &columns).unwrap();
+    let header = FstHeader { probes: &probes, time: ClockTime::from_hz(1e6).unwrap(), clk: true };
+    let mut body = header.write(Cursor::new(Vec::new())).unwrap();
+    body.rows(&rows, 0..rows.len()).unwrap();
+    let shown = read(&body.finish().unwrap().into_inner());
+    let changes = |path: &str| shown.variables[path].changes.clone();
+    assert_eq!(changes("m.alias"), changes("m.inner.count"));
+    assert_eq!((changes("m.alias").len(), changes("m.inverse").len()), (21, 21));
+    assert_eq!(changes("m.alias")[3].1, "011");
 }
 
 #[test]

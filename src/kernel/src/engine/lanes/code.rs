@@ -133,7 +133,7 @@ impl<V: Copy> Do<V> {
 
 impl<V> Do<V> {
     /// The result is all ones or all zeros, given which operands are.
-    pub(super) fn is_single(self, of: impl Fn(V) -> bool) -> bool {
+    pub(super) fn gives_single(self, of: impl Fn(V) -> bool) -> bool {
         match self {
             Do::Carry(..) | Do::Less(..) | Do::LessSigned(..) | Do::LessIf(..) => true,
             Do::Equal(..) | Do::EqualTo(..) | Do::Fits(..) | Do::Bit(..) => true,

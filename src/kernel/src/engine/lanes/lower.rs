@@ -100,7 +100,7 @@ impl<'n> Lowering<'n> {
             Node::Constant(pattern) => pattern == 0 || pattern == u64::MAX,
             Node::Input(net) | Node::Register(net) => self.netlist.width(net) == Width::ONE,
             Node::Accumulator(_) => false,
-            Node::Do(what) => what.is_single(|value| self.is_single(value)),
+            Node::Do(what) => what.gives_single(|value| self.is_single(value)),
         });
         self.nodes.push(node);
         Value(self.nodes.len() - 1)
