@@ -1,0 +1,91 @@
+//! stepwave: the program that users get, and, for what the program has no words for, this one as a child.
+
+use std::path::Path;
+
+use serde_json::Value;
+use stepwave::kernel::engine::EngineKind;
+use stepwave::testbench::LaneOutcome;
+
+use crate::Fallible;
+use crate::contender::Wave;
+use crate::measure::Job;
+use crate::synthetic;
+use crate::unit::{Case, Unit, block};
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_stepwave");
+
+/// Clocks and end point from the report.
+fn says(text: &str) -> Fallible<String> {
+    let report: Value = serde_json::from_str(text)?;
+    let reached = report["end_point"]["reached"].as_array().into_iter().flatten();
+    Ok(format!("{}{}", report["clocks"], reached.map(|value| format!(" {value}")).collect::<String>()))
+}
+
+/// `stepwave run`, with all that it looks at.
+pub(crate) fn program(case: &Case, dir: &Path, wave: Wave) -> Job {
+    let words = case.words();
+    let mut words: Vec<&str> = words.iter().map(String::as_str).collect();
+    words.splice(0..0, [PROGRAM, "run"]);
+    words.extend(["--json", "-"]);
+    match wave {
+        Wave::None => {}
+        Wave::Vcd => words.extend(["--vcd", "own.vcd"]),
+        Wave::Fst => words.extend(["--fst", "own.fst"]),
+    }
+    Job::new("stepwave", dir, &words).says(says)
+}
+
+/// This program as a child.
+fn child(name: &'static str, dir: &Path, words: &[String]) -> Fallible<Job> {
+    let this = std::env::current_exe()?.display().to_string();
+    let mut all = vec![this.as_str()];
+    all.extend(words.iter().map(String::as_str));
+    Ok(Job::new(name, dir, &all))
+}
+
+/// The engine `compiled` alone, watching nothing but `done`.
+pub(crate) fn engine(case: &Case, dir: &Path) -> Fallible<Job> {
+    child("engine", dir, &["--engine".to_owned(), case.model.name.to_owned(), case.width.to_string()])
+}
+
+/// The same for a synthetic netlist.
+pub(crate) fn cells(cells: usize, clocks: u64, dir: &Path) -> Fallible<Job> {
+    child("engine", dir, &["--cells".to_owned(), cells.to_string(), clocks.to_string()])
+}
+
+/// Many geometries at once.
+pub(crate) fn lanes(case: &Case, geometries: usize, threads: usize, dir: &Path) -> Fallible<Job> {
+    let name = if threads == 1 { "lanes" } else { "lanes, all threads" };
+    let numbers = [case.width.to_string(), geometries.to_string(), threads.to_string()];
+    let words = ["--lanes".to_owned(), case.model.name.to_owned()].into_iter().chain(numbers);
+    Ok(child(name, dir, &words.collect::<Vec<_>>())?.cores(Some(threads)))
+}
+
+/// What such a child does; its result.
+pub(crate) fn as_child(kind: &str, words: &[String]) -> Fallible<String> {
+    let number = |index: usize| -> Fallible<usize> { Ok(words.get(index).ok_or("a word is missing")?.parse()?) };
+    match kind {
+        "--engine" => {
+            let bench = Case::new(&words[0], u32::try_from(number(1)?)?)?.bench()?;
+            Unit::of(&bench).run(EngineKind::Compiled, &block(&bench))
+        }
+        "--cells" => {
+            let unit = synthetic::chain(number(0)?)?;
+            let words = synthetic::block(&unit, number(1)? as u64);
+            unit.run(EngineKind::Compiled, &words)
+        }
+        _ => {
+            let case = Case::new(&words[0], u32::try_from(number(1)?)?)?;
+            let curves = (0..number(2)?).map(|index| case.sibling(index)).collect::<Fallible<Vec<_>>>()?;
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(number(3)?).build()?;
+            let bench = case.bench()?;
+            let outcomes = pool.install(|| bench.run_many(&curves, u64::MAX))?;
+            outcomes.into_iter().map(|outcome| Ok(line(&outcome?))).collect()
+        }
+    }
+}
+
+fn line(outcome: &LaneOutcome) -> String {
+    let reached = outcome.reached.iter().map(|value| format!(" {value}"));
+    format!("{}{}\n", outcome.clocks, reached.collect::<String>())
+}

@@ -1,0 +1,256 @@
+//! What is measured, section by section.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::contender::{Wave, first_line};
+use crate::measure::{Job, Run, race};
+use crate::table::{Table, median, number, times};
+use crate::unit::{Case, MODELS, Unit, block};
+use crate::{Fallible, cxxrtl, growth, icarus, own, verilator};
+
+/// How much of everything; powers of two of clocks.
+pub(crate) struct Sizes {
+    pub(crate) rounds: usize,
+    /// A run without a wave, one with, one of many lanes.
+    pub(crate) run: u32,
+    pub(crate) wave: u32,
+    pub(crate) lane: u32,
+    pub(crate) geometries: usize,
+    /// The longest run, and the largest netlist.
+    pub(crate) longest: u32,
+    pub(crate) cells: usize,
+}
+
+const FULL: Sizes = Sizes { rounds: 5, run: 26, wave: 20, lane: 16, geometries: 4096, longest: 26, cells: 10_000 };
+const QUICK: Sizes = Sizes { rounds: 1, run: 22, wave: 14, lane: 10, geometries: 512, longest: 18, cells: 100 };
+
+type Section = fn(&Sizes, &Path) -> Fallible<String>;
+
+const SECTIONS: [(&str, Section); 5] = [
+    ("first-wave", first_wave),
+    ("no-trace", no_trace),
+    ("waves", waves),
+    ("lanes", lanes),
+    ("growth", growth::growth),
+];
+
+/// Measures what is asked for, and prints it.
+pub(crate) fn all(words: &[String]) -> Fallible<()> {
+    let sizes = if words.iter().any(|word| word == "--quick") { QUICK } else { FULL };
+    let wanted: Vec<&String> = words.iter().filter(|word| !word.starts_with('-')).collect();
+    if let Some(unknown) = wanted.iter().find(|word| SECTIONS.iter().all(|(name, _)| name != **word)) {
+        return Err(format!("no section {unknown}; there are {:?}", SECTIONS.map(|(name, _)| name)).into());
+    }
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("peers");
+    if dir.exists() {
+        fs::remove_dir_all(&dir)?;
+    }
+    println!("{}", machine());
+    for (name, section) in SECTIONS {
+        if wanted.is_empty() || wanted.iter().any(|word| *word == name) {
+            eprintln!("{name}");
+            println!("{}", section(&sizes, &dir.join(name))?);
+        }
+    }
+    Ok(())
+}
+
+/// The machine and the versions.
+fn machine() -> String {
+    let cpu = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = cpu.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    format!(
+        "{}, {cores} cores. stepwave {}; {}; {}; {}; {}.",
+        model.map_or("unknown processor", |(_, model)| model),
+        env!("CARGO_PKG_VERSION"),
+        first_line("verilator", &["--version"]),
+        first_line("yosys", &["-V"]),
+        first_line("iverilog", &["-V"]).trim_end_matches(" ()"),
+        first_line("g++", &["--version"]),
+    )
+}
+
+/// Millions of clocks a second of processor time.
+pub(crate) fn rate(runs: &[Run]) -> f64 {
+    median(runs, |run| run.clocks() / run.computed / 1e6)
+}
+
+/// Seconds on the clock.
+fn wall(runs: &[Run]) -> f64 {
+    median(runs, |run| run.wall)
+}
+
+fn peak(runs: &[Run]) -> String {
+    number(median(runs, |run| run.peak_mb))
+}
+
+fn first_wave(sizes: &Sizes, dir: &Path) -> Fallible<String> {
+    let head = ["16 clocks", "stepwave, ms", "Icarus, ms", "CXXRTL, ms", "Verilator, ms", "to Icarus", "to CXXRTL"];
+    let head = [&head[..], &["to Verilator"]].concat();
+    let mut table = Table::new("From source to first wave: time on the clock, all cores, compilers included", &head);
+    for model in MODELS {
+        let dir = dir.join(model);
+        let (case, bench) = (Case::new(model, 4)?, Case::new(model, 4)?.bench()?);
+        let unit = Unit::of(&bench);
+        let blocks = unit.line(&block(&bench));
+        let peers = [
+            icarus::first_wave(&unit, &bench, &dir.join("icarus"))?,
+            cxxrtl::first_wave(&unit, &dir.join("cxxrtl"), &blocks)?,
+            verilator::first_wave(&unit, &dir.join("verilator"), &blocks)?,
+        ];
+        let own = own::program(&case, &dir, Wave::Vcd).wave("own.vcd");
+        let jobs: Vec<Job> =
+            [own].into_iter().chain(peers.map(|job| job.wave("wave.vcd"))).map(|job| job.cores(None)).collect();
+        same_waves(&unit, &jobs)?;
+        let runs = race(sizes.rounds, &jobs)?;
+        let walls: Vec<f64> = runs.iter().map(|runs| wall(runs)).collect();
+        let ratios = walls[1..].iter().map(|peer| times(peer / walls[0]));
+        table.row(model, walls.iter().map(|wall| number(wall * 1e3)).chain(ratios));
+    }
+    Ok(table.text())
+}
+
+/// Whether all waves show the same, by `stepwave diff`.
+fn same_waves(unit: &Unit, jobs: &[Job]) -> Fallible<()> {
+    let stepwave = env!("CARGO_BIN_EXE_stepwave");
+    for job in jobs {
+        let output = Command::new(&job.words[0]).args(&job.words[1..]).current_dir(&job.dir).output()?;
+        let wave = job.wave.as_ref().filter(|wave| output.status.success() && wave.exists());
+        let wave = wave.ok_or_else(|| format!("{} makes no wave: {:?}", job.name, job.words))?;
+        if job.name != jobs[0].name {
+            let scope = if job.name == "Icarus" { format!("{}_tb", unit.name()) } else { "TOP".to_owned() };
+            let mut diff = Command::new(stepwave);
+            diff.arg("diff").args(jobs[0].wave.iter()).arg(wave);
+            diff.args(["--map", &format!("{0}={scope}.{0}", unit.name())]);
+            // Verilator shows the ports of the top once more, in a scope around it.
+            for net in &unit.outputs {
+                diff.args(["--ignore", &format!("TOP.{}", unit.port(*net))]);
+            }
+            let output = diff.output()?;
+            if !output.status.success() {
+                let said = String::from_utf8_lossy(&output.stdout).into_owned();
+                return Err(format!("the wave of {} differs: {said}", job.name).into());
+            }
+        }
+    }
+    Ok(())
+}
+
+fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
+    let head = ["model", "clocks", "engine", "`stepwave run`", "Verilator", "CXXRTL", "Icarus", "engine to Verilator"];
+    let head = [&head[..], &["to CXXRTL", "to Icarus", "`run` to Verilator"]].concat();
+    let mut speed = Table::new("Without a wave: million clocks a second, one core", &head);
+    let head = ["model", "engine", "`stepwave run`", "Verilator", "CXXRTL", "Icarus"];
+    let mut memory = Table::new("Without a wave: peak memory, MB", &head);
+    for model in MODELS {
+        let dir = dir.join(model);
+        let case = Case::new(model, sizes.run)?;
+        let bench = case.bench()?;
+        let unit = Unit::of(&bench);
+        let blocks = unit.line(&block(&bench));
+        let jobs = [
+            own::engine(&case, &dir)?,
+            own::program(&case, &dir, Wave::None),
+            verilator::run(&unit, &dir, Wave::None, &blocks)?,
+            cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::None, &blocks)?,
+        ];
+        let mut runs = race(sizes.rounds, &jobs)?;
+        // Icarus is so slow that a shorter block must do.
+        let case = Case::new(model, sizes.wave)?;
+        let bench = case.bench()?;
+        let icarus = icarus::run(&Unit::of(&bench), &bench, &dir.join("icarus"), Wave::None)?;
+        runs.extend(race(sizes.rounds.min(3), &[icarus, own::engine(&case, &dir)?])?.into_iter().take(1));
+        let rates: Vec<f64> = runs.iter().map(|runs| rate(runs)).collect();
+        let ratios = rates[2..].iter().map(|peer| rates[0] / peer).chain([rates[1] / rates[2]]);
+        let clocks = format!("{:.0}", runs[0][0].clocks());
+        speed.row(model, [clocks].into_iter().chain(rates.iter().copied().map(number)).chain(ratios.map(times)));
+        memory.row(model, runs.iter().map(|runs| peak(runs)));
+    }
+    Ok(speed.text() + &memory.text())
+}
+
+fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
+    let head = ["model", "stepwave", "Verilator", "CXXRTL", "Icarus", "to Verilator", "to CXXRTL", "to Icarus"];
+    let mut vcd = Table::new("Full VCD to a file: million clocks a second, one core", &head);
+    let mut fst = Table::new("FST to a file: million clocks a second, one core", &head);
+    let mut cores = Table::new("Full VCD to a file: million clocks a second on the clock, all cores", &head);
+    let head = ["model", "VCD stepwave", "Verilator", "CXXRTL", "Icarus", "FST stepwave", "Verilator", "Icarus"];
+    let mut bytes = Table::new("Wave files: bytes a clock", &head);
+    let mut memory = Table::new("Writing waves: peak memory, MB", &head);
+    for model in MODELS {
+        let dir = dir.join(model);
+        let case = Case::new(model, sizes.wave)?;
+        let bench = case.bench()?;
+        let unit = Unit::of(&bench);
+        let blocks = unit.line(&block(&bench));
+        let own = |wave, name: &str| own::program(&case, &dir, wave).wave(name);
+        // Icarus is slow: two rounds are enough for a ratio of a hundred.
+        let jobs = [
+            own(Wave::Vcd, "own.vcd"),
+            verilator::run(&unit, &dir.join("vcd"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
+            cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
+            icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Vcd)?.wave("wave.vcd").rounds(2),
+            own(Wave::Fst, "own.fst"),
+            verilator::run(&unit, &dir.join("fst"), Wave::Fst, &blocks)?.wave("wave.vcd"),
+            icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Fst)?.wave("wave.vcd").rounds(2),
+        ];
+        fs::create_dir_all(&dir)?;
+        let runs = race(sizes.rounds, &jobs)?;
+        let free: Vec<Job> = jobs.into_iter().take(3).map(|job| job.cores(None)).collect();
+        let free = race(sizes.rounds, &free)?;
+        let row = |rates: &[f64]| {
+            let ratios: Vec<String> = rates[1..].iter().map(|peer| times(rates[0] / peer)).collect();
+            rates.iter().copied().map(number).chain(ratios).collect::<Vec<_>>()
+        };
+        let rates: Vec<f64> = runs.iter().map(|runs| rate(runs)).collect();
+        vcd.row(model, row(&rates[..4]));
+        fst.row(model, row(&[rates[4], rates[5], f64::NAN, rates[6]]));
+        let mut walls: Vec<f64> = free.iter().map(|runs| median(runs, |run| run.clocks() / run.wall / 1e6)).collect();
+        walls.push(f64::NAN);
+        cores.row(model, row(&walls));
+        bytes.row(model, runs.iter().map(|runs| number(median(runs, |run| run.wave_bytes / run.clocks()))));
+        memory.row(model, runs.iter().map(|runs| peak(runs)));
+    }
+    Ok([vcd, cores, fst, bytes, memory].map(Table::text).concat())
+}
+
+fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let title = format!("{} geometries of one hardware: million lane-clocks a second", sizes.geometries);
+    let threads = format!("{all} threads, on the clock");
+    let one = ["one thread", "Verilator, one after another", "to Verilator"];
+    let many = ["1 thread, on the clock", &threads, "gain"];
+    let mut table = Table::new(&title, &[&["model"][..], &one, &many].concat());
+    for model in MODELS {
+        let dir = dir.join(model);
+        let case = Case::new(model, sizes.lane)?;
+        let (unit, blocks) = many_blocks(&case, sizes.geometries)?;
+        let jobs = [
+            own::lanes(&case, sizes.geometries, 1, &dir)?,
+            own::lanes(&case, sizes.geometries, all, &dir)?,
+            verilator::run(&unit, &dir, Wave::None, &blocks)?,
+        ];
+        let runs = race(sizes.rounds, &jobs)?;
+        let computed = |runs: &Vec<Run>| median(runs, |run| run.all_clocks() / run.computed / 1e6);
+        let wall = |runs: &Vec<Run>| median(runs, |run| run.all_clocks() / run.wall / 1e6);
+        let (own, peer) = (computed(&runs[0]), computed(&runs[2]));
+        let (single, multiple) = (wall(&runs[0]), wall(&runs[1]));
+        let cells = [number(own), number(peer), times(own / peer), number(single), number(multiple)];
+        table.row(model, cells.into_iter().chain([times(multiple / single)]));
+    }
+    Ok(table.text())
+}
+
+/// Hardware, and the file of blocks of many geometries for it.
+fn many_blocks(case: &Case, geometries: usize) -> Fallible<(Unit, String)> {
+    let bench = case.bench()?;
+    let unit = Unit::of(&bench);
+    let mut blocks = String::new();
+    for index in 0..geometries {
+        blocks += &unit.line(&block(&bench.of(case.model, &case.sibling(index)?)?));
+    }
+    Ok((unit, blocks))
+}

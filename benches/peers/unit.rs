@@ -1,0 +1,213 @@
+//! What is simulated: a design with its ports, as Verilog for the peers and as it stands for us.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use stepwave::kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
+use stepwave::kernel::export::{self, Options};
+use stepwave::kernel::trace::timescale::ClockTime;
+use stepwave::kernel::{Design, Net, Width, bits};
+use stepwave::models::{Choices, Model, Preset, find};
+use stepwave::nc::{Arc, Curve, Direction, Line};
+use stepwave::testbench::Testbench;
+
+use crate::Fallible;
+
+/// A machine of a model with a block, on one side as types, on the other as words of the command line.
+#[derive(Clone, Debug)]
+pub(crate) struct Case {
+    pub(crate) model: &'static Model,
+    pub(crate) width: u32,
+    pub(crate) curve: Curve,
+}
+
+pub(crate) const MODELS: [&str; 4] = ["dda-line", "ppc-line", "dda-arc", "ppc-arc"];
+
+impl Case {
+    /// The block of `2^power` clocks or somewhat more that has `power`-bit registers: a line for lines, a quarter of a
+    /// circle for arcs.
+    pub(crate) fn new(model: &str, power: u32) -> Fallible<Case> {
+        let all = 1i64 << power;
+        Ok(Case { model: find(model)?, width: power, curve: curve(model, all - all / 7, all)? })
+    }
+
+    /// The `index`-th of many geometries for the same hardware.
+    pub(crate) fn sibling(&self, index: usize) -> Fallible<Curve> {
+        let all = 1i64 << self.width;
+        let less = i64::try_from(index)? * 977 % (all / 4);
+        curve(self.model.name, all - all / 7 - less, all)
+    }
+
+    fn choices(&self) -> Fallible<Choices> {
+        let preset = (self.model.name == "dda-arc").then_some(Preset::Half);
+        Ok(Choices { width: Some(Width::new(u64::from(self.width))?), preset, ..Choices::default() })
+    }
+
+    pub(crate) fn bench(&self) -> Fallible<Testbench> {
+        Ok(Testbench::new(self.model, &self.curve, &self.choices()?)?)
+    }
+
+    /// Words for `stepwave run` and `stepwave export`.
+    pub(crate) fn words(&self) -> Vec<String> {
+        let point = |point: [i64; 2]| format!("{},{}", point[0], point[1]);
+        let mut words = vec![self.model.name.to_owned()];
+        match &self.curve {
+            Curve::Line(line) => words.extend(["--to".to_owned(), point([line.to()[0], line.to()[1]])]),
+            Curve::Arc(arc) => {
+                words.extend(["--from".to_owned(), point(arc.from()), "--to".to_owned(), point(arc.to())]);
+                words.push("--ccw".to_owned());
+            }
+        }
+        words.extend(["--width".to_owned(), self.width.to_string()]);
+        if self.model.name == "dda-arc" {
+            words.extend(["--preset".to_owned(), "half".to_owned()]);
+        }
+        words
+    }
+}
+
+/// A curve of about `clocks` clocks, as far as the model lets the curve decide; `size` is its greatest coordinate where
+/// the registers do.
+fn curve(model: &str, size: i64, clocks: i64) -> Fallible<Curve> {
+    let line = |to: [i64; 2]| Ok(Curve::Line(Line::new(vec![0, 0], to.to_vec())?));
+    let quarter = |radius| Ok(Curve::Arc(Arc::new([radius, 0], [0, radius], [0, 0], Direction::CounterClockwise)?));
+    // Four beats a step; a quarter of a circle has two steps for each unit of its radius.
+    let share = size * 7 / 6;
+    match model {
+        "dda-line" => line([size, size / 3]),
+        "ppc-line" => line([share / 4 - clocks / 16, clocks / 16]),
+        "dda-arc" => quarter(size),
+        _ => quarter((share / 8).max(1)),
+    }
+}
+
+/// A design with what a test bench must know of it.
+pub(crate) struct Unit {
+    pub(crate) design: Design,
+    /// Nets that become outputs.
+    pub(crate) outputs: Vec<Net>,
+    /// 1 for the clock that loads the block.
+    pub(crate) strobes: Vec<Net>,
+    pub(crate) done: Net,
+    /// What is printed at the end; two's complement where true.
+    pub(crate) result: Vec<(Net, bool)>,
+}
+
+impl Unit {
+    pub(crate) fn of(bench: &Testbench) -> Unit {
+        let machine = bench.machine();
+        Unit {
+            design: bench.design().clone(),
+            outputs: bench.outputs(),
+            strobes: vec![machine.load.net, machine.preset_position.net],
+            done: machine.done.net,
+            result: machine.positions.iter().map(|port| (port.net, port.signed)).collect(),
+        }
+    }
+
+    /// Its name in Verilog.
+    pub(crate) fn name(&self) -> &str {
+        &self.design.netlist().scopes[0].name
+    }
+
+    /// Path of a net below the top.
+    fn path(&self, net: Net) -> String {
+        let netlist = self.design.netlist();
+        let path = netlist.name_of(net).map(|named| netlist.path(named)).unwrap_or_default();
+        path.split_once('.').map_or(path.clone(), |(_, below)| below.to_owned())
+    }
+
+    /// The port of a net.
+    pub(crate) fn port(&self, net: Net) -> String {
+        self.path(net).replace('.', "_")
+    }
+
+    /// Inputs that a block's words are put on, in the order of a line of the file of blocks.
+    fn loaded(&self) -> impl Iterator<Item = Net> {
+        self.design.inputs().iter().copied().filter(|net| !self.strobes.contains(net))
+    }
+
+    /// A line of the file of blocks.
+    pub(crate) fn line(&self, words: &[(Net, u64)]) -> String {
+        let value = |net| words.iter().find(|(input, _)| *input == net).map_or(0, |(_, value)| *value);
+        self.loaded().map(|net| value(net).to_string()).collect::<Vec<_>>().join(" ") + "\n"
+    }
+
+    /// Writes the Verilog module `model.v`, and `ports.h` for a C++ main in which a port is the member that `member`
+    /// makes of its name.
+    pub(crate) fn write(&self, dir: &Path, top: &str, member: impl Fn(&str) -> String) -> Fallible<()> {
+        fs::create_dir_all(dir)?;
+        fs::write(dir.join("model.v"), self.verilog())?;
+        let each = |nets: &mut dyn Iterator<Item = Net>| {
+            nets.fold(String::new(), |list, net| list + &format!(" X({})", member(&self.port(net))))
+        };
+        let mut text = format!("#define MODULE \"{}\"\n#define TOP {top}\n", self.name());
+        writeln!(text, "#define INPUTS(X){}", each(&mut self.loaded()))?;
+        writeln!(text, "#define STROBES(X){}", each(&mut self.strobes.iter().copied()))?;
+        writeln!(text, "#define DONE {}", member(&self.port(self.done)))?;
+        let width = |net| self.design.netlist().width(net).get();
+        let shown = self.result.iter().fold(String::new(), |list, &(net, signed)| {
+            list + &format!(" X({}, {}, {signed})", member(&self.port(net)), width(net))
+        });
+        writeln!(text, "#define RESULT(X){shown}")?;
+        let mut names: Vec<String> = self.design.netlist().names.iter().map(|named| self.path(named.net)).collect();
+        names.push("clk".to_owned());
+        names.sort();
+        names.dedup();
+        writeln!(text, "#define SHOWN {}", names.iter().map(|name| format!("\"{name}\", ")).collect::<String>())?;
+        Ok(fs::write(dir.join("ports.h"), text)?)
+    }
+
+    pub(crate) fn verilog(&self) -> String {
+        export::verilog(&self.design, &Options { comment: &[], outputs: &self.outputs })
+    }
+
+    /// The test bench of `stepwave export`, and a second top module that prints the result.
+    pub(crate) fn testbench(&self, bench: &Testbench) -> Fallible<String> {
+        let options = Options { comment: &[], outputs: &self.outputs };
+        let time = ClockTime::from_hz(1e6)?;
+        let text = export::testbench(&self.design, &options, &bench.stimulus(), time, "wave.vcd");
+        let tb = format!("{}_tb", self.name());
+        let results = self.result.iter().map(|&(net, signed)| {
+            let port = format!("{tb}.{}", self.port(net));
+            if signed { format!(", $signed({port})") } else { format!(", {port}") }
+        });
+        Ok(format!(
+            "{text}\nmodule result;\n    always @(posedge {tb}.{}) #1 $display(\"%0d{}\", ($time + 4) / 10{});\nendmodule\n",
+            self.port(self.done),
+            " %0d".repeat(self.result.len()),
+            results.collect::<String>()
+        ))
+    }
+
+    /// Runs a block in an engine that watches nothing but `done`, and gives the line that the peers print.
+    pub(crate) fn run(&self, kind: EngineKind, words: &[(Net, u64)]) -> Fallible<String> {
+        let mut rows = Rows::new(0, 1);
+        let watch = Watch { columns: Vec::new(), stops: vec![self.done] };
+        let mut engine: Box<dyn Engine> = kind.build(&self.design, &watch);
+        for &(input, value) in words {
+            engine.set_input(input, value);
+        }
+        for &strobe in &self.strobes {
+            engine.set_input(strobe, 1);
+        }
+        engine.reset(&mut rows);
+        for &strobe in &self.strobes {
+            engine.set_input(strobe, 0);
+        }
+        engine.run(1, &mut rows);
+        if engine.run(u64::MAX, &mut rows) != Stop::Net(0) {
+            return Err("the engine did not run to the end".into());
+        }
+        let show = |&(net, signed): &(Net, bool)| {
+            format!(" {}", bits::number(self.design.netlist().width(net), engine.value(net), signed))
+        };
+        Ok(format!("{}{}\n", engine.clock(), self.result.iter().map(show).collect::<String>()))
+    }
+}
+
+/// The words of the first block of a test bench.
+pub(crate) fn block(bench: &Testbench) -> Vec<(Net, u64)> {
+    bench.stimulus().steps.first().map(|step| step.set.clone()).unwrap_or_default()
+}

@@ -1,0 +1,53 @@
+//! Verilator: a C++ main that holds the clock loop around its model.
+
+use std::fs;
+use std::path::Path;
+
+use crate::Fallible;
+use crate::contender::{Wave, shell};
+use crate::measure::Job;
+use crate::unit::Unit;
+
+const MAIN: &str = include_str!("verilator.cpp");
+
+/// Optimised as its manual advises for speed.
+const FAST: &str = "-O3 -march=native -flto";
+/// Built soonest.
+const SOON: &str = "-O0";
+
+/// The commands that build `obj/Vmodel` from `model.v`.
+fn commands(unit: &Unit, wave: Wave, optimise: &str) -> String {
+    let (trace, define) = match wave {
+        Wave::None => ("", ""),
+        Wave::Vcd => ("--trace", "-CFLAGS -DWAVE_VCD"),
+        Wave::Fst => ("--trace-fst", "-CFLAGS -DWAVE_FST"),
+    };
+    format!(
+        "rm -rf obj && verilator --cc --exe -O3 --x-assign fast --x-initial fast --noassert -Wno-fatal \
+         --timescale 100ns/100ns --top-module {} --prefix Vmodel --Mdir obj {trace} {define} -CFLAGS -I.. \
+         -LDFLAGS '{optimise}' main.cpp model.v >verilator.log 2>&1 && \
+         make -j -C obj -f Vmodel.mk OPT_FAST='{optimise}' OPT_SLOW='{optimise}' OPT_GLOBAL='{optimise}' \
+         >>verilator.log 2>&1",
+        unit.name()
+    )
+}
+
+fn write(unit: &Unit, dir: &Path, blocks: &str) -> Fallible<()> {
+    unit.write(dir, "Vmodel", str::to_owned)?;
+    fs::write(dir.join("main.cpp"), MAIN)?;
+    Ok(fs::write(dir.join("blocks"), blocks)?)
+}
+
+/// A job that runs blocks in a model that has been built.
+pub(crate) fn run(unit: &Unit, dir: &Path, wave: Wave, blocks: &str) -> Fallible<Job> {
+    write(unit, dir, blocks)?;
+    shell(dir, &commands(unit, wave, FAST))?;
+    Ok(Job::new("Verilator", dir, &["obj/Vmodel", "blocks", "wave.vcd"]))
+}
+
+/// A job from the source to the wave.
+pub(crate) fn first_wave(unit: &Unit, dir: &Path, blocks: &str) -> Fallible<Job> {
+    write(unit, dir, blocks)?;
+    let all = format!("{} && obj/Vmodel blocks wave.vcd", commands(unit, Wave::Vcd, SOON));
+    Ok(Job::new("Verilator", dir, &["sh", "-c", &all]))
+}
