@@ -18,6 +18,11 @@ use stepwave::models::{Choices, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Testbench, WaveWriter, Window};
 
+#[path = "shared/time.rs"]
+mod time;
+
+use time::own_time;
+
 type Outcome<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 /// Clocks written in one round.
@@ -79,13 +84,6 @@ struct Round {
     /// Time that this thread had a core, which other programs on the machine hardly disturb.
     own: Duration,
     bytes: usize,
-}
-
-/// Time that this thread has been on a core; on systems that do not tell, the time that has passed.
-fn own_time(start: Instant) -> Duration {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse().ok());
-    nanoseconds.map_or_else(|| start.elapsed(), Duration::from_nanos)
 }
 
 /// The best of five.

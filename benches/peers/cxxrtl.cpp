@@ -56,17 +56,20 @@ static uint64_t run(TOP &top, Wave &wave) {
     STROBES(CLEAR)
     DUMP(10);
     uint64_t clocks = 1;
-    for (;;) {
+    do {
+        // Nothing is evaluated at a falling edge: the design has rising edges only. That is a fifth faster than `step`.
         top.p_clk.set<bool>(false);
-        top.step();
-        // Outputs are evaluated before registers are committed: only now they are those of the last rising edge.
-        if (clocks > 1 && top.DONE.get<bool>()) return clocks;
+        top.commit();
         DUMP(10 * clocks + 5);
         ++clocks;
         top.p_clk.set<bool>(true);
-        top.step();
+        top.eval();
+        top.commit();
         DUMP(10 * clocks);
-    }
+    } while (!top.DONE_REGISTER.get<bool>());
+    // Outputs are evaluated before registers are committed.
+    top.step();
+    return clocks;
 }
 
 int main(int argc, char **argv) {

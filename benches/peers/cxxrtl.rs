@@ -23,8 +23,8 @@ fn commands(wave: Wave, optimise: &str) -> String {
 }
 
 fn write(unit: &Unit, dir: &Path, blocks: &str) -> Fallible<()> {
-    let doubled = |name: &str| format!("p_{}", name.replace('_', "__"));
-    unit.write(dir, &format!("cxxrtl_design::{}", doubled(unit.name())), doubled)?;
+    let mangled = |name: &str| format!("p_{}", name.replace('_', "__").replace('.', "_2e_"));
+    unit.write(dir, &format!("cxxrtl_design::{}", mangled(unit.name())), mangled)?;
     fs::write(dir.join("main.cpp"), MAIN)?;
     Ok(fs::write(dir.join("blocks"), blocks)?)
 }

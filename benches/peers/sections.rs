@@ -24,7 +24,7 @@ pub(crate) struct Sizes {
 }
 
 const FULL: Sizes = Sizes { rounds: 5, run: 26, wave: 20, lane: 16, geometries: 4096, longest: 26, cells: 10_000 };
-const QUICK: Sizes = Sizes { rounds: 1, run: 22, wave: 14, lane: 10, geometries: 512, longest: 18, cells: 100 };
+const QUICK: Sizes = Sizes { rounds: 1, run: 24, wave: 18, lane: 12, geometries: 1024, longest: 20, cells: 100 };
 
 type Section = fn(&Sizes, &Path) -> Fallible<String>;
 
@@ -101,11 +101,13 @@ fn first_wave(sizes: &Sizes, dir: &Path) -> Fallible<String> {
             cxxrtl::first_wave(&unit, &dir.join("cxxrtl"), &blocks)?,
             verilator::first_wave(&unit, &dir.join("verilator"), &blocks)?,
         ];
+        // The slow ones need fewer rounds: what disturbs is milliseconds long.
+        let rounds = [4 * sizes.rounds, 4 * sizes.rounds, sizes.rounds, sizes.rounds.min(2)];
         let own = own::program(&case, &dir, Wave::Vcd).wave("own.vcd");
-        let jobs: Vec<Job> =
-            [own].into_iter().chain(peers.map(|job| job.wave("wave.vcd"))).map(|job| job.cores(None)).collect();
+        let jobs = [own].into_iter().chain(peers.map(|job| job.wave("wave.vcd"))).zip(rounds);
+        let jobs: Vec<Job> = jobs.map(|(job, rounds)| job.cores(None).rounds(rounds)).collect();
         same_waves(&unit, &jobs)?;
-        let runs = race(sizes.rounds, &jobs)?;
+        let runs = race(4 * sizes.rounds, &jobs)?;
         let walls: Vec<f64> = runs.iter().map(|runs| wall(runs)).collect();
         let ratios = walls[1..].iter().map(|peer| times(peer / walls[0]));
         table.row(model, walls.iter().map(|wall| number(wall * 1e3)).chain(ratios));
@@ -153,7 +155,7 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let blocks = unit.line(&block(&bench));
         let jobs = [
             own::engine(&case, &dir)?,
-            own::program(&case, &dir, Wave::None),
+            own::program(&case, &dir, Wave::None).rounds(3),
             verilator::run(&unit, &dir, Wave::None, &blocks)?,
             cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::None, &blocks)?,
         ];
@@ -231,7 +233,7 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let jobs = [
             own::lanes(&case, sizes.geometries, 1, &dir)?,
             own::lanes(&case, sizes.geometries, all, &dir)?,
-            verilator::run(&unit, &dir, Wave::None, &blocks)?,
+            verilator::run(&unit, &dir, Wave::None, &blocks)?.rounds(3),
         ];
         let runs = race(sizes.rounds, &jobs)?;
         let computed = |runs: &Vec<Run>| median(runs, |run| run.all_clocks() / run.computed / 1e6);

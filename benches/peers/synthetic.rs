@@ -38,7 +38,7 @@ fn integrators(count: usize) -> Fallible<Unit> {
 }
 
 fn integrator<'m>(m: Scope<'m>, grow: Signal<'m>, index: u64) -> (Signal<'m>, Signal<'m>) {
-    let integrand = m.reg("jv", BITS).reset(0x0051_7cc1 * (index + 1) & 0xff_ffff);
+    let integrand = m.reg("jv", BITS).reset((0x0051_7cc1 * (index + 1)) & 0xff_ffff);
     integrand.set(integrand.q.wrapping_add(grow.extend(BITS)));
     let remainder = m.reg("jr", BITS);
     let (carry, sum) = remainder.q.carrying_add(integrand.q);

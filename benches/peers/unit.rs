@@ -146,6 +146,7 @@ impl Unit {
         writeln!(text, "#define INPUTS(X){}", each(&mut self.loaded()))?;
         writeln!(text, "#define STROBES(X){}", each(&mut self.strobes.iter().copied()))?;
         writeln!(text, "#define DONE {}", member(&self.port(self.done)))?;
+        writeln!(text, "#define DONE_REGISTER {}", member(&self.path(self.done)))?;
         let width = |net| self.design.netlist().width(net).get();
         let shown = self.result.iter().fold(String::new(), |list, &(net, signed)| {
             list + &format!(" X({}, {}, {signed})", member(&self.port(net)), width(net))
