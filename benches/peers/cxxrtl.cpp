@@ -57,14 +57,13 @@ static uint64_t run(TOP &top, Wave &wave) {
     DUMP(10);
     uint64_t clocks = 1;
     do {
-        // Nothing is evaluated at a falling edge: the design has rising edges only. That is a fifth faster than `step`.
+        // Both edges: what the next rising edge takes may have been evaluated at the falling one.
         top.p_clk.set<bool>(false);
-        top.commit();
+        top.step();
         DUMP(10 * clocks + 5);
         ++clocks;
         top.p_clk.set<bool>(true);
-        top.eval();
-        top.commit();
+        top.step();
         DUMP(10 * clocks);
     } while (!top.DONE_REGISTER.get<bool>());
     // Outputs are evaluated before registers are committed.
