@@ -23,7 +23,7 @@ pub(crate) struct Sizes {
     pub(crate) cells: usize,
 }
 
-const FULL: Sizes = Sizes { rounds: 5, run: 26, wave: 20, lane: 16, geometries: 4096, longest: 26, cells: 10_000 };
+const FULL: Sizes = Sizes { rounds: 3, run: 26, wave: 20, lane: 16, geometries: 4096, longest: 26, cells: 10_000 };
 const QUICK: Sizes = Sizes { rounds: 1, run: 24, wave: 18, lane: 12, geometries: 1024, longest: 20, cells: 100 };
 
 type Section = fn(&Sizes, &Path) -> Fallible<String>;
@@ -155,7 +155,7 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let blocks = unit.line(&block(&bench));
         let jobs = [
             own::engine(&case, &dir)?,
-            own::program(&case, &dir, Wave::None).rounds(3),
+            own::program(&case, &dir, Wave::None).rounds(2),
             verilator::run(&unit, &dir, Wave::None, &blocks)?,
             cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::None, &blocks)?,
         ];
@@ -164,7 +164,7 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let case = Case::new(model, sizes.wave)?;
         let bench = case.bench()?;
         let icarus = icarus::run(&Unit::of(&bench), &bench, &dir.join("icarus"), Wave::None)?;
-        runs.extend(race(sizes.rounds.min(3), &[icarus, own::engine(&case, &dir)?])?.into_iter().take(1));
+        runs.extend(race(1, &[icarus, own::engine(&case, &dir)?])?.into_iter().take(1));
         let rates: Vec<f64> = runs.iter().map(|runs| rate(runs)).collect();
         let ratios = rates[2..].iter().map(|peer| rates[0] / peer).chain([rates[1] / rates[2]]);
         let clocks = format!("{:.0}", runs[0][0].clocks());
@@ -189,15 +189,15 @@ fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let unit = Unit::of(&bench);
         let blocks = unit.line(&block(&bench));
         let own = |wave, name: &str| own::program(&case, &dir, wave).wave(name);
-        // Icarus is slow: two rounds are enough for a ratio of a hundred.
+        // Icarus is slow: one round is enough for a ratio of a hundred.
         let jobs = [
             own(Wave::Vcd, "own.vcd"),
             verilator::run(&unit, &dir.join("vcd"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
             cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
-            icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Vcd)?.wave("wave.vcd").rounds(2),
+            icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Vcd)?.wave("wave.vcd").rounds(1),
             own(Wave::Fst, "own.fst"),
             verilator::run(&unit, &dir.join("fst"), Wave::Fst, &blocks)?.wave("wave.vcd"),
-            icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Fst)?.wave("wave.vcd").rounds(2),
+            icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Fst)?.wave("wave.vcd").rounds(1),
         ];
         fs::create_dir_all(&dir)?;
         let runs = race(sizes.rounds, &jobs)?;
@@ -233,7 +233,7 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let jobs = [
             own::lanes(&case, sizes.geometries, 1, &dir)?,
             own::lanes(&case, sizes.geometries, all, &dir)?,
-            verilator::run(&unit, &dir, Wave::None, &blocks)?.rounds(3),
+            verilator::run(&unit, &dir, Wave::None, &blocks)?.rounds(2),
         ];
         let runs = race(sizes.rounds, &jobs)?;
         let computed = |runs: &Vec<Run>| median(runs, |run| run.all_clocks() / run.computed / 1e6);

@@ -29,14 +29,14 @@ impl Case {
     /// circle for arcs.
     pub(crate) fn new(model: &str, power: u32) -> Fallible<Case> {
         let all = 1i64 << power;
-        Ok(Case { model: find(model)?, width: power, curve: curve(model, all - all / 7, all)? })
+        Ok(Case { model: find(model)?, width: power, curve: curve(model, all, 0)? })
     }
 
     /// The `index`-th of many geometries for the same hardware.
     pub(crate) fn sibling(&self, index: usize) -> Fallible<Curve> {
         let all = 1i64 << self.width;
         let less = i64::try_from(index)? * 977 % (all / 4);
-        curve(self.model.name, all - all / 7 - less, all)
+        curve(self.model.name, all, less)
     }
 
     fn choices(&self) -> Fallible<Choices> {
@@ -67,18 +67,20 @@ impl Case {
     }
 }
 
-/// A curve of about `clocks` clocks, as far as the model lets the curve decide; `size` is its greatest coordinate where
-/// the registers do.
-fn curve(model: &str, size: i64, clocks: i64) -> Fallible<Curve> {
+/// A curve of about `all - less` clocks in registers that hold less than `all`. Its slope is no ratio of small numbers,
+/// which would make the pulses go round.
+fn curve(model: &str, all: i64, less: i64) -> Fallible<Curve> {
+    let golden = |value: i64| value * 618_034 / 1_000_000;
     let line = |to: [i64; 2]| Ok(Curve::Line(Line::new(vec![0, 0], to.to_vec())?));
     let quarter = |radius| Ok(Curve::Arc(Arc::new([radius, 0], [0, radius], [0, 0], Direction::CounterClockwise)?));
+    let size = all * 927_051 / 1_000_000 - less;
     // Four beats a step; a quarter of a circle has two steps for each unit of its radius.
-    let share = size * 7 / 6;
+    let steps = (all - less) / 4;
     match model {
-        "dda-line" => line([size, size / 3]),
-        "ppc-line" => line([share / 4 - clocks / 16, clocks / 16]),
+        "dda-line" => line([size, golden(size)]),
+        "ppc-line" => line([golden(steps), steps - golden(steps)]),
         "dda-arc" => quarter(size),
-        _ => quarter((share / 8).max(1)),
+        _ => quarter(steps / 2),
     }
 }
 
