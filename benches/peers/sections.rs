@@ -12,6 +12,7 @@ use crate::{Fallible, cxxrtl, growth, icarus, own, verilator};
 
 /// How much of everything; powers of two of clocks.
 pub(crate) struct Sizes {
+    models: &'static [&'static str],
     pub(crate) rounds: usize,
     /// A run without a wave, one with, one of many lanes.
     pub(crate) run: u32,
@@ -23,8 +24,18 @@ pub(crate) struct Sizes {
     pub(crate) cells: usize,
 }
 
-const FULL: Sizes = Sizes { rounds: 3, run: 26, wave: 20, lane: 16, geometries: 4096, longest: 26, cells: 10_000 };
-const QUICK: Sizes = Sizes { rounds: 1, run: 24, wave: 18, lane: 12, geometries: 1024, longest: 20, cells: 100 };
+const FULL: Sizes =
+    Sizes { models: &MODELS, rounds: 3, run: 26, wave: 20, lane: 16, geometries: 4096, longest: 26, cells: 10_000 };
+const QUICK: Sizes = Sizes {
+    models: &["dda-line", "ppc-arc"],
+    rounds: 1,
+    run: 24,
+    wave: 18,
+    lane: 12,
+    geometries: 1024,
+    longest: 20,
+    cells: 100,
+};
 
 type Section = fn(&Sizes, &Path) -> Fallible<String>;
 
@@ -91,7 +102,7 @@ fn first_wave(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let head = ["16 clocks", "stepwave, ms", "Icarus, ms", "CXXRTL, ms", "Verilator, ms", "to Icarus", "to CXXRTL"];
     let head = [&head[..], &["to Verilator"]].concat();
     let mut table = Table::new("From source to first wave: time on the clock, all cores, compilers included", &head);
-    for model in MODELS {
+    for &model in sizes.models {
         let dir = dir.join(model);
         let (case, bench) = (Case::new(model, 4)?, Case::new(model, 4)?.bench()?);
         let unit = Unit::of(&bench);
@@ -147,7 +158,7 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let mut speed = Table::new("Without a wave: million clocks a second, one core", &head);
     let head = ["model", "engine", "`stepwave run`", "Verilator", "CXXRTL", "Icarus"];
     let mut memory = Table::new("Without a wave: peak memory, MB", &head);
-    for model in MODELS {
+    for &model in sizes.models {
         let dir = dir.join(model);
         let case = Case::new(model, sizes.run)?;
         let bench = case.bench()?;
@@ -182,7 +193,7 @@ fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let head = ["model", "VCD stepwave", "Verilator", "CXXRTL", "Icarus", "FST stepwave", "Verilator", "Icarus"];
     let mut bytes = Table::new("Wave files: bytes a clock", &head);
     let mut memory = Table::new("Writing waves: peak memory, MB", &head);
-    for model in MODELS {
+    for &model in sizes.models {
         let dir = dir.join(model);
         let case = Case::new(model, sizes.wave)?;
         let bench = case.bench()?;
@@ -226,7 +237,7 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let one = ["one thread", "Verilator, one after another", "to Verilator"];
     let many = ["1 thread, on the clock", &threads, "gain"];
     let mut table = Table::new(&title, &[&["model"][..], &one, &many].concat());
-    for model in MODELS {
+    for &model in sizes.models {
         let dir = dir.join(model);
         let case = Case::new(model, sizes.lane)?;
         let (unit, blocks) = many_blocks(&case, sizes.geometries)?;
