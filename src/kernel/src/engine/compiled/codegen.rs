@@ -228,8 +228,7 @@ impl Generator<'_, '_> {
         for net in netlist.nets().filter(|net| needed[net.index()]) {
             if !values.contains_key(&net) {
                 let cell = netlist.cell(net);
-                let width_of = |net: Net| netlist.width(net);
-                let value = self.operation(cell.op, cell.width, &values, width_of);
+                let value = self.operation(netlist, &cell, &values);
                 values.insert(net, value);
             }
         }

@@ -7,23 +7,22 @@ use cranelift_codegen::ir::{InstBuilder, Value, types};
 
 use super::codegen::{Generator, immediate, kind};
 use crate::bits::Width;
-use crate::netlist::{Net, Op};
+use crate::netlist::{Cell, Net, Netlist, Op};
 
 impl Generator<'_, '_> {
     /// The value of a combinational cell or a constant.
-    pub(super) fn operation(
-        &mut self,
-        op: Op,
-        width: Width,
-        values: &HashMap<Net, Value>,
-        width_of: impl Fn(Net) -> Width,
-    ) -> Value {
+    pub(super) fn operation(&mut self, netlist: &Netlist, cell: &Cell, values: &HashMap<Net, Value>) -> Value {
         let at = |net: Net| values[&net];
-        match op {
+        let width_of = |net: Net| netlist.width(net);
+        let width = cell.width;
+        match cell.op {
             // Inputs and registers are given before; nothing else is without operands but a constant.
             Op::Input | Op::Register { .. } => self.f.ins().iconst(kind(width), 0),
             Op::Const(value) => self.f.ins().iconst(kind(width), immediate(value)),
-            Op::Not(a) if width == Width::ONE => self.f.ins().bxor_imm(at(a), 1),
+            Op::Not(a) if width == Width::ONE => match netlist.cell(a).op {
+                Op::Equal(a, b) => self.f.ins().icmp(IntCC::NotEqual, at(a), at(b)),
+                _ => self.f.ins().bxor_imm(at(a), 1),
+            },
             Op::Not(a) => {
                 let ones = self.f.ins().iconst(types::I64, immediate(width.mask()));
                 self.f.ins().bxor(at(a), ones)

@@ -24,9 +24,12 @@ pub(super) struct History {
 pub(super) type Periodic = Vec<(Net, Vec<u64>)>;
 
 impl History {
+    /// Remembers the registers of few bits that the machine itself reads. One that is only looked at from outside, such
+    /// as a pulse, would be guarded for nothing.
     pub(super) fn new(netlist: &Netlist, registers: &[(Net, Net)], window: u64) -> History {
-        let few = registers.iter().map(|&(net, _)| net).filter(|&net| netlist.width(net).get() <= FEW_BITS);
-        History { registers: few.collect(), samples: Vec::new(), window }
+        let read = read_by_the_machine(netlist, registers);
+        let few = |net: &Net| netlist.width(*net).get() <= FEW_BITS && read[net.index()];
+        History { registers: registers.iter().map(|&(net, _)| net).filter(|net| few(net)).collect(), samples: Vec::new(), window }
     }
 
     pub(super) fn window(&self) -> u64 {
@@ -71,6 +74,22 @@ impl History {
         let values = |index: usize| (len - period..len).map(|sample| u64::from(at(sample, index))).collect();
         Some(indices.into_iter().map(|index| (self.registers[index], values(index))).collect())
     }
+}
+
+/// The nets that the next value of a register depends on, of another one than the net itself.
+fn read_by_the_machine(netlist: &Netlist, registers: &[(Net, Net)]) -> Vec<bool> {
+    let mut read = vec![false; netlist.cells.len()];
+    for &(register, next) in registers {
+        let mut seen = vec![false; netlist.cells.len()];
+        let mut pending = vec![next];
+        while let Some(net) = pending.pop() {
+            if !std::mem::replace(&mut seen[net.index()], true) {
+                read[net.index()] |= net != register;
+                netlist.cell(net).op.visit_inputs(|input| pending.push(input));
+            }
+        }
+    }
+    read
 }
 
 /// Netlists with everything folded in that a loop takes for granted.
