@@ -1,10 +1,11 @@
 //! Path error: how far each position lies off the ideal curve.
 
+use fearless_simd::{Level, dispatch};
 use serde_json::json;
 use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::Rows;
 use stepwave_models::Port;
-use stepwave_nc::{Curve, Gauge};
+use stepwave_nc::{Curve, Gauge, Screen};
 
 use super::checkpoint::{Memory, recalled};
 use super::{Observer, ObserverError, StepColumns, Testbench};
@@ -29,6 +30,9 @@ pub struct PathWatch<'a> {
     rows: u64,
     /// Where the machine stood behind the last of them.
     position: Vec<i64>,
+    /// Sorts out blocks of samples in which no greater error is.
+    screen: Option<Screen>,
+    level: Level,
     /// The first greatest so far.
     pub worst: Option<WorstError>,
 }
@@ -39,7 +43,23 @@ impl<'a> PathWatch<'a> {
     pub fn new(bench: &Testbench, curve: &'a Curve) -> PathWatch<'a> {
         let ports = bench.machine().positions.clone();
         let position = vec![0; ports.len()];
-        PathWatch { gauge: curve.gauge(), columns: StepColumns::of(bench), ports, rows: 0, position, worst: None }
+        let gauge = curve.gauge();
+        let widest = ports.iter().map(|port| port.width.get()).max().unwrap_or(64);
+        let screen = gauge.screen(1 << (widest - 1)).filter(|_| ports.len() == 2);
+        let (columns, level) = (StepColumns::of(bench), Level::new());
+        PathWatch { gauge, columns, ports, rows: 0, position, screen, level, worst: None }
+    }
+
+    /// No sample of the block lies farther off than the worst so far.
+    fn is_no_worse(&self, rows: &Rows) -> bool {
+        let (Some(screen), Some(worst), [x, y]) = (self.screen, &self.worst, &self.columns.positions[..]) else {
+            return false;
+        };
+        let (xs, ys) = (rows.column(*x), rows.column(*y));
+        let [wx, wy] = [self.ports[0].width, self.ports[1].width];
+        let positions = xs.iter().zip(ys).map(|(x, y)| [to_signed(wx, *x), to_signed(wy, *y)]);
+        let greatest = dispatch!(self.level, _simd => screen.greatest(positions));
+        greatest <= worst.error
     }
 
     /// Reads the position in a sample; true if it is another than before.
@@ -78,6 +98,13 @@ impl Observer for PathWatch<'_> {
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        if self.is_no_worse(rows) {
+            self.rows += self.columns.count(rows);
+            if let Some(last) = (0..rows.len()).rev().find(|&row| self.columns.completes(rows, row, false)) {
+                self.moved(rows, last);
+            }
+            return Ok(());
+        }
         for row in 0..rows.len() {
             let first = self.rows == 0;
             if !self.columns.completes(rows, row, first) {

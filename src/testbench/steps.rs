@@ -53,6 +53,13 @@ impl StepColumns {
     }
 }
 
+impl StepColumns {
+    /// Number of steps that a block completes.
+    pub(super) fn count(&self, rows: &Rows) -> u64 {
+        rows.column(self.stepped).iter().sum()
+    }
+}
+
 /// Counts steps and pulses, and makes the rows of the table where somebody wants them.
 pub(super) struct StepReader<'a> {
     bench: &'a Testbench,

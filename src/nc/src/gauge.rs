@@ -81,6 +81,44 @@ impl Gauge<'_> {
     }
 }
 
+/// What a gauge tells of many positions at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Screen(Plane);
+
+impl Gauge<'_> {
+    /// A screen for positions of two axes of which every coordinate lies in `-reach..=reach`; `None` where the curve or
+    /// they reach so far that it could err.
+    #[must_use]
+    pub fn screen(&self, reach: u64) -> Option<Screen> {
+        let plane = self.plane?;
+        let (Plane::Line { from: [x, y], .. } | Plane::Circle { center: [x, y], .. }) = plane;
+        let farthest = x.unsigned_abs().max(y.unsigned_abs()).checked_add(reach)?;
+        (farthest < NEAR.unsigned_abs()).then_some(Screen(plane))
+    }
+}
+
+impl Screen {
+    /// The greatest deviation of some positions, in BLU; 0 where there are none. Branchless, for hot loops.
+    #[inline(always)]
+    #[must_use]
+    pub fn greatest(&self, positions: impl Iterator<Item = [i64; 2]>) -> f64 {
+        match self.0 {
+            Plane::Line { from: [x0, y0], delta: [dx, dy], length } => {
+                let cross = |[x, y]: [i64; 2]| (dx * (y - y0) - dy * (x - x0)).unsigned_abs();
+                positions.map(cross).fold(0, u64::max) as f64 / length
+            }
+            Plane::Circle { center: [x0, y0], radius_squared, radius } => {
+                let squared = |[x, y]: [i64; 2]| ((x - x0) * (x - x0) + (y - y0) * (y - y0)).unsigned_abs();
+                let start = (radius_squared, radius_squared);
+                let (least, most) =
+                    positions.map(squared).fold(start, |(least, most), now| (least.min(now), most.max(now)));
+                let off = |reached: u64| reached.abs_diff(radius_squared) as f64 / ((reached as f64).sqrt() + radius);
+                off(least).max(off(most))
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -102,6 +140,24 @@ mod tests {
             assert!(quick == plain || quick.is_nan() && plain.is_nan(), "{curve:?} {position:?}: {quick} {plain}");
         }
         assert!(gauge.deviation(&[1]).is_nan());
+    }
+
+    #[test]
+    fn a_screen_tells_the_greatest_deviation_and_refuses_what_it_cannot() -> Result<(), GeometryError> {
+        let line: Curve = Line::new(vec![3, -2], vec![90, 71])?.into();
+        let circle: Curve = Arc::new([30, 40], [30, 40], [-5, 6], Direction::Clockwise)?.into();
+        let far: Curve = Line::new(vec![1 << 30, 0], vec![(1 << 30) + 9, 5])?.into();
+        for curve in [line, circle] {
+            let (gauge, screen) = (curve.gauge(), curve.gauge().screen(1000).expect("a screen"));
+            let some = || (0..500_i64).map(|step| [step * 37 % 200 - 99, step * 53 % 150 - 80]);
+            for count in [0, 1, 2, 17, 500] {
+                let each = some().take(count).map(|position| gauge.deviation(&position));
+                assert_eq!(screen.greatest(some().take(count)), each.fold(0.0, f64::max), "{curve:?}");
+            }
+            assert!(gauge.screen(1 << 31).is_none() && gauge.screen(u64::MAX).is_none());
+        }
+        assert!(far.gauge().screen(1 << 29).is_some() && far.gauge().screen(1 << 30).is_none());
+        Ok(())
     }
 
     #[test]

@@ -32,7 +32,7 @@ mod sector;
 pub use arc::Arc;
 pub use curve::{Curve, OUTLINE_LIMIT};
 pub use error::GeometryError;
-pub use gauge::Gauge;
+pub use gauge::{Gauge, Screen};
 pub use limit::{AXES_MAX, AXES_MIN, AXIS_LETTERS, COORDINATE_LIMIT};
 pub use line::Line;
 pub use quadrant::{Direction, Quadrant};

@@ -29,7 +29,11 @@ impl History {
     pub(super) fn new(netlist: &Netlist, registers: &[(Net, Net)], window: u64) -> History {
         let read = read_by_the_machine(netlist, registers);
         let few = |net: &Net| netlist.width(*net).get() <= FEW_BITS && read[net.index()];
-        History { registers: registers.iter().map(|&(net, _)| net).filter(|net| few(net)).collect(), samples: Vec::new(), window }
+        History {
+            registers: registers.iter().map(|&(net, _)| net).filter(|net| few(net)).collect(),
+            samples: Vec::new(),
+            window,
+        }
     }
 
     pub(super) fn window(&self) -> u64 {
