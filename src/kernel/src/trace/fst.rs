@@ -201,17 +201,21 @@ impl<W: Write + Seek> FstBody<W> {
     /// Writes a row, the `sample`th of those scanned last.
     fn row(&mut self, clock: u64, rows: &Rows, row: usize, sample: usize) -> Result<(), FstWriteError> {
         let time = clock * self.ticks;
-        let mut changes = self.moves.of(sample).peekable();
-        if self.clk.is_some() || changes.peek().is_some() {
+        let groups = self.changes.chunks(SPAN).enumerate();
+        if self.clk.is_some() || groups.clone().any(|(group, _)| self.moves.bits(group, sample) != 0) {
             self.body.time_change(time)?;
         }
         if let Some(clk) = self.clk {
             self.body.signal_change(clk, b"1")?;
         }
-        for index in changes {
-            let change = &self.changes[index];
-            let now = rows.value(change.column, row);
-            self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
+        for (group, changes) in groups {
+            let mut bits = self.moves.bits(group, sample);
+            while bits != 0 {
+                let change = &changes[bits.trailing_zeros() as usize];
+                bits &= bits - 1;
+                let now = rows.value(change.column, row);
+                self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
+            }
         }
         if let Some(clk) = self.clk {
             self.body.time_change(time + self.ticks / 2)?;

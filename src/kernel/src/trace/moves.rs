@@ -27,17 +27,11 @@ impl Moves {
         dispatch!(self.level, _simd => scan(&mut self.groups, nets));
     }
 
-    /// The nets that change in a sample, in order.
+    /// The nets of a group that change in a sample: a bit each, the first the lowest. Group `g` begins with net
+    /// `g * SPAN`.
     #[inline]
-    pub(super) fn of(&self, sample: usize) -> impl Iterator<Item = usize> {
-        self.groups.iter().enumerate().flat_map(move |(group, samples)| {
-            let mut bits = samples[sample % SPAN];
-            std::iter::from_fn(move || {
-                let bit = bits.trailing_zeros() as usize;
-                bits &= bits.wrapping_sub(1);
-                (bit < SPAN).then_some(group * SPAN + bit)
-            })
-        })
+    pub(super) fn bits(&self, group: usize, sample: usize) -> u64 {
+        self.groups[group][sample % SPAN]
     }
 }
 
@@ -115,7 +109,9 @@ mod tests {
                     })
                     .collect();
                 moves.scan(columns.iter().map(Vec::as_slice).zip(&mut before));
-                let found: Vec<Vec<usize>> = (0..len).map(|sample| moves.of(sample).collect()).collect();
+                let changes = |sample, &net: &usize| moves.bits(net / SPAN, sample) >> (net % SPAN) & 1 == 1;
+                let found: Vec<Vec<usize>> =
+                    (0..len).map(|sample| (0..nets).filter(|net| changes(sample, net)).collect()).collect();
                 assert_eq!(found, expected, "{nets} nets, {len} samples");
                 assert!((0..nets).all(|net| before[net] == columns[net][len - 1]));
             }

@@ -215,10 +215,14 @@ impl<W: Write> VcdBody<W> {
         let stamp = self.clk.map_or_else(|| Tail::new("\n"), |[high, _]| high);
         let mut at = start + self.rise.put(stamp, &mut buffer[start..]);
         let changed = at;
-        for index in self.moves.of(sample) {
-            let change = &self.changes[index];
-            change.line.put(rows.value(change.column, row), window(buffer, at));
-            at += change.line.len();
+        for (group, changes) in self.changes.chunks(SPAN).enumerate() {
+            let mut bits = self.moves.bits(group, sample);
+            while bits != 0 {
+                let change = &changes[bits.trailing_zeros() as usize];
+                bits &= bits - 1;
+                change.line.put(rows.value(change.column, row), window(buffer, at));
+                at += change.line.len();
+            }
         }
         match self.clk {
             Some([_, low]) => at += self.fall.put(low, &mut buffer[at..]),
