@@ -41,7 +41,7 @@ fn main() -> Fallible<()> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     match words.first().map(String::as_str) {
         Some("--measure") => measure::child(&words[1..]),
-        Some(kind @ ("--engine" | "--cells" | "--lanes")) => {
+        Some(kind @ ("--engine" | "--cells" | "--lanes" | "--bare-lanes")) => {
             print!("{}", own::as_child(kind, &words[1..])?);
             Ok(())
         }

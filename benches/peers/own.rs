@@ -3,12 +3,16 @@
 use std::path::Path;
 
 use serde_json::Value;
+use stepwave::kernel::bits::to_signed;
 use stepwave::kernel::engine::EngineKind;
-use stepwave::testbench::LaneOutcome;
+use stepwave::kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneWatch, Observe};
+use stepwave::models::{Model, ModelError, Port};
+use stepwave::nc::Curve;
+use stepwave::testbench::{LaneOutcome, Testbench};
 
 use crate::Fallible;
 use crate::contender::Wave;
-use crate::measure::Job;
+use crate::measure::Job as Contender;
 use crate::synthetic;
 use crate::unit::{Case, Unit, block};
 
@@ -22,7 +26,7 @@ fn says(text: &str) -> Fallible<String> {
 }
 
 /// `stepwave run`, with all that it looks at.
-pub(crate) fn program(case: &Case, dir: &Path, wave: Wave) -> Job {
+pub(crate) fn program(case: &Case, dir: &Path, wave: Wave) -> Contender {
     let words = case.words();
     let mut words: Vec<&str> = words.iter().map(String::as_str).collect();
     words.splice(0..0, [PROGRAM, "run"]);
@@ -32,36 +36,43 @@ pub(crate) fn program(case: &Case, dir: &Path, wave: Wave) -> Job {
         Wave::Vcd => words.extend(["--vcd", "own.vcd"]),
         Wave::Fst => words.extend(["--fst", "own.fst"]),
     }
-    Job::new("stepwave", dir, &words).says(says)
+    Contender::new("stepwave", dir, &words).says(says)
 }
 
 /// This program as a child.
-fn child(name: &'static str, dir: &Path, words: &[String]) -> Fallible<Job> {
+fn child(name: &'static str, dir: &Path, words: &[String]) -> Fallible<Contender> {
     let this = std::env::current_exe()?.display().to_string();
     let mut all = vec![this.as_str()];
     all.extend(words.iter().map(String::as_str));
-    Ok(Job::new(name, dir, &all))
+    Ok(Contender::new(name, dir, &all))
 }
 
 /// The engine `compiled` alone, watching nothing but `done`.
-pub(crate) fn engine(case: &Case, dir: &Path) -> Fallible<Job> {
+pub(crate) fn engine(case: &Case, dir: &Path) -> Fallible<Contender> {
     child("engine", dir, &["--engine".to_owned(), case.model.name.to_owned(), case.width.to_string()])
 }
 
 /// The same for a synthetic netlist.
-pub(crate) fn cells(cells: usize, clocks: u64, dir: &Path) -> Fallible<Job> {
+pub(crate) fn cells(cells: usize, clocks: u64, dir: &Path) -> Fallible<Contender> {
     child("engine", dir, &["--cells".to_owned(), cells.to_string(), clocks.to_string()])
 }
 
 /// Clocks that no geometry needs; a limit beyond 32 bits would make every lane twice as wide.
 const LIMIT: u64 = 1 << 31;
 
-/// Many geometries at once.
-pub(crate) fn lanes(case: &Case, geometries: usize, threads: usize, dir: &Path) -> Fallible<Job> {
+/// Many geometries at once, with all that the test bench looks at.
+pub(crate) fn lanes(case: &Case, geometries: usize, threads: usize, dir: &Path) -> Fallible<Contender> {
     let name = if threads == 1 { "lanes" } else { "lanes, all threads" };
     let numbers = [case.width.to_string(), geometries.to_string(), threads.to_string()];
     let words = ["--lanes".to_owned(), case.model.name.to_owned()].into_iter().chain(numbers);
     Ok(child(name, dir, &words.collect::<Vec<_>>())?.cores(Some(threads)))
+}
+
+/// Many geometries at once on one thread, watching nothing but `done` and where the machine ends.
+pub(crate) fn bare_lanes(case: &Case, geometries: usize, dir: &Path) -> Fallible<Contender> {
+    let words = ["--bare-lanes", case.model.name].map(str::to_owned);
+    let numbers = [case.width.to_string(), geometries.to_string(), "1".to_owned()];
+    child("bare lanes", dir, &[&words[..], &numbers].concat())
 }
 
 /// What such a child does; its result.
@@ -82,13 +93,45 @@ pub(crate) fn as_child(kind: &str, words: &[String]) -> Fallible<String> {
             let curves = (0..number(2)?).map(|index| case.sibling(index)).collect::<Fallible<Vec<_>>>()?;
             let pool = rayon::ThreadPoolBuilder::new().num_threads(number(3)?).build()?;
             let bench = case.bench()?;
+            if kind == "--bare-lanes" {
+                return pool.install(|| run_bare(&bench, case.model, &curves));
+            }
             let outcomes = pool.install(|| bench.run_many(&curves, LIMIT))?;
-            outcomes.into_iter().map(|outcome| Ok(line(&outcome?))).collect()
+            let told = outcomes.into_iter().map(|outcome| {
+                let LaneOutcome { clocks, reached, .. } = outcome?;
+                Ok(line(clocks, reached.into_iter()))
+            });
+            told.collect()
         }
     }
 }
 
-fn line(outcome: &LaneOutcome) -> String {
-    let reached = outcome.reached.iter().map(|value| format!(" {value}"));
-    format!("{}{}\n", outcome.clocks, reached.collect::<String>())
+/// As the peers do: each geometry is loaded and runs until `done`.
+fn run_bare(bench: &Testbench, model: &Model, curves: &[Curve]) -> Fallible<String> {
+    let machine = bench.machine();
+    let watch = LaneWatch {
+        rest: vec![(machine.load.net, 0), (machine.preset_position.net, 0)],
+        observe: machine.positions.iter().map(|port| Observe::Last(port.net)).collect(),
+        limit: LIMIT,
+        ..LaneWatch::new(machine.done.net)
+    };
+    let job = |curve: &Curve| {
+        let mut blocks = machine.encode(bench.hardware(), &model.words(bench.hardware(), curve))?;
+        for (index, block) in blocks.iter_mut().enumerate() {
+            block.extend([(machine.load.net, 1), (machine.preset_position.net, u64::from(index == 0))]);
+        }
+        Ok::<Job, ModelError>(Job { blocks })
+    };
+    let mut ends = Vec::with_capacity(curves.len());
+    LaneProgram::new(bench.design(), &watch).run(curves.iter(), job, |end| ends.push(end));
+    let position = |(port, bits): (&Port, &u64)| to_signed(port.width, *bits);
+    let told = ends.into_iter().map(|end| {
+        let LaneEnd { clock, values, .. } = end?;
+        Ok(line(clock, machine.positions.iter().zip(&values).map(position)))
+    });
+    told.collect()
+}
+
+fn line(clocks: u64, reached: impl Iterator<Item = i64>) -> String {
+    format!("{clocks}{}\n", reached.map(|value| format!(" {value}")).collect::<String>())
 }

@@ -234,7 +234,7 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     let title = format!("{} geometries of one hardware: million lane-clocks a second", sizes.geometries);
     let threads = format!("{all} threads, on the clock");
-    let one = ["one thread", "Verilator, one after another", "to Verilator"];
+    let one = ["one thread", "with all checks", "Verilator, one after another", "to Verilator", "with all checks"];
     let many = ["1 thread, on the clock", &threads, "gain"];
     let mut table = Table::new(&title, &[&["model"][..], &one, &many].concat());
     for &model in sizes.models {
@@ -244,15 +244,17 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let jobs = [
             own::lanes(&case, sizes.geometries, 1, &dir)?,
             own::lanes(&case, sizes.geometries, all, &dir)?,
+            own::bare_lanes(&case, sizes.geometries, &dir)?,
             verilator::run(&unit, &dir, Wave::None, &blocks)?.rounds(2),
         ];
         let runs = race(sizes.rounds, &jobs)?;
         let computed = |runs: &Vec<Run>| median(runs, |run| run.all_clocks() / run.computed / 1e6);
         let wall = |runs: &Vec<Run>| median(runs, |run| run.all_clocks() / run.wall / 1e6);
-        let (own, peer) = (computed(&runs[0]), computed(&runs[2]));
+        let (checked, bare, peer) = (computed(&runs[0]), computed(&runs[2]), computed(&runs[3]));
         let (single, multiple) = (wall(&runs[0]), wall(&runs[1]));
-        let cells = [number(own), number(peer), times(own / peer), number(single), number(multiple)];
-        table.row(model, cells.into_iter().chain([times(multiple / single)]));
+        let rates = [bare, checked, peer].map(number).into_iter().chain([bare, checked].map(|own| times(own / peer)));
+        let cores = [number(single), number(multiple), times(multiple / single)];
+        table.row(model, rates.chain(cores));
     }
     Ok(table.text())
 }
