@@ -3,7 +3,7 @@
 //! Edge k stands at k periods; the clock falls half a period later. Only changes are written, apart from the first
 //! sample, which holds every variable. There is no date: the same run gives the same bytes on any machine.
 //!
-//! Samples come in blocks, in which [`Moves`] finds the nets that change; a row costs what changes in it.
+//! Samples come in blocks, in which `Moves` finds the nets that change; a row costs what changes in it.
 
 mod background;
 mod text;
