@@ -150,9 +150,11 @@ mod tests {
         for curve in [line, circle] {
             let (gauge, screen) = (curve.gauge(), curve.gauge().screen(1000).expect("a screen"));
             let some = || (0..500_i64).map(|step| [step * 37 % 200 - 99, step * 53 % 150 - 80]);
-            for count in [0, 1, 2, 17, 500] {
-                let each = some().take(count).map(|position| gauge.deviation(&position));
-                assert_eq!(screen.greatest(some().take(count)), each.fold(0.0, f64::max), "{curve:?}");
+            // Divided, they lie inside the circle, where the nearest to its centre is the worst.
+            for (count, divided) in [0, 1, 2, 17, 500].into_iter().flat_map(|count| [(count, 1), (count, 9)]) {
+                let positions = || some().take(count).map(|position| position.map(|way| way / divided));
+                let each = positions().map(|position| gauge.deviation(&position));
+                assert_eq!(screen.greatest(positions()), each.fold(0.0, f64::max), "{curve:?}");
             }
             assert!(gauge.screen(1 << 31).is_none() && gauge.screen(u64::MAX).is_none());
         }
