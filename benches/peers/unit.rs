@@ -104,7 +104,7 @@ impl Unit {
             outputs: bench.outputs(),
             strobes: vec![machine.load.net, machine.preset_position.net],
             done: machine.done.net,
-            result: machine.positions.iter().map(|port| (port.net, port.signed)).collect(),
+            result: machine.positions.iter().map(|port| (port.net, port.reading.is_signed())).collect(),
         }
     }
 

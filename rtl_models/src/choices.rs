@@ -6,9 +6,10 @@ use std::fmt;
 use stepwave_kernel::{OnOverflow, Width};
 
 /// Value that a remainder register J_R starts from.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Preset {
     /// 0.
+    #[default]
     Zero,
     /// 2^(n-1): rounds to nearest.
     Half,
@@ -16,6 +17,18 @@ pub enum Preset {
     Full,
     /// Any value that fits.
     Value(u64),
+}
+
+/// A choice among a few values, each with the word that a user writes.
+pub trait Named: Copy + PartialEq + 'static {
+    /// Every value with its word.
+    const ALL: &'static [(&'static str, Self)];
+
+    /// The word of this value.
+    #[must_use]
+    fn word(self) -> &'static str {
+        Self::ALL.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)
+    }
 }
 
 /// What ends a block.
@@ -31,6 +44,15 @@ pub enum EndPoint {
     Iterations,
 }
 
+impl Named for EndPoint {
+    const ALL: &'static [(&'static str, EndPoint)] = &[
+        ("total", EndPoint::Total),
+        ("per-axis", EndPoint::PerAxis),
+        ("longest", EndPoint::Longest),
+        ("iterations", EndPoint::Iterations),
+    ];
+}
+
 /// How the deviation of a line is kept.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Form {
@@ -41,7 +63,11 @@ pub enum Form {
     Signed,
 }
 
-/// Clocks of a point-by-point step.
+impl Named for Form {
+    const ALL: &'static [(&'static str, Form)] = &[("magnitude", Form::Magnitude), ("signed", Form::Signed)];
+}
+
+/// Clocks of a step that is judged.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Beats {
     /// Judge, feed, compute and compare, one clock each.
@@ -49,6 +75,93 @@ pub enum Beats {
     Four,
     /// All at one edge.
     One,
+}
+
+impl Named for Beats {
+    const ALL: &'static [(&'static str, Beats)] = &[("4", Beats::Four), ("1", Beats::One)];
+}
+
+/// Number system of the registers that are added.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Radix {
+    /// Binary.
+    #[default]
+    Binary,
+    /// Binary-coded decimal, 4 bits a digit.
+    Decimal,
+}
+
+impl Named for Radix {
+    const ALL: &'static [(&'static str, Radix)] = &[("2", Radix::Binary), ("10", Radix::Decimal)];
+}
+
+/// How an integrator adds.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Adder {
+    /// All bits in one clock.
+    #[default]
+    Parallel,
+    /// One bit a clock, the lowest first.
+    Serial,
+}
+
+impl Named for Adder {
+    const ALL: &'static [(&'static str, Adder)] = &[("parallel", Adder::Parallel), ("serial", Adder::Serial)];
+}
+
+/// The interval weight with which comparison-integral counts a pulse.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Weights {
+    /// The sum of the weights before and behind the pulse: F is the exact implicit function.
+    #[default]
+    Mid,
+    /// The weight before the pulse.
+    Pre,
+    /// The weight behind the pulse.
+    Post,
+}
+
+impl Named for Weights {
+    const ALL: &'static [(&'static str, Weights)] =
+        &[("mid", Weights::Mid), ("pre", Weights::Pre), ("post", Weights::Post)];
+}
+
+/// What a counter is compared with to give a pulse.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Compare {
+    /// At least the number of steps (`>=`).
+    #[default]
+    AtLeast,
+    /// More than the number of steps (`>`), as early firmware does.
+    Greater,
+}
+
+impl Named for Compare {
+    const ALL: &'static [(&'static str, Compare)] = &[("ge", Compare::AtLeast), ("gt", Compare::Greater)];
+}
+
+impl Named for OnOverflow {
+    const ALL: &'static [(&'static str, OnOverflow)] =
+        &[("trap", OnOverflow::Trap), ("saturate", OnOverflow::Saturate), ("wrap", OnOverflow::Wrap)];
+}
+
+/// Times of a step and direction output, in clocks.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct StepTiming {
+    /// The step output is 1.
+    pub length: u64,
+    /// The step output is 0 between two steps, at least.
+    pub space: u64,
+    /// From a change of the direction output to the first step.
+    pub setup: u64,
+    /// From the end of the last step to a change of the direction output.
+    pub hold: u64,
+}
+
+impl Default for StepTiming {
+    fn default() -> StepTiming {
+        StepTiming { length: 2, space: 2, setup: 4, hold: 4 }
+    }
 }
 
 /// A hardware choice, as a user names it.
@@ -60,12 +173,28 @@ pub enum Choice {
     Preset,
     /// `--normalize`
     Normalize,
+    /// `--radix`
+    Radix,
+    /// `--adder`
+    Adder,
     /// `--end-point`
     EndPoint,
     /// `--form`
     Form,
+    /// `--weights`
+    Weights,
     /// `--beats`
     Beats,
+    /// `--override`
+    Override,
+    /// `--cascade`
+    Cascade,
+    /// `--compare`
+    Compare,
+    /// `--pick-off`
+    PickOff,
+    /// `--timing`
+    Timing,
     /// `--on-overflow`
     OnOverflow,
 }
@@ -78,22 +207,25 @@ impl Choice {
             Choice::Width => "--width",
             Choice::Preset => "--preset",
             Choice::Normalize => "--normalize",
+            Choice::Radix => "--radix",
+            Choice::Adder => "--adder",
             Choice::EndPoint => "--end-point",
             Choice::Form => "--form",
+            Choice::Weights => "--weights",
             Choice::Beats => "--beats",
+            Choice::Override => "--override",
+            Choice::Cascade => "--cascade",
+            Choice::Compare => "--compare",
+            Choice::PickOff => "--pick-off",
+            Choice::Timing => "--timing",
             Choice::OnOverflow => "--on-overflow",
         }
     }
 }
 
-impl fmt::Display for EndPoint {
+impl fmt::Display for StepTiming {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            EndPoint::Total => "total",
-            EndPoint::PerAxis => "per-axis",
-            EndPoint::Longest => "longest",
-            EndPoint::Iterations => "iterations",
-        })
+        write!(f, "length={},space={},setup={},hold={}", self.length, self.space, self.setup, self.hold)
     }
 }
 
@@ -109,14 +241,14 @@ impl fmt::Display for Preset {
 }
 
 impl Preset {
-    /// The value in a register of this width; `None` where it does not fit.
+    /// The value in a register that counts modulo `modulus`; `None` where it does not fit.
     #[must_use]
-    pub fn value(self, width: Width) -> Option<u64> {
+    pub fn value(self, modulus: u128) -> Option<u128> {
         match self {
             Preset::Zero => Some(0),
-            Preset::Half => Some(width.sign_bit()),
-            Preset::Full => Some(width.mask()),
-            Preset::Value(value) => (value <= width.mask()).then_some(value),
+            Preset::Half => Some(modulus / 2),
+            Preset::Full => Some(modulus - 1),
+            Preset::Value(value) => (u128::from(value) < modulus).then_some(value.into()),
         }
     }
 }
@@ -134,12 +266,28 @@ pub struct Choices {
     pub presets: BTreeMap<String, Preset>,
     /// Left-shift normalisation.
     pub normalize: bool,
+    /// Number system.
+    pub radix: Option<Radix>,
+    /// How integrators add.
+    pub adder: Option<Adder>,
     /// End-point scheme.
     pub end_point: Option<EndPoint>,
     /// Form of the line's deviation.
     pub form: Option<Form>,
+    /// Weight rule of comparison-integral.
+    pub weights: Option<Weights>,
     /// Clocks a step.
     pub beats: Option<Beats>,
+    /// Feed override in percent.
+    pub feed_override: Option<u64>,
+    /// Bits of each of the cascaded units of a pulse multiplier.
+    pub cascade: Option<Width>,
+    /// Comparison of a counter.
+    pub compare: Option<Compare>,
+    /// Bit of a phase accumulator whose changes are steps.
+    pub pick_off: Option<u64>,
+    /// Times of step and direction outputs.
+    pub timing: Option<StepTiming>,
     /// What a strict cell does on overflow.
     pub on_overflow: Option<OnOverflow>,
 }
@@ -152,9 +300,17 @@ impl Choices {
             (self.width.is_some() || !self.widths.is_empty(), Choice::Width),
             (self.preset.is_some() || !self.presets.is_empty(), Choice::Preset),
             (self.normalize, Choice::Normalize),
+            (self.radix.is_some(), Choice::Radix),
+            (self.adder.is_some(), Choice::Adder),
             (self.end_point.is_some(), Choice::EndPoint),
             (self.form.is_some(), Choice::Form),
+            (self.weights.is_some(), Choice::Weights),
             (self.beats.is_some(), Choice::Beats),
+            (self.feed_override.is_some(), Choice::Override),
+            (self.cascade.is_some(), Choice::Cascade),
+            (self.compare.is_some(), Choice::Compare),
+            (self.pick_off.is_some(), Choice::PickOff),
+            (self.timing.is_some(), Choice::Timing),
             (self.on_overflow.is_some(), Choice::OnOverflow),
         ]
         .into_iter()

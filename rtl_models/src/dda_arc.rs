@@ -39,7 +39,7 @@ use stepwave_nc::{Crossing, Curve, Direction, Sector};
 
 use crate::choices::{Choice, Choices, EndPoint};
 use crate::error::ModelError;
-use crate::hardware::{self, Hardware, Widths};
+use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{
@@ -47,6 +47,7 @@ use crate::parts::{
     up_down_counter,
 };
 use crate::plan;
+use crate::registers::Registers;
 
 const NAME: &str = "dda-arc";
 
@@ -88,37 +89,17 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     )?;
     let sectors = plan::arc(curve).map(|arc| arc.sectors(Crossing::RoundedRadius)).unwrap_or_default();
     let n = plan::magnitude_bits(choices, plan::largest_coordinate(&sectors));
-    let mut widths = Widths::new(NAME, choices);
+    let mut registers = Registers::new(NAME, choices);
     for register in ["jvx", "jrx", "jvy", "jry"] {
-        widths.register(register, n);
+        registers.register(register, n);
     }
+    registers.shown("unit").shown("quad");
     match end_point {
-        EndPoint::PerAxis => widths.register("ex", n).register("ey", n),
-        _ => widths.register("e", n + 1),
+        EndPoint::PerAxis => registers.end_counters(2, n),
+        _ => registers.register("e", n + 1),
     };
-    let mut table = widths.names();
-    table.splice(4..4, ["unit".to_owned(), "quad".to_owned()]);
-    for (axis, letter) in ["x", "y"].into_iter().enumerate() {
-        let positions = plan::arc(curve).map(|arc| plan::sector_positions(arc, &sectors, axis));
-        widths.register(letter, plan::position_bits(positions.unwrap_or_default()));
-    }
-    let widths = widths.resolve()?;
-    hardware::check_integrators(NAME, &widths, 2, choices.normalize)?;
-    let n = widths["jrx"].get();
-    Ok(Hardware {
-        model: NAME,
-        axes: 2,
-        widths,
-        presets: hardware::presets(NAME, choices, 2)?,
-        normalize: choices.normalize,
-        end_point,
-        form: choices.form.unwrap_or_default(),
-        beats: choices.beats.unwrap_or_default(),
-        on_overflow: choices.on_overflow.unwrap_or_default(),
-        table,
-        stall_clocks: hardware::integrator_stall(n),
-        error_bound: None,
-    })
+    registers.positions(plan::arc_positions(curve, &sectors));
+    registers.integrators(2, end_point, 1)
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {

@@ -31,18 +31,15 @@ use stepwave_nc::{Curve, Line};
 
 use crate::choices::{Choice, Choices, EndPoint};
 use crate::error::ModelError;
-use crate::hardware::{self, Hardware, Widths};
+use crate::hardware::Hardware;
+use crate::hardware::names::{END, JR, JV, LONGEST, POSITION, SIGN};
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{Block, DownCounter, Normalizer, axis_counter, integrator, population_count, shifted_left};
 use crate::plan;
+use crate::registers::Registers;
 
 const NAME: &str = "dda-line";
-const JV: [&str; 6] = ["jvx", "jvy", "jvz", "jva", "jvb", "jvc"];
-const JR: [&str; 6] = ["jrx", "jry", "jrz", "jra", "jrb", "jrc"];
-const END: [&str; 6] = ["ex", "ey", "ez", "ea", "eb", "ec"];
-const SIGN: [&str; 6] = ["sx", "sy", "sz", "sa", "sb", "sc"];
-const POSITION: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
 
 pub(crate) const MODEL: Model = Model {
     name: NAME,
@@ -75,38 +72,21 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let n = plan::magnitude_bits(choices, delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0));
     let all = [EndPoint::Iterations, EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest];
     let end_point = plan::end_point(NAME, choices, EndPoint::Iterations, &all, "")?;
-    let mut widths = Widths::new(NAME, choices);
+    let mut registers = Registers::new(NAME, choices);
     for axis in 0..axes {
-        widths.register(JV[axis], n).register(JR[axis], n);
+        registers.register(JV[axis], n).register(JR[axis], n);
     }
     match end_point {
-        EndPoint::PerAxis => END[..axes].iter().for_each(|name| _ = widths.register(*name, n)),
+        EndPoint::PerAxis => registers.end_counters(axes, n),
         // The sum of up to 2, 4 or 6 axes.
-        EndPoint::Total => _ = widths.register("e", n + axes.next_power_of_two().trailing_zeros()),
-        EndPoint::Iterations => _ = widths.register("e", widths.bits(JR[0]) + 1),
-        EndPoint::Longest => _ = widths.register("e", n + 1),
-    }
-    let table = widths.names();
-    for (axis, letter) in POSITION[..axes].iter().enumerate() {
-        widths.register(*letter, plan::position_bits([curve.from()[axis], curve.to()[axis]]));
-    }
-    let widths = widths.resolve()?;
-    hardware::check_integrators(NAME, &widths, axes, choices.normalize)?;
-    let n = widths[JR[0]].get();
-    Ok(Hardware {
-        model: NAME,
-        axes,
-        widths,
-        presets: hardware::presets(NAME, choices, axes)?,
-        normalize: choices.normalize,
-        end_point,
-        form: choices.form.unwrap_or_default(),
-        beats: choices.beats.unwrap_or_default(),
-        on_overflow: choices.on_overflow.unwrap_or_default(),
-        table,
-        stall_clocks: hardware::integrator_stall(n),
-        error_bound: (axes == 2 && end_point == EndPoint::Iterations).then_some(1.0),
-    })
+        EndPoint::Total => registers.register("e", n + axes.next_power_of_two().trailing_zeros()),
+        EndPoint::Iterations => registers.register("e", registers.bits(JR[0]) + 1),
+        EndPoint::Longest => registers.register("e", n + 1),
+    };
+    registers.positions(plan::end_positions(curve));
+    let hardware = registers.integrators(axes, end_point, 1)?;
+    let bounded = axes == 2 && end_point == EndPoint::Iterations;
+    Ok(Hardware { error_bound: bounded.then_some(1.0), ..hardware })
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
@@ -152,10 +132,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     block.close(normalized.ready, normalized.run, last);
     Ok(module.finish()?)
 }
-
-/// 1 for the axis whose pulses `longest` counts.
-const LONGEST: [&str; 6] =
-    ["x_is_longest", "y_is_longest", "z_is_longest", "a_is_longest", "b_is_longest", "c_is_longest"];
 
 fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
     let Some(line) = plan::line(curve) else { return Vec::new() };

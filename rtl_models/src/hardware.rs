@@ -4,11 +4,21 @@ use std::collections::BTreeMap;
 
 use stepwave_kernel::{OnOverflow, Width};
 
-use crate::choices::{Beats, Choice, Choices, EndPoint, Form, Preset};
-use crate::error::ModelError;
+use crate::choices::{Adder, Beats, Compare, EndPoint, Form, Preset, Radix, StepTiming, Weights};
 
 /// Letters of up to six axes.
 pub const AXES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
+
+/// Names of what every axis has one of, in the order of the letters.
+pub(crate) mod names {
+    pub(crate) const JV: [&str; 6] = ["jvx", "jvy", "jvz", "jva", "jvb", "jvc"];
+    pub(crate) const JR: [&str; 6] = ["jrx", "jry", "jrz", "jra", "jrb", "jrc"];
+    pub(crate) const END: [&str; 6] = ["ex", "ey", "ez", "ea", "eb", "ec"];
+    pub(crate) const SIGN: [&str; 6] = ["sx", "sy", "sz", "sa", "sb", "sc"];
+    pub(crate) const POSITION: [&str; 6] = super::AXES;
+    pub(crate) const LONGEST: [&str; 6] =
+        ["x_is_longest", "y_is_longest", "z_is_longest", "a_is_longest", "b_is_longest", "c_is_longest"];
+}
 
 /// All that fixes a netlist.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,12 +33,28 @@ pub struct Hardware {
     pub presets: Vec<Preset>,
     /// Left-shift normalisation.
     pub normalize: bool,
+    /// Number system of the integrators.
+    pub radix: Radix,
+    /// How integrators add.
+    pub adder: Adder,
     /// End-point scheme.
     pub end_point: EndPoint,
     /// Form of the line's deviation.
     pub form: Form,
+    /// Weight rule of comparison-integral.
+    pub weights: Weights,
     /// Clocks a step.
     pub beats: Beats,
+    /// Feed override in percent of the clock, if there is a unit for it.
+    pub feed_override: Option<u64>,
+    /// Bits of each of the cascaded units of a pulse multiplier; one unit if none.
+    pub cascade: Option<Width>,
+    /// Comparison of a counter.
+    pub compare: Compare,
+    /// Bit of a phase accumulator whose changes are steps.
+    pub pick_off: u64,
+    /// Times of step and direction outputs, in clocks.
+    pub timing: StepTiming,
     /// What a strict cell does on overflow.
     pub on_overflow: OnOverflow,
     /// Registers that a step table shows, in order.
@@ -37,6 +63,8 @@ pub struct Hardware {
     pub stall_clocks: u64,
     /// Greatest path error in BLU that the method promises, if it promises one.
     pub error_bound: Option<f64>,
+    /// Beginnings of the names of registers that share one scale and are widened together.
+    pub scale: &'static [&'static str],
 }
 
 impl Hardware {
@@ -46,23 +74,35 @@ impl Hardware {
         self.widths.get(register).map_or(1, |width| width.get())
     }
 
+    /// One more than the greatest number in an integrator's register of `bits` bits: 2^bits, or 10 to the number of
+    /// digits.
+    #[must_use]
+    pub fn modulus(&self, bits: u32) -> u128 {
+        modulus(self.radix, bits)
+    }
+
     /// Preset of an axis's remainder register, in that register. A value that does not fit is kept, so that loading it
     /// is refused with its name.
     pub(crate) fn preset(&self, axis: usize, register: &str) -> i128 {
         let preset = self.presets.get(axis).copied().unwrap_or(Preset::Zero);
-        match (preset, self.widths.get(register).and_then(|&width| preset.value(width))) {
+        match (preset, preset.value(self.modulus(self.bits(register)))) {
             (Preset::Value(value), None) => i128::from(value),
-            (_, value) => i128::from(value.unwrap_or(0)),
+            (_, value) => i128::try_from(value.unwrap_or(0)).unwrap_or(0),
         }
     }
 
-    /// What to give as `--width` for a register to have `bits`. Integrators are widened together, to the `all` bits that
-    /// the widest of them needs, where one alone would no longer fit the others.
+    /// The register is widened together with others.
+    pub(crate) fn shares_scale(&self, register: &str) -> bool {
+        self.scale.iter().any(|kind| register.starts_with(kind))
+    }
+
+    /// What to give as `--width` for a register to have `bits`. Registers of one scale are widened together, to the
+    /// `all` bits that the widest of them needs, where one alone would no longer fit the others.
     #[must_use]
     pub fn widening(&self, register: &str, bits: u32, all: u32) -> String {
         let room = register.strip_prefix("jv").map(|axis| self.bits(&format!("jr{axis}")));
         let fits = room.is_some_and(|room| bits <= room) && !self.normalize;
-        if is_integrator(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
+        if self.shares_scale(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
     }
 
     /// Letters of the axes.
@@ -72,122 +112,10 @@ impl Hardware {
     }
 }
 
-/// Default widths of a model's registers, to be overridden by the user's.
-pub(crate) struct Widths<'a> {
-    model: &'static str,
-    choices: &'a Choices,
-    default: Vec<(String, u32)>,
-}
-
-impl<'a> Widths<'a> {
-    pub(crate) fn new(model: &'static str, choices: &'a Choices) -> Widths<'a> {
-        Widths { model, choices, default: Vec::new() }
+/// One more than the greatest number in `bits` bits.
+pub(crate) fn modulus(radix: Radix, bits: u32) -> u128 {
+    match radix {
+        Radix::Binary => 1 << bits,
+        Radix::Decimal => 10u128.pow(bits / 4),
     }
-
-    /// A register and the width that it has unless the user says otherwise, in the order of the step table.
-    pub(crate) fn register(&mut self, name: impl Into<String>, bits: u32) -> &mut Self {
-        self.default.push((name.into(), bits));
-        self
-    }
-
-    /// Width of a register given so far: the user's, or its default.
-    pub(crate) fn bits(&self, name: &str) -> u32 {
-        let default = self.default.iter().find(|(known, _)| known == name).map_or(1, |(_, bits)| *bits);
-        self.chosen(name).map_or(default, Width::get)
-    }
-
-    /// The width that the user gave this register, by its name or by its kind.
-    fn chosen(&self, name: &str) -> Option<Width> {
-        let single = self.choices.widths.get(name);
-        single.or_else(|| self.choices.widths.get(kind(name)?)).copied()
-    }
-
-    /// Names of the registers given so far, in order.
-    pub(crate) fn names(&self) -> Vec<String> {
-        self.default.iter().map(|(name, _)| name.clone()).collect()
-    }
-
-    /// The width of all registers.
-    pub(crate) fn resolve(&self) -> Result<BTreeMap<String, Width>, ModelError> {
-        let names = || self.default.iter().map(|(name, _)| name.as_str());
-        for given in self.choices.widths.keys() {
-            if !names().any(|name| name == given || kind(name) == Some(given)) {
-                return Err(ModelError::UnknownRegister {
-                    model: self.model,
-                    choice: Choice::Width,
-                    register: given.clone(),
-                    known: names().collect::<Vec<_>>().join(", "),
-                });
-            }
-        }
-        let resolved = self.default.iter().map(|(name, bits)| {
-            let width = match self.chosen(name) {
-                Some(width) => width,
-                None => Width::new(u64::from(*bits)).map_err(|_| ModelError::TooWide {
-                    register: name.clone(),
-                    bits: u64::from(*bits),
-                    way_out: "give a smaller --width or a smaller geometry".to_owned(),
-                })?,
-            };
-            Ok((name.clone(), width))
-        });
-        resolved.collect()
-    }
-}
-
-/// An integrand or a remainder: registers that share one scale (see [`check_integrators`]).
-pub(crate) fn is_integrator(register: &str) -> bool {
-    register.starts_with("jv") || register.starts_with("jr")
-}
-
-/// `jr` for `jrx`: the name without the axis letter, for registers that each axis has.
-fn kind(name: &str) -> Option<&str> {
-    let kind = AXES.iter().find_map(|axis| name.strip_suffix(axis))?;
-    ["jv", "jr", "e"].contains(&kind).then_some(kind)
-}
-
-/// The preset of each axis.
-pub(crate) fn presets(model: &'static str, choices: &Choices, axes: usize) -> Result<Vec<Preset>, ModelError> {
-    let names: Vec<String> = AXES[..axes].iter().map(|axis| format!("jr{axis}")).collect();
-    if let Some(unknown) = choices.presets.keys().find(|given| !names.contains(given)) {
-        return Err(ModelError::UnknownRegister {
-            model,
-            choice: Choice::Preset,
-            register: unknown.clone(),
-            known: names.join(", "),
-        });
-    }
-    let all = choices.preset.unwrap_or(Preset::Zero);
-    Ok(names.iter().map(|name| choices.presets.get(name).copied().unwrap_or(all)).collect())
-}
-
-/// Integrators share one scale: equally wide remainders, and integrands that fit in them.
-pub(crate) fn check_integrators(
-    model: &'static str,
-    widths: &BTreeMap<String, Width>,
-    axes: usize,
-    normalize: bool,
-) -> Result<(), ModelError> {
-    let first = widths["jrx"];
-    for axis in &AXES[..axes] {
-        let (jr, jv) = (widths[&format!("jr{axis}")], widths[&format!("jv{axis}")]);
-        if jr != first {
-            return Err(ModelError::Widths(format!(
-                "{model}: jr{axis} of {jr} and jrx of {first} would count at unequal rates: give all jr the same width"
-            )));
-        }
-        if jv > jr || normalize && jv != jr {
-            let rule = if normalize { "must be as wide as" } else { "must not be wider than" };
-            return Err(ModelError::Widths(format!(
-                "{model}: the integrand jv{axis} of {jv} {rule} its remainder jr{axis} of {jr}: change --width"
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// Clocks after which an integrator of `n` bits that has not pulsed never will: 2^n additions, and as many clocks of
-/// normalisation as bits, and those of loading.
-pub(crate) fn integrator_stall(n: u32) -> u64 {
-    1u64.checked_shl(n).map_or(u64::MAX, |additions| additions.saturating_add(u64::from(n) + 8))
 }

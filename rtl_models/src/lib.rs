@@ -18,18 +18,25 @@
 
 pub mod dda_arc;
 pub mod dda_line;
+pub mod mindev_arc;
+pub mod mindev_line;
 pub mod parts;
 pub mod ppc_arc;
 pub mod ppc_line;
+pub mod vector_arc;
+pub mod vector_line;
 
 mod choices;
+mod docs;
 mod error;
 mod hardware;
 mod machine;
 mod model;
 mod plan;
+mod registers;
+mod words;
 
-pub use choices::{Beats, Choice, Choices, EndPoint, Form, Preset};
+pub use choices::{Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Named, Preset, Radix, StepTiming, Weights};
 pub use error::ModelError;
 pub use hardware::{AXES, Hardware};
 pub use machine::{Machine, Port, Words};
@@ -39,7 +46,16 @@ pub use stepwave_kernel::OnOverflow;
 /// Every model.
 #[must_use]
 pub fn catalogue() -> &'static [Model] {
-    const CATALOGUE: &[Model] = &[ppc_line::MODEL, ppc_arc::MODEL, dda_line::MODEL, dda_arc::MODEL];
+    const CATALOGUE: &[Model] = &[
+        ppc_line::MODEL,
+        ppc_arc::MODEL,
+        dda_line::MODEL,
+        dda_arc::MODEL,
+        mindev_line::MODEL,
+        mindev_arc::MODEL,
+        vector_line::MODEL,
+        vector_arc::MODEL,
+    ];
     CATALOGUE
 }
 

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use stepwave_kernel::bits::Reading;
 use stepwave_kernel::{Design, Net, Netlist, Width, elaborate};
 
 use crate::error::ModelError;
-use crate::hardware::{self, Hardware};
+use crate::hardware::Hardware;
 
 /// A net as a number: its width and reading.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -14,8 +15,8 @@ pub struct Port {
     pub net: Net,
     /// Number of bits.
     pub width: Width,
-    /// Two's complement.
-    pub signed: bool,
+    /// What number its bits mean.
+    pub reading: Reading,
 }
 
 /// The words that the block loader puts on a machine's inputs for one block (a line, or one sector of an arc): the
@@ -54,7 +55,7 @@ pub(crate) fn input_name(register: &str) -> String {
 
 fn port(netlist: &Netlist, name: &str) -> Result<Port, ModelError> {
     let named = netlist.find(name).ok_or_else(|| ModelError::MissingPort(name.to_owned()))?;
-    Ok(Port { net: named.net, width: netlist.width(named.net), signed: named.format.is_signed() })
+    Ok(Port { net: named.net, width: netlist.width(named.net), reading: named.format.reading() })
 }
 
 impl Machine {
@@ -86,7 +87,7 @@ impl Machine {
     pub fn encode(&self, hardware: &Hardware, blocks: &[Words]) -> Result<Vec<Vec<(Net, u64)>>, ModelError> {
         let encode = |&(register, value): &(&'static str, i128)| {
             let port = self.inputs.get(register).ok_or_else(|| ModelError::MissingPort(register.to_owned()))?;
-            let bits = stepwave_kernel::Bits::exact(port.width, value, port.signed);
+            let bits = port.reading.bits(port.width, value);
             Ok((port.net, bits.ok_or_else(|| does_not_fit(register, port, hardware, blocks))?.value()))
         };
         blocks.iter().map(|words| words.iter().map(encode).collect()).collect()
@@ -97,10 +98,10 @@ impl Machine {
 /// with which all blocks can be loaded into it.
 fn does_not_fit(register: &str, port: &Port, hardware: &Hardware, blocks: &[Words]) -> ModelError {
     let words = || blocks.iter().flatten().copied();
-    let need = |value| Width::needed(value, port.signed);
+    let need = |value| port.reading.needed(value);
     let own = words().filter(|&(name, _)| name == register).map(|(_, value)| value);
     let value = own.max_by_key(|&value| need(value)).unwrap_or_default();
-    let integrators = words().filter(|(name, _)| hardware::is_integrator(name));
+    let integrators = words().filter(|(name, _)| hardware.shares_scale(name));
     let all = integrators.map(|(_, value)| need(value)).max().unwrap_or(1);
     ModelError::DoesNotFit {
         register: register.to_owned(),

@@ -1,10 +1,12 @@
 //! What the plans of several models need: the size of a geometry, and the values that a choice may have.
 
 use stepwave_kernel::Width;
-use stepwave_nc::{Arc, Curve, Line, Sector};
+use stepwave_nc::{Arc, Crossing, Curve, Line, Sector};
 
-use crate::choices::{Choice, Choices, EndPoint};
+use crate::choices::{Choice, Choices, EndPoint, Named};
 use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::registers::Registers;
 
 /// The line of a curve; `Model::plan` has checked that it is one.
 pub(crate) fn line(curve: &Curve) -> Option<&Line> {
@@ -27,11 +29,6 @@ pub(crate) fn magnitude_bits(choices: &Choices, largest: u64) -> u32 {
     choices.width.map_or_else(|| Width::needed_unsigned(u128::from(largest)), Width::get)
 }
 
-/// Bits of a position counter: one more than the positions need, so that an erring path stays visible.
-pub(crate) fn position_bits(positions: impl IntoIterator<Item = i64>) -> u32 {
-    positions.into_iter().map(|position| Width::needed_signed(i128::from(position))).max().unwrap_or(1) + 1
-}
-
 /// Largest coordinate relative to the centre on the sectors of an arc.
 pub(crate) fn largest_coordinate(sectors: &[Sector]) -> u64 {
     sectors
@@ -42,10 +39,68 @@ pub(crate) fn largest_coordinate(sectors: &[Sector]) -> u64 {
         .unwrap_or(0)
 }
 
-/// Positions of one axis at the ends of all sectors, in machine coordinates.
-pub(crate) fn sector_positions(arc: &Arc, sectors: &[Sector], axis: usize) -> Vec<i64> {
-    let ends = sectors.iter().flat_map(|sector| [sector.start[axis], sector.end[axis]]);
-    ends.map(|relative| arc.center()[axis] + relative).collect()
+/// Way of the longest axis of a line; 0 if the curve is none.
+pub(crate) fn longest(curve: &Curve) -> u64 {
+    let delta = line(curve).map(Line::delta).unwrap_or_default();
+    delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0)
+}
+
+/// Positions of each axis at the ends of a curve.
+pub(crate) fn end_positions(curve: &Curve) -> impl Iterator<Item = Vec<i64>> {
+    curve.from().iter().zip(curve.to()).map(|(&from, &to)| vec![from, to])
+}
+
+/// Positions of x and y at the ends of all sectors of an arc, in machine coordinates.
+pub(crate) fn arc_positions(curve: &Curve, sectors: &[Sector]) -> [Vec<i64>; 2] {
+    let center = arc(curve).map_or([0, 0], Arc::center);
+    let ends = || sectors.iter().flat_map(|sector| [sector.start, sector.end]);
+    [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect())
+}
+
+/// Hardware that judges every step of an arc by its deviation: registers `f`, `xi`, `yi`, `quad`, and `e` or `ex`, `ey`.
+pub(crate) fn judged_arc(
+    model: &'static str,
+    curve: &Curve,
+    choices: &Choices,
+    crossing: Crossing,
+) -> Result<Hardware, ModelError> {
+    let on_circle = arc(curve).is_some_and(Arc::ends_on_circle);
+    let end_point = end_point(
+        model,
+        choices,
+        if on_circle { EndPoint::Total } else { EndPoint::PerAxis },
+        &[EndPoint::Total, EndPoint::PerAxis],
+        "the longest axis of an arc may arrive while the other still has steps to go, and iterations are not counted",
+    )?;
+    let sectors = arc(curve).map(|arc| arc.sectors(crossing)).unwrap_or_default();
+    let n = magnitude_bits(choices, largest_coordinate(&sectors));
+    let mut registers = Registers::new(model, choices);
+    registers.register("f", n + 2).register("xi", n).register("yi", n).shown("quad");
+    match end_point {
+        EndPoint::PerAxis => registers.end_counters(2, n),
+        _ => registers.register("e", n + 3),
+    };
+    registers.positions(arc_positions(curve, &sectors));
+    registers.hardware(2, end_point)
+}
+
+/// Hardware that decides at every step of a line whether it takes the long axis alone: registers `f` of `deviation`
+/// more bits than the long axis needs, `e`, and those of `held`.
+pub(crate) fn judged_line(
+    model: &'static str,
+    curve: &Curve,
+    choices: &Choices,
+    held: [&str; 2],
+    deviation: u32,
+) -> Result<Hardware, ModelError> {
+    let n = magnitude_bits(choices, longest(curve));
+    let mut registers = Registers::new(model, choices);
+    for name in held {
+        registers.register(name, n);
+    }
+    registers.register("f", n + deviation).register("e", n);
+    registers.positions(end_positions(curve));
+    registers.hardware(2, EndPoint::Longest)
 }
 
 /// The end-point scheme chosen, which must be among those that the model takes.
@@ -60,11 +115,11 @@ pub(crate) fn end_point(
     if taken.contains(&chosen) {
         return Ok(chosen);
     }
-    let list: Vec<String> = taken.iter().map(ToString::to_string).collect();
+    let list: Vec<&str> = taken.iter().map(|scheme| scheme.word()).collect();
     Err(ModelError::Value {
         model,
         choice: Choice::EndPoint,
-        value: chosen.to_string(),
+        value: chosen.word().to_owned(),
         reason: format!("{why_not}; it takes {}", list.join(", ")),
     })
 }

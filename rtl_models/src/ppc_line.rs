@@ -32,11 +32,12 @@ use stepwave_nc::{Curve, Line};
 
 use crate::choices::{Choice, Choices, EndPoint, Form};
 use crate::error::ModelError;
-use crate::hardware::{Hardware, Widths};
+use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{BeatRing, Block, DeviationAccumulator, DownCounter, axis_counter};
 use crate::plan;
+use crate::registers::Registers;
 
 const NAME: &str = "ppc-line";
 
@@ -79,30 +80,14 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     )?;
     let form = choices.form.unwrap_or_default();
     let end_bits = if form == Form::Signed { n + 1 } else { n };
-    let mut widths = Widths::new(NAME, choices);
-    widths.register("xe", end_bits).register("ye", end_bits).register("f", n + 1);
+    let mut registers = Registers::new(NAME, choices);
+    registers.register("xe", end_bits).register("ye", end_bits).register("f", n + 1);
     match end_point {
-        EndPoint::PerAxis => widths.register("ex", n).register("ey", n),
-        _ => widths.register("e", n + 1),
+        EndPoint::PerAxis => registers.end_counters(2, n),
+        _ => registers.register("e", n + 1),
     };
-    let table = widths.names();
-    for (axis, letter) in ["x", "y"].into_iter().enumerate() {
-        widths.register(letter, plan::position_bits([curve.from()[axis], curve.to()[axis]]));
-    }
-    Ok(Hardware {
-        model: NAME,
-        axes: 2,
-        widths: widths.resolve()?,
-        presets: Vec::new(),
-        normalize: false,
-        end_point,
-        form,
-        beats: choices.beats.unwrap_or_default(),
-        on_overflow: choices.on_overflow.unwrap_or_default(),
-        table,
-        stall_clocks: 16,
-        error_bound: Some(1.0),
-    })
+    registers.positions(plan::end_positions(curve));
+    Ok(Hardware { error_bound: Some(1.0), ..registers.hardware(2, end_point)? })
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {

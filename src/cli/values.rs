@@ -6,7 +6,9 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use stepwave::kernel::Width;
 use stepwave::kernel::engine::EngineKind;
-use stepwave::models::{Beats, Choices, EndPoint, Form, OnOverflow, Preset};
+use stepwave::models::{
+    Adder, Beats, Choices, Compare, EndPoint, Form, Named, OnOverflow, Preset, Radix, StepTiming, Weights,
+};
 
 /// Coordinates of a point in BLU.
 #[derive(Clone, Debug)]
@@ -91,9 +93,44 @@ fn one_of<T: Clone + Send + Sync + 'static>(values: &[(&'static str, T)]) -> imp
     })
 }
 
-fn end_points() -> impl TypedValueParser<Value = EndPoint> {
-    let all = [EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest, EndPoint::Iterations];
-    one_of(&["total", "per-axis", "longest", "iterations"].into_iter().zip(all).collect::<Vec<_>>())
+/// A hardware choice by its words.
+fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    one_of(T::ALL)
+}
+
+/// Feed override in percent.
+fn parse_override(text: &str) -> Result<u64, String> {
+    let number = text.strip_suffix('%').unwrap_or(text).trim();
+    let percent = number.parse().ok().filter(|percent| (1..=99).contains(percent));
+    percent.ok_or_else(|| {
+        format!("'{text}' is no feed override: give a percentage from 1 to 99, or leave --override out for 100")
+    })
+}
+
+/// Bits of a unit.
+fn parse_bits(text: &str) -> Result<Width, String> {
+    let bits = text.parse().map_err(|_| format!("'{text}' is no number of bits: give one from 1 to 64"))?;
+    Width::new(bits).map_err(|error| error.to_string())
+}
+
+/// Times of step and direction outputs: `length=2,space=2,setup=4,hold=4`, any of them.
+fn parse_timing(text: &str) -> Result<StepTiming, String> {
+    let way_out = "give clocks such as length=2,space=2,setup=4,hold=4";
+    let mut timing = StepTiming::default();
+    for part in text.split(',') {
+        let (name, clocks) = part.split_once('=').ok_or_else(|| format!("'{part}' is no time: {way_out}"))?;
+        let least = u64::from(matches!(name.trim(), "length" | "space"));
+        let number = clocks.trim().parse().ok().filter(|clocks| (least..=1 << 20).contains(clocks));
+        let number = number.ok_or_else(|| format!("'{clocks}' is no time from {least} to {}: {way_out}", 1 << 20))?;
+        match name.trim() {
+            "length" => timing.length = number,
+            "space" => timing.space = number,
+            "setup" => timing.setup = number,
+            "hold" => timing.hold = number,
+            name => return Err(format!("there is no time '{name}': {way_out}")),
+        }
+    }
+    Ok(timing)
 }
 
 #[derive(Debug, Args)]
@@ -108,18 +145,41 @@ pub(crate) struct HardwareArgs {
     /// Left-shift normalisation of the integrands
     #[arg(long)]
     normalize: bool,
+    /// Number system of the integrators: binary, or decimal digits of 4 bits
+    #[arg(long, value_parser = named::<Radix>())]
+    radix: Option<Radix>,
+    /// How integrators add: all bits in a clock, or one bit a clock
+    #[arg(long, value_parser = named::<Adder>())]
+    adder: Option<Adder>,
     /// What ends a block
-    #[arg(long, value_parser = end_points())]
+    #[arg(long, value_parser = named::<EndPoint>())]
     end_point: Option<EndPoint>,
     /// How the deviation of a line is kept
-    #[arg(long, value_parser = one_of(&[("magnitude", Form::Magnitude), ("signed", Form::Signed)]))]
+    #[arg(long, value_parser = named::<Form>())]
     form: Option<Form>,
-    /// Clocks of a point-by-point step
-    #[arg(long, value_parser = one_of(&[("4", Beats::Four), ("1", Beats::One)]))]
+    /// Interval weight that counts for a pulse: of the middle, before it, or behind it
+    #[arg(long, value_parser = named::<Weights>())]
+    weights: Option<Weights>,
+    /// Clocks of a step
+    #[arg(long, value_parser = named::<Beats>())]
     beats: Option<Beats>,
+    /// Feed override: a pulse multiplier of two decades in front of the clock
+    #[arg(long = "override", value_name = "PERCENT", value_parser = parse_override)]
+    feed_override: Option<u64>,
+    /// Bits of each unit of a cascaded pulse multiplier [default: one unit]
+    #[arg(long, value_name = "BITS", value_parser = parse_bits)]
+    cascade: Option<Width>,
+    /// Comparison that makes a counter step: ge (>=), or gt (>) as early firmware does
+    #[arg(long, value_parser = named::<Compare>())]
+    compare: Option<Compare>,
+    /// Bit of the phase accumulator whose changes are steps
+    #[arg(long, value_name = "BIT", value_parser = clap::value_parser!(u64).range(1..=62))]
+    pick_off: Option<u64>,
+    /// Clocks of step length and space, direction set-up and hold: length=…,space=…,setup=…,hold=…
+    #[arg(long, value_name = "NAME=CLOCKS,…", value_parser = parse_timing)]
+    timing: Option<StepTiming>,
     /// What a cell does that must not overflow
-    #[arg(long, value_parser = one_of(&[
-        ("trap", OnOverflow::Trap), ("saturate", OnOverflow::Saturate), ("wrap", OnOverflow::Wrap)]))]
+    #[arg(long, value_parser = named::<OnOverflow>())]
     on_overflow: Option<OnOverflow>,
 }
 
@@ -169,9 +229,17 @@ impl HardwareArgs {
             preset,
             presets,
             normalize: self.normalize,
+            radix: self.radix,
+            adder: self.adder,
             end_point: self.end_point,
             form: self.form,
+            weights: self.weights,
             beats: self.beats,
+            feed_override: self.feed_override,
+            cascade: self.cascade,
+            compare: self.compare,
+            pick_off: self.pick_off,
+            timing: self.timing,
             on_overflow: self.on_overflow,
         }
     }

@@ -1,6 +1,7 @@
 //! The JSON report.
 
 use serde_json::{Map, Value, json};
+use stepwave_kernel::bits::Reading;
 use stepwave_kernel::netlist::Arithmetic;
 use stepwave_nc::Curve;
 
@@ -77,7 +78,8 @@ impl Report<'_> {
                     "name": range.name,
                     "path": range.path,
                     "width": range.width.get(),
-                    "signed": range.signed,
+                    "signed": range.reading.is_signed(),
+                    "radix": if range.reading == Reading::Decimal { 10 } else { 2 },
                     "least": number(range.least),
                     "greatest": number(range.greatest),
                     "needed_width": self.needed_bits(range),

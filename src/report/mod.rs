@@ -64,7 +64,8 @@ impl Report<'_> {
     #[must_use]
     pub fn needed_bits(&self, range: &RegisterRange) -> u32 {
         let events = self.overflows.iter().filter(|event| event.component() == range.path);
-        let refused = events.filter_map(OverflowEvent::exact).filter(|(exact, _)| range.signed || *exact >= 0);
+        let refused =
+            events.filter_map(OverflowEvent::exact).filter(|(exact, _)| range.reading.is_signed() || *exact >= 0);
         refused.map(|(_, needed)| needed).chain([range.needed()]).max().unwrap_or(1)
     }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use stepwave_models::{Beats, Choice, Form, Hardware, Model};
+use stepwave_models::{Choice, Hardware, Model, Named};
 use stepwave_nc::{Curve, Direction};
 
 use super::Report;
@@ -44,16 +44,18 @@ pub fn choices(model: &Model, hardware: &Hardware) -> Vec<(&'static str, String)
             if all.windows(2).all(|pair| pair[0] == pair[1]) { all[0].clone() } else { all.join(",") }
         }
         Choice::Normalize => if hardware.normalize { "yes" } else { "no" }.to_owned(),
-        Choice::EndPoint => hardware.end_point.to_string(),
-        Choice::Form => match hardware.form {
-            Form::Magnitude => "magnitude".to_owned(),
-            Form::Signed => "signed".to_owned(),
-        },
-        Choice::Beats => match hardware.beats {
-            Beats::Four => "4".to_owned(),
-            Beats::One => "1".to_owned(),
-        },
-        Choice::OnOverflow => format!("{:?}", hardware.on_overflow).to_lowercase(),
+        Choice::Radix => hardware.radix.word().to_owned(),
+        Choice::Adder => hardware.adder.word().to_owned(),
+        Choice::EndPoint => hardware.end_point.word().to_owned(),
+        Choice::Form => hardware.form.word().to_owned(),
+        Choice::Weights => hardware.weights.word().to_owned(),
+        Choice::Beats => hardware.beats.word().to_owned(),
+        Choice::Override => hardware.feed_override.map_or_else(|| "none".to_owned(), |percent| percent.to_string()),
+        Choice::Cascade => hardware.cascade.map_or_else(|| "none".to_owned(), |bits| bits.get().to_string()),
+        Choice::Compare => hardware.compare.word().to_owned(),
+        Choice::PickOff => hardware.pick_off.to_string(),
+        Choice::Timing => hardware.timing.to_string(),
+        Choice::OnOverflow => hardware.on_overflow.word().to_owned(),
     };
     model.choices.iter().map(|doc| (doc.choice.option().trim_start_matches("--"), value(doc.choice))).collect()
 }

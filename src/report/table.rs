@@ -2,7 +2,6 @@
 
 use std::io::Write;
 
-use stepwave_kernel::Bits;
 use stepwave_models::Port;
 
 use crate::testbench::{Memory, Observer, ObserverError, Step, Testbench};
@@ -79,7 +78,7 @@ impl TextbookTable {
     fn cells(&self, step: &Step) -> Vec<String> {
         let mut cells = vec![step.number.to_string()];
         for (value, port) in step.registers.iter().zip(&self.ports) {
-            let bits = Bits::exact(port.width, *value, port.signed);
+            let bits = port.reading.bits(port.width, *value);
             cells.push(match bits {
                 Some(bits) if self.bits => bits.to_string(),
                 _ => value.to_string(),

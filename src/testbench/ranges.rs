@@ -2,7 +2,7 @@
 
 use serde_json::json;
 use stepwave_kernel::Width;
-use stepwave_kernel::bits;
+use stepwave_kernel::bits::Reading;
 use stepwave_kernel::engine::Rows;
 use stepwave_kernel::netlist::Op;
 
@@ -18,8 +18,8 @@ pub struct RegisterRange {
     pub path: String,
     /// Its width.
     pub width: Width,
-    /// Two's complement.
-    pub signed: bool,
+    /// What number its bits mean.
+    pub reading: Reading,
     /// Least value seen.
     pub least: i128,
     /// Greatest value seen.
@@ -30,7 +30,7 @@ impl RegisterRange {
     /// Width that the values seen need, in bits.
     #[must_use]
     pub fn needed(&self) -> u32 {
-        Width::needed(self.least, self.signed).max(Width::needed(self.greatest, self.signed))
+        self.reading.needed(self.least).max(self.reading.needed(self.greatest))
     }
 }
 
@@ -60,7 +60,7 @@ impl RangeWatch {
                     name: named.name.clone(),
                     path: netlist.path(named),
                     width: cell.width,
-                    signed: named.format.is_signed(),
+                    reading: named.format.reading(),
                     least: 0,
                     greatest: 0,
                 });
@@ -74,7 +74,7 @@ impl RangeWatch {
     pub fn finish(mut self) -> Vec<RegisterRange> {
         for (range, watched) in self.registers.iter_mut().zip(&self.watched) {
             if watched.least <= watched.greatest {
-                let number = |value| bits::number(range.width, value ^ turned(range), range.signed);
+                let number = |value| range.reading.number(range.width, value ^ turned(range));
                 (range.least, range.greatest) = (number(watched.least), number(watched.greatest));
             }
         }
@@ -84,7 +84,7 @@ impl RangeWatch {
 
 /// What makes both readings sort alike: two's complement has its sign bit turned over.
 fn turned(range: &RegisterRange) -> u64 {
-    if range.signed { range.width.sign_bit() } else { 0 }
+    if range.reading.is_signed() { range.width.sign_bit() } else { 0 }
 }
 
 impl Observer for RangeWatch {

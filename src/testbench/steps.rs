@@ -1,6 +1,6 @@
 //! The step table, read out of samples: row 0 is the state after load, row k that after step k.
 
-use stepwave_kernel::bits::{number, to_signed};
+use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::Rows;
 
 use serde_json::json;
@@ -51,9 +51,7 @@ impl StepColumns {
     pub(super) fn completes(&self, rows: &Rows, row: usize, first: bool) -> bool {
         rows.value(self.stepped, row) == 1 || first && rows.value(self.loaded, row) == 1
     }
-}
 
-impl StepColumns {
     /// Number of steps that a block completes.
     pub(super) fn count(&self, rows: &Rows) -> u64 {
         rows.column(self.stepped).iter().sum()
@@ -149,7 +147,7 @@ impl<'a> StepReader<'a> {
         }
         let table = self.columns.table.iter().zip(&self.bench.machine().table);
         for (value, (&column, (_, port))) in self.step.registers.iter_mut().zip(table) {
-            *value = number(port.width, rows.value(column, row), port.signed);
+            *value = port.reading.number(port.width, rows.value(column, row));
         }
         self.step.position.copy_from_slice(&self.position);
         self.step.number = self.rows;

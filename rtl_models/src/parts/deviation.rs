@@ -23,6 +23,20 @@ impl<'m> DeviationAccumulator<'m> {
         !self.f.q.msb()
     }
 
+    /// The deviation.
+    #[must_use]
+    pub fn value(&self) -> Signal<'m> {
+        self.f.q
+    }
+
+    /// Closes the accumulator: loaded with its word; at an edge with `compute` = 1 the operand is added. A load wins; the
+    /// exact result must fit where it does not. The operand may have any width and either reading.
+    pub fn close_adding(self, block: &Block<'m>, compute: Signal<'m>, operand: Signal<'m>) {
+        let sum = self.f.q.strict_add(operand, compute & !block.load);
+        let word = block.word_signed("f", self.f.q.bits());
+        self.f.when(block.load, word).when(compute, sum).else_hold();
+    }
+
     /// Closes the accumulator: loaded with its word; at an edge with `compute` = 1 the operand is subtracted where
     /// `subtract` is 1, else added. A load wins; the exact result must fit where it does not. The operand may have any
     /// width and either reading.

@@ -36,6 +36,13 @@ impl<'m> DownCounter<'m> {
         self.close(count.mux(less, self.register.q))
     }
 
+    /// As [`count`](DownCounter::count), but goes down by a number of pulses at once.
+    #[must_use]
+    pub fn count_by(self, count: Signal<'m>, pulses: Signal<'m>) -> Signal<'m> {
+        let less = self.register.q.strict_sub(pulses, count & !self.load);
+        self.close(count.mux(less, self.register.q))
+    }
+
     /// As [`count`](DownCounter::count), but goes down by a number of pulses at once and stops at 0.
     #[must_use]
     pub fn count_pulses(self, pulses: Signal<'m>) -> Signal<'m> {

@@ -1,25 +1,33 @@
 //! Parts: clocked components that more than one interpolator is made of. A part is a plain function, or a struct where
 //! a register has to exist before the logic that drives it.
 
+mod arc_frame;
 mod axis;
 mod beats;
 mod block;
 mod coordinate;
 mod deviation;
 mod down_counter;
+mod end_counters;
 mod integrator;
+mod line_frame;
 mod normalizer;
 mod quadrant;
+mod sign;
 
+pub use arc_frame::{ArcFrame, square_gain};
 pub use axis::axis_counter;
 pub use beats::BeatRing;
 pub use block::Block;
 pub use coordinate::up_down_counter;
 pub use deviation::DeviationAccumulator;
 pub use down_counter::{DownCounter, population_count};
+pub use end_counters::EndCounters;
 pub use integrator::integrator;
+pub use line_frame::LineFrame;
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
 pub use quadrant::{Kind, next_quadrant, quadrant_register, x_grows};
+pub use sign::{magnitude, negated};
 
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,11 @@
 //! such values; the word-level engines and constant evaluation call them, and nothing else defines an operator.
 //! (The `gates` engine deliberately does not: it is the independent judge.)
 
+mod reading;
+
 use std::fmt;
+
+pub use reading::Reading;
 
 /// Number of bits of a net: 1 to 64.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

@@ -6,7 +6,7 @@
 
 use std::panic::Location;
 
-use crate::bits::Width;
+use crate::bits::{Reading, Width};
 use crate::diag::Code;
 
 /// A net, named by the cell that drives it.
@@ -162,6 +162,8 @@ pub enum Format {
     Analog,
     /// Ones and zeros.
     Binary,
+    /// Decimal digits, 4 bits each.
+    Decimal,
     /// A name for each value.
     States(Vec<(u64, String)>),
 }
@@ -170,7 +172,17 @@ impl Format {
     /// Read as two's complement.
     #[must_use]
     pub fn is_signed(&self) -> bool {
-        matches!(self, Format::Signed | Format::Analog)
+        self.reading().is_signed()
+    }
+
+    /// What number the bits mean.
+    #[must_use]
+    pub fn reading(&self) -> Reading {
+        match self {
+            Format::Signed | Format::Analog => Reading::Signed,
+            Format::Decimal => Reading::Decimal,
+            Format::Unsigned | Format::Binary | Format::States(_) => Reading::Unsigned,
+        }
     }
 }
 

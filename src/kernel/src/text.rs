@@ -87,6 +87,7 @@ impl fmt::Display for Format {
             Format::Signed => f.write_str("signed"),
             Format::Analog => f.write_str("analog"),
             Format::Binary => f.write_str("binary"),
+            Format::Decimal => f.write_str("decimal"),
             Format::States(states) => {
                 f.write_str("states")?;
                 states.iter().try_for_each(|(value, name)| write!(f, " {value:#x} {name:?}"))
@@ -353,6 +354,7 @@ impl<'a> Words<'a> {
             "signed" => Format::Signed,
             "analog" => Format::Analog,
             "binary" => Format::Binary,
+            "decimal" => Format::Decimal,
             "states" => {
                 let mut states = Vec::new();
                 while !self.rest.is_empty() {

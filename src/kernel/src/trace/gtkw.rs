@@ -20,6 +20,7 @@ use crate::netlist::Format;
 
 /// Flags of a row, as GTKWave writes them.
 mod flag {
+    pub(super) const HEXADECIMAL: &str = "@22";
     pub(super) const BINARY: &str = "@28";
     pub(super) const UNSIGNED: &str = "@24";
     pub(super) const SIGNED: &str = "@420";
@@ -178,6 +179,8 @@ fn row(line: &mut impl FnMut(&str), probe: &Probe, states: &[(&[(u64, String)], 
         format => {
             line(match format {
                 Format::Signed => flag::SIGNED,
+                // A digit of 4 bits looks alike in both.
+                Format::Decimal => flag::HEXADECIMAL,
                 Format::Unsigned if probe.width.get() > 1 || probe.role == Role::Constant => flag::UNSIGNED,
                 _ => flag::BINARY,
             });

@@ -1,0 +1,106 @@
+//! `mindev-arc`: minimum deviation (最小偏差法), arc.
+//!
+//! ```text
+//!   quad, ccw ──► kind ──► which coordinate grows, directions
+//!                   │
+//!   xi ──► ∓2x+1 ──►│──► F1 = F after X ──┐
+//!   yi ──► ∓2y+1 ──►│──► F2 = F after Y ──┼──► least |F'| ──► X, Y or both ──► dx, dy ──► x, y
+//!                   └──► F3 = F1 + F2 - F ┘        │
+//!          F ◄── F1, F2 or F3 ◄───────────────────┴──► xi ± 1, yi ± 1, e (ex, ey) ──► done
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | xi, yi | n | abs(x), abs(y) relative to the centre |
+//! | f | n+2, two's complement | 0; behind a split x² + y² - R² |
+//! | quad | 2 | quadrant that the motion enters, Q1 = 0 |
+//! | ccw | 1 | 1: counter-clockwise (NR) |
+//! | e | n+3 | pulses to the end, across axes at R rounded to the nearest integer (`total`) |
+//! | ex, ey | n | pulses of each axis to the end or to the next axis (`per-axis`) |
+//!
+//! Every step looks at the three neighbours ahead (along x, along y, diagonal) and goes where the deviation
+//! F = x² + y² - R² is least in magnitude; of equals Y goes before X, and the diagonal before both. The radial error
+//! stays below half a BLU, so that an axis is met at R rounded to the nearest integer. A diagonal step counts two
+//! pulses in `e`.
+//!
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/mindev-arc-nr1.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/mindev-arc-nr1.csv")]
+//! ```
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Crossing, Curve};
+
+use crate::choices::Choices;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, magnitude};
+use crate::{plan, words};
+
+const NAME: &str = "mindev-arc";
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Minimum deviation, arc",
+    method: "minimum deviation",
+    curve: CurveKind::Arc,
+    registers: &[
+        RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement, from 0" },
+        RegisterDoc::XI_YI,
+        RegisterDoc::QUAD,
+        RegisterDoc { name: "e", width: "n+3", about: "end-point down-counter of the pulses of both axes (total)" },
+        RegisterDoc::EX_EY,
+        RegisterDoc::POSITIONS,
+    ],
+    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
+    source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
+    plan,
+    netlist,
+    words: |hardware, curve| words::judged_arc(hardware, curve, CROSSING),
+};
+
+/// The radial error below half a BLU leaves one place to meet an axis.
+const CROSSING: Crossing = Crossing::RoundedRadius;
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    Ok(Hardware { error_bound: Some(0.5), ..plan::judged_arc(NAME, curve, choices, CROSSING)? })
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("mindev_arc", hardware.on_overflow);
+    let m = module.top();
+    let block = Block::new(m);
+    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let arc = ArcFrame::new(m, &block, hardware, beat.judge);
+
+    // Judge: F behind each of the three steps, and the least of their magnitudes.
+    let wide = f.value().bits().max(arc.coordinates()[0].bits() + 2) + 2;
+    let [gain_x, gain_y] = arc.gains(wide);
+    let now = f.value().extend(wide);
+    let f1 = m.name("f1", now.wrapping_add(gain_x));
+    let f2 = m.name("f2", now.wrapping_add(gain_y));
+    let f3 = m.name("f3", f1.wrapping_add(gain_y));
+    let [m1, m2, m3] = [f1, f2, f3].map(|f| magnitude(m, f));
+    let (beaten, by_y) = (m1.less_than(m3) | m2.less_than(m3), !m1.less_than(m2));
+    let taken = arc.redirected([!beaten | !by_y, !beaten | by_y]);
+    let taken = [beat.decided("take_x", taken[0]), beat.decided("take_y", taken[1])];
+
+    // Feed.
+    arc.feed(hardware, beat.feed, taken);
+
+    // Compute.
+    let zero = m.lit_signed(wide, 0);
+    let operand = taken[0].mux(gain_x, zero).wrapping_add(taken[1].mux(gain_y, zero));
+    f.close_adding(&block, beat.compute, m.name("operand", operand));
+    arc.compute(beat.compute, taken);
+
+    // Compare.
+    let last = arc.compare(beat.compare, taken);
+    beat.close(&block, last);
+    block.close(block.load, beat.compare, last);
+    Ok(module.finish()?)
+}

@@ -1,0 +1,90 @@
+//! `mindev-line`: minimum deviation (最小偏差法), line.
+//!
+//! ```text
+//!   l, s ──► 2s or 2(s - l) ──► + ──► F ──► sign: long axis alone, or diagonal ──► dx, dy ──► x, y
+//!                               ▲─────┘                                   │
+//!                                                                         └──► e ──► done
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | l | n | way of the long axis, L = max(abs(dx), abs(dy)) |
+//! | s | n | way of the short axis, S |
+//! | f | n+2, two's complement | D = 2S - L |
+//! | e | n | L |
+//!
+//! D >= 0 steps diagonally and D += 2(S - L); D < 0 steps the long axis and D += 2S. D is twice the deviation that the
+//! axis step would leave less the one that the diagonal would, so the nearer of both is taken: the path stays within
+//! half a BLU, measured along the short axis.
+//!
+//! The line (5, 3), from the golden file `waves/mindev-line-5-3.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/mindev-line-5-3.csv")]
+//! ```
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::Curve;
+
+use crate::choices::Choices;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{BeatRing, Block, DeviationAccumulator, LineFrame};
+use crate::{plan, words};
+
+const NAME: &str = "mindev-line";
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Minimum deviation, line",
+    method: "minimum deviation",
+    curve: CurveKind::Line { max_axes: 2 },
+    registers: &[
+        RegisterDoc { name: "l, s", width: "n", about: "ways of the long and of the short axis" },
+        RegisterDoc { name: "f", width: "n+2", about: "deviation D, two's complement, from 2S - L" },
+        RegisterDoc { name: "e", width: "n", about: "end-point down-counter of the long axis" },
+        RegisterDoc::POSITIONS,
+    ],
+    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
+    source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
+    plan,
+    netlist,
+    words,
+};
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    Ok(Hardware { error_bound: Some(0.5), ..plan::judged_line(NAME, curve, choices, ["l", "s"], 2)? })
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("mindev_line", hardware.on_overflow);
+    let m = module.top();
+    let block = Block::new(m);
+    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let [long, short] = ["l", "s"].map(|name| block.held(m, name, hardware.bits(name)));
+    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let line = LineFrame::new(m, &block, hardware);
+
+    // Judge.
+    let diagonal = beat.decided("diagonal", f.not_negative());
+
+    // Compute: twice S, or twice S - L.
+    let wide = long.bits().max(short.bits()) + 1;
+    let [long, short] = [long, short].map(|way| way.extend(wide).as_signed());
+    let change = diagonal.mux(short.wrapping_sub(long), short);
+    f.close_adding(&block, beat.compute, m.name("operand", change.concat(m.lit(1, 0))));
+
+    // Feed, compare.
+    line.close(hardware, beat, diagonal);
+    Ok(module.finish()?)
+}
+
+fn words(_: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(([a, b], mut words)) = words::judged_line(curve) else { return Vec::new() };
+    let (long, short) = (a.max(b), a.min(b));
+    words.extend([("l", long), ("s", short), ("f", 2 * short - long)]);
+    vec![words]
+}

@@ -1,0 +1,115 @@
+//! What every interpolator that judges the steps of an arc has around its judgement.
+
+use stepwave_kernel::dsl::{Register, Scope, Signal};
+
+use super::{
+    Block, EndCounters, Kind, axis_counter, negated, next_quadrant, quadrant_register, up_down_counter, x_grows,
+};
+use crate::choices::EndPoint;
+use crate::hardware::Hardware;
+
+/// Coordinates, quadrant, end point and axes of an arc. The judgement between them says which axes a step takes.
+///
+/// - `xi`, `yi`, unsigned: |x| and |y| relative to the centre.
+/// - `quad`, 2 bits: the quadrant, Q1 = 0; `ccw`, 1 bit: counter-clockwise.
+/// - `e`, or `ex` and `ey`: the end point.
+///
+/// With one counter the hardware crosses the axes: where the shrinking coordinate stands at 0 the judge beat turns to
+/// the next quadrant (but not in the centre, which R = 1 passes through). With a counter for each axis the loader
+/// splits the arc there.
+#[derive(Clone, Copy, Debug)]
+pub struct ArcFrame<'m> {
+    m: Scope<'m>,
+    block: Block<'m>,
+    xi: Register<'m>,
+    yi: Register<'m>,
+    end: EndCounters<'m>,
+    /// The decoded quadrant and direction.
+    pub kind: Kind<'m>,
+}
+
+impl<'m> ArcFrame<'m> {
+    /// The registers; the quadrant is turned at an edge with `judge` = 1 (1 bit).
+    #[must_use]
+    pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware, judge: Signal<'m>) -> ArcFrame<'m> {
+        let [xi, yi] = ["xi", "yi"].map(|name| m.reg(name, hardware.bits(name)));
+        let quad = quadrant_register(m);
+        let ccw = block.held(m, "ccw", 1);
+        let end = EndCounters::new(m, block, hardware);
+        let q = m.scope("quadrant");
+        let entered = if hardware.end_point == EndPoint::PerAxis {
+            quad.q
+        } else {
+            let (x_zero, y_zero) = (xi.q.is_zero(), yi.q.is_zero());
+            let cross = q.name("cross", x_grows(quad.q, ccw).mux(y_zero & !x_zero, x_zero & !y_zero));
+            cross.mux(next_quadrant(q, quad.q, ccw), quad.q)
+        };
+        quad.when(block.load, block.word("quad", 2)).when(judge, entered).else_hold();
+        // Behind the judge beat `entered` is `quad` itself, until the coordinates change.
+        ArcFrame { m, block: *block, xi, yi, end, kind: Kind::decode(q, entered, ccw) }
+    }
+
+    /// |x| and |y|, equally wide.
+    #[must_use]
+    pub fn coordinates(&self) -> [Signal<'m>; 2] {
+        let wide = self.xi.q.bits().max(self.yi.q.bits());
+        [self.xi.q.extend(wide), self.yi.q.extend(wide)]
+    }
+
+    /// 1 bit each: |x| grows, |y| grows along the motion.
+    #[must_use]
+    pub fn grows(&self) -> [Signal<'m>; 2] {
+        [self.kind.x_grows, !self.kind.x_grows]
+    }
+
+    /// What a step of x and one of y add to x² + y², in two's complement of `bits` bits, more than the coordinates have
+    /// by 2 or more.
+    #[must_use]
+    pub fn gains(&self, bits: u32) -> [Signal<'m>; 2] {
+        let [x, y] = self.coordinates();
+        let [x_grows, y_grows] = self.grows();
+        [(x, x_grows), (y, y_grows)].map(|(c, grows)| {
+            let gain = square_gain(self.m, c, grows).extend(bits).as_signed();
+            grows.mux(gain, negated(self.m, gain))
+        })
+    }
+
+    /// The axes that the judgement takes (1 bit each), but an exhausted axis hands its step to the other.
+    #[must_use]
+    pub fn redirected(&self, taken: [Signal<'m>; 2]) -> [Signal<'m>; 2] {
+        self.end.redirected(taken)
+    }
+
+    /// The axes taken (1 bit each) get a pulse at an edge with `feed` = 1.
+    pub fn feed(&self, hardware: &Hardware, feed: Signal<'m>, [x, y]: [Signal<'m>; 2]) {
+        let axes = [("x", x, self.kind.x_negative), ("y", y, self.kind.y_negative)];
+        for (letter, taken, negative) in axes {
+            let scope = self.m.scope(&format!("axis_{letter}"));
+            axis_counter(scope, &self.block, letter, hardware.bits(letter), feed & taken, negative);
+        }
+    }
+
+    /// The coordinates taken (1 bit each) change at an edge with `compute` = 1.
+    pub fn compute(&self, compute: Signal<'m>, taken: [Signal<'m>; 2]) {
+        let registers = [(self.xi, "xi"), (self.yi, "yi")];
+        for (((coordinate, name), taken), grows) in registers.into_iter().zip(taken).zip(self.grows()) {
+            let count = compute & taken;
+            let load = [(self.block.load, self.block.word(name, coordinate.q.bits()))];
+            up_down_counter(coordinate, &load, count & grows, count & !grows, self.m.lit(1, 1));
+        }
+    }
+
+    /// Closes the end counters; see [`EndCounters::count`].
+    #[must_use]
+    pub fn compare(self, compare: Signal<'m>, taken: [Signal<'m>; 2]) -> Signal<'m> {
+        self.end.count(compare, taken)
+    }
+}
+
+/// What one step of a coordinate c (unsigned) adds to its square, without the sign: 2c + 1 where it grows (1 bit), else
+/// 2c - 1; one bit wider than c.
+#[must_use]
+pub fn square_gain<'m>(m: Scope<'m>, c: Signal<'m>, grows: Signal<'m>) -> Signal<'m> {
+    // c, or c - 1, with a 1 behind it.
+    grows.mux(c, c.wrapping_sub(m.lit(c.bits(), 1))).concat(m.lit(1, 1))
+}

@@ -1,0 +1,51 @@
+//! The end point of a motion in two axes: one counter of all pulses, or one for each axis.
+
+use stepwave_kernel::dsl::{Scope, Signal};
+
+use super::{Block, DownCounter};
+use crate::choices::EndPoint;
+use crate::hardware::Hardware;
+
+/// End-point counters of two axes: `ex` and `ey` with [`EndPoint::PerAxis`], else `e`.
+#[derive(Clone, Copy, Debug)]
+pub enum EndCounters<'m> {
+    /// Pulses of both axes.
+    Total(DownCounter<'m>),
+    /// Pulses of x, pulses of y.
+    PerAxis([DownCounter<'m>; 2]),
+}
+
+impl<'m> EndCounters<'m> {
+    /// The counters, as wide as the hardware says.
+    #[must_use]
+    pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware) -> EndCounters<'m> {
+        let counter = |name: &str| DownCounter::new(m, block, name, hardware.bits(name));
+        match hardware.end_point {
+            EndPoint::PerAxis => EndCounters::PerAxis(["ex", "ey"].map(counter)),
+            _ => EndCounters::Total(counter("e")),
+        }
+    }
+
+    /// The axes that the judgement takes (1 bit each, x and y), but an exhausted axis hands its step to the other.
+    #[must_use]
+    pub fn redirected(&self, [x, y]: [Signal<'m>; 2]) -> [Signal<'m>; 2] {
+        match self {
+            EndCounters::Total(_) => [x, y],
+            EndCounters::PerAxis([ex, ey]) => {
+                let (x_open, y_open) = (ex.running(), ey.running());
+                [x_open & (x | !y_open), y_open & (y | !x_open)]
+            }
+        }
+    }
+
+    /// Closes the counters: at an edge with `step` = 1 the axes taken (1 bit each) count. Returns 1 bit: the end point is
+    /// reached at this edge.
+    #[must_use]
+    pub fn count(self, step: Signal<'m>, [x, y]: [Signal<'m>; 2]) -> Signal<'m> {
+        match self {
+            // Two pulses, or one.
+            EndCounters::Total(e) => e.count_by(step, (x & y).concat(x ^ y)),
+            EndCounters::PerAxis([ex, ey]) => ex.count(step & x) & ey.count(step & y),
+        }
+    }
+}

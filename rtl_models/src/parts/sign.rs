@@ -1,0 +1,15 @@
+//! Signs: negation and magnitude in two's complement.
+
+use stepwave_kernel::dsl::{Scope, Signal};
+
+/// The negative of a number in two's complement; the least number stays what it is.
+#[must_use]
+pub fn negated<'m>(m: Scope<'m>, value: Signal<'m>) -> Signal<'m> {
+    m.lit_signed(value.bits(), 0).wrapping_sub(value)
+}
+
+/// The magnitude of a number in two's complement, unsigned, as wide.
+#[must_use]
+pub fn magnitude<'m>(m: Scope<'m>, value: Signal<'m>) -> Signal<'m> {
+    value.msb().mux(negated(m, value), value).as_unsigned()
+}

@@ -1,0 +1,106 @@
+//! `vector-arc`: vector discrimination (矢量判别法), arc.
+//!
+//! ```text
+//!   quad, ccw ──► kind ──┐
+//!   xi ──┬──► compare ───┴──► octant: axis vector and diagonal vector ──┐
+//!   yi ──┘                                                              ▼
+//!   F ──► sign ──────────────────────────────────────────────────► one of the two ──► dx, dy ──► x, y
+//!   ▲                                                                   │
+//!   └── ± (2x ± 1) ± (2y ± 1) ◄─────────────────────────────────────────┴──► xi ± 1, yi ± 1, e (ex, ey) ──► done
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | xi, yi | n | abs(x), abs(y) relative to the centre |
+//! | f | n+2, two's complement | 0; behind a split x² + y² - R² |
+//! | quad | 2 | quadrant that the motion enters, Q1 = 0 |
+//! | ccw | 1 | 1: counter-clockwise (NR) |
+//! | e | n+3 | pulses to the end, across axes up to the path's extremes and back (`total`) |
+//! | ex, ey | n | pulses of each axis to the end or to the next axis (`per-axis`) |
+//!
+//! No primary source of the method survives; this is a definition of this project. The octant fixes an axis vector, x
+//! where |x| < |y| (or both are equal and |x| shrinks), else y, and the diagonal. F = x² + y² - R² >= 0 takes the one of
+//! the two that goes farther inwards, F < 0 the other. The radial error stays below 1 BLU; the axes are met where
+//! point-by-point comparison meets them. A diagonal step counts two pulses in `e`.
+//!
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/vector-arc-nr1.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/vector-arc-nr1.csv")]
+//! ```
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Crossing, Curve};
+
+use crate::choices::Choices;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator};
+use crate::{plan, words};
+
+const NAME: &str = "vector-arc";
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Vector discrimination, arc",
+    method: "vector discrimination",
+    curve: CurveKind::Arc,
+    registers: &[
+        RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement, from 0" },
+        RegisterDoc::XI_YI,
+        RegisterDoc::QUAD,
+        RegisterDoc { name: "e", width: "n+3", about: "end-point down-counter of the pulses of both axes (total)" },
+        RegisterDoc::EX_EY,
+        RegisterDoc::POSITIONS,
+    ],
+    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
+    source: "矢量判别法; no primary source survives: a definition of this project",
+    plan,
+    netlist,
+    words: |hardware, curve| words::judged_arc(hardware, curve, CROSSING),
+};
+
+/// Beside an axis the path is that of point-by-point comparison.
+const CROSSING: Crossing = Crossing::PathExtreme;
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    Ok(Hardware { error_bound: Some(1.0), ..plan::judged_arc(NAME, curve, choices, CROSSING)? })
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("vector_arc", hardware.on_overflow);
+    let m = module.top();
+    let block = Block::new(m);
+    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let arc = ArcFrame::new(m, &block, hardware, beat.judge);
+
+    // Judge: the octant's axis vector; the other axis only joins it on the diagonal.
+    let [x, y] = arc.coordinates();
+    let [x_grows, y_grows] = arc.grows();
+    let along_x = m.name("along_x", x.less_than(y) | x.equals(y) & !x_grows);
+    // The diagonal goes farther inwards than an axis vector along which the coordinate grows.
+    let diagonal_inwards = along_x.mux(x_grows, y_grows);
+    let diagonal = m.name("diagonal", !(f.not_negative() ^ diagonal_inwards));
+    let taken = arc.redirected([along_x | diagonal, !along_x | diagonal]);
+    let taken = [beat.decided("take_x", taken[0]), beat.decided("take_y", taken[1])];
+
+    // Feed.
+    arc.feed(hardware, beat.feed, taken);
+
+    // Compute.
+    let wide = x.bits() + 3;
+    let zero = m.lit_signed(wide, 0);
+    let [gain_x, gain_y] = arc.gains(wide);
+    let operand = taken[0].mux(gain_x, zero).wrapping_add(taken[1].mux(gain_y, zero));
+    f.close_adding(&block, beat.compute, m.name("operand", operand));
+    arc.compute(beat.compute, taken);
+
+    // Compare.
+    let last = arc.compare(beat.compare, taken);
+    beat.close(&block, last);
+    block.close(block.load, beat.compare, last);
+    Ok(module.finish()?)
+}

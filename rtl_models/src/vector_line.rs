@@ -1,0 +1,94 @@
+//! `vector-line`: vector discrimination (矢量判别法), line.
+//!
+//! ```text
+//!   xe ──┐
+//!   ye ──┴─► + xe, - ye or both ──► + ──► F ──► sign: axis vector or diagonal vector ──► dx, dy ──► x, y
+//!                                   ▲─────┘                                   │
+//!                                                                             └──► e ──► done
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | xe, ye | n | a = abs(dx), b = abs(dy) |
+//! | f | n+1, two's complement | 0 |
+//! | e | n | max(a, b) |
+//!
+//! No primary source of the method survives; this is a definition of this project. The octant of the line fixes an axis
+//! vector (x where a >= b, else y) and the diagonal vector; on a line of 45° both are the diagonal. F = a·y - b·x is the
+//! cross product of the line and the way gone: an X pulse takes b off, a Y pulse puts a on. F >= 0, on the line or above
+//! it, takes the one of the two that goes farther down (X, or the diagonal where Y is the axis vector), F < 0 the other.
+//! The path stays below 1 BLU off the line, and F within [-max(a, b), max(a, b) - 1].
+//!
+//! The line (5, 3), from the golden file `waves/vector-line-5-3.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/vector-line-5-3.csv")]
+//! ```
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::Curve;
+
+use crate::choices::Choices;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{BeatRing, Block, DeviationAccumulator, LineFrame};
+use crate::{plan, words};
+
+const NAME: &str = "vector-line";
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Vector discrimination, line",
+    method: "vector discrimination",
+    curve: CurveKind::Line { max_axes: 2 },
+    registers: &[
+        RegisterDoc { name: "xe, ye", width: "n", about: "|dx|, |dy| of the line" },
+        RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
+        RegisterDoc { name: "e", width: "n", about: "end-point down-counter of the long axis" },
+        RegisterDoc::POSITIONS,
+    ],
+    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
+    source: "矢量判别法; no primary source survives: a definition of this project",
+    plan,
+    netlist,
+    words,
+};
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    Ok(Hardware { error_bound: Some(1.0), ..plan::judged_line(NAME, curve, choices, ["xe", "ye"], 1)? })
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("vector_line", hardware.on_overflow);
+    let m = module.top();
+    let block = Block::new(m);
+    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let [xe, ye] = ["xe", "ye"].map(|name| block.held(m, name, hardware.bits(name)));
+    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let line = LineFrame::new(m, &block, hardware);
+    let wide = xe.bits().max(ye.bits()) + 1;
+    let [xe, ye] = [xe, ye].map(|way| way.extend(wide).as_signed());
+
+    // Judge.
+    let above = f.not_negative() ^ line.x_is_longest;
+    let diagonal = beat.decided("diagonal", above | xe.equals(ye));
+
+    // Compute: an X pulse takes ye off F, a Y pulse puts xe on.
+    let zero = m.lit_signed(wide, 0);
+    let [x_steps, y_steps] = [line.x_is_longest | diagonal, !line.x_is_longest | diagonal];
+    let operand = y_steps.mux(xe, zero).wrapping_sub(x_steps.mux(ye, zero));
+    f.close_adding(&block, beat.compute, m.name("operand", operand));
+
+    // Feed, compare.
+    line.close(hardware, beat, diagonal);
+    Ok(module.finish()?)
+}
+
+fn words(_: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(([a, b], mut words)) = words::judged_line(curve) else { return Vec::new() };
+    words.extend([("xe", a), ("ye", b), ("f", 0)]);
+    vec![words]
+}

@@ -1,0 +1,57 @@
+//! The load words that several models share.
+
+use stepwave_nc::{Arc, Crossing, Curve, Direction, Line, Sector};
+
+use crate::choices::EndPoint;
+use crate::hardware::Hardware;
+use crate::machine::Words;
+use crate::plan;
+
+/// Quadrant and direction of a sector, and the position at its start.
+pub(crate) fn sector(arc: &Arc, sector: &Sector) -> Words {
+    let [x, y] = [0, 1].map(|axis| i128::from(arc.center()[axis]) + i128::from(sector.start[axis]));
+    vec![
+        ("quad", i128::from(sector.quadrant.index())),
+        ("ccw", i128::from(arc.direction() == Direction::CounterClockwise)),
+        ("x", x),
+        ("y", y),
+    ]
+}
+
+/// Blocks of a machine that judges every step of an arc: one where the hardware crosses the axes by itself, else one
+/// for each sector.
+pub(crate) fn judged_arc(hardware: &Hardware, curve: &Curve, crossing: Crossing) -> Vec<Words> {
+    let Some(arc) = plan::arc(curve) else { return Vec::new() };
+    let sectors = arc.sectors(crossing);
+    let begin = |at: &Sector| -> Words {
+        let [x, y] = at.start.map(i128::from);
+        let own = vec![("f", x * x + y * y - arc.radius_squared()), ("xi", x.abs()), ("yi", y.abs())];
+        [own, sector(arc, at)].concat()
+    };
+    if hardware.end_point == EndPoint::PerAxis {
+        let block = |sector: &Sector| {
+            let [ex, ey] = sector.steps().map(i128::from);
+            [begin(sector), vec![("ex", ex), ("ey", ey)]].concat()
+        };
+        return sectors.iter().map(block).collect();
+    }
+    // Counted to its end.
+    let steps: i128 = sectors.iter().flat_map(Sector::steps).map(i128::from).sum();
+    sectors.first().map(|first| [begin(first), vec![("e", steps)]].concat()).into_iter().collect()
+}
+
+/// The ways |dx| and |dy| of a line in two axes, and the words of its directions, longest axis and start.
+pub(crate) fn judged_line(curve: &Curve) -> Option<([i128; 2], Words)> {
+    let delta = plan::line(curve).map(Line::delta)?;
+    let [dx, dy] = [0, 1].map(|axis| i128::from(delta[axis]));
+    let (a, b) = (dx.abs(), dy.abs());
+    let words = vec![
+        ("sx", i128::from(dx < 0)),
+        ("sy", i128::from(dy < 0)),
+        ("x_is_longest", i128::from(a >= b)),
+        ("e", a.max(b)),
+        ("x", i128::from(curve.from()[0])),
+        ("y", i128::from(curve.from()[1])),
+    ];
+    Some(([a, b], words))
+}
