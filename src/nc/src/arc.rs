@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::curve::outline_points;
-use crate::exact::{between, cross, dot, norm_squared, roots_within_one, vector};
+use crate::exact::{between, norm_squared, roots_within_one, vector};
 use crate::limit::check_coordinates;
+use crate::turn::Turn;
 use crate::{Crossing, Direction, GeometryError, Quadrant, Sector, sector};
 
 /// A circular arc from one point to another about a centre.
@@ -118,7 +119,7 @@ impl Arc {
     /// A start point on an axis belongs to the quadrant ahead: (R, 0) is in Q1 counter-clockwise, in Q4 clockwise.
     #[must_use]
     pub fn start_quadrant(&self) -> Quadrant {
-        Quadrant::entered(self.start(), self.direction)
+        self.turn().start_quadrant()
     }
 
     /// The quadrant that the motion leaves at the end point.
@@ -126,22 +127,13 @@ impl Arc {
     /// An end point on an axis belongs to the quadrant behind: (R, 0) is in Q4 counter-clockwise, in Q1 clockwise.
     #[must_use]
     pub fn end_quadrant(&self) -> Quadrant {
-        Quadrant::entered(self.end(), self.direction.reversed())
+        self.turn().end_quadrant()
     }
 
     /// How often the arc passes over an axis between its ends, 0 to 4: one less than its number of sectors.
     #[must_use]
     pub fn crossings(&self) -> usize {
-        let (mut quadrant, last) = (self.start_quadrant(), self.end_quadrant());
-        if quadrant == last && !self.end_is_ahead() {
-            return 4; // the end point lies behind the start point: all the way round
-        }
-        let mut count = 0;
-        while quadrant != last {
-            quadrant = quadrant.next(self.direction);
-            count += 1;
-        }
-        count
+        self.turn().crossings()
     }
 
     /// The pieces of the arc inside one quadrant each, in the order of the motion: one to five.
@@ -169,9 +161,7 @@ impl Arc {
     /// The angle through which the arc turns, in radians: more than 0, and 2π for a full circle.
     #[must_use]
     pub fn sweep(&self) -> f64 {
-        let (start, end) = (vector(self.start()), vector(self.end()));
-        let angle = (self.ahead() as f64).atan2(dot(start, end) as f64);
-        if angle > 0.0 { angle } else { angle + TAU }
+        self.turn().angle()
     }
 
     /// The length of the ideal arc, in BLU.
@@ -237,22 +227,25 @@ impl Arc {
         (&self.from, &self.to)
     }
 
+    /// The motion about the centre.
+    pub(crate) fn turn(&self) -> Turn {
+        Turn { start: self.start(), end: self.end(), direction: self.direction }
+    }
+
+    /// The angle from the start point to any position but the centre in the sense of the motion, in radians, 0 to 2π.
+    pub(crate) fn turn_to(&self, position: [i64; 2]) -> f64 {
+        let [sx, sy] = self.start().map(|c| c as f64);
+        let [x, y] = between(self.center, position).map(|c| c as f64);
+        let turned = match self.direction {
+            Direction::Clockwise => sy * x - sx * y,
+            Direction::CounterClockwise => sx * y - sy * x,
+        };
+        let angle = turned.atan2(sx * x + sy * y);
+        if angle < 0.0 { angle + TAU } else { angle }
+    }
+
     fn relative(&self, [x, y]: [i64; 2]) -> [i64; 2] {
         [x - self.center[0], y - self.center[1]]
-    }
-
-    /// The cross product of start and end in the sense of the motion.
-    fn ahead(&self) -> i128 {
-        let turned = cross(vector(self.start()), vector(self.end()));
-        match self.direction {
-            Direction::Clockwise => -turned,
-            Direction::CounterClockwise => turned,
-        }
-    }
-
-    /// Whether the end point lies less than half a turn ahead of the start point.
-    fn end_is_ahead(&self) -> bool {
-        self.ahead() > 0
     }
 }
 

@@ -1,6 +1,6 @@
 //! The ideal curve of a block, whatever its kind.
 
-use crate::{Arc, Line};
+use crate::{Arc, Conic, Helix, Line};
 
 /// The greatest number of points of an outline, so that no request exhausts the memory.
 pub const OUTLINE_LIMIT: usize = 1 << 16;
@@ -26,6 +26,10 @@ pub enum Curve {
     Line(Line),
     /// A circular arc in x and y.
     Arc(Arc),
+    /// An ellipse, a parabola or a hyperbola in x and y.
+    Conic(Conic),
+    /// An arc in x and y with a way in z.
+    Helix(Helix),
 }
 
 impl Curve {
@@ -35,6 +39,8 @@ impl Curve {
         match self {
             Curve::Line(line) => line.from(),
             Curve::Arc(arc) => arc.ends().0,
+            Curve::Conic(conic) => conic.ends().0,
+            Curve::Helix(helix) => helix.ends().0,
         }
     }
 
@@ -44,10 +50,12 @@ impl Curve {
         match self {
             Curve::Line(line) => line.to(),
             Curve::Arc(arc) => arc.ends().1,
+            Curve::Conic(conic) => conic.ends().1,
+            Curve::Helix(helix) => helix.ends().1,
         }
     }
 
-    /// The number of axes: 2 to 6 for a line, 2 for an arc.
+    /// The number of axes: 2 to 6 for a line, 2 for an arc or a conic, 3 for a helix.
     #[must_use]
     pub fn axes(&self) -> usize {
         self.from().len()
@@ -59,22 +67,28 @@ impl Curve {
         match self {
             Curve::Line(line) => line.length(),
             Curve::Arc(arc) => arc.length(),
+            Curve::Conic(conic) => conic.length(),
+            Curve::Helix(helix) => helix.length(),
         }
     }
 
-    /// The distance of a position from the infinite line or the whole circle, in BLU; never negative.
+    /// The distance of a position from the infinite line, the whole circle or conic (one branch of a hyperbola) or the
+    /// helix, in BLU; never negative.
     ///
     /// Coordinates beyond the axes of the curve are ignored; with too few there is no distance (NaN). See
-    /// [`Line::deviation`] and [`Arc::deviation`] for the accuracy.
+    /// [`Line::deviation`], [`Arc::deviation`], [`Conic::deviation`] and [`Helix::deviation`] for the accuracy.
     #[must_use]
     pub fn deviation(&self, position: &[i64]) -> f64 {
         match self {
             Curve::Line(line) => line.deviation(position),
             Curve::Arc(arc) => arc.deviation(position),
+            Curve::Conic(conic) => conic.deviation(position),
+            Curve::Helix(helix) => helix.deviation(position),
         }
     }
 
-    /// The distance with its side, in BLU: positive on the left of a two-axis line and outside a circle.
+    /// The distance with its side, in BLU: positive on the left of a two-axis line, outside a circle, an ellipse, a
+    /// parabola or a helix's cylinder, and inside the bend of a hyperbola.
     ///
     /// Its magnitude is [`deviation`](Curve::deviation); a line of more than two axes has no side.
     #[must_use]
@@ -82,18 +96,22 @@ impl Curve {
         match self {
             Curve::Line(line) => line.signed_deviation(position),
             Curve::Arc(arc) => arc.signed_deviation(position),
+            Curve::Conic(conic) => conic.signed_deviation(position),
+            Curve::Helix(helix) => helix.signed_deviation(position),
         }
     }
 
     /// Ideal points in the first two axes, in BLU and machine coordinates, for drawing.
     ///
-    /// A line gives its two ends, an arc `max_points` points at equal angles (two at least, [`OUTLINE_LIMIT`] at most).
-    /// The first and the last are the programmed ends exactly.
+    /// A line gives its two ends, every other curve `max_points` points (two at least, [`OUTLINE_LIMIT`] at most). The
+    /// first and the last are the programmed ends exactly.
     #[must_use]
     pub fn outline(&self, max_points: usize) -> Vec<[f64; 2]> {
         match self {
             Curve::Line(line) => line.outline(),
             Curve::Arc(arc) => arc.outline(max_points),
+            Curve::Conic(conic) => conic.outline(max_points),
+            Curve::Helix(helix) => helix.outline(max_points),
         }
     }
 }
@@ -107,6 +125,18 @@ impl From<Line> for Curve {
 impl From<Arc> for Curve {
     fn from(arc: Arc) -> Curve {
         Curve::Arc(arc)
+    }
+}
+
+impl From<Conic> for Curve {
+    fn from(conic: Conic) -> Curve {
+        Curve::Conic(conic)
+    }
+}
+
+impl From<Helix> for Curve {
+    fn from(helix: Helix) -> Curve {
+        Curve::Helix(helix)
     }
 }
 

@@ -1,6 +1,8 @@
 //! What can be wrong with a geometry.
 
-use crate::{AXES_MAX, AXES_MIN, COORDINATE_LIMIT};
+use std::fmt;
+
+use crate::{AXES_MAX, AXES_MIN, CONIC_LIMIT, COORDINATE_LIMIT, Shape};
 
 /// Why a geometry cannot be built; every message names the value, the limit and the way out.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -70,6 +72,116 @@ pub enum GeometryError {
         /// Distance of the end point from the centre, in BLU.
         end_radius: f64,
     },
+    /// A semi-axis or a parameter of a conic is zero or negative.
+    #[error(
+        "{name} = {value} BLU, but at least 1 BLU is needed: give a positive length, \
+         and for another orientation say where the curve opens to"
+    )]
+    NotPositive {
+        /// The semi-axis or parameter: a, b or c.
+        name: char,
+        /// The length given, in BLU.
+        value: i64,
+    },
+    /// A semi-axis or a parameter of a conic is too large.
+    #[error("{name} = {value} BLU is beyond the limit of {limit} BLU for a conic: choose a larger BLU")]
+    ConicBeyondLimit {
+        /// The semi-axis or parameter: a, b or c.
+        name: char,
+        /// The length given, in BLU.
+        value: i64,
+        /// The limit, in BLU.
+        limit: i64,
+    },
+    /// An end of a conic is too far from its centre or vertex.
+    #[error(
+        "the {end} point ({}, {}) has {axis} = {value} BLU relative to the {}, beyond the limit of \
+         ±{CONIC_LIMIT} BLU for a conic: choose a larger BLU",
+        .point[0], .point[1], .shape.middle()
+    )]
+    TooFarFromCenter {
+        /// Which end it is.
+        end: End,
+        /// The end in machine coordinates, in BLU.
+        point: [i64; 2],
+        /// The letter of the axis: x or y.
+        axis: char,
+        /// The coordinate relative to the centre or vertex, in BLU.
+        value: i64,
+        /// The curve.
+        shape: Shape,
+    },
+    /// An end of a conic lies more than one BLU off it.
+    #[error(
+        "the {end} point ({}, {}) lies {distance:.3} BLU off the {shape}, and at most 1 BLU is allowed: \
+         correct the point, the {} or the size of the curve",
+        .point[0], .point[1], .shape.middle()
+    )]
+    OffCurve {
+        /// Which end it is.
+        end: End,
+        /// The end in machine coordinates, in BLU.
+        point: [i64; 2],
+        /// Its distance from the curve, in BLU.
+        distance: f64,
+        /// The curve.
+        shape: Shape,
+    },
+    /// An end of a conic is the centre of the ellipse, behind the vertex of the parabola, or not on the hyperbola's
+    /// branch.
+    #[error(
+        "the {end} point ({}, {}) lies {distance:.3} BLU off the {shape} and {}: correct the point or the {}",
+        .point[0], .point[1], .shape.off_branch(), .shape.middle()
+    )]
+    OffBranch {
+        /// Which end it is.
+        end: End,
+        /// The end in machine coordinates, in BLU.
+        point: [i64; 2],
+        /// Its distance from the curve, in BLU.
+        distance: f64,
+        /// The curve.
+        shape: Shape,
+    },
+    /// A parabola or hyperbola ends where it starts.
+    #[error("the {shape} ends where it starts and has length 0, but at least 1 BLU is needed: drop the block")]
+    ZeroLengthConic {
+        /// The curve.
+        shape: Shape,
+    },
+    /// Both ends of a conic lie off it, on different sides of one place, so that the motion along it leads from neither
+    /// to the other.
+    #[error(
+        "the way from ({}, {}) to ({}, {}) leads across the {shape} and not along it, as both ends lie off the curve \
+         (up to 1 BLU is allowed): move one of them onto the curve",
+        .from[0], .from[1], .to[0], .to[1]
+    )]
+    EndBesideStart {
+        /// The start point in machine coordinates, in BLU.
+        from: [i64; 2],
+        /// The end point in machine coordinates, in BLU.
+        to: [i64; 2],
+        /// The curve.
+        shape: Shape,
+    },
+}
+
+/// One of the two ends of a curve; displays as `start` or `end`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum End {
+    /// Where the motion begins.
+    Start,
+    /// Where it ends.
+    End,
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            End::Start => "start",
+            End::End => "end",
+        })
+    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The deviation of many positions from one curve, with all that they share worked out before.
 
+use crate::helix::Ruler;
 use crate::{Arc, Curve, Line};
 
 /// Relative coordinates below this have squares and products of which two together fit in an `i64`.
@@ -19,6 +20,7 @@ const NEAR: i64 = 1 << 31;
 pub struct Gauge<'a> {
     curve: &'a Curve,
     plane: Option<Plane>,
+    ruler: Option<Ruler>,
 }
 
 /// A curve of two axes that spans less than [`NEAR`] on each.
@@ -49,13 +51,15 @@ impl Curve {
         let plane = match self {
             Curve::Line(given) => line(given),
             Curve::Arc(arc) => circle(arc),
+            Curve::Conic(_) | Curve::Helix(_) => None,
         };
-        Gauge { curve: self, plane }
+        let ruler = if let Curve::Helix(helix) = self { Some(helix.ruler()) } else { None };
+        Gauge { curve: self, plane, ruler }
     }
 }
 
 impl Gauge<'_> {
-    /// The distance of a position from the infinite line or the whole circle, in BLU: [`Curve::deviation`], to the bit.
+    /// The distance of a position from the curve, in BLU: [`Curve::deviation`], to the bit.
     #[inline]
     #[must_use]
     pub fn deviation(&self, position: &[i64]) -> f64 {
@@ -77,7 +81,7 @@ impl Gauge<'_> {
             }
             None => {}
         }
-        self.curve.deviation(position)
+        self.ruler.as_ref().map_or_else(|| self.curve.deviation(position), |ruler| ruler.deviation(position))
     }
 }
 
@@ -87,7 +91,7 @@ pub struct Screen(Plane);
 
 impl Gauge<'_> {
     /// A screen for positions of two axes of which every coordinate lies in `-reach..=reach`; `None` where the curve or
-    /// they reach so far that it could err.
+    /// they reach so far that it could err, and for a conic or a helix.
     #[must_use]
     pub fn screen(&self, reach: u64) -> Option<Screen> {
         let plane = self.plane?;

@@ -1,9 +1,10 @@
 //! The geometry of numerical control, in integers: blocks and their ideal curves.
 //!
 //! Every length is in BLU (basic length units, the pulse equivalent δ): one pulse moves an axis by one BLU, and a
-//! programmed point has integer coordinates. This crate holds what a block *is* (a [`Line`] or an [`Arc`], both a
-//! [`Curve`]), into which quadrants an arc falls ([`Arc::sectors`]), and how far a point that hardware has reached lies
-//! off the ideal curve ([`Curve::deviation`]). It knows no register, no clock and no interpolation method.
+//! programmed point has integer coordinates. This crate holds what a block *is* (a [`Line`], an [`Arc`], a [`Conic`] or a
+//! [`Helix`], all a [`Curve`]), into which quadrants it falls ([`Arc::sectors`], [`Conic::sectors`],
+//! [`Helix::sectors`]), and how far a point that hardware has reached lies off the ideal curve ([`Curve::deviation`]).
+//! It knows no register, no clock and no interpolation method.
 //!
 //! Decisions (which quadrant, on the circle or not, behind or ahead) are made in exact integers; `f64` appears only
 //! where a length, an angle or an error is reported. No input panics: what cannot be built is a [`GeometryError`].
@@ -20,20 +21,25 @@
 //! ```
 
 mod arc;
+mod conic;
 mod curve;
 mod error;
 mod exact;
 mod gauge;
+mod helix;
 mod limit;
 mod line;
 mod quadrant;
 mod sector;
+mod turn;
 
 pub use arc::Arc;
+pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
 pub use curve::{Curve, OUTLINE_LIMIT};
-pub use error::GeometryError;
+pub use error::{End, GeometryError};
 pub use gauge::{Gauge, Screen};
-pub use limit::{AXES_MAX, AXES_MIN, AXIS_LETTERS, COORDINATE_LIMIT};
+pub use helix::{Helix, HelixSector};
+pub use limit::{AXES_MAX, AXES_MIN, AXIS_LETTERS, CONIC_LIMIT, COORDINATE_LIMIT, PARABOLA_LIMIT};
 pub use line::Line;
 pub use quadrant::{Direction, Quadrant};
 pub use sector::{Crossing, Sector};

@@ -8,6 +8,15 @@ use crate::GeometryError;
 /// a difference of two converts to `f64` exactly.
 pub const COORDINATE_LIMIT: i64 = 1 << 52;
 
+/// The largest semi-axis of a [`Conic`](crate::Conic), and the largest coordinate of its points relative to its centre
+/// or vertex, in BLU.
+///
+/// Within it the products a²b², b²x² and a²y² are at most 2^104, so that their sums fit `i128` with room to spare.
+pub const CONIC_LIMIT: i64 = 1 << 26;
+
+/// The largest parameter c of a parabola y² = cx, in BLU.
+pub const PARABOLA_LIMIT: i64 = 1 << 40;
+
 /// The least number of axes of a line.
 pub const AXES_MIN: usize = 2;
 

@@ -52,45 +52,20 @@ impl Sector {
 /// The sectors of an arc, in the order of the motion.
 ///
 /// In each of them the end is reached with the motion of its quadrant: one coordinate grows, the other shrinks. Every
-/// crossing and the last sector after a crossing have that from [`crossing_point`]. It leaves an arc with no crossing,
+/// crossing and the last sector after a crossing have that from [`Turn::sectors`]. It leaves an arc with no crossing,
 /// from (g, s) to (g', s') in growing and shrinking magnitudes, whose end is ahead: g' s > g s'. With s' > s also g' >
 /// g; with g' < g also s' < s. Either way one end is farther out by 1 BLU or more on both axes, so its radius is
 /// greater by more than 1 BLU (with (g, s) the inner one, R² + 2(g + s) + 2 > (R + 1)², as g + s ≥ R), and that is no
 /// [`Arc`].
-pub(crate) fn split(arc: &Arc, crossing: Crossing) -> Vec<Sector> {
-    let crossings = arc.crossings();
-    let mut sectors = Vec::with_capacity(crossings + 1);
-    let (mut quadrant, mut start) = (arc.start_quadrant(), arc.start());
-    for left in (0..crossings).rev() {
-        let ahead = (left == 0).then(|| arc.end());
-        let end = crossing_point(arc, quadrant, start, ahead, crossing);
-        sectors.push(Sector { quadrant, start, end });
-        (quadrant, start) = (quadrant.next(arc.direction()), end);
-    }
-    sectors.push(Sector { quadrant, start, end: arc.end() });
-    sectors
-}
-
-/// The point on the axis where a sector ends that goes on into the next quadrant.
 ///
-/// It is not behind the sector's start, nor behind the arc's end if that lies `ahead` in the next quadrant.
-fn crossing_point(
-    arc: &Arc,
-    quadrant: Quadrant,
-    start: [i64; 2],
-    ahead: Option<[i64; 2]>,
-    crossing: Crossing,
-) -> [i64; 2] {
-    let growing = quadrant.growing_axis(arc.direction());
+/// [`Turn::sectors`]: crate::turn::Turn::sectors
+pub(crate) fn split(arc: &Arc, crossing: Crossing) -> Vec<Sector> {
     let squared = norm_squared(vector(arc.start())); // at least 1
     let radius = match crossing {
         Crossing::PathExtreme => ceil_sqrt(squared - 1).max(1),
         Crossing::RoundedRadius => round_sqrt(squared),
     };
-    let least = ahead.map_or(0, |end| end[growing].abs()).max(start[growing].abs());
-    let mut point = [0, 0];
-    point[growing] = quadrant.signs()[growing] * length(radius).max(least);
-    point
+    arc.turn().sectors([length(radius); 2])
 }
 
 #[cfg(test)]
