@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use stepwave::nc::Opens;
 
 use crate::commands::diff::DiffArgs;
 
@@ -123,13 +124,25 @@ pub(crate) struct GeometryArgs {
     /// End point
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = values::parse_point)]
     pub(crate) to: Option<Point>,
-    /// Centre of an arc [default: the origin]
+    /// Centre of an arc or conic, vertex of a parabola [default: the origin]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = values::parse_point)]
     pub(crate) center: Option<Point>,
-    /// Clockwise arc (G02, SR)
+    /// Ellipse with these semi-axes along x and y
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = values::parse_pair, group = "conic")]
+    pub(crate) ellipse: Option<[i64; 2]>,
+    /// Parabola y² = Cx about --center, or one that opens elsewhere
+    #[arg(long, value_name = "C", allow_hyphen_values = true, group = "conic")]
+    pub(crate) parabola: Option<i64>,
+    /// Branch of the hyperbola x²/A² - y²/B² = 1, or of one that opens elsewhere
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = values::parse_pair, group = "conic")]
+    pub(crate) hyperbola: Option<[i64; 2]>,
+    /// Where a parabola or the branch of a hyperbola opens to [default: where both ends lie on it]
+    #[arg(long, value_name = "WHERE", allow_hyphen_values = true, value_parser = values::opens())]
+    pub(crate) opens: Option<Opens>,
+    /// Clockwise arc (G02, SR); on a parabola or hyperbola the ends alone say the way
     #[arg(long, conflicts_with = "ccw")]
     pub(crate) cw: bool,
-    /// Counter-clockwise arc (G03, NR)
+    /// Counter-clockwise arc (G03, NR); on a parabola or hyperbola the ends alone say the way
     #[arg(long)]
     pub(crate) ccw: bool,
 }

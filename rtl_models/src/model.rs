@@ -18,6 +18,10 @@ pub enum CurveKind {
     },
     /// Circular arcs in the plane.
     Arc,
+    /// Arcs of ellipses, parabolas and hyperbolas in the plane.
+    Conic,
+    /// Circular arcs in the plane with a way in z.
+    Helix,
 }
 
 impl CurveKind {
@@ -28,6 +32,32 @@ impl CurveKind {
             CurveKind::Line { max_axes: 2 } => "lines of 2 axes (--from X,Y --to X,Y)",
             CurveKind::Line { .. } => "lines of 2 to 6 axes (--from X,Y,… --to X,Y,…)",
             CurveKind::Arc => "arcs (--from X,Y --to X,Y --center X,Y --cw|--ccw)",
+            CurveKind::Conic => {
+                "conics (--ellipse A,B --cw|--ccw, --parabola C or --hyperbola A,B; --from X,Y --to X,Y --center X,Y)"
+            }
+            CurveKind::Helix => "helices (--from X,Y,Z --to X,Y,Z --center X,Y --cw|--ccw)",
+        }
+    }
+
+    /// Most axes of such a curve.
+    #[must_use]
+    pub fn max_axes(self) -> usize {
+        match self {
+            CurveKind::Line { max_axes } => max_axes,
+            CurveKind::Arc | CurveKind::Conic => 2,
+            CurveKind::Helix => 3,
+        }
+    }
+
+    /// The curve is of this kind.
+    #[must_use]
+    pub fn fits(self, curve: &Curve) -> bool {
+        match (self, curve) {
+            (CurveKind::Line { max_axes }, Curve::Line(line)) => line.axes() <= max_axes,
+            (CurveKind::Arc, Curve::Arc(_))
+            | (CurveKind::Conic, Curve::Conic(_))
+            | (CurveKind::Helix, Curve::Helix(_)) => true,
+            _ => false,
         }
     }
 }
@@ -80,15 +110,12 @@ impl Model {
     /// # Errors
     /// The model does not interpolate this curve, does not take a choice, or a width is impossible.
     pub fn plan(&self, curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-        let fits = match (self.curve, curve) {
-            (CurveKind::Line { max_axes }, Curve::Line(line)) => line.axes() <= max_axes,
-            (CurveKind::Arc, Curve::Arc(_)) => true,
-            _ => false,
-        };
-        if !fits {
+        if !self.curve.fits(curve) {
             let given = match curve {
                 Curve::Line(line) => format!("a line of {} axes", line.axes()),
                 Curve::Arc(_) => "an arc".to_owned(),
+                Curve::Conic(_) => "a conic".to_owned(),
+                Curve::Helix(_) => "a helix".to_owned(),
             };
             return Err(ModelError::Curve { model: self.name, takes: self.curve.describe(), given });
         }

@@ -1,7 +1,7 @@
 //! What the plans of several models need: the size of a geometry, and the values that a choice may have.
 
 use stepwave_kernel::Width;
-use stepwave_nc::{Arc, Crossing, Curve, Line, Sector};
+use stepwave_nc::{Arc, Conic, Crossing, Curve, Helix, Line, Sector};
 
 use crate::choices::{Choice, Choices, EndPoint, Named};
 use crate::error::ModelError;
@@ -12,7 +12,7 @@ use crate::registers::Registers;
 pub(crate) fn line(curve: &Curve) -> Option<&Line> {
     match curve {
         Curve::Line(line) => Some(line),
-        Curve::Arc(_) => None,
+        _ => None,
     }
 }
 
@@ -20,7 +20,23 @@ pub(crate) fn line(curve: &Curve) -> Option<&Line> {
 pub(crate) fn arc(curve: &Curve) -> Option<&Arc> {
     match curve {
         Curve::Arc(arc) => Some(arc),
-        Curve::Line(_) => None,
+        _ => None,
+    }
+}
+
+/// The conic of a curve; `Model::plan` has checked that it is one.
+pub(crate) fn conic(curve: &Curve) -> Option<&Conic> {
+    match curve {
+        Curve::Conic(conic) => Some(conic),
+        _ => None,
+    }
+}
+
+/// The helix of a curve; `Model::plan` has checked that it is one.
+pub(crate) fn helix(curve: &Curve) -> Option<&Helix> {
+    match curve {
+        Curve::Helix(helix) => Some(helix),
+        _ => None,
     }
 }
 

@@ -9,6 +9,7 @@ use stepwave::kernel::engine::EngineKind;
 use stepwave::models::{
     Adder, Beats, Choices, Compare, EndPoint, Form, Named, OnOverflow, Preset, Radix, StepTiming, Weights,
 };
+use stepwave::nc::Opens;
 
 /// Coordinates of a point in BLU.
 #[derive(Clone, Debug)]
@@ -25,6 +26,17 @@ pub(crate) fn parse_point(text: &str) -> Result<Point, String> {
         })
     };
     text.split(',').map(coordinate).collect::<Result<_, _>>().map(Point)
+}
+
+/// Two whole numbers of BLU.
+pub(crate) fn parse_pair(text: &str) -> Result<[i64; 2], String> {
+    let Point(numbers) = parse_point(text)?;
+    numbers.try_into().map_err(|_| format!("'{text}' is not two numbers: give A,B such as 6,4"))
+}
+
+/// Where an open curve opens to.
+pub(crate) fn opens() -> impl TypedValueParser<Value = Opens> {
+    one_of(&[("+x", Opens::PlusX), ("-x", Opens::MinusX), ("+y", Opens::PlusY), ("-y", Opens::MinusY)])
 }
 
 /// One `--width`: `N`, or `REGISTER=N`, or several with commas.

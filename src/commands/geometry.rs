@@ -1,7 +1,7 @@
 //! The curve that the options of several commands give.
 
 use stepwave::models::{CurveKind, Model};
-use stepwave::nc::{Arc, Curve, Direction, Line};
+use stepwave::nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
 use crate::cli::{GeometryArgs, Point};
 use crate::failure::Failure;
@@ -11,43 +11,81 @@ use crate::failure::Failure;
 /// # Errors
 /// Something is missing, or the model does not interpolate such a curve.
 pub(crate) fn curve(model: &Model, args: &GeometryArgs) -> Result<Curve, Failure> {
-    let trouble = |sentence: String| Err(Failure::Trouble(sentence));
     let Some(to) = &args.to else {
         return trouble(format!("the end point is missing: {} takes {}", model.name, model.curve.describe()));
     };
-    let direction = match (args.cw, args.ccw) {
-        (true, _) => Some(Direction::Clockwise),
-        (_, true) => Some(Direction::CounterClockwise),
-        _ => None,
-    };
-    let origin = |axes: usize| vec![0; axes];
-    match model.curve {
-        CurveKind::Line { .. } => {
-            if direction.is_some() || args.center.is_some() {
-                let what = if args.center.is_some() { "--center" } else { "--cw or --ccw" };
-                return trouble(format!("{} interpolates lines, which have no {what}: leave it out", model.name));
-            }
-            let from = args.from.as_ref().map_or_else(|| origin(to.0.len()), |from| from.0.clone());
-            Ok(Curve::Line(Line::new(from, to.0.clone())?))
-        }
-        CurveKind::Arc => {
-            let Some(direction) = direction else {
-                return trouble(format!("the direction of the arc is missing: give {} --cw or --ccw", model.name));
-            };
-            let plane = |name: &str, point: &[i64]| match *point {
-                [x, y] => Ok([x, y]),
-                _ => Err(Failure::Trouble(format!(
-                    "{name} of an arc has {} coordinates, but {} works in the plane: give X,Y",
-                    point.len(),
-                    model.name
-                ))),
-            };
-            let given = |name: &str, point: &Option<_>| match point {
-                Some(Point(point)) => plane(name, point),
-                None => Ok([0, 0]),
-            };
-            let (from, center) = (given("--from", &args.from)?, given("--center", &args.center)?);
-            Ok(Curve::Arc(Arc::new(from, plane("--to", &to.0)?, center, direction)?))
+    for (given, option) in superfluous(model.curve, args) {
+        if given {
+            let takes = model.curve.describe();
+            return trouble(format!("{} interpolates {takes}, which have no {option}: leave it out", model.name));
         }
     }
+    let direction = || match (args.cw, args.ccw) {
+        (true, _) => Ok(Direction::Clockwise),
+        (_, true) => Ok(Direction::CounterClockwise),
+        _ => trouble(format!("the direction of the arc is missing: give {} --cw or --ccw", model.name)),
+    };
+    let from = args.from.as_ref();
+    let center = || point::<2>(model, "--center", args.center.as_ref());
+    Ok(match model.curve {
+        CurveKind::Line { .. } => {
+            let from = from.map_or_else(|| vec![0; to.0.len()], |from| from.0.clone());
+            Line::new(from, to.0.clone())?.into()
+        }
+        CurveKind::Arc => {
+            let direction = direction()?;
+            Arc::new(point(model, "--from", from)?, point(model, "--to", Some(to))?, center()?, direction)?.into()
+        }
+        CurveKind::Helix => {
+            let direction = direction()?;
+            Helix::new(point(model, "--from", from)?, point(model, "--to", Some(to))?, center()?, direction)?.into()
+        }
+        CurveKind::Conic => {
+            let (from, to, center) = (point(model, "--from", from)?, point(model, "--to", Some(to))?, center()?);
+            match (args.ellipse, args.parabola, args.hyperbola) {
+                (Some(_), ..) if args.opens.is_some() => {
+                    return trouble("an ellipse does not open: leave --opens out".to_owned());
+                }
+                (Some(semi_axes), ..) => Conic::ellipse(semi_axes, from, to, center, direction()?)?,
+                (_, Some(c), _) => Conic::parabola(c, args.opens, from, to, center)?,
+                (.., Some(semi_axes)) => Conic::hyperbola(semi_axes, args.opens, from, to, center)?,
+                (None, None, None) => {
+                    let takes = model.curve.describe();
+                    return trouble(format!("the curve is missing: {} takes {takes}", model.name));
+                }
+            }
+            .into()
+        }
+    })
+}
+
+/// The options that have no meaning for such curves: whether each is given, and its name.
+fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)> {
+    let mut options = Vec::new();
+    if matches!(kind, CurveKind::Line { .. }) {
+        options.extend([(args.center.is_some(), "--center"), (args.cw || args.ccw, "--cw or --ccw")]);
+    }
+    if kind != CurveKind::Conic {
+        options.extend([
+            (args.ellipse.is_some(), "--ellipse"),
+            (args.parabola.is_some(), "--parabola"),
+            (args.hyperbola.is_some(), "--hyperbola"),
+            (args.opens.is_some(), "--opens"),
+        ]);
+    }
+    options
+}
+
+/// The coordinates of a point of `N` axes; the origin if none is given.
+fn point<const N: usize>(model: &Model, name: &str, given: Option<&Point>) -> Result<[i64; N], Failure> {
+    let Some(Point(point)) = given else { return Ok([0; N]) };
+    <[i64; N]>::try_from(point.as_slice()).or_else(|_| {
+        let [what, form] = if N == 2 { ["works in the plane", "X,Y"] } else { ["works in space", "X,Y,Z"] };
+        let (count, model) = (point.len(), model.name);
+        trouble(format!("{name} has {count} coordinates, but {model} {what} here: give {form}"))
+    })
+}
+
+fn trouble<T>(sentence: String) -> Result<T, Failure> {
+    Err(Failure::Trouble(sentence))
 }

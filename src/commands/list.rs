@@ -36,9 +36,11 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
 }
 
 fn as_json(model: &Model) -> Value {
-    let curve = match model.curve {
-        CurveKind::Line { max_axes } => json!({ "kind": "line", "max_axes": max_axes }),
-        CurveKind::Arc => json!({ "kind": "arc", "max_axes": 2 }),
+    let kind = match model.curve {
+        CurveKind::Line { .. } => "line",
+        CurveKind::Arc => "arc",
+        CurveKind::Conic => "conic",
+        CurveKind::Helix => "helix",
     };
     let registers = model
         .registers
@@ -49,7 +51,7 @@ fn as_json(model: &Model) -> Value {
         "name": model.name,
         "title": model.title,
         "method": model.method,
-        "curve": curve,
+        "curve": { "kind": kind, "max_axes": model.curve.max_axes() },
         "registers": registers.collect::<Vec<_>>(),
         "options": options.collect::<Vec<_>>(),
         "source": model.source,

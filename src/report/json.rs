@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 use stepwave_kernel::bits::Reading;
 use stepwave_kernel::netlist::Arithmetic;
-use stepwave_nc::Curve;
+use stepwave_nc::{Curve, Shape};
 
 use super::{Report, summary};
 use crate::testbench::{Ending, OverflowEvent};
@@ -29,6 +29,30 @@ fn geometry(curve: &Curve) -> Value {
             "center": arc.center(),
             "direction": arc.direction().to_string(),
             "radius": arc.radius(),
+        }),
+        Curve::Conic(conic) => {
+            let (shape, sizes) = match conic.shape() {
+                Shape::Ellipse { semi_axes } => ("ellipse", json!(semi_axes)),
+                Shape::Parabola { c, .. } => ("parabola", json!([c])),
+                Shape::Hyperbola { semi_axes, .. } => ("hyperbola", json!(semi_axes)),
+            };
+            json!({
+                "curve": shape,
+                "from": curve.from(),
+                "to": curve.to(),
+                "center": conic.center(),
+                "sizes": sizes,
+                "opens": conic.opens().map(|opens| opens.to_string()),
+                "direction": conic.direction().map(|direction| direction.to_string()),
+            })
+        }
+        Curve::Helix(helix) => json!({
+            "curve": "helix",
+            "from": curve.from(),
+            "to": curve.to(),
+            "center": helix.arc().center(),
+            "direction": helix.arc().direction().to_string(),
+            "radius": helix.arc().radius(),
         }),
     }
 }

@@ -98,7 +98,12 @@ impl Report<'_> {
             failures.push(format!("the end point {wanted} was missed: the machine stands at {reached}"));
         }
         if let (false, Some(worst), Some(bound)) = (self.path_within_bound(), &self.worst, self.hardware.error_bound) {
-            let curve = if matches!(self.curve, Curve::Line(_)) { "line" } else { "arc" };
+            let curve = match self.curve {
+                Curve::Line(_) => "line",
+                Curve::Arc(_) => "arc",
+                Curve::Conic(_) => "conic",
+                Curve::Helix(_) => "helix",
+            };
             failures.push(format!(
                 "the path left the {curve}: {:.3} BLU off at {} after step {}, where the method promises at most {bound} BLU",
                 worst.error,

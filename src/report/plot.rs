@@ -178,6 +178,8 @@ impl Plot {
     fn draw_deviation(&self, page: &mut Page, view: &View, steps: f64) {
         let step = match &self.curve {
             Curve::Arc(_) => "step (deviation positive outside the circle)",
+            Curve::Conic(_) => "step (deviation positive where the implicit function is)",
+            Curve::Helix(_) => "step (deviation positive outside the cylinder)",
             Curve::Line(line) if line.axes() == 2 => "step (deviation positive left of the line)",
             Curve::Line(_) => "step (deviation in all axes, without sign)",
         };

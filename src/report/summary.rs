@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use stepwave_models::{Choice, Hardware, Model, Named};
-use stepwave_nc::{Curve, Direction};
+use stepwave_nc::{Curve, Shape};
 
 use super::Report;
 use crate::testbench::Ending;
@@ -17,16 +17,30 @@ pub(super) fn point(coordinates: &[i64]) -> String {
 /// The geometry in words: `line (0, 0) → (8, 6)`.
 #[must_use]
 pub fn geometry(curve: &Curve) -> String {
+    let (from, to) = (point(curve.from()), point(curve.to()));
     match curve {
-        Curve::Line(_) => format!("line {} to {}", point(curve.from()), point(curve.to())),
+        Curve::Line(_) => format!("line {from} to {to}"),
         Curve::Arc(arc) => {
-            let direction = match arc.direction() {
-                Direction::Clockwise => "clockwise",
-                Direction::CounterClockwise => "counter-clockwise",
-            };
             let kind = if arc.is_full_circle() { "full circle" } else { "arc" };
-            let (from, to, center) = (point(&arc.from()), point(&arc.to()), point(&arc.center()));
-            format!("{kind} {from} to {to} {direction} about {center}")
+            format!("{kind} {from} to {to} {} about {}", arc.direction(), point(&arc.center()))
+        }
+        Curve::Helix(helix) => {
+            let arc = helix.arc();
+            format!("helix {from} to {to} {} about {}", arc.direction(), point(&arc.center()))
+        }
+        Curve::Conic(conic) => {
+            let center = point(&conic.center());
+            let towards = conic.opens().map(|opens| format!("opening to {opens} ")).unwrap_or_default();
+            match conic.shape() {
+                Shape::Ellipse { semi_axes } => {
+                    let direction = conic.direction().map(|direction| format!("{direction} ")).unwrap_or_default();
+                    format!("ellipse {} {from} to {to} {direction}about {center}", point(&semi_axes))
+                }
+                Shape::Parabola { c, .. } => format!("parabola {c} {towards}{from} to {to} from the vertex {center}"),
+                Shape::Hyperbola { semi_axes, .. } => {
+                    format!("hyperbola {} {towards}{from} to {to} about {center}", point(&semi_axes))
+                }
+            }
         }
     }
 }
