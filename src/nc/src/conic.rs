@@ -374,10 +374,9 @@ fn open(
     for opens in &Opens::ALL[1..] {
         let (other, distance) = curve(*opens);
         let better = match (&best, &other) {
-            (Ok(best), Ok(other)) if best.ends_on_curve() != other.ends_on_curve() => other.ends_on_curve(),
             (Ok(_), Err(_)) => false,
             (Err(_), Ok(_)) => true,
-            _ => distance < nearest,
+            _ => distance < nearest, // 0 if both ends are on the curve exactly
         };
         if better {
             (best, nearest) = (other, distance);
