@@ -89,22 +89,24 @@ impl Sector {
     }
 }
 
-/// Splits an arc at the axes, which it crosses at the distance `crossing` from the centre.
+/// Splits an arc of a circle or of an ellipse at the axes; it crosses the axis X at the distance
+/// `crossing[0]` from the centre and the axis Y at `crossing[1]`.
 ///
 /// `from` and `to` are relative to the centre. An end point on the start point, or behind it in the
 /// same quadrant, means going all the way round. An end point on an axis belongs to the quadrant
 /// that the motion comes from, so that no sector is empty.
-pub(crate) fn sectors(from: [i64; 2], to: [i64; 2], clockwise: bool, crossing: i64) -> Vec<Sector> {
+pub(crate) fn sectors(from: [i64; 2], to: [i64; 2], clockwise: bool, crossing: [i64; 2]) -> Vec<Sector> {
     let last = Kind::left_at(to, clockwise);
     let mut kind = Kind::entered_at(from, clockwise);
     let mut point = from;
     let mut list = Vec::new();
     // Only in the first sector can the end point lie behind the point that was reached.
     while kind != last || (list.is_empty() && !is_ahead(from, to, clockwise)) {
-        // The last axis is met no nearer to the centre than the end point, which may lie a little outside the circle:
-        // from there on this coordinate only shrinks.
+        // An axis is met no nearer to the centre than the point that was reached. The last one is met no nearer than
+        // the end point, which may lie a little outside the curve: from there on this coordinate only shrinks.
         let growing = kind.growing();
-        let meets = if kind.next() == last { crossing.max(to[growing].abs()) } else { crossing };
+        let beyond = if kind.next() == last { to[growing].abs() } else { 0 };
+        let meets = crossing[growing].max(point[growing].abs()).max(beyond);
         let mut axis_point = [0, 0];
         axis_point[growing] = kind.side()[growing] * meets;
         list.push(sector(kind, point, axis_point));

@@ -132,7 +132,7 @@ pub(crate) fn dda_arc(
     let start = [from[0] - center[0], from[1] - center[1]];
     let target = [to[0] - center[0], to[1] - center[1]];
     let crossing = nearest_radius(radius_squared(start));
-    let list = sectors(start, target, clockwise, crossing);
+    let list = sectors(start, target, clockwise, [crossing; 2]);
     let modulus = modulus(n);
     assert_presets(&preset, modulus);
     for coordinate in list.iter().flat_map(|sector| [sector.from, sector.to]) {

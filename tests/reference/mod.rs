@@ -1,26 +1,56 @@
-//! The four classic interpolators as plain integer recurrences: the judge of the netlists.
+//! The interpolators as plain integer recurrences: the judge of the netlists.
 //!
 //! Nothing here knows of a net, a clock or a register width. Each function writes down what one
 //! *step* of the method does to a handful of integers, and records the integers after every step.
 //! Lengths are BLU (basic length units). Row 0 of a [`Table`] is the state after the block was
 //! loaded, row `k` the state after step `k`.
 //!
-//! - [`ppc_line`], [`ppc_arc`]: point-by-point comparison, one axis per step, steered by the sign of
+//! - [`ppc_line`], [`ppc_arc`], [`ppc_conic`]: point-by-point comparison, one axis per step, steered by the sign of
 //!   a deviation `f`.
-//! - [`dda_line`], [`dda_arc`]: digital differential analyser, one accumulation per axis per step,
-//!   the overflow of the accumulator is the pulse.
+//! - [`dda_line`], [`dda_line_decimal`], [`dda_arc`], [`dda_conic`], [`dda_helix`]: digital
+//!   differential analyser, one accumulation per axis per step, the overflow of the accumulator is
+//!   the pulse.
+//! - [`dpm_line`], [`dpm_line_decade`], [`dpm_line_override`]: digital pulse multiplier, a counter
+//!   whose stages pass pulses as the bits of a coefficient say.
+//! - [`cim_line`], [`cim_arc`], [`cim_conic`]: comparison-integral method, one axis steps every time
+//!   and the sign of `f` tells whether the other does.
+//! - [`mindev_line`], [`mindev_arc`], [`vector_line`], [`vector_arc`]: eight-direction methods, a
+//!   step is X, Y or both.
+//! - [`stepgen`], [`bresenham`]: what motion cards and firmware of today do.
 //!
 //! A call outside a method's domain (a register too narrow, an end point that the arc cannot reach)
 //! is a mistake of the test that makes it, and panics.
 
 mod arc_geometry;
+mod bresenham;
+mod cim;
+mod conic_geometry;
 mod dda;
+mod dda_conic;
+mod dda_decimal;
+mod dda_helix;
+mod dpm;
+mod eight_arcs;
+mod eight_lines;
 mod ppc;
+mod ppc_conic;
+mod stepgen;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use bresenham::bresenham;
+pub(crate) use cim::{Weights, cim_arc, cim_conic, cim_line};
+pub(crate) use conic_geometry::{Opens, Shape};
 pub(crate) use dda::{dda_arc, dda_line};
+pub(crate) use dda_conic::dda_conic;
+pub(crate) use dda_decimal::dda_line_decimal;
+pub(crate) use dda_helix::{dda_helix, helix_words};
+pub(crate) use dpm::{dpm_line, dpm_line_decade, dpm_line_override};
+pub(crate) use eight_arcs::{mindev_arc, vector_arc};
+pub(crate) use eight_lines::{mindev_line, vector_line};
 pub(crate) use ppc::{ppc_arc, ppc_line};
+pub(crate) use ppc_conic::ppc_conic;
+pub(crate) use stepgen::stepgen;
 
 /// The names of up to six axes, in the order of the columns.
 pub(crate) const AXES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
@@ -56,7 +86,8 @@ pub(crate) struct Table {
     pub(crate) rows: Vec<Vec<i64>>,
     /// True when the end counters reached 0; false when the motion hung or overflowed.
     pub(crate) finished: bool,
-    /// True when the step after the last row would take an integrand out of 0 ..= 2^n - 1.
+    /// True when the step after the last row would take an integrand or an accumulator out of its
+    /// register.
     pub(crate) overflow: bool,
 }
 

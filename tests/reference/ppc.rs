@@ -105,7 +105,7 @@ pub(crate) fn ppc_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise:
     let start = [from[0] - center[0], from[1] - center[1]];
     let target = [to[0] - center[0], to[1] - center[1]];
     let extreme = natural_extreme(radius_squared(start));
-    let list = sectors(start, target, clockwise, extreme);
+    let list = sectors(start, target, clockwise, [extreme; 2]);
 
     let mut columns: Vec<String> = ["f", "xi", "yi", "quad"].map(str::to_owned).into();
     columns.extend(counter_columns(end, 2));
