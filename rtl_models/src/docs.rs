@@ -10,6 +10,9 @@ impl RegisterDoc {
         RegisterDoc { name: "quad", width: "2", about: "quadrant of the step, Q1 = 0 … Q4 = 3" };
     pub(crate) const EX_EY: RegisterDoc =
         RegisterDoc { name: "ex, ey", width: "n", about: "end-point down-counter of each axis (per-axis)" };
+    pub(crate) const EX_EY_NEEDED: RegisterDoc =
+        RegisterDoc { name: "ex, ey", width: "as they need", about: "end-point down-counter of each axis" };
+    pub(crate) const BASE: RegisterDoc = RegisterDoc { name: "base", width: "1", about: "base axis, X = 0, Y = 1" };
     pub(crate) const POSITIONS: RegisterDoc =
         RegisterDoc { name: "x, y", width: "as the path needs, + 1", about: "machine position, signed" };
     pub(crate) const AXIS_POSITIONS: RegisterDoc =

@@ -16,12 +16,16 @@
 //! # Ok::<(), stepwave_models::ModelError>(())
 //! ```
 
+pub mod cim_arc;
+pub mod cim_conic;
+pub mod cim_line;
 pub mod dda_arc;
 pub mod dda_line;
 pub mod mindev_arc;
 pub mod mindev_line;
 pub mod parts;
 pub mod ppc_arc;
+pub mod ppc_conic;
 pub mod ppc_line;
 pub mod vector_arc;
 pub mod vector_line;
@@ -49,8 +53,12 @@ pub fn catalogue() -> &'static [Model] {
     const CATALOGUE: &[Model] = &[
         ppc_line::MODEL,
         ppc_arc::MODEL,
+        ppc_conic::MODEL,
         dda_line::MODEL,
         dda_arc::MODEL,
+        cim_line::MODEL,
+        cim_arc::MODEL,
+        cim_conic::MODEL,
         mindev_line::MODEL,
         mindev_arc::MODEL,
         vector_line::MODEL,

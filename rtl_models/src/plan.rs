@@ -1,7 +1,7 @@
 //! What the plans of several models need: the size of a geometry, and the values that a choice may have.
 
 use stepwave_kernel::Width;
-use stepwave_nc::{Arc, Conic, Crossing, Curve, Helix, Line, Sector};
+use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Curve, Helix, Line, Sector, Weight};
 
 use crate::choices::{Choice, Choices, EndPoint, Named};
 use crate::error::ModelError;
@@ -43,6 +43,41 @@ pub(crate) fn helix(curve: &Curve) -> Option<&Helix> {
 /// Bits of a magnitude register: as chosen, or the least that hold `largest`.
 pub(crate) fn magnitude_bits(choices: &Choices, largest: u64) -> u32 {
     choices.width.map_or_else(|| Width::needed_unsigned(u128::from(largest)), Width::get)
+}
+
+/// Bits that a weight needs.
+pub(crate) fn needed(weight: i128) -> u32 {
+    Width::needed_unsigned(weight.unsigned_abs())
+}
+
+/// What the registers of a conic must hold.
+pub(crate) struct ConicSize {
+    /// Greatest value of the function given, at the ends of all sectors and on both axes.
+    pub(crate) greatest: i128,
+    /// Bits of the slopes of the weights of x and y.
+    pub(crate) slopes: [u32; 2],
+    /// Bits of the steps of one axis in a sector.
+    pub(crate) steps: u32,
+    /// Positions of each axis.
+    pub(crate) positions: [Vec<i64>; 2],
+}
+
+impl ConicSize {
+    /// Of a curve; `value` tells what a register holds at a magnitude on an axis of this weight.
+    pub(crate) fn of(curve: &Curve, value: impl Fn(Weight, i64) -> i128) -> ConicSize {
+        let sectors = conic(curve).map(Conic::sectors).unwrap_or_default();
+        let weights = conic(curve).map_or([Weight { slope: 0, constant: 0 }; 2], Conic::weights);
+        let center = conic(curve).map_or([0, 0], Conic::center);
+        let ends = || sectors.iter().flat_map(|sector| [sector.start, sector.end]);
+        let values = ends().flat_map(|end| [0, 1].map(|axis| value(weights[axis], end[axis].abs())));
+        let steps = sectors.iter().flat_map(ConicSector::steps).max().unwrap_or(0);
+        ConicSize {
+            greatest: values.max().unwrap_or(0),
+            slopes: weights.map(|weight| needed(weight.slope)),
+            steps: needed(steps.into()),
+            positions: [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect()),
+        }
+    }
 }
 
 /// Largest coordinate relative to the centre on the sectors of an arc.

@@ -15,9 +15,9 @@
 //!
 //! No primary source of the method survives; this is a definition of this project. The octant of the line fixes an axis
 //! vector (x where a >= b, else y) and the diagonal vector; on a line of 45° both are the diagonal. F = a·y - b·x is the
-//! cross product of the line and the way gone: an X pulse takes b off, a Y pulse puts a on. F >= 0, on the line or above
-//! it, takes the one of the two that goes farther down (X, or the diagonal where Y is the axis vector), F < 0 the other.
-//! The path stays below 1 BLU off the line, and F within [-max(a, b), max(a, b) - 1].
+//! cross product of the line and the way gone: an X pulse takes b off, a Y pulse puts a on. On the line, F = 0, the axis
+//! vector is taken; beside it the one that leads back: the diagonal where x is the axis vector and F < 0, or y is and
+//! F > 0. The path stays below 1 BLU off the line, and F within [1 - max(a, b), max(a, b) - 1].
 //!
 //! The line (5, 3), from the golden file `waves/vector-line-5-3.csv`; the wave stands beside it:
 //!
@@ -73,8 +73,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let [xe, ye] = [xe, ye].map(|way| way.extend(wide).as_signed());
 
     // Judge.
-    let above = f.not_negative() ^ line.x_is_longest;
-    let diagonal = beat.decided("diagonal", above | xe.equals(ye));
+    let (below, above) = (!f.not_negative(), f.not_negative() & f.value().is_nonzero());
+    let diagonal = beat.decided("diagonal", line.x_is_longest.mux(below, above) | xe.equals(ye));
 
     // Compute: an X pulse takes ye off F, a Y pulse puts xe on.
     let zero = m.lit_signed(wide, 0);

@@ -1,8 +1,8 @@
 //! The load words that several models share.
 
-use stepwave_nc::{Arc, Crossing, Curve, Direction, Line, Sector};
+use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Curve, Direction, Line, Sector};
 
-use crate::choices::EndPoint;
+use crate::choices::{EndPoint, Weights};
 use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::plan;
@@ -40,18 +40,46 @@ pub(crate) fn judged_arc(hardware: &Hardware, curve: &Curve, crossing: Crossing)
     sectors.first().map(|first| [begin(first), vec![("e", steps)]].concat()).into_iter().collect()
 }
 
-/// The ways |dx| and |dy| of a line in two axes, and the words of its directions, longest axis and start.
-pub(crate) fn judged_line(curve: &Curve) -> Option<([i128; 2], Words)> {
+/// The ways |dx| and |dy| of a line in two axes, and the words of its directions and start.
+pub(crate) fn line(curve: &Curve) -> Option<([i128; 2], Words)> {
     let delta = plan::line(curve).map(Line::delta)?;
     let [dx, dy] = [0, 1].map(|axis| i128::from(delta[axis]));
-    let (a, b) = (dx.abs(), dy.abs());
     let words = vec![
         ("sx", i128::from(dx < 0)),
         ("sy", i128::from(dy < 0)),
-        ("x_is_longest", i128::from(a >= b)),
-        ("e", a.max(b)),
         ("x", i128::from(curve.from()[0])),
         ("y", i128::from(curve.from()[1])),
     ];
+    Some(([dx.abs(), dy.abs()], words))
+}
+
+/// As [`line`], with the words of the long axis.
+pub(crate) fn judged_line(curve: &Curve) -> Option<([i128; 2], Words)> {
+    let ([a, b], mut words) = line(curve)?;
+    words.extend([("x_is_longest", i128::from(a >= b)), ("e", a.max(b))]);
     Some(([a, b], words))
+}
+
+/// Directions and growth of a sector of a conic, and the position at its start.
+pub(crate) fn conic_sector(conic: &Conic, sector: &ConicSector) -> Words {
+    let [x, y] = [0, 1].map(|axis| i128::from(conic.center()[axis]) + i128::from(sector.start[axis]));
+    vec![
+        ("sx", i128::from(sector.motion[0] < 0)),
+        ("sy", i128::from(sector.motion[1] < 0)),
+        ("x_grows", i128::from(sector.grows[0])),
+        ("y_grows", i128::from(sector.grows[1])),
+        ("x", x),
+        ("y", y),
+    ]
+}
+
+/// F of comparison-integral at the start of a sector whose point has these interval weights: with `mid` the exact
+/// `deviation` there, turned over where an X step lowers it, and once more where Y is the base axis.
+pub(crate) fn weighed(rule: Weights, [a, b]: [i128; 2], x_raises: bool, deviation: i128) -> i128 {
+    let base_x = a < b;
+    match rule {
+        Weights::Mid if x_raises == base_x => deviation,
+        Weights::Mid => -deviation,
+        Weights::Pre | Weights::Post => 0,
+    }
 }

@@ -7,8 +7,7 @@ use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Choices, EndPoint, Preset, find};
 use stepwave_nc::Curve;
 
-use super::ppc::lattice;
-use super::{arc, assert_equal, check, line, run};
+use super::{arc, assert_equal, check, every_line, lattice, line, run};
 use crate::reference::{self, dda_arc, dda_line};
 
 const END_POINTS: [(EndPoint, reference::EndPoint); 4] = [
@@ -89,14 +88,8 @@ fn an_arc_that_has_come_to_rest_is_given_up_without_waiting_for_all_iterations()
 }
 
 #[test]
-fn every_line_of_up_to_four_bits_with_every_preset_scheme_and_normalisation() {
-    for x in -15..=15 {
-        for y in [-15, -11, -8, -3, -1, 0, 1, 2, 5, 10, 15] {
-            if [x, y] != [0, 0] {
-                check_line(4, &[0, 0], &[x, y], EngineKind::Word);
-            }
-        }
-    }
+fn every_line_of_up_to_five_bits_with_every_preset_scheme_and_normalisation() {
+    every_line(|to| check_line(5, &[0, 0], &to, EngineKind::Word));
 }
 
 #[test]

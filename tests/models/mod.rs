@@ -1,9 +1,16 @@
 //! Every register of every model at every step, compared with the recurrences in `reference`.
 
+mod cim;
+mod conics;
 mod dda;
+mod eight;
 mod ppc;
 mod widths;
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use rayon::prelude::*;
 use stepwave::testbench::{Ending, Observer, ObserverError, Outcome, Step, Testbench};
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Choices, find};
@@ -37,8 +44,48 @@ fn arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool) -> Curve
     Curve::Arc(Arc::new(from, to, center, direction).unwrap())
 }
 
+/// Every line from the origin of up to five bits.
+fn every_line(check: impl Fn([i64; 2]) + Sync) {
+    (-31..=31i64).into_par_iter().for_each(|x| {
+        (-31..=31).filter(|&y| [x, y] != [0, 0]).for_each(|y| check([x, y]));
+    });
+}
+
+/// All points with x² + y² = r2.
+fn lattice(r2: i64) -> Vec<[i64; 2]> {
+    let r = r2.isqrt();
+    let square = (-r..=r).flat_map(|x| (-r..=r).map(move |y| [x, y]));
+    square.filter(|[x, y]| x * x + y * y == r2).collect()
+}
+
+/// Every arc and full circle about the origin between lattice points with R² below `limit`, in both directions.
+fn every_lattice_arc(limit: i64, check: impl Fn([i64; 2], [i64; 2], bool) + Sync) {
+    (1..limit).into_par_iter().for_each(|r2| {
+        let points = lattice(r2);
+        for &from in &points {
+            for &to in &points {
+                [true, false].into_iter().for_each(|clockwise| check(from, to, clockwise));
+            }
+        }
+    });
+}
+
+thread_local! {
+    /// One bench for each hardware, for the next geometries that plan the same.
+    static BENCHES: RefCell<HashMap<String, Testbench>> = RefCell::default();
+}
+
+fn bench(model: &str, curve: &Curve, choices: &Choices) -> Testbench {
+    let model = find(model).unwrap();
+    let hardware = model.plan(curve, choices).unwrap_or_else(|error| panic!("{curve:?} {choices:?}: {error}"));
+    BENCHES.with_borrow_mut(|benches| {
+        let known = benches.entry(format!("{hardware:?}"));
+        known.or_insert_with(|| Testbench::new(model, curve, choices).unwrap()).of(model, curve).unwrap()
+    })
+}
+
 fn run(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind) -> Ran {
-    let bench = Testbench::new(find(model).unwrap(), curve, choices).unwrap();
+    let bench = bench(model, curve, choices);
     let mut keep = Keep(Vec::new());
     let outcome = bench.run(engine, &mut [&mut keep]).unwrap();
     let letters = bench.hardware().letters();

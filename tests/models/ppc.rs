@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Beats, Choices, EndPoint, Form};
 
-use super::{arc, check, line};
+use super::{arc, check, every_lattice_arc, every_line, lattice, line};
 use crate::reference::{self, ppc_arc, ppc_line};
 
 const END_POINTS: [(EndPoint, reference::EndPoint); 3] = [
@@ -36,22 +36,9 @@ fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, be
     }
 }
 
-/// All points with x² + y² = r2.
-pub(super) fn lattice(r2: i64) -> Vec<[i64; 2]> {
-    let r = r2.isqrt();
-    let square = (-r..=r).flat_map(|x| (-r..=r).map(move |y| [x, y]));
-    square.filter(|[x, y]| x * x + y * y == r2).collect()
-}
-
 #[test]
-fn every_line_of_up_to_four_bits_in_every_quadrant_form_and_scheme() {
-    for x in -15..=15 {
-        for y in -15..=15 {
-            if [x, y] != [0, 0] {
-                check_line([0, 0], [x, y], Beats::One, EngineKind::Word);
-            }
-        }
-    }
+fn every_line_of_up_to_five_bits_in_every_quadrant_form_and_scheme() {
+    every_line(|to| check_line([0, 0], to, Beats::One, EngineKind::Word));
 }
 
 #[test]
@@ -69,17 +56,10 @@ fn every_line_of_up_to_three_bits_in_four_beats_on_every_engine_from_a_translate
 }
 
 #[test]
-fn every_lattice_arc_and_full_circle_up_to_radius_10_in_both_directions() {
-    for r2 in 1..=100 {
-        let points = lattice(r2);
-        for &from in &points {
-            for &to in &points {
-                for clockwise in [true, false] {
-                    check_arc(from, to, [0, 0], clockwise, Beats::One, EngineKind::Word);
-                }
-            }
-        }
-    }
+fn every_lattice_arc_and_full_circle_of_a_radius_below_30_in_both_directions() {
+    every_lattice_arc(900, |from, to, clockwise| {
+        check_arc(from, to, [0, 0], clockwise, Beats::One, EngineKind::Word);
+    });
 }
 
 #[test]

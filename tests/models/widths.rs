@@ -2,7 +2,7 @@
 
 use stepwave_kernel::Width;
 use stepwave_models::{Beats, Choices, EndPoint, Form, Model, ModelError, catalogue};
-use stepwave_nc::Curve;
+use stepwave_nc::{Conic, Curve, Direction};
 
 use super::{arc, line};
 
@@ -11,6 +11,10 @@ fn forms(model: &Model) -> Vec<(Curve, Choices)> {
     let curves = match model.name {
         "dda-line" => vec![line(&[0, 0], &[8, -6]), line(&[1, 2, 3], &[4, -9, 12])],
         name if name.ends_with("line") => vec![line(&[0, 0], &[6, -4])],
+        name if name.ends_with("conic") => vec![
+            Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], Direction::CounterClockwise).unwrap().into(),
+            Conic::parabola(4, None, [1, -2], [4, 4], [0, 0]).unwrap().into(),
+        ],
         _ => vec![arc([5, 0], [0, 5], [0, 0], false), arc([7, -2], [-2, 7], [0, 0], true)],
     };
     let mut forms = Vec::new();

@@ -24,9 +24,9 @@ pub(crate) fn mindev_line(from: [i64; 2], to: [i64; 2]) -> Table {
 ///
 /// F = a·|y| - b·|x| with a = |dx|, b = |dy|, the cross product of the direction and the present
 /// point; 0 at the start. The octant fixes an axis vector (X when a >= b, else Y) and a diagonal
-/// vector (XY). `F >= 0`, on the line or on its Y side, takes the one that is nearer to X, `F < 0`
-/// the other. The diagonal of a line with a = b is the line. A line along an axis steps that axis
-/// only.
+/// vector (XY). On the line, `F = 0`, the axis vector is taken; beside it the one that leads back: on
+/// the Y side, `F > 0`, the one nearer to X, on the X side the one nearer to Y. The diagonal of a
+/// line with a = b is the line.
 ///
 /// The columns are `f`, `e` (the steps left), `dx`, `dy`, `x`, `y`.
 ///
@@ -39,8 +39,7 @@ pub(crate) fn vector_line(from: [i64; 2], to: [i64; 2]) -> Table {
         } else if a > b {
             [true, f < 0]
         } else {
-            // With a = 0 the diagonal does not exist, though F = 0 asks for it.
-            [f >= 0 && a > 0, true]
+            [f > 0, true]
         };
         (steps, f + if steps[1] { a } else { 0 } - if steps[0] { b } else { 0 })
     })

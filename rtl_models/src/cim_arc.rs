@@ -1,0 +1,110 @@
+//! `cim-arc`: comparison-integral (比较积分法), arc.
+//!
+//! ```text
+//!   quad, ccw ──► kind ──► which interval grows, directions
+//!                   │
+//!   a = |x| ──┬──► compare ──► base axis, which steps always
+//!   b = |y| ──┘                    │
+//!      ▲      F ──► F >= 0 ──► the other axis steps too ──► dx, dy ──► x, y
+//!      │      ▲                    │                         │
+//!      └──────┴── ± weights ◄──────┴─────────────────────────┴──► ex, ey ──► done
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | a | n | A = abs(x) relative to the centre: the interval weight of an X pulse |
+//! | b | n | B = abs(y): the interval weight of a Y pulse |
+//! | f | n+2, two's complement | 0; behind a split with `mid` the deviation of that point |
+//! | base | 1 | X if A < B, else Y |
+//! | quad | 2 | quadrant of the sector, Q1 = 0 |
+//! | ex, ey | n | steps of each axis in the sector |
+//!
+//! The axis with the smaller interval is the base axis: it steps at every step, the other where F >= 0. F gains the
+//! weight of the base axis for its pulse and loses that of the other for its own. With `mid` a pulse weighs A before it
+//! plus A behind it, so that F is x² + y² - R² up to its sign; with `pre` A before, with `post` A behind. Where A and B
+//! change places the base axis changes, and F := -F: without that the path drifts by up to 2.8 BLU. The loader splits the
+//! arc at the axes, at R rounded to the nearest integer but never behind the point already reached.
+//!
+//! With `mid` the path stays within 1 BLU of the circle. F with `pre` and `post` is within [-R, R] while both axes run, in
+//! n+1 bits; forced steps behind that take it to 1.39 R.
+//!
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/cim-arc-nr1.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/cim-arc-nr1.csv")]
+//! ```
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Crossing, Curve, Sector};
+
+use crate::choices::{Choices, EndPoint, Weights};
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{Block, Change, Kind, Side, comparison_integral, quadrant_register};
+use crate::registers::Registers;
+use crate::{plan, words};
+
+const NAME: &str = "cim-arc";
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Comparison-integral, arc",
+    method: "comparison-integral",
+    curve: CurveKind::Arc,
+    registers: &[
+        RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement" },
+        RegisterDoc { name: "a, b", width: "n", about: "interval weights A of an X, B of a Y pulse: |x|, |y|" },
+        RegisterDoc::BASE,
+        RegisterDoc::QUAD,
+        RegisterDoc::EX_EY,
+        RegisterDoc::POSITIONS,
+    ],
+    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::WEIGHTS, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
+    source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
+    plan,
+    netlist,
+    words,
+};
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    let sectors = plan::arc(curve).map(|arc| arc.sectors(Crossing::RoundedRadius)).unwrap_or_default();
+    let n = plan::magnitude_bits(choices, plan::largest_coordinate(&sectors));
+    let rule = choices.weights.unwrap_or_default();
+    let mut registers = Registers::new(NAME, choices);
+    registers.register("f", n + 2).register("a", n).register("b", n);
+    registers.shown("base").shown("quad").end_counters(2, n);
+    registers.positions(plan::arc_positions(curve, &sectors));
+    let error_bound = (rule == Weights::Mid).then_some(1.0);
+    Ok(Hardware { error_bound, ..registers.hardware(2, EndPoint::PerAxis)? })
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("cim_arc", hardware.on_overflow);
+    let m = module.top();
+    let block = Block::new(m);
+    let ccw = block.held(m, "ccw", 1);
+    let quad = quadrant_register(m);
+    quad.when(block.load, block.word("quad", 2)).else_hold();
+    let kind = Kind::decode(m.scope("quadrant"), quad.q, ccw);
+    let side = |negative, grows| Side { negative, change: Some(Change { grows, unit: m.lit(1, 1) }) };
+    let sides = [side(kind.x_negative, kind.x_grows), side(kind.y_negative, !kind.x_grows)];
+    comparison_integral(m, block, hardware, sides);
+    Ok(module.finish()?)
+}
+
+fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(arc) = plan::arc(curve) else { return Vec::new() };
+    let block = |sector: &Sector| {
+        let [x, y] = sector.start.map(i128::from);
+        let [ex, ey] = sector.steps().map(i128::from);
+        let x_grows = sector.quadrant.growing_axis(arc.direction()) == 0;
+        let deviation = x * x + y * y - arc.radius_squared();
+        let f = words::weighed(hardware.weights, [x.abs(), y.abs()], x_grows, deviation);
+        let own = vec![("f", f), ("a", x.abs()), ("b", y.abs()), ("ex", ex), ("ey", ey)];
+        [own, words::sector(arc, sector)].concat()
+    };
+    arc.sectors(Crossing::RoundedRadius).iter().map(block).collect()
+}

@@ -1,0 +1,87 @@
+//! Minimum deviation and vector discrimination.
+
+use proptest::prelude::*;
+use stepwave_kernel::engine::EngineKind;
+use stepwave_models::{Beats, Choices, EndPoint};
+
+use super::{arc, check, every_lattice_arc, every_line, line};
+use crate::reference::{self, Table, mindev_arc, mindev_line, vector_arc, vector_line};
+
+type LineTable = fn([i64; 2], [i64; 2]) -> Table;
+type ArcTable = fn([i64; 2], [i64; 2], [i64; 2], bool, reference::EndPoint) -> Table;
+
+const LINES: [(&str, LineTable); 2] = [("mindev-line", mindev_line), ("vector-line", vector_line)];
+const ARCS: [(&str, ArcTable); 2] = [("mindev-arc", mindev_arc), ("vector-arc", vector_arc)];
+const ENDS: [(EndPoint, reference::EndPoint); 2] =
+    [(EndPoint::Total, reference::EndPoint::Total), (EndPoint::PerAxis, reference::EndPoint::PerAxis)];
+
+fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
+    for (model, table) in LINES {
+        let choices = Choices { beats: Some(beats), ..Choices::default() };
+        check(model, &line(&from, &to), &choices, engine, &table(from, to));
+    }
+}
+
+fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, beats: Beats, engine: EngineKind) {
+    for (model, table) in ARCS {
+        for (end_point, end_reference) in ENDS {
+            let choices = Choices { end_point: Some(end_point), beats: Some(beats), ..Choices::default() };
+            let table = table(from, to, center, clockwise, end_reference);
+            check(model, &arc(from, to, center, clockwise), &choices, engine, &table);
+        }
+    }
+}
+
+#[test]
+fn every_line_of_up_to_five_bits_in_every_quadrant() {
+    every_line(|to| check_line([0, 0], to, Beats::One, EngineKind::Word));
+}
+
+#[test]
+fn every_lattice_arc_and_full_circle_of_a_radius_below_30() {
+    every_lattice_arc(900, |from, to, clockwise| {
+        check_arc(from, to, [0, 0], clockwise, Beats::One, EngineKind::Word);
+    });
+}
+
+#[test]
+fn lines_and_arcs_in_four_beats_on_every_engine_from_a_translated_start() {
+    for engine in EngineKind::ALL {
+        for to in [[5, 3], [-3, 7], [-6, -6], [4, 0], [0, -5], [1, -9]] {
+            check_line([3, -2], [3 + to[0], to[1] - 2], Beats::Four, engine);
+        }
+        for (from, to) in [([5, 0], [0, 5]), ([3, 4], [-4, 3]), ([1, 0], [0, -1]), ([5, 5], [5, 5])] {
+            let moved = |[x, y]: [i64; 2]| [x + 40, y - 7];
+            check_arc(moved(from), moved(to), [40, -7], from[1] == 0, Beats::Four, engine);
+        }
+    }
+}
+
+#[test]
+fn an_end_point_beside_the_circle_is_reached_with_a_counter_for_each_axis() {
+    for (model, table) in ARCS {
+        for clockwise in [true, false] {
+            for to in [[0, 6], [4, 4], [-3, 5], [-6, 0], [-4, -4], [2, -5], [6, 0], [5, 2]] {
+                let table = table([5, 1], to, [0, 0], clockwise, reference::EndPoint::PerAxis);
+                let choices = Choices { beats: Some(Beats::One), ..Choices::default() };
+                check(model, &arc([5, 1], to, [0, 0], clockwise), &choices, EngineKind::Word, &table);
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn lines_of_any_size(from in prop::array::uniform2(-100_000i64..100_000), d in prop::array::uniform2(-3000i64..3000)) {
+        prop_assume!(d != [0, 0]);
+        check_line(from, [from[0] + d[0], from[1] + d[1]], Beats::One, EngineKind::Word);
+    }
+
+    #[test]
+    fn full_circles_of_any_size(start in prop::array::uniform2(-400i64..400), clockwise: bool) {
+        prop_assume!(start != [0, 0]);
+        check_arc(start, start, [0, 0], clockwise, Beats::Four, EngineKind::Word);
+    }
+}
