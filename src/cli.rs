@@ -27,6 +27,8 @@ pub(crate) enum Command {
     List(ListArgs),
     /// Build a model's netlist, simulate it clock by clock, write waves, step table, report, picture
     Run(Box<RunArgs>),
+    /// Every method on one curve: steps, clocks, greatest error, widest register
+    Compare(Box<CompareArgs>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)
     Diff(DiffArgs),
     /// Write a machine as Verilog, with a test bench that runs the geometry
@@ -52,6 +54,18 @@ pub(crate) struct ListArgs {
     /// As JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  \
+    stepwave compare --to 100,62\n  \
+    stepwave compare --from 100,0 --to 0,100 --ccw --markdown")]
+pub(crate) struct CompareArgs {
+    #[command(flatten)]
+    pub(crate) geometry: GeometryArgs,
+    /// As a Markdown table
+    #[arg(long)]
+    pub(crate) markdown: bool,
 }
 
 #[derive(Debug, Subcommand)]

@@ -16,7 +16,7 @@ use crate::output::{self, Outputs};
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
-    let curve = curve(model, &args.geometry)?;
+    let curve = curve(model.name, model.curve, &args.geometry)?;
     let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let comment = [

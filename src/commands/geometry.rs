@@ -1,47 +1,47 @@
 //! The curve that the options of several commands give.
 
-use stepwave::models::{CurveKind, Model};
+use stepwave::models::CurveKind;
 use stepwave::nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
 use crate::cli::{GeometryArgs, Point};
 use crate::failure::Failure;
 
-/// The curve that the options give.
+/// The curve of this kind that the options give, for a model or a command.
 ///
 /// # Errors
 /// Something is missing, or the model does not interpolate such a curve.
-pub(crate) fn curve(model: &Model, args: &GeometryArgs) -> Result<Curve, Failure> {
+pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs) -> Result<Curve, Failure> {
     let Some(to) = &args.to else {
-        return trouble(format!("the end point is missing: {} takes {}", model.name, model.curve.describe()));
+        return trouble(format!("the end point is missing: {} takes {}", who, kind.describe()));
     };
-    for (given, option) in superfluous(model.curve, args) {
+    for (given, option) in superfluous(kind, args) {
         if given {
-            let takes = model.curve.describe();
-            return trouble(format!("{} interpolates {takes}, which have no {option}: leave it out", model.name));
+            let takes = kind.describe();
+            return trouble(format!("{} interpolates {takes}, which have no {option}: leave it out", who));
         }
     }
     let direction = || match (args.cw, args.ccw) {
         (true, _) => Ok(Direction::Clockwise),
         (_, true) => Ok(Direction::CounterClockwise),
-        _ => trouble(format!("the direction of the arc is missing: give {} --cw or --ccw", model.name)),
+        _ => trouble(format!("the direction of the arc is missing: give {} --cw or --ccw", who)),
     };
     let from = args.from.as_ref();
-    let center = || point::<2>(model, "--center", args.center.as_ref());
-    Ok(match model.curve {
+    let center = || point::<2>(who, "--center", args.center.as_ref());
+    Ok(match kind {
         CurveKind::Line { .. } => {
             let from = from.map_or_else(|| vec![0; to.0.len()], |from| from.0.clone());
             Line::new(from, to.0.clone())?.into()
         }
         CurveKind::Arc => {
             let direction = direction()?;
-            Arc::new(point(model, "--from", from)?, point(model, "--to", Some(to))?, center()?, direction)?.into()
+            Arc::new(point(who, "--from", from)?, point(who, "--to", Some(to))?, center()?, direction)?.into()
         }
         CurveKind::Helix => {
             let direction = direction()?;
-            Helix::new(point(model, "--from", from)?, point(model, "--to", Some(to))?, center()?, direction)?.into()
+            Helix::new(point(who, "--from", from)?, point(who, "--to", Some(to))?, center()?, direction)?.into()
         }
         CurveKind::Conic => {
-            let (from, to, center) = (point(model, "--from", from)?, point(model, "--to", Some(to))?, center()?);
+            let (from, to, center) = (point(who, "--from", from)?, point(who, "--to", Some(to))?, center()?);
             match (args.ellipse, args.parabola, args.hyperbola) {
                 (Some(_), ..) if args.opens.is_some() => {
                     return trouble("an ellipse does not open: leave --opens out".to_owned());
@@ -50,8 +50,8 @@ pub(crate) fn curve(model: &Model, args: &GeometryArgs) -> Result<Curve, Failure
                 (_, Some(c), _) => Conic::parabola(c, args.opens, from, to, center)?,
                 (.., Some(semi_axes)) => Conic::hyperbola(semi_axes, args.opens, from, to, center)?,
                 (None, None, None) => {
-                    let takes = model.curve.describe();
-                    return trouble(format!("the curve is missing: {} takes {takes}", model.name));
+                    let takes = kind.describe();
+                    return trouble(format!("the curve is missing: {} takes {takes}", who));
                 }
             }
             .into()
@@ -77,12 +77,12 @@ fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)
 }
 
 /// The coordinates of a point of `N` axes; the origin if none is given.
-fn point<const N: usize>(model: &Model, name: &str, given: Option<&Point>) -> Result<[i64; N], Failure> {
+fn point<const N: usize>(who: &str, name: &str, given: Option<&Point>) -> Result<[i64; N], Failure> {
     let Some(Point(point)) = given else { return Ok([0; N]) };
     <[i64; N]>::try_from(point.as_slice()).or_else(|_| {
         let [what, form] = if N == 2 { ["works in the plane", "X,Y"] } else { ["works in space", "X,Y,Z"] };
-        let (count, model) = (point.len(), model.name);
-        trouble(format!("{name} has {count} coordinates, but {model} {what} here: give {form}"))
+        let count = point.len();
+        trouble(format!("{name} has {count} coordinates, but {who} {what} here: give {form}"))
     })
 }
 

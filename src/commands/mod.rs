@@ -1,5 +1,6 @@
 //! One file per subcommand, thin: it joins the command line with the library.
 
+mod compare;
 pub(crate) mod diff;
 mod export;
 mod geometry;
@@ -21,6 +22,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
     match &cli.command {
         Command::List(args) => list::run(args),
         Command::Run(args) => run::run(args),
+        Command::Compare(args) => compare::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Export(args) => export::run(args),
         Command::Golden(command) => golden::run(command),

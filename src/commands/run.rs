@@ -45,7 +45,7 @@ pub(crate) struct Finished {
 /// Bad input, or an output cannot be written; nothing stands under a final name.
 pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
     let model = find(&args.model)?;
-    let curve = curve(model, &args.geometry)?;
+    let curve = curve(model.name, model.curve, &args.geometry)?;
     let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);

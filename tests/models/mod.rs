@@ -1,5 +1,6 @@
 //! Every register of every model at every step, compared with the recurrences in `reference`.
 
+mod bounds;
 mod cim;
 mod conics;
 mod dda;

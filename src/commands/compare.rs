@@ -1,0 +1,100 @@
+//! `stepwave compare`: every method on one curve, side by side.
+
+use stepwave::kernel::engine::EngineKind;
+use stepwave::models::{Beats, Choice, Choices, CurveKind, Model, ModelError, Preset, catalogue};
+use stepwave::nc::Curve;
+use stepwave::testbench::{Ending, Observer, PathWatch, Testbench};
+
+use super::geometry;
+use crate::cli::CompareArgs;
+use crate::failure::Failure;
+use crate::output;
+
+/// Prints one row for each model that takes the curve, by default and in its other common forms.
+pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
+    let geometry = &args.geometry;
+    let axes = geometry.to.as_ref().map_or(2, |to| to.0.len());
+    let kind = if geometry.ellipse.is_some() || geometry.parabola.is_some() || geometry.hyperbola.is_some() {
+        CurveKind::Conic
+    } else if !(geometry.cw || geometry.ccw) {
+        CurveKind::Line { max_axes: axes }
+    } else if axes == 3 {
+        CurveKind::Helix
+    } else {
+        CurveKind::Arc
+    };
+    let curve = geometry::curve("compare", kind, geometry)?;
+    let mut rows = vec![HEADING.map(str::to_owned)];
+    for model in catalogue().iter().filter(|model| model.curve.fits(&curve)) {
+        for (form, choices) in forms(model) {
+            rows.extend(row(model, &form, &curve, &choices)?);
+        }
+    }
+    output::print(&if args.markdown { markdown(&rows) } else { aligned(&rows) })
+}
+
+const HEADING: [&str; 6] = ["model", "steps", "clocks", "greatest error (BLU)", "widest register", "end point"];
+
+/// The forms of a model whose path or clocks differ: its default, and one for each of the common choices.
+fn forms(model: &Model) -> Vec<(String, Choices)> {
+    let takes = |choice| model.choices.iter().any(|doc| doc.choice == choice);
+    let mut forms = vec![(String::new(), Choices::default())];
+    if takes(Choice::Beats) {
+        forms.push((" --beats 1".to_owned(), Choices { beats: Some(Beats::One), ..Choices::default() }));
+    }
+    if takes(Choice::Normalize) && takes(Choice::Preset) {
+        let half = Choices { preset: Some(Preset::Half), ..Choices::default() };
+        forms.push((" --preset half".to_owned(), half.clone()));
+        forms.push((" --preset half --normalize".to_owned(), Choices { normalize: true, ..half }));
+    }
+    forms
+}
+
+/// What a form of a model comes to; nothing where it cannot be built for this curve.
+fn row(model: &Model, form: &str, curve: &Curve, choices: &Choices) -> Result<Option<[String; 6]>, Failure> {
+    let bench = match Testbench::new(model, curve, choices) {
+        Ok(bench) => bench,
+        Err(ModelError::TooWide { .. } | ModelError::Widths(_)) => return Ok(None),
+        Err(error) => return Err(error.into()),
+    };
+    let mut path = PathWatch::new(&bench, curve);
+    let mut observers: [&mut dyn Observer; 1] = [&mut path];
+    let outcome = bench.run(EngineKind::Compiled, &mut observers)?;
+    let end = match outcome.ending {
+        Ending::Done if outcome.reached == curve.to() => "exact",
+        Ending::Done => "missed",
+        Ending::Trapped => "overflow",
+        Ending::Stalled { .. } => "came to a stand",
+    };
+    // Positions are as wide as the way, whatever the method.
+    let hardware = bench.hardware();
+    let own = hardware.widths.iter().filter(|(name, _)| !hardware.letters().contains(&name.as_str()));
+    let widest = own.max_by_key(|(name, width)| (width.get(), std::cmp::Reverse(*name)));
+    Ok(Some([
+        format!("{}{form}", model.name),
+        outcome.steps.to_string(),
+        outcome.clocks.to_string(),
+        path.worst.map_or_else(String::new, |worst| format!("{:.3}", worst.error)),
+        widest.map_or_else(String::new, |(name, width)| format!("{name} {width}")),
+        end.to_owned(),
+    ]))
+}
+
+fn markdown(rows: &[[String; 6]]) -> String {
+    let line = |row: &[String; 6]| format!("| `{}` | {} |\n", row[0], row[1..].join(" | "));
+    let rule = "|---|---:|---:|---:|---|---|\n";
+    let heading = line(&rows[0]).replace('`', "");
+    heading + rule + &rows[1..].iter().map(line).collect::<String>()
+}
+
+fn aligned(rows: &[[String; 6]]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let line = |row: &[String; 6]| {
+        let cells = row.iter().enumerate().map(|(column, cell)| match column {
+            1..=3 => format!("{cell:>width$}", width = width(column)),
+            _ => format!("{cell:<width$}", width = width(column)),
+        });
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}
