@@ -98,16 +98,8 @@ fn bare(model: &str, name: &str, threads: usize) {
         ..LaneWatch::new(machine.done.net)
     };
     let program = LaneProgram::new(bench.design(), &watch);
-    let model = find(model).unwrap();
-    let job = |index| {
-        let words = model.words(bench.hardware(), &curve(model.name, 24, index));
-        let mut blocks = machine.encode(bench.hardware(), &words).unwrap();
-        for (index, block) in blocks.iter_mut().enumerate() {
-            block.extend([(machine.load.net, 1), (machine.preset_position.net, u64::from(index == 0))]);
-        }
-        Job { blocks }
-    };
-    let jobs: Vec<Job> = (0..JOBS).map(job).collect();
+    let lanes = bench.lanes(CLOCKS).unwrap();
+    let jobs: Vec<Job> = (0..JOBS).map(|index| lanes.job(&curve(model, 24, index)).unwrap()).collect();
     let watch = Watch::start();
     let ends = program.run_all(jobs);
     let name = format!("{name} ({} operations)", program.operations());

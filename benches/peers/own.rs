@@ -5,8 +5,8 @@ use std::path::Path;
 use serde_json::Value;
 use stepwave::kernel::bits::to_signed;
 use stepwave::kernel::engine::EngineKind;
-use stepwave::kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneWatch, Observe};
-use stepwave::models::{Model, ModelError, Port};
+use stepwave::kernel::engine::lanes::{LaneEnd, LaneProgram, LaneWatch, Observe};
+use stepwave::models::Port;
 use stepwave::nc::Curve;
 use stepwave::testbench::{LaneOutcome, Testbench};
 
@@ -94,7 +94,7 @@ pub(crate) fn as_child(kind: &str, words: &[String]) -> Fallible<String> {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(number(3)?).build()?;
             let bench = case.bench()?;
             if kind == "--bare-lanes" {
-                return pool.install(|| run_bare(&bench, case.model, &curves));
+                return pool.install(|| run_bare(&bench, &curves));
             }
             let outcomes = pool.install(|| bench.run_many(&curves, LIMIT))?;
             let told = outcomes.into_iter().map(|outcome| {
@@ -107,7 +107,7 @@ pub(crate) fn as_child(kind: &str, words: &[String]) -> Fallible<String> {
 }
 
 /// As the peers do: each geometry is loaded and runs until `done`.
-fn run_bare(bench: &Testbench, model: &Model, curves: &[Curve]) -> Fallible<String> {
+fn run_bare(bench: &Testbench, curves: &[Curve]) -> Fallible<String> {
     let machine = bench.machine();
     let watch = LaneWatch {
         rest: vec![(machine.load.net, 0), (machine.preset_position.net, 0)],
@@ -115,15 +115,9 @@ fn run_bare(bench: &Testbench, model: &Model, curves: &[Curve]) -> Fallible<Stri
         limit: LIMIT,
         ..LaneWatch::new(machine.done.net)
     };
-    let job = |curve: &Curve| {
-        let mut blocks = machine.encode(bench.hardware(), &model.words(bench.hardware(), curve))?;
-        for (index, block) in blocks.iter_mut().enumerate() {
-            block.extend([(machine.load.net, 1), (machine.preset_position.net, u64::from(index == 0))]);
-        }
-        Ok::<Job, ModelError>(Job { blocks })
-    };
+    let lanes = bench.lanes(LIMIT)?;
     let mut ends = Vec::with_capacity(curves.len());
-    LaneProgram::new(bench.design(), &watch).run(curves.iter(), job, |end| ends.push(end));
+    LaneProgram::new(bench.design(), &watch).run(curves.iter(), |curve| lanes.job(curve), |end| ends.push(end));
     let position = |(port, bits): (&Port, &u64)| to_signed(port.width, *bits);
     let told = ends.into_iter().map(|end| {
         let LaneEnd { clock, values, .. } = end?;

@@ -9,6 +9,7 @@ mod list;
 mod pages;
 mod progress;
 mod run;
+mod states;
 mod wave;
 
 use crate::cli::{Cli, Command};

@@ -1,19 +1,17 @@
 //! `stepwave run`.
 
-use std::fs;
-use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 
 use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::models::find;
 use stepwave::report::plot::Plot;
 use stepwave::report::{self, CsvTable, Report, TEXTBOOK_STEPS, TextbookTable};
-use stepwave::testbench::{
-    Checkpoints, Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, State, Step, Testbench,
-};
+use stepwave::testbench::{Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, Step, Testbench};
 
 use super::geometry::curve;
 use super::progress::Progress;
+use super::states::{Begin, States};
 use super::wave::{Sinks, Waves};
 use crate::cli::RunArgs;
 use crate::failure::Failure;
@@ -50,14 +48,15 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);
 
+    let states = States::of(args, &bench)?;
     // All are opened before the first is written: where one is refused, nothing stands on standard output.
     let sinks = Sinks::open(&args.trace, outputs)?;
     let mut open = |path: &Option<PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
     let (steps, mut json, plot) = (open(&args.outputs.steps)?, open(&args.outputs.json)?, open(&args.outputs.plot)?);
+    let mut states = states.map(|states| states.open(outputs)).transpose()?;
     let mut waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &title)).transpose()?;
     let mut csv = steps.map(|sink| CsvTable::new(&bench, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Picture(Plot::new(&curve)), sink));
-    let mut states = States::of(args, &bench)?;
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
     let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.outputs.bits));
     let mut progress = Progress::new();
@@ -68,8 +67,8 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     observers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Observer));
     let engine = args.simulation.engine;
     let outcome = match &mut states {
-        Some(States::Kept(_, states)) => bench.run_keeping(engine, &mut observers, states)?,
-        Some(States::Resumed(state)) => bench.run_from(engine, &mut observers, state)?,
+        Some(Begin::New { states, .. }) => bench.run_keeping(engine, &mut observers, states)?,
+        Some(Begin::At(state)) => bench.run_from(engine, &mut observers, state)?,
         None => bench.run(engine, &mut observers)?,
     };
     drop(observers);
@@ -88,8 +87,9 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         clock_hz: args.clock.clock_hz,
         blu_mm: args.simulation.blu,
     };
-    if let Some(States::Kept(path, states)) = &states {
-        outputs.write(path, &states.write()?)?;
+    let begun = states.as_ref().and_then(Begin::clock);
+    if let Some(states) = states {
+        states.finish()?;
     }
     if let Some(waves) = waves {
         waves.finish(&report, outputs)?;
@@ -109,41 +109,10 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         sink.flush()?;
     }
     let mut text = text(&report, &table);
-    if let Some(States::Resumed(state)) = &states {
-        text += &format!("begun from the state at clock {}; the report is that of the whole run\n", state.clock());
+    if let Some(clock) = begun {
+        text += &format!("begun from the state at clock {clock}; the report is that of the whole run\n");
     }
     Ok(Finished { text, failures: report.failures() })
-}
-
-/// What a file of states is for.
-enum States<'a> {
-    /// It does not exist yet: this run writes it.
-    Kept(&'a Path, Checkpoints),
-    /// It holds a state shortly before the window of the wave: this run begins there.
-    Resumed(State),
-}
-
-impl<'a> States<'a> {
-    /// What the options ask for; nothing where the file holds no state before the window.
-    fn of(args: &'a RunArgs, bench: &Testbench) -> Result<Option<States<'a>>, Failure> {
-        let Some(path) = &args.trace.checkpoints else { return Ok(None) };
-        if args.outputs.steps.is_some() || args.outputs.plot.is_some() {
-            let need = "the step table and the picture need every step, from the first";
-            return Err(Failure::Trouble(format!("--checkpoints: {need}: leave out --steps and --plot")));
-        }
-        let read = |what: &dyn std::fmt::Display| {
-            let way_out = "name another file, or delete it";
-            Failure::Trouble(format!("--checkpoints {}: {what}: {way_out}", path.display()))
-        };
-        match fs::read_to_string(path) {
-            Ok(text) => {
-                let states = Checkpoints::read(&text, bench).map_err(|error| read(&error))?;
-                Ok(states.before(args.trace.trace_from).cloned().map(States::Resumed))
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Some(States::Kept(path, Checkpoints::new(bench)))),
-            Err(error) => Err(read(&error)),
-        }
-    }
 }
 
 fn title_of_picture(report: &Report<'_>) -> String {

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use stepwave_kernel::Net;
 use stepwave_kernel::engine::Engine;
 use stepwave_kernel::text;
 
@@ -18,6 +19,9 @@ use super::Testbench;
 const KEPT: usize = 256;
 /// Clocks between the first states.
 const INTERVAL: u64 = 1 << 16;
+
+/// Greatest clock or count that a state may hold: beyond it one more day of simulation could overflow.
+pub(super) const GREATEST: u64 = 1 << 62;
 
 /// What observers have gathered, by their names.
 pub type Memory = BTreeMap<String, Value>;
@@ -44,7 +48,7 @@ pub struct State {
 
 impl State {
     pub(super) fn of(engine: &dyn Engine, bench: &Testbench, block: usize, memory: Memory) -> State {
-        let values = |nets: &[stepwave_kernel::Net]| nets.iter().map(|&net| engine.value(net)).collect();
+        let values = |nets: &[Net]| nets.iter().map(|&net| engine.value(net)).collect();
         let design = bench.design();
         State {
             clock: engine.clock(),
@@ -72,7 +76,7 @@ struct Subject {
 
 impl Subject {
     fn of(bench: &Testbench) -> Subject {
-        let block = |block: &Vec<(stepwave_kernel::Net, u64)>| block.iter().map(|(net, v)| (net.index(), *v)).collect();
+        let block = |block: &Vec<(Net, u64)>| block.iter().map(|(net, v)| (net.index(), *v)).collect();
         Subject {
             stepwave: env!("CARGO_PKG_VERSION").to_owned(),
             netlist: text::print(bench.design().netlist()),
@@ -116,10 +120,15 @@ impl Checkpoints {
         let (subject, states): (Subject, Vec<State>) = serde_json::from_str(text).map_err(unreadable)?;
         let fresh = Checkpoints::new(bench);
         let design = bench.design();
+        let hold = |nets: &[Net], values: &[u64]| {
+            let width = |net: &Net| design.netlist().width(*net);
+            nets.len() == values.len() && nets.iter().zip(values).all(|(net, &value)| value <= width(net).mask())
+        };
         let fits = |state: &State| {
-            state.registers.len() == design.registers().len()
-                && state.inputs.len() == design.inputs().len()
+            hold(design.registers(), &state.registers)
+                && hold(design.inputs(), &state.inputs)
                 && state.block < bench.blocks.len()
+                && state.clock <= GREATEST
         };
         if subject != fresh.subject || !states.iter().all(fits) {
             return Err(CheckpointError::Other);

@@ -93,7 +93,10 @@ impl Lanes<'_> {
     }
 
     /// The blocks of a geometry, with the strobes that load them.
-    fn job(&self, curve: &Curve) -> Result<Job, ModelError> {
+    ///
+    /// # Errors
+    /// The hardware does not take it.
+    pub fn job(&self, curve: &Curve) -> Result<Job, ModelError> {
         let (hardware, machine) = (self.bench.hardware(), self.bench.machine());
         let words = if curve.axes() == hardware.axes { self.model.words(hardware, curve) } else { Vec::new() };
         if words.is_empty() {

@@ -9,7 +9,7 @@ use stepwave_kernel::engine::Rows;
 use stepwave_kernel::netlist::{Arithmetic, Claim, Property};
 use stepwave_kernel::{OnOverflow, Width};
 
-use super::checkpoint::{Memory, recalled};
+use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Observer, ObserverError, Testbench};
 
 /// Events kept in full; further ones are counted.
@@ -178,7 +178,8 @@ impl Observer for OverflowWatch {
     }
 
     fn recall(&mut self, memory: &Memory) {
-        (self.count, self.seen) = recalled(memory, "overflows").unwrap_or_default();
+        let gathered = recalled(memory, "overflows").filter(|(count, _): &(u64, _)| *count <= GREATEST);
+        (self.count, self.seen) = gathered.unwrap_or_default();
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {

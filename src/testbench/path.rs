@@ -7,7 +7,7 @@ use stepwave_kernel::engine::Rows;
 use stepwave_models::Port;
 use stepwave_nc::{Curve, Gauge, Screen};
 
-use super::checkpoint::{Memory, recalled};
+use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Observer, ObserverError, StepColumns, Testbench};
 
 /// The greatest path error of a run.
@@ -86,8 +86,12 @@ impl Observer for PathWatch<'_> {
     }
 
     fn recall(&mut self, memory: &Memory) {
-        if let Some((rows, position, worst)) = recalled(memory, "path") {
-            let worst: Option<(u64, Vec<i64>)> = worst;
+        let gathered: Option<(u64, Vec<i64>, Option<(u64, Vec<i64>)>)> = recalled(memory, "path");
+        let axes = self.position.len();
+        let fits = |(rows, position, worst): &(u64, Vec<i64>, Option<(u64, Vec<i64>)>)| {
+            *rows <= GREATEST && position.len() == axes && worst.as_ref().is_none_or(|(_, at)| at.len() == axes)
+        };
+        if let Some((rows, position, worst)) = gathered.filter(fits) {
             let known = |(step, position): (u64, Vec<i64>)| WorstError {
                 error: self.gauge.deviation(&position),
                 step,

@@ -5,7 +5,7 @@ use stepwave_kernel::engine::Rows;
 
 use serde_json::json;
 
-use super::checkpoint::{Memory, recalled};
+use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Ending, Outcome, Testbench};
 
 /// A row of the step table.
@@ -162,8 +162,12 @@ impl<'a> StepReader<'a> {
     }
 
     pub(super) fn recall(&mut self, memory: &Memory) {
-        if let Some(gathered) = recalled(memory, "steps") {
-            (self.rows, self.pulses, self.last_pulse, self.position) = gathered;
+        let gathered: Option<(u64, Vec<u64>, u64, Vec<i64>)> = recalled(memory, "steps");
+        let Some((rows, pulses, last_pulse, position)) = gathered else { return };
+        let axes = self.pulses.len();
+        let counts = pulses.iter().chain([&rows, &last_pulse]).all(|&count| count <= GREATEST);
+        if counts && pulses.len() == axes && position.len() == axes {
+            (self.rows, self.pulses, self.last_pulse, self.position) = (rows, pulses, last_pulse, position);
         }
     }
 

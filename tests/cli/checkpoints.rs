@@ -1,5 +1,7 @@
 //! A run that begins in the middle shows and reports what a whole run does.
 
+use serde_json::{Value, json};
+
 use super::{Folder, engines};
 
 /// Runs of more than 2^17 clocks: a state is kept every 2^16.
@@ -89,4 +91,54 @@ fn states_of_another_run_and_what_is_none_are_refused() {
         assert!(ran.err.contains(hint), "{hint}: {ran:?}");
         assert_eq!(folder.files(), ["cut.json", "none.json", "states.json"]);
     }
+}
+
+#[test]
+fn whatever_stands_in_a_file_of_states_nothing_panics() {
+    let folder = Folder::new();
+    folder.good(&format!("run {} --checkpoints states.json", LONG[0]));
+    let (subject, states): (Value, Vec<Value>) = serde_json::from_str(&folder.read("states.json")).unwrap();
+    let window = "--trace-from 100000 --trace-to 100010 --vcd w.vcd --checkpoints changed.json";
+    let mut refused = 0;
+    for pointer in [
+        "/clock",
+        "/block",
+        "/registers/0",
+        "/registers",
+        "/inputs/0",
+        "/inputs",
+        "/memory",
+        "/memory/steps",
+        "/memory/steps/0",
+        "/memory/steps/1",
+        "/memory/steps/1/0",
+        "/memory/steps/2",
+        "/memory/steps/3",
+        "/memory/path",
+        "/memory/path/0",
+        "/memory/path/1",
+        "/memory/path/2/1",
+        "/memory/ranges",
+        "/memory/overflows/0",
+    ] {
+        for value in [json!(u64::MAX), json!([]), json!([1, 2, 3]), json!({}), json!(-1), json!("x"), json!(1e300)] {
+            let mut states = states.clone();
+            *states[0].pointer_mut(pointer).unwrap() = value.clone();
+            folder.write("changed.json", &json!([subject, states]).to_string());
+            let ran = folder.run(&format!("run {} {window}", LONG[0]));
+            let sentence = ran.err.lines().count() == usize::from(ran.code != 0);
+            assert!(ran.code <= 2 && sentence && !ran.err.contains("panick"), "{pointer} {value}: {ran:?}");
+            refused += u32::from(ran.code == 2);
+        }
+    }
+    assert!(refused > 40, "{refused}");
+}
+
+#[test]
+fn a_file_of_states_that_cannot_be_written_is_told_before_the_run() {
+    let folder = Folder::new();
+    // Days of clocks.
+    let ran = folder.run("run dda-line --to 8,6 --width 50 --checkpoints no/states.json");
+    assert_eq!(ran.code, 2, "{ran:?}");
+    assert!(ran.err.contains("no/states.json"));
 }

@@ -41,7 +41,6 @@ struct Change {
     column: usize,
     width: u32,
     id: FstSignalId,
-    last: u64,
 }
 
 /// What the header declares.
@@ -93,7 +92,7 @@ impl FstHeader<'_> {
         let Declared { mut body, clk, changes } = self.declare(out).map_err(io_error)?;
         // Only changes are handed over.
         body.set_deduplicate(false);
-        let moves = Moves::new(changes.len());
+        let moves = Moves::new(changes.iter().map(|change| change.column).collect());
         Ok(FstBody { body, clk, changes, moves, ticks: self.time.ticks(), first_section, written: None })
     }
 
@@ -132,7 +131,7 @@ impl FstHeader<'_> {
             let bits = FstSignalType::bit_vec(width);
             let id = head.var(name, bits, fst_type(probe), FstVarDirection::Implicit, known)?;
             if known.is_none() {
-                changes.push(Change { column: probe.column, width, id, last: 0 });
+                changes.push(Change { column: probe.column, width, id });
             }
         }
         for _ in 0..open.len() {
@@ -170,8 +169,7 @@ impl<W: Write + Seek> FstBody<W> {
         }
         for start in range.clone().step_by(SPAN) {
             let end = range.end.min(start + SPAN);
-            let nets = self.changes.iter_mut();
-            self.moves.scan(nets.map(|change| (&rows.column(change.column)[start..end], &mut change.last)));
+            self.moves.scan(rows, start..end);
             for row in start..end {
                 self.row(clock(row), rows, row, row - start).map_err(io_error)?;
             }
@@ -187,9 +185,10 @@ impl<W: Write + Seek> FstBody<W> {
         if let Some(clk) = self.clk {
             self.body.signal_change(clk, if clock == 0 { b"0" } else { b"1" })?;
         }
-        for change in &mut self.changes {
-            change.last = rows.value(change.column, row);
-            self.body.signal_change(change.id, digits(change.width, change.last, &mut [0; 64]))?;
+        self.moves.start(rows, row);
+        for change in &self.changes {
+            let now = rows.value(change.column, row);
+            self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
         }
         if let (Some(clk), true) = (self.clk, clock > 0) {
             self.body.time_change(clock * self.ticks + self.ticks / 2)?;

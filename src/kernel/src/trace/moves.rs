@@ -3,27 +3,43 @@
 //! Samples are looked at 64 at a time. A column gives a word with a bit for each sample; turned over, these are words with
 //! a bit for each net, one a sample.
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
+
+use crate::engine::Rows;
 
 /// Samples looked at together.
 pub(super) const SPAN: usize = 64;
 
-/// The changes of up to [`SPAN`] samples.
+/// Some nets, and their changes in up to [`SPAN`] samples.
 pub(super) struct Moves {
     level: Level,
+    /// Columns of the nets.
+    columns: Vec<usize>,
+    /// Values in the sample looked at last.
+    last: Vec<u64>,
     /// Bits of 64 nets each, sample by sample.
     groups: Vec<[u64; SPAN]>,
 }
 
 impl Moves {
-    /// Of this many nets.
-    pub(super) fn new(nets: usize) -> Moves {
-        Moves { level: Level::new(), groups: vec![[0; SPAN]; nets.div_ceil(SPAN)] }
+    /// Of the nets in these columns.
+    pub(super) fn new(columns: Vec<usize>) -> Moves {
+        let groups = vec![[0; SPAN]; columns.len().div_ceil(SPAN)];
+        Moves { level: Level::new(), last: vec![0; columns.len()], columns, groups }
     }
 
-    /// Takes the samples of every net, in order, at most [`SPAN`] and equally many of each; `before` tells and takes the
-    /// value of a net before them.
-    pub(super) fn scan<'r>(&mut self, nets: impl Iterator<Item = (&'r [u64], &'r mut u64)>) {
+    /// Takes the first sample: changes are told against it.
+    pub(super) fn start(&mut self, rows: &Rows, row: usize) {
+        for (last, &column) in self.last.iter_mut().zip(&self.columns) {
+            *last = rows.value(column, row);
+        }
+    }
+
+    /// Takes the next samples, at most [`SPAN`].
+    pub(super) fn scan(&mut self, rows: &Rows, range: Range<usize>) {
+        let nets = self.columns.iter().map(|&column| &rows.column(column)[range.clone()]).zip(&mut self.last);
         dispatch!(self.level, _simd => scan(&mut self.groups, nets));
     }
 
@@ -35,6 +51,8 @@ impl Moves {
     }
 }
 
+/// Takes the samples of every net, in order, equally many of each; `before` tells and takes the value of a net before
+/// them.
 #[inline(always)]
 fn scan<'r>(groups: &mut [[u64; SPAN]], nets: impl Iterator<Item = (&'r [u64], &'r mut u64)>) {
     groups.as_flattened_mut().fill(0);
@@ -98,7 +116,7 @@ mod tests {
     #[test]
     fn every_change_of_every_net_is_found_in_its_sample() {
         for nets in [1, 2, 63, 64, 65, 200] {
-            let mut moves = Moves::new(nets);
+            let mut moves = Moves::new(vec![0; nets]);
             let mut before: Vec<u64> = (0..nets).map(|net| net as u64 % 3).collect();
             for len in [64, 1, 17, 64, 63] {
                 let columns: Vec<Vec<u64>> = (0..nets).map(|net| values(net + len, len)).collect();
@@ -108,7 +126,7 @@ mod tests {
                         (0..nets).filter(|&net| columns[net][sample] != earlier(net)).collect()
                     })
                     .collect();
-                moves.scan(columns.iter().map(Vec::as_slice).zip(&mut before));
+                scan(&mut moves.groups, columns.iter().map(Vec::as_slice).zip(&mut before));
                 let changes = |sample, &net: &usize| moves.bits(net / SPAN, sample) >> (net % SPAN) & 1 == 1;
                 let found: Vec<Vec<usize>> =
                     (0..len).map(|sample| (0..nets).filter(|net| changes(sample, net)).collect()).collect();

@@ -42,7 +42,6 @@ pub struct VcdHeader<'a> {
 struct Change {
     column: usize,
     line: Line,
-    last: u64,
 }
 
 /// Takes samples, one after another.
@@ -122,7 +121,7 @@ impl VcdHeader<'_> {
                 next = next.next();
                 let scalar = width == 1 && !probe.format.is_signed();
                 let line = Line::new(width, scalar, &id.to_string());
-                changes.push(Change { column: probe.column, line, last: 0 });
+                changes.push(Change { column: probe.column, line });
             }
         }
         for _ in 0..open.len() {
@@ -137,7 +136,7 @@ impl VcdHeader<'_> {
             // Two stamps and `$dumpvars` fit into a window too.
             buffer: vec![0; BUFFER + longest + 3 * WINDOW],
             filled: 0,
-            moves: Moves::new(changes.len()),
+            moves: Moves::new(changes.iter().map(|change| change.column).collect()),
             changes,
             clk,
             rise: Stamps::new(ticks),
@@ -164,8 +163,7 @@ impl<W: Write> VcdBody<W> {
         }
         for start in range.clone().step_by(SPAN) {
             let end = range.end.min(start + SPAN);
-            let nets = self.changes.iter_mut();
-            self.moves.scan(nets.map(|change| (&rows.column(change.column)[start..end], &mut change.last)));
+            self.moves.scan(rows, start..end);
             for row in start..end {
                 self.row(rows, row, row - start);
                 self.spill()?;
@@ -193,9 +191,9 @@ impl<W: Write> VcdBody<W> {
             self.filled -= 1;
             self.filled += line.put(&mut self.buffer[self.filled..]);
         }
-        for change in &mut self.changes {
-            change.last = rows.value(change.column, row);
-            change.line.put(change.last, window(&mut self.buffer, self.filled));
+        self.moves.start(rows, row);
+        for change in &self.changes {
+            change.line.put(rows.value(change.column, row), window(&mut self.buffer, self.filled));
             self.filled += change.line.len();
         }
         self.text(b"$end\n");

@@ -112,8 +112,8 @@ pub(super) fn immediate(value: u64) -> i64 {
 }
 
 /// Generates the body of `fn(state, rows, clocks) -> recorded`, `rows` being the place of the next row in the first
-/// column; the builder stands in the entry block with those
-/// parameters. `clocks` is at least the number of phases. Columns that are `resting` are not stored.
+/// column; the builder stands in the entry block with those parameters. `clocks` is at least the number of phases.
+/// Columns that are `resting` are not stored.
 pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuilder<'_>, entry: Block) {
     let parameters = f.block_params(entry).to_vec();
     let [state, rows, clocks] = parameters[..] else { return };

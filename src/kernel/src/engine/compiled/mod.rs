@@ -231,3 +231,31 @@ impl Engine for Compiled {
         self.word.value(net)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dsl::Module;
+    use crate::elaborate;
+
+    /// Every other test would pass too if nothing were ever compiled.
+    #[test]
+    fn a_long_run_is_in_native_code() {
+        let module = Module::new("counter");
+        let m = module.top();
+        let count = m.reg("count", 16);
+        count.set(count.q.wrapping_add(m.lit(16, 1)));
+        let count = count.q.net();
+        let design = elaborate(module.finish().unwrap()).unwrap();
+        let watch = Watch { columns: vec![count], stops: Vec::new() };
+        let mut engine = Compiled::after(&design, &watch, 100);
+        engine.reset(&mut Rows::new(1, 0));
+        for _ in 0..100 {
+            engine.run(100, &mut Rows::new(1, 256));
+        }
+        assert!(!engine.unavailable);
+        let native: u64 = engine.variants.iter().map(|variant| variant.clocks).sum();
+        assert!(native > 9_000, "{native} of 10000 clocks in {} loops", engine.variants.len());
+        assert_eq!((engine.clock(), engine.value(count)), (10_000, 10_000));
+    }
+}
