@@ -1,8 +1,12 @@
 //! The recurrences against the worked tables of the textbooks, and the claims made for each method,
 //! tried on every small geometry.
 
+mod cim;
+mod conics;
 mod dda;
+mod eight;
 mod ppc;
+mod rates;
 
 use super::{EndPoint, Table};
 
