@@ -1,4 +1,4 @@
-//! The four models: many geometries of one hardware against the test bench, one geometry at a time.
+//! The models: many geometries of one hardware against the test bench, one geometry at a time.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use stepwave::testbench::{Ending, LaneOutcome, Observer, ObserverError, Testbenc
 use stepwave_kernel::engine::{EngineKind, Rows};
 use stepwave_kernel::{OnOverflow, Width};
 use stepwave_models::{Beats, Choices, EndPoint, ModelError, Preset, find};
-use stepwave_nc::{Arc, Curve, Direction, Line};
+use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
 
 const LIMIT: u64 = 1 << 20;
 
@@ -104,6 +104,43 @@ fn every_line_of_up_to_five_bits_in_all_quadrants_ends_as_alone() {
     let curves = lines(5);
     assert!(all_done(&assert_each_as_alone("dda-line", &curves, &choices(5, 7))));
     assert!(all_done(&assert_each_as_alone("ppc-line", &curves, &choices(5, 7))));
+}
+
+#[test]
+fn every_line_of_the_methods_that_judge_both_axes_ends_as_alone() {
+    for model in ["cim-line", "mindev-line", "vector-line"] {
+        assert!(all_done(&assert_each_as_alone(model, &lines(4), &choices(4, 6))), "{model}");
+        let one_beat = Choices { beats: Some(Beats::One), ..choices(5, 7) };
+        assert!(all_done(&assert_each_as_alone(model, &lines(4), &one_beat)), "{model}");
+    }
+}
+
+#[test]
+fn every_lattice_arc_of_the_methods_that_judge_both_axes_ends_as_alone() {
+    for model in ["cim-arc", "mindev-arc", "vector-arc"] {
+        assert!(all_done(&assert_each_as_alone(model, &arcs(5), &choices(4, 8))), "{model}");
+    }
+}
+
+#[test]
+fn quarters_of_ellipses_of_one_hardware_end_as_alone() {
+    let corners = |[a, b]: [i64; 2]| [[a, 0], [0, b], [-a, 0], [0, -b]];
+    let quarters = (1..8).flat_map(|a| (1..8).map(move |b| [a, b])).flat_map(|axes| {
+        let corners = corners(axes);
+        (0..4).map(move |quarter| {
+            let (from, to) = (corners[quarter], corners[(quarter + 1) % 4]);
+            Curve::Conic(Conic::ellipse(axes, from, to, [0, 0], Direction::CounterClockwise).unwrap())
+        })
+    });
+    let quarters: Vec<Curve> = quarters.collect();
+    let wide = |names: &[&str], bits| names.iter().map(|name| ((*name).to_owned(), width(bits))).collect::<Vec<_>>();
+    let with = |names: &[&str]| {
+        let mut choices = choices(12, 6);
+        choices.widths.extend(wide(names, 6));
+        choices
+    };
+    assert!(all_done(&assert_each_as_alone("ppc-conic", &quarters, &with(&["ux", "uy", "e"]))));
+    assert!(all_done(&assert_each_as_alone("cim-conic", &quarters, &with(&["alpha", "beta", "ex", "ey"]))));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use stepwave_kernel::OnOverflow;
 use stepwave_models::{Beats, Choices, EndPoint, Form, Preset};
-use stepwave_nc::{Arc, Curve, Direction, Line};
+use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
 
 use super::GOOD;
 
@@ -20,6 +20,10 @@ pub(super) fn line(to: &[i64]) -> Curve {
 
 fn arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], direction: Direction) -> Curve {
     Curve::Arc(Arc::new(from, to, center, direction).expect(GOOD))
+}
+
+fn quarter([a, b]: [i64; 2]) -> Curve {
+    Conic::ellipse([a, b], [a, 0], [0, b], [0, 0], Direction::CounterClockwise).expect(GOOD).into()
 }
 
 fn widths(list: &[(&str, u64)]) -> Choices {
@@ -54,6 +58,14 @@ pub(super) fn cases() -> Vec<Case> {
         case("full circle in one beat", "ppc-arc", arc([-3, 4], [-3, 4], [0, 0], Clockwise), &one_beat),
         case("arc far off", "ppc-arc", arc([-95, 70], [-104, 67], [-100, 70], Clockwise), &usual),
         case("arc that ends beside its circle", "ppc-arc", arc([6, 0], [-5, -4], [0, 0], CounterClockwise), &usual),
+        case("comparison-integral line", "cim-line", line(&[5, 3]), &usual),
+        case("comparison-integral arc", "cim-arc", arc([-5, -3], [-3, 5], [0, 0], Clockwise), &one_beat),
+        case("comparison-integral ellipse", "cim-conic", quarter([3, 2]), &usual),
+        case("ellipse in one beat", "ppc-conic", quarter([6, 4]), &one_beat),
+        case("minimum deviation line", "mindev-line", line(&[-3, 5]), &usual),
+        case("minimum deviation circle", "mindev-arc", arc([5, 0], [5, 0], [0, 0], Clockwise), &one_beat),
+        case("vector line", "vector-line", line(&[-7, -2]), &one_beat),
+        case("vector arc", "vector-arc", arc([5, 0], [0, 5], [0, 0], CounterClockwise), &usual),
         case("dda line", "dda-line", line(&[8, 6]), &usual),
         case("dda line of 256 iterations", "dda-line", line(&[200, -131]), &preset(Preset::Half)),
         case("dda line of six axes", "dda-line", line(&six_axes), &ending(EndPoint::PerAxis)),
