@@ -7,7 +7,7 @@ use super::{EndPoint, Table, counter_columns, per_axis_columns};
 /// an end point equal to the start point is a full circle.
 ///
 /// F = x² + y² - R² relative to the centre. Of the three steps X, Y and XY of the quadrant the one
-/// with the smallest |F| behind it is taken; of equal ones XY first, then Y.
+/// with the smallest |F| behind it is taken; of equal ones XY first, then Y, which never comes to be.
 ///
 /// The columns are `f`, `xi`, `yi` (magnitudes relative to the centre), `quad` (0 ..= 3, the
 /// quadrant by whose kind the step was judged; in row 0 the one that the motion enters), then `e`

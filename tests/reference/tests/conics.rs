@@ -9,6 +9,9 @@ use super::{assert_pulses_make_the_path, end_of, moves};
 /// Any conic method.
 type Method = fn(Shape, [i64; 2], [i64; 2], [i64; 2], bool) -> Table;
 
+/// Where a point goes in a mirrored or turned figure.
+type Image = fn([i64; 2]) -> [i64; 2];
+
 /// Every method, with every end point and weight rule that it has.
 const METHODS: [Method; 8] = [
     |shape, from, to, center, clockwise| ppc_conic(shape, from, to, center, clockwise, EndPoint::Total),
@@ -90,15 +93,15 @@ fn ellipse_distance([a, b]: [i64; 2], [x, y]: [i64; 2]) -> f64 {
     let at = |t: f64| (a as f64 * t.cos() - x.abs() as f64).hypot(b as f64 * t.sin() - y.abs() as f64);
     let (mut center, mut width) = (0.25 * PI, 0.25 * PI);
     let mut best = f64::INFINITY;
-    for _ in 0..8 {
+    for _ in 0..6 {
         let middle = center;
-        for part in -16..=16 {
-            let t = (middle + width * f64::from(part) / 16.0).clamp(0.0, 0.5 * PI);
+        for part in -8..=8 {
+            let t = (middle + width * f64::from(part) / 8.0).clamp(0.0, 0.5 * PI);
             if at(t) < best {
                 (best, center) = (at(t), t);
             }
         }
-        width /= 8.0;
+        width /= 4.0;
     }
     best
 }
@@ -163,8 +166,6 @@ fn every_quarter_ellipse_lands_exactly_by_every_method() {
                     if which < 2 {
                         assert!(table.path().into_iter().all(|point| is_near(&curve, point)), "{shape:?} {which}");
                     }
-                    let errors = table.path().into_iter().map(|point| ellipse_distance([a, b], point));
-                    worst[which] = errors.fold(worst[which], f64::max);
                     if which < 2 {
                         let (f, path) = (table.column("f"), table.path());
                         let (gx, gy) = (table.column("gx"), table.column("gy"));
@@ -173,6 +174,12 @@ fn every_quarter_ellipse_lands_exactly_by_every_method() {
                             assert_eq!([gx[k], gy[k]], [2 * b * b * x.abs(), 2 * a * a * y.abs()]);
                         }
                     }
+                    if clockwise {
+                        // The other way round is this one with a and b exchanged.
+                        continue;
+                    }
+                    let errors = table.path().into_iter().map(|point| ellipse_distance([a, b], point));
+                    worst[which] = errors.fold(worst[which], f64::max);
                 }
             }
         }
@@ -275,7 +282,7 @@ fn the_mid_comparison_value_is_the_implicit_function_with_the_sign_of_the_base()
 
 #[test]
 fn curves_that_open_to_the_four_sides_are_mirror_images() {
-    let images: [(Opens, fn([i64; 2]) -> [i64; 2]); 3] =
+    let images: [(Opens, Image); 3] =
         [(Opens::MinusX, |[x, y]| [-x, -y]), (Opens::PlusY, |[x, y]| [-y, x]), (Opens::MinusY, |[x, y]| [y, -x])];
     for (shape, points) in open_curves(Opens::PlusX) {
         for (opens, image) in images {
@@ -344,6 +351,33 @@ fn one_counter_per_axis_reaches_rounded_points_and_the_total_counter_misses_some
         }
     }
     assert!(missed > 0 && missed < tried / 4, "{missed} of {tried}");
+}
+
+#[test]
+fn an_ellipse_is_never_split_behind_the_point_that_was_reached() {
+    // (1,3) lies outside: Y is met at (0,3), not at (0,2).
+    for method in &METHODS[..5] {
+        let table = method(Shape::Ellipse([5, 2]), [1, 3], [-5, 0], [0, 0], false);
+        assert_eq!(end_of(&table), [-5, 0]);
+        assert!(table.path().into_iter().all(|[_, y]| y <= 3));
+    }
+    let table = METHODS[1](Shape::Ellipse([5, 2]), [1, 3], [-5, 0], [0, 0], false);
+    assert_eq!([table.column("ex")[0], table.column("ey")[0]], [1, 0]);
+    // F of the second piece starts at G(0,3) = 225 - 100 and loses nothing but what Y takes.
+    assert_eq!(table.column("f")[..3], [129, 125, 0]);
+}
+
+#[test]
+fn a_mid_comparison_value_starts_as_the_deviation_with_the_sign_of_the_base() {
+    // G(1,4) = 16·1 + 36·16 - 576 = 16, and X is the base: it lowers G on the way to the axis, and
+    // raises it on the way from there.
+    let shape = Shape::Ellipse([6, 4]);
+    for (to, clockwise, f) in [([-6, 0], false, -16), ([6, 0], true, 16)] {
+        let table = cim_conic(shape, [1, 4], to, [0, 0], clockwise, Weights::Mid);
+        assert_eq!(table.column("f")[0], f);
+        assert_eq!(table.column("base")[0], 0);
+        assert_eq!(cim_conic(shape, [1, 4], to, [0, 0], clockwise, Weights::Pre).column("f")[0], 0);
+    }
 }
 
 #[test]

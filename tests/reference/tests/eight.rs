@@ -30,6 +30,10 @@ fn small_lines_and_arcs_by_hand() {
     assert_eq!(table.column("f"), [1, -3, 3, -1, 5, 1]);
     assert_eq!(moves(&table), "+X+Y +X +X+Y +X +X+Y");
     assert_eq!(table.column("e"), [5, 4, 3, 2, 1, 0]);
+    // D = 0 takes the diagonal.
+    let table = mindev_line([0, 0], [4, 2]);
+    assert_eq!(table.column("f"), [0, -4, 0, -4, 0]);
+    assert_eq!(moves(&table), "+X+Y +X +X+Y +X");
     let table = vector_line([0, 0], [5, 3]);
     assert_eq!(table.column("f"), [0, -3, -1, 1, -2, 0]);
     assert_eq!(moves(&table), "+X +X+Y +X+Y +X +X+Y");
@@ -122,6 +126,22 @@ fn the_paths_meet_the_axes_where_the_counters_expect_them() {
             let table: Table = method(from, to, [0, 0], clockwise, EndPoint::Total);
             let largest = table.path().into_iter().flatten().map(i64::abs).max();
             assert_eq!(largest, Some(crossing), "{from:?}");
+        }
+    }
+}
+
+#[test]
+fn the_three_deviations_are_never_equal() {
+    // F of X and Y differs from F of XY by an odd number; and where F of X is -F of Y, XY is nearer.
+    for x in 1..40_i64 {
+        for y in 0..40_i64 {
+            for f in -120..=120_i64 {
+                let (f1, f2) = (f - 2 * x + 1, f + 2 * y + 1);
+                let f3 = f1 + f2 - f;
+                let smallest = f1.abs().min(f2.abs()).min(f3.abs());
+                let equal = [f1, f2, f3].into_iter().filter(|f| f.abs() == smallest).count();
+                assert_eq!(equal, 1, "x = {x}, y = {y}, F = {f}");
+            }
         }
     }
 }

@@ -216,6 +216,8 @@ fn the_integrator_of_z_runs_beside_the_arc() {
     assert_eq!(table.column("jvz"), [7; 15]);
     assert_eq!(table.column("ez").last(), Some(&0));
     assert_eq!(pulse_steps(&table, "dy"), [2, 4, 5, 7, 9]);
+    let full = dda_helix(3, 1, [5, 0, 0], [0, 5, -6], [0, 0], false, &[(7, 6)], [0, 0, 15]);
+    assert_eq!(pulse_steps(&full, "dz"), [1, 3, 5, 7, 10, 12]);
     // Z has pulses but no rate.
     let table = dda_helix(3, 1, [5, 0, 0], [0, 5, 1], [0, 0], false, &[(0, 1)], [0, 0, 0]);
     assert!(!table.finished);
