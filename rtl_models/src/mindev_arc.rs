@@ -12,7 +12,7 @@
 //! | register | width | load value |
 //! |---|---|---|
 //! | xi, yi | n | abs(x), abs(y) relative to the centre |
-//! | f | n+2, two's complement | 0; behind a split x² + y² - R² |
+//! | f | n+1 (n+2 for an end point beside the circle), two's complement | 0; behind a split x² + y² - R² |
 //! | quad | 2 | quadrant that the motion enters, Q1 = 0 |
 //! | ccw | 1 | 1: counter-clockwise (NR) |
 //! | e | n+3 | pulses to the end, across axes at R rounded to the nearest integer (`total`) |
@@ -21,7 +21,7 @@
 //! Every step looks at the three neighbours ahead (along x, along y, diagonal) and goes where the deviation
 //! F = x² + y² - R² is least in magnitude; of equals Y goes before X, and the diagonal before both. The radial error
 //! stays below half a BLU, so that an axis is met at R rounded to the nearest integer. A diagonal step counts two
-//! pulses in `e`.
+//! pulses in `e`. F stays within ±R, so n+1 bits; behind an end point beside the circle one more.
 //!
 //! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/mindev-arc-nr1.csv`; the wave stands beside it:
 //!
@@ -48,7 +48,7 @@ pub(crate) const MODEL: Model = Model {
     method: "minimum deviation",
     curve: CurveKind::Arc,
     registers: &[
-        RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement, from 0" },
+        RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
         RegisterDoc::XI_YI,
         RegisterDoc::QUAD,
         RegisterDoc { name: "e", width: "n+3", about: "end-point down-counter of the pulses of both axes (total)" },
@@ -66,7 +66,7 @@ pub(crate) const MODEL: Model = Model {
 const CROSSING: Crossing = Crossing::RoundedRadius;
 
 fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    Ok(Hardware { error_bound: Some(0.5), ..plan::judged_arc(NAME, curve, choices, CROSSING)? })
+    Ok(Hardware { error_bound: Some(0.5), ..plan::judged_arc(NAME, curve, choices, CROSSING, [1, 2])? })
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {

@@ -108,12 +108,14 @@ pub(crate) fn arc_positions(curve: &Curve, sectors: &[Sector]) -> [Vec<i64>; 2] 
     [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect())
 }
 
-/// Hardware that judges every step of an arc by its deviation: registers `f`, `xi`, `yi`, `quad`, and `e` or `ex`, `ey`.
+/// Hardware that judges every step of an arc by its deviation: registers `f` of so many more bits than the largest
+/// coordinate (where the end point is on the circle, and where it lies beside it), `xi`, `yi`, `quad`, and `e` or `ex`, `ey`.
 pub(crate) fn judged_arc(
     model: &'static str,
     curve: &Curve,
     choices: &Choices,
     crossing: Crossing,
+    deviation: [u32; 2],
 ) -> Result<Hardware, ModelError> {
     let on_circle = arc(curve).is_some_and(Arc::ends_on_circle);
     let end_point = end_point(
@@ -126,7 +128,7 @@ pub(crate) fn judged_arc(
     let sectors = arc(curve).map(|arc| arc.sectors(crossing)).unwrap_or_default();
     let n = magnitude_bits(choices, largest_coordinate(&sectors));
     let mut registers = Registers::new(model, choices);
-    registers.register("f", n + 2).register("xi", n).register("yi", n).shown("quad");
+    registers.register("f", n + deviation[usize::from(!on_circle)]).register("xi", n).register("yi", n).shown("quad");
     match end_point {
         EndPoint::PerAxis => registers.end_counters(2, n),
         _ => registers.register("e", n + 3),

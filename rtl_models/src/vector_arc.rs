@@ -66,7 +66,7 @@ pub(crate) const MODEL: Model = Model {
 const CROSSING: Crossing = Crossing::PathExtreme;
 
 fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    Ok(Hardware { error_bound: Some(1.0), ..plan::judged_arc(NAME, curve, choices, CROSSING)? })
+    Ok(Hardware { error_bound: Some(1.0), ..plan::judged_arc(NAME, curve, choices, CROSSING, [2; 2])? })
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
