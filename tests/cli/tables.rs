@@ -11,9 +11,9 @@ fn on_every_engine(words: &str) -> Csv {
     table
 }
 
-/// The table of a point-by-point run on every engine. Four beats and one give the same but for the clocks: row k stands
-/// at clock 4k+1 and k+1.
-fn point_by_point(words: &str) -> Csv {
+/// The table of a run that judges every step, on every engine. Four beats and one give the same but for the clocks: row
+/// k stands at clock 4k+1 and k+1.
+fn judged(words: &str) -> Csv {
     let [four, one] = ["4", "1"].map(|beats| on_every_engine(&format!("{words} --beats {beats}")));
     let clocks = |table: &Csv, beats: i64| {
         let expected: Vec<i64> = table.column("step").into_iter().map(|step| beats * step + 1).collect();
@@ -29,7 +29,7 @@ fn point_by_point(words: &str) -> Csv {
 
 #[test]
 fn point_by_point_line_to_6_4() {
-    let table = point_by_point("ppc-line --to 6,4");
+    let table = judged("ppc-line --to 6,4");
     assert_eq!(table.heading.join(","), "step,clock,xe,ye,f,e,dx,dy,x,y");
     assert_eq!(table.column("f"), [0, -4, 2, -2, 4, 0, -4, 2, -2, 4, 0]);
     assert_eq!(table.moves(), "X Y X Y X X Y X Y X");
@@ -39,21 +39,21 @@ fn point_by_point_line_to_6_4() {
 
 #[test]
 fn point_by_point_line_to_5_3() {
-    let table = point_by_point("ppc-line --to 5,3");
+    let table = judged("ppc-line --to 5,3");
     assert_eq!(table.column("f"), [0, -3, 2, -1, 4, 1, -2, 3, 0]);
     assert_eq!(table.moves(), "X Y X Y X X Y X");
 }
 
 #[test]
 fn point_by_point_signed_line_in_quadrant_2_gives_the_tie_to_y() {
-    let table = point_by_point("ppc-line --from -1,1 --to -4,2 --form signed");
+    let table = judged("ppc-line --from -1,1 --to -4,2 --form signed");
     assert_eq!(table.column("f"), [0, -3, -2, -1, 0]);
     assert_eq!(table.path(), [(-1, 1), (-1, 2), (-2, 2), (-3, 2), (-4, 2)]);
 }
 
 #[test]
 fn point_by_point_arc_nr1() {
-    let table = point_by_point("ppc-arc --from 6,0 --to 0,6 --ccw");
+    let table = judged("ppc-arc --from 6,0 --to 0,6 --ccw");
     assert_eq!(table.heading.join(","), "step,clock,f,xi,yi,quad,e,dx,dy,x,y");
     assert_eq!(table.column("f"), [0, -11, -10, -7, -2, 5, -4, 5, -2, 9, 4, 1, 0]);
     assert_eq!(table.moves(), "-X Y Y Y Y -X Y -X Y -X -X -X");
@@ -62,14 +62,14 @@ fn point_by_point_arc_nr1() {
 
 #[test]
 fn point_by_point_arc_sr1() {
-    let table = point_by_point("ppc-arc --from 0,5 --to 5,0 --cw");
+    let table = judged("ppc-arc --from 0,5 --to 5,0 --cw");
     assert_eq!(table.column("f"), [0, -9, -8, -5, 0, -7, 0, -5, 4, 1, 0]);
     assert_eq!(table.moves(), "-Y X X X -Y X -Y X -Y -Y");
 }
 
 #[test]
 fn point_by_point_arc_across_the_negative_x_axis() {
-    let table = point_by_point("ppc-arc --from -5,-3 --to -3,5 --cw");
+    let table = judged("ppc-arc --from -5,-3 --to -3,5 --cw");
     assert_eq!(table.column("e")[0], 12);
     assert_eq!(table.column("f"), [0, -5, 6, 3, 2, -9, -8, -5, 0, -9, -2, 7, 0]);
     let [to_axis, behind] = [
@@ -177,4 +177,52 @@ end point (0, 5) reached exactly
 ";
     let printed = good("run dda-arc --from 5,0 --to 0,5 --ccw");
     assert!(printed.starts_with(expected), "{printed}");
+}
+
+#[test]
+fn comparison_integral_line_to_5_3() {
+    for weights in ["mid", "pre", "post"] {
+        let table = judged(&format!("cim-line --to 5,3 --weights {weights}"));
+        assert_eq!(table.heading.join(","), "step,clock,f,a,b,base,ex,ey,dx,dy,x,y");
+        assert_eq!(table.column("f"), [0, -2, 1, -1, 2, 0]);
+        assert_eq!((table.pulses("x"), table.pulses("y")), (vec![1, 2, 3, 4, 5], vec![1, 3, 5]));
+        assert_eq!(table.column("base"), [0; 6]);
+    }
+}
+
+#[test]
+fn comparison_integral_ellipse_clockwise_in_quadrant_3() {
+    let table = judged("cim-conic --ellipse 3,2 --from 0,-2 --to -3,0 --cw --weights post");
+    assert_eq!(table.column("f"), [0, -5, 3, -15]);
+    assert_eq!(table.path(), [(0, -2), (-1, -1), (-2, -1), (-3, 0)]);
+    let left: Vec<i64> = table.column("ex").iter().zip(table.column("ey")).map(|(ex, ey)| ex + ey).collect();
+    assert_eq!(left, [5, 3, 2, 0]);
+    // The base axis changes with the last step, and turns F over.
+    assert_eq!(table.column("base"), [0, 0, 0, 1]);
+}
+
+#[test]
+fn comparison_integral_arc_loads_the_deviation_of_an_axis_beside_the_circle() {
+    let table = on_every_engine("cim-arc --from -5,-3 --to -3,5 --cw");
+    let crossing = table.path().iter().position(|&point| point == (-6, 0)).unwrap();
+    // (-6, 0) is 2 off 34. Behind it Y is the base axis, whose weight is the smaller one, and |x| shrinks: 36 - 34 = 2
+    // keeps its sign, and the first step of Y alone or both adds 1, and takes 11 off for an X pulse.
+    let [fx, fy] = ["dx", "dy"].map(|name| table.column(name)[crossing + 1]);
+    assert_eq!((fx, fy, table.column("f")[crossing + 1]), (1, 1, 2 + 1 - 11));
+    assert_eq!(table.path().last(), Some(&(-3, 5)));
+}
+
+#[test]
+fn minimum_deviation_arc_nr1() {
+    let table = judged("mindev-arc --from 5,0 --to 0,5 --ccw");
+    assert_eq!(table.column("f"), [0, 1, 4, 0, 0, 4, 1, 0]);
+    assert_eq!((table.pulses("y"), table.pulses("x")), (vec![1, 2, 3, 4, 5], vec![3, 4, 5, 6, 7]));
+}
+
+#[test]
+fn minimum_deviation_line_to_5_3() {
+    // D0 = 2S - L = 1; D >= 0: diagonal, D += 2(S - L) = -4; else the axis, D += 2S = 6.
+    let table = judged("mindev-line --to 5,3");
+    assert_eq!(table.column("f"), [1, -3, 3, -1, 5, 1]);
+    assert_eq!((table.pulses("x"), table.pulses("y")), (vec![1, 2, 3, 4, 5], vec![1, 3, 5]));
 }
