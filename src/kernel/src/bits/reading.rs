@@ -40,7 +40,7 @@ impl Reading {
         }
         let (mut rest, mut bits) = (u64::try_from(number).ok()?, 0);
         for digit in 0..width.get() / 4 {
-            bits |= rest % 10 << (4 * digit);
+            bits |= (rest % 10) << (4 * digit);
             rest /= 10;
         }
         (rest == 0).then(|| Bits::truncated(width, bits))
