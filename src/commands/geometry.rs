@@ -25,8 +25,14 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs) -> Result<C
         (_, true) => Ok(Direction::CounterClockwise),
         _ => trouble(format!("the direction of the arc is missing: give {} --cw or --ccw", who)),
     };
+    let what = match kind {
+        CurveKind::Line { .. } => "a line",
+        CurveKind::Arc => "an arc",
+        CurveKind::Conic => "a conic",
+        CurveKind::Helix => "a helix",
+    };
     let from = args.from.as_ref();
-    let center = || point::<2>(who, "--center", args.center.as_ref());
+    let center = || point::<2>(what, "--center", args.center.as_ref());
     Ok(match kind {
         CurveKind::Line { .. } => {
             let from = from.map_or_else(|| vec![0; to.0.len()], |from| from.0.clone());
@@ -34,14 +40,14 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs) -> Result<C
         }
         CurveKind::Arc => {
             let direction = direction()?;
-            Arc::new(point(who, "--from", from)?, point(who, "--to", Some(to))?, center()?, direction)?.into()
+            Arc::new(point(what, "--from", from)?, point(what, "--to", Some(to))?, center()?, direction)?.into()
         }
         CurveKind::Helix => {
             let direction = direction()?;
-            Helix::new(point(who, "--from", from)?, point(who, "--to", Some(to))?, center()?, direction)?.into()
+            Helix::new(point(what, "--from", from)?, point(what, "--to", Some(to))?, center()?, direction)?.into()
         }
         CurveKind::Conic => {
-            let (from, to, center) = (point(who, "--from", from)?, point(who, "--to", Some(to))?, center()?);
+            let (from, to, center) = (point(what, "--from", from)?, point(what, "--to", Some(to))?, center()?);
             match (args.ellipse, args.parabola, args.hyperbola) {
                 (Some(_), ..) if args.opens.is_some() => {
                     return trouble("an ellipse does not open: leave --opens out".to_owned());
@@ -76,13 +82,12 @@ fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)
     options
 }
 
-/// The coordinates of a point of `N` axes; the origin if none is given.
-fn point<const N: usize>(who: &str, name: &str, given: Option<&Point>) -> Result<[i64; N], Failure> {
+/// The coordinates of a point of `N` axes of such a curve; the origin if none is given.
+fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Result<[i64; N], Failure> {
     let Some(Point(point)) = given else { return Ok([0; N]) };
     <[i64; N]>::try_from(point.as_slice()).or_else(|_| {
-        let [what, form] = if N == 2 { ["works in the plane", "X,Y"] } else { ["works in space", "X,Y,Z"] };
-        let count = point.len();
-        trouble(format!("{name} has {count} coordinates, but {who} {what} here: give {form}"))
+        let form = if N == 2 { "X,Y" } else { "X,Y,Z" };
+        trouble(format!("{name} of {what} has {} coordinates: give {form}", point.len()))
     })
 }
 

@@ -46,7 +46,7 @@ fn json_to_standard_output_is_the_report_and_nothing_else() {
     assert_eq!(report["overflow"], json!({ "count": 0, "events": [] }));
     assert_eq!((&report["ending"], &report["failures"]), (&json!("done"), &json!([])));
     let f = report["registers"].as_array().unwrap().iter().find(|register| register["name"] == "f").unwrap();
-    let expected = json!({ "name": "f", "path": "ppc_line.f", "width": 4, "signed": true,
+    let expected = json!({ "name": "f", "path": "ppc_line.f", "width": 4, "signed": true, "radix": 2,
                            "least": -4, "greatest": 4, "needed_width": 4 });
     assert_eq!(*f, expected);
     // After the first step the machine stands at (1, 0): 4/sqrt(52) off the line.

@@ -1,3 +1,5 @@
+//! Distances from conics, against a search.
+
 use super::*;
 
 /// The point of a curve with this parameter, relative to its centre.

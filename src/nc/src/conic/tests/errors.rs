@@ -1,3 +1,5 @@
+//! What is refused as a conic, and with which words.
+
 use super::*;
 
 fn message(result: Result<Conic, GeometryError>) -> String {

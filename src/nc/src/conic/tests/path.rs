@@ -1,3 +1,5 @@
+//! Lengths and outlines of conics.
+
 use std::f64::consts::{PI, TAU};
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Sectors of conics.
+
 use std::f64::consts::FRAC_PI_2;
 
 use super::*;
