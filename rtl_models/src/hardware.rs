@@ -13,6 +13,10 @@ pub const AXES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
 pub(crate) mod names {
     pub(crate) const JV: [&str; 6] = ["jvx", "jvy", "jvz", "jva", "jvb", "jvc"];
     pub(crate) const JR: [&str; 6] = ["jrx", "jry", "jrz", "jra", "jrb", "jrc"];
+    pub(crate) const ACC: [&str; 6] = ["accx", "accy", "accz", "acca", "accb", "accc"];
+    pub(crate) const RATE: [&str; 6] = ["ratex", "ratey", "ratez", "ratea", "rateb", "ratec"];
+    pub(crate) const COUNTER: [&str; 6] = ["cntx", "cnty", "cntz", "cnta", "cntb", "cntc"];
+    pub(crate) const STEPS: [&str; 6] = ["stepsx", "stepsy", "stepsz", "stepsa", "stepsb", "stepsc"];
     pub(crate) const END: [&str; 6] = ["ex", "ey", "ez", "ea", "eb", "ec"];
     pub(crate) const SIGN: [&str; 6] = ["sx", "sy", "sz", "sa", "sb", "sc"];
     pub(crate) const POSITION: [&str; 6] = super::AXES;

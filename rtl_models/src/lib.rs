@@ -16,6 +16,7 @@
 //! # Ok::<(), stepwave_models::ModelError>(())
 //! ```
 
+pub mod bresenham;
 pub mod cim_arc;
 pub mod cim_conic;
 pub mod cim_line;
@@ -27,6 +28,7 @@ pub mod parts;
 pub mod ppc_arc;
 pub mod ppc_conic;
 pub mod ppc_line;
+pub mod stepgen;
 pub mod vector_arc;
 pub mod vector_line;
 
@@ -63,6 +65,8 @@ pub fn catalogue() -> &'static [Model] {
         mindev_arc::MODEL,
         vector_line::MODEL,
         vector_arc::MODEL,
+        stepgen::MODEL,
+        bresenham::MODEL,
     ];
     CATALOGUE
 }

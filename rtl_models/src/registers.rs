@@ -110,7 +110,9 @@ impl<'a> Registers<'a> {
     /// and may be without a pulse for 16 clocks.
     pub(crate) fn hardware(&self, axes: usize, end_point: EndPoint) -> Result<Hardware, ModelError> {
         let choices = self.choices;
-        let remainders: Vec<String> = AXES[..axes].iter().map(|axis| format!("jr{axis}")).collect();
+        // What an axis accumulates in.
+        let kind = if self.names().any(|name| name == "accx") { "acc" } else { "jr" };
+        let remainders: Vec<String> = AXES[..axes].iter().map(|axis| format!("{kind}{axis}")).collect();
         if let Some(unknown) = choices.presets.keys().find(|given| !remainders.contains(given)) {
             return Err(self.unknown(Choice::Preset, unknown, remainders.join(", ")));
         }

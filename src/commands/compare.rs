@@ -42,10 +42,12 @@ fn forms(model: &Model) -> Vec<(String, Choices)> {
     if takes(Choice::Beats) {
         forms.push((" --beats 1".to_owned(), Choices { beats: Some(Beats::One), ..Choices::default() }));
     }
-    if takes(Choice::Normalize) && takes(Choice::Preset) {
+    if takes(Choice::Preset) {
         let half = Choices { preset: Some(Preset::Half), ..Choices::default() };
         forms.push((" --preset half".to_owned(), half.clone()));
-        forms.push((" --preset half --normalize".to_owned(), Choices { normalize: true, ..half }));
+        if takes(Choice::Normalize) {
+            forms.push((" --preset half --normalize".to_owned(), Choices { normalize: true, ..half }));
+        }
     }
     forms
 }

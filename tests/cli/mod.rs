@@ -8,6 +8,7 @@ mod choices;
 mod files;
 mod golden;
 mod models;
+mod modern;
 mod outputs;
 mod overflow;
 mod pages;

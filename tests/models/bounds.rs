@@ -1,11 +1,12 @@
 //! The path errors that the methods promise, measured over every line of up to five bits and every lattice arc of a
 //! radius below 30. `cargo test --test main models::bounds -- --nocapture` prints them.
 
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use std::sync::Mutex;
 
 use stepwave::testbench::{Ending, Observer, PathWatch};
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Beats, Choices, EndPoint, Preset, Weights, find};
+use stepwave_models::{Beats, Choices, Compare, EndPoint, Form, Preset, Weights, find};
 use stepwave_nc::Curve;
 
 use super::{arc, bench, every_lattice_arc, every_line, line};
@@ -42,10 +43,13 @@ fn one_beat(model: &str) -> Choices {
 }
 
 fn lines(model: &str) -> f64 {
+    lines_with(model, "", &one_beat(model))
+}
+
+fn lines_with(model: &str, what: &str, choices: &Choices) -> f64 {
     let worst = Worst::default();
-    let choices = one_beat(model);
-    every_line(|to| measure(&worst, model, &line(&[0, 0], &to), &choices));
-    report(model, worst)
+    every_line(|to| measure(&worst, model, &line(&[0, 0], &to), choices));
+    report(&format!("{model} {what}"), worst)
 }
 
 fn arcs(model: &str, choices: &Choices) -> f64 {
@@ -68,6 +72,28 @@ fn lines_stay_within_the_bounds_of_their_methods() {
         assert!(lines(model) < 1.0, "{model}");
     }
     assert!(lines("mindev-line") <= 0.5);
+}
+
+#[test]
+fn accumulators_stay_within_a_step_of_each_axis_or_half_a_step() {
+    for (what, preset, bound) in
+        [("zero", Preset::Zero, SQRT_2), ("full", Preset::Full, SQRT_2), ("half", Preset::Half, FRAC_1_SQRT_2)]
+    {
+        let choices = Choices { preset: Some(preset), ..Choices::default() };
+        let error = lines_with("stepgen", what, &choices);
+        assert!(error < bound + 1e-9 && error > 0.9 * bound, "{what}");
+    }
+}
+
+#[test]
+fn counters_stay_within_half_a_step_with_the_right_test() {
+    for (what, form, compare) in
+        [("ge", Form::Magnitude, Compare::AtLeast), ("signed gt", Form::Signed, Compare::Greater)]
+    {
+        let choices = Choices { form: Some(form), compare: Some(compare), ..Choices::default() };
+        let error = lines_with("bresenham", what, &choices);
+        assert!(error <= 0.5 && error > 0.4, "{what}");
+    }
 }
 
 #[test]

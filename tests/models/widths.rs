@@ -1,7 +1,7 @@
 //! Whatever widths are chosen, a model builds, or refuses them with the user's way out: its netlist is never wrong.
 
 use stepwave_kernel::Width;
-use stepwave_models::{Beats, Choices, EndPoint, Form, Model, ModelError, catalogue};
+use stepwave_models::{Beats, Choices, Compare, EndPoint, Form, Model, ModelError, OnOverflow, StepTiming, catalogue};
 use stepwave_nc::{Conic, Curve, Direction};
 
 use super::{arc, line};
@@ -9,7 +9,7 @@ use super::{arc, line};
 /// Every form of every model: geometry, and the choices beside the widths.
 fn forms(model: &Model) -> Vec<(Curve, Choices)> {
     let curves = match model.name {
-        "dda-line" => vec![line(&[0, 0], &[8, -6]), line(&[1, 2, 3], &[4, -9, 12])],
+        "dda-line" | "stepgen" | "bresenham" => vec![line(&[0, 0], &[8, -6]), line(&[1, 2, 3], &[4, -9, 12])],
         name if name.ends_with("line") => vec![line(&[0, 0], &[6, -4])],
         name if name.ends_with("conic") => vec![
             Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], Direction::CounterClockwise).unwrap().into(),
@@ -31,8 +31,24 @@ fn forms(model: &Model) -> Vec<(Curve, Choices)> {
                 }
             }
         }
+        for choices in step_generators() {
+            if model.plan(&curve, &choices).is_ok() {
+                forms.push((curve.clone(), choices));
+            }
+        }
     }
     forms
+}
+
+/// The choices that step generators alone have.
+fn step_generators() -> Vec<Choices> {
+    let timing = StepTiming { length: 1, space: 3, setup: 0, hold: 1 << 20 };
+    vec![
+        Choices { compare: Some(Compare::Greater), ..Choices::default() },
+        Choices { compare: Some(Compare::AtLeast), form: Some(Form::Signed), ..Choices::default() },
+        Choices { pick_off: Some(32), timing: Some(timing), ..Choices::default() },
+        Choices { pick_off: Some(4), on_overflow: Some(OnOverflow::Saturate), ..Choices::default() },
+    ]
 }
 
 #[test]

@@ -16,7 +16,7 @@
 //!   and the sign of `f` tells whether the other does.
 //! - [`mindev_line`], [`mindev_arc`], [`vector_line`], [`vector_arc`]: eight-direction methods, a
 //!   step is X, Y or both.
-//! - [`stepgen`], [`bresenham`]: what motion cards and firmware of today do.
+//! - [`stepgen`], [`stepgen_clocks`], [`bresenham`]: what motion cards and firmware of today do.
 //!
 //! A call outside a method's domain (a register too narrow, an end point that the arc cannot reach)
 //! is a mistake of the test that makes it, and panics.
@@ -50,7 +50,7 @@ pub(crate) use eight_arcs::{mindev_arc, vector_arc};
 pub(crate) use eight_lines::{mindev_line, vector_line};
 pub(crate) use ppc::{ppc_arc, ppc_line};
 pub(crate) use ppc_conic::ppc_conic;
-pub(crate) use stepgen::stepgen;
+pub(crate) use stepgen::{StepOutput, Timing, stepgen, stepgen_clocks};
 
 /// The names of up to six axes, in the order of the columns.
 pub(crate) const AXES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];

@@ -5,6 +5,7 @@ mod cim;
 mod conics;
 mod dda;
 mod eight;
+mod modern;
 mod ppc;
 mod rates;
 

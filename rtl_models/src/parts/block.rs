@@ -62,8 +62,13 @@ impl<'m> Block<'m> {
     /// Closes the sequencer. Each is 1 bit: `ready`, the registers stand loaded behind this edge; `step`, a step is
     /// completed at this edge; `last`, it is the last one.
     pub fn close(self, ready: Signal<'m>, step: Signal<'m>, last: Signal<'m>) {
+        self.close_behind(ready, step, step & last);
+    }
+
+    /// As [`close`](Block::close), but what ends the block is an edge with `finish` = 1 (1 bit), at the last step or some
+    /// clocks behind it.
+    pub fn close_behind(self, ready: Signal<'m>, step: Signal<'m>, finish: Signal<'m>) {
         let [busy, done, loaded, stepped] = self.registers;
-        let finish = step & last;
         let [yes, no] = [self.words.lit(1, 1), self.words.lit(1, 0)];
         busy.when(self.load, yes).when(finish, no).else_hold();
         done.when(self.load, no).when(finish, yes).else_hold();

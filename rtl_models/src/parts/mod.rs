@@ -13,8 +13,10 @@ mod end_counters;
 mod integrator;
 mod line_frame;
 mod normalizer;
+mod phase_accumulator;
 mod quadrant;
 mod sign;
+mod step_output;
 
 pub use arc_frame::{ArcFrame, square_gain};
 pub use axis::axis_counter;
@@ -28,8 +30,10 @@ pub use end_counters::EndCounters;
 pub use integrator::integrator;
 pub use line_frame::LineFrame;
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
+pub use phase_accumulator::PhaseAccumulator;
 pub use quadrant::{Kind, next_quadrant, quadrant_register, x_grows};
 pub use sign::{magnitude, negated};
+pub use step_output::{StepOutput, Timer};
 
 #[cfg(test)]
 mod tests;

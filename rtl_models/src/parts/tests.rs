@@ -15,5 +15,7 @@ mod end_counters;
 mod frames;
 mod integrator;
 mod normalizer;
+mod phase_accumulator;
 mod quadrant;
 mod sign;
+mod step_output;

@@ -1,9 +1,8 @@
-//! Rate multiplier, decimal and helical integration, step generator and counters: worked tables and
-//! claims.
+//! Rate multiplier, decimal and helical integration: worked tables and claims.
 
 use super::super::{
-    AXES, EndPoint, bresenham, dda_arc, dda_helix, dda_line, dda_line_decimal, dpm_line, dpm_line_decade,
-    dpm_line_override, helix_words, stepgen,
+    AXES, EndPoint, dda_arc, dda_helix, dda_line, dda_line_decimal, dpm_line, dpm_line_decade, dpm_line_override,
+    helix_words,
 };
 use super::{assert_pulses_make_the_path, end_of, lattice_arcs, pulse_steps};
 
@@ -223,74 +222,4 @@ fn the_integrator_of_z_runs_beside_the_arc() {
     assert!(!table.finished);
     assert_eq!(end_of(&table), [0, 5]);
     assert_eq!(table.steps(), 14);
-}
-
-#[test]
-fn a_step_generator_makes_every_step_of_its_line() {
-    for d in -8..=8_i64 {
-        for preset in [0, 5, 15] {
-            let table = stepgen(9, 4, 3, &[2, 0], &[2 + d, 3], &[preset, 0]);
-            assert!(table.finished && !table.overflow);
-            assert_eq!(end_of(&table), [2 + d, 3]);
-            assert_pulses_make_the_path(&table);
-            for (t, acc) in (0..).zip(table.column("accx")) {
-                assert_eq!(acc, preset + 2 * d * t);
-            }
-            // A rate of the other sign steps at its own carries: down to -1 already steps.
-            if d == -1 && preset == 0 {
-                assert_eq!(pulse_steps(&table, "dx"), [1]);
-            }
-        }
-    }
-    // d = 3 in 4 iterations, rate 12 of 16: acc 12, 24, 36, 48.
-    let table = stepgen(8, 4, 2, &[0, 0], &[3, -2], &[0, 8]);
-    assert_eq!(table.column("accx"), [0, 12, 24, 36, 48]);
-    assert_eq!(pulse_steps(&table, "dx"), [2, 3, 4]);
-    assert_eq!(table.column("accy"), [8, 0, -8, -16, -24]);
-    assert_eq!(pulse_steps(&table, "dy"), [2, 4]);
-    assert_eq!(table.column("e"), [4, 3, 2, 1, 0]);
-}
-
-#[test]
-fn an_accumulator_that_outgrows_its_register_is_told() {
-    let table = stepgen(6, 4, 2, &[0, 0], &[3, 0], &[0, 0]);
-    assert!(table.overflow && !table.finished);
-    assert_eq!(table.column("accx"), [0, 12, 24]);
-    let table = stepgen(6, 4, 2, &[0, 0], &[-2, 0], &[0, 0]);
-    assert!(table.finished && !table.overflow);
-    assert_eq!(table.column("accx").last(), Some(&-32));
-}
-
-#[test]
-fn counters_of_firmware_make_every_line() {
-    let table = bresenham(&[0, 0], &[5, 3], false);
-    assert_eq!(table.column("cx"), [2; 6]);
-    assert_eq!(table.column("cy"), [2, 0, 3, 1, 4, 2]);
-    assert_eq!(pulse_steps(&table, "dy"), [1, 3, 5]);
-    let strict = bresenham(&[0, 0], &[5, 3], true);
-    assert_eq!(strict.column("cy"), [2, 5, 3, 1, 4, 2]);
-    assert_eq!(pulse_steps(&strict, "dy"), [2, 3, 5]);
-    for dx in -12..=12_i64 {
-        for dy in -12..=12_i64 {
-            let length = dx.abs().max(dy.abs());
-            for strictly_greater in [false, true] {
-                let table = bresenham(&[1, 9], &[1 + dx, 9 + dy], strictly_greater);
-                assert_pulses_make_the_path(&table);
-                assert_eq!(table.column("e"), (0..=length).rev().collect::<Vec<_>>());
-                if strictly_greater && length == 1 {
-                    assert_eq!(end_of(&table), [1, 9], "a block of one step does not move");
-                    continue;
-                }
-                assert_eq!(end_of(&table), [1 + dx, 9 + dy]);
-                for (t, [x, y]) in (0..).zip(table.path()) {
-                    // At most half a BLU along each axis, of which N/2 rounded down takes some.
-                    for (moved, d) in [(x - 1, dx), (y - 9, dy)] {
-                        assert!(2 * (moved * length - t * d).abs() <= length + 1);
-                    }
-                }
-            }
-        }
-    }
-    let table = bresenham(&[0; 6], &[3, -7, 0, 1, 7, -2], false);
-    assert_eq!(table.rows.last().expect("row 0")[13..], [3, -7, 0, 1, 7, -2]);
 }

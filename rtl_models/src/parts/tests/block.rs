@@ -64,6 +64,22 @@ fn loaded_rises_with_ready_which_may_come_long_after_the_load() {
 }
 
 #[test]
+fn a_block_that_ends_behind_its_last_step_is_busy_until_then() {
+    on_every_engine(
+        |m| {
+            let block = Block::new(m);
+            block.close_behind(block.load, m.input("step", 1), m.input("finish", 1));
+        },
+        |bench| {
+            bench.play(&[("load", "1000_0001_0000"), ("step", "0101_0000_0000"), ("finish", "0000_0100_0000")]);
+            assert_eq!(bench.row("busy"), "0111_1100_1111");
+            assert_eq!(bench.row("done"), "0000_0011_0000");
+            assert_eq!(bench.row("stepped"), "0010_1000_0000");
+        },
+    );
+}
+
+#[test]
 fn a_held_register_takes_its_word_at_the_load_and_no_other() {
     for bits in 1..=4 {
         on_every_engine(

@@ -1,0 +1,160 @@
+//! `bresenham`: the step counters of firmware for 3D printers and mills, line of 2 to 6 axes.
+//!
+//! ```text
+//!   for each axis i:   stepsi ──► + ──► cnti ──► >= events ? ──► di ──► position i
+//!                                 ▲──────┴── - events ◄── yes
+//!                                                                e ──► done
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | events | n | N, the longest abs(d): step events of the block |
+//! | stepsx, stepsy, … | n | abs(d) of each axis |
+//! | cntx, cnty, … | n+1 | floor(N/2) (signed form, two's complement: -floor(N/2)) |
+//! | e | n | N step events |
+//!
+//! A step event takes two clocks, as the firmware's interrupt takes two statements. ADD: every counter += abs(d). TEST: a
+//! counter that has come to N steps its axis, and counter -= N. The signed form keeps counters N lower and tests
+//! their sign.
+//!
+//! **The test.** `--compare ge` steps at N, `gt` only above it. Counters then stay among N numbers: 0 … N-1 with `ge`,
+//! 1 … N with `gt`; signed, -N … -1 and -N+1 … 0. Where a counter starts among them the end point is exact: in a block
+//! it rises by N·abs(d) and falls by N a step, so it ends as many times N from its start as steps are wrong, and among N
+//! numbers that is none. Every start is one of them for N >= 2. A block of N = 1 starts at 0: unsigned that is right with
+//! `ge`, while `gt`, the test of early firmware, makes no step at all; signed it is right with `gt`, while with `ge` an
+//! axis steps that has no way to go.
+//!
+//! **Widths.** A counter must hold the sum of the ADD clock. It stood among its N numbers, at most at N-1 (`gt` at N), and
+//! abs(d) <= N: at most 2N - 1 or 2N. As N < 2^n, n+1 bits hold both. Signed, the sum is at most N, and what TEST leaves at
+//! least -N: n+1 bits again. With n bits (`ge`) the longest axis overflows where N + floor(N/2) >= 2^n, and an axis whose
+//! abs(d) < N has no common divisor with N where N - 1 + abs(d) >= 2^n, for it does come to N-1. Firmware whose counters
+//! were as wide as its step counts lost steps on the longest moves only.
+//!
+//! A path of the right test stays within half a BLU along each axis; the other test may add 1/(2N).
+//!
+//! The line (5, 3), from the golden file `waves/bresenham-5-3.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/bresenham-5-3.csv")]
+//! ```
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::{Module, Scope, Signal};
+use stepwave_kernel::netlist::Format;
+use stepwave_nc::Curve;
+
+use crate::choices::{Choice, Choices, Compare, EndPoint, Form};
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::hardware::names::{COUNTER, POSITION, SIGN, STEPS};
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{Block, DownCounter, axis_counter};
+use crate::plan;
+use crate::registers::Registers;
+
+const NAME: &str = "bresenham";
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Step counters of printer and mill firmware, line of 2 to 6 axes",
+    method: "modern step generators",
+    curve: CurveKind::Line { max_axes: 6 },
+    registers: &[
+        RegisterDoc { name: "stepsx, stepsy, …", width: "n", about: "|d| of each axis" },
+        RegisterDoc { name: "cntx, cnty, …", width: "n+1", about: "counter, from N/2 (signed form: from -N/2)" },
+        RegisterDoc { name: "events", width: "n", about: "N, the longest |d|" },
+        RegisterDoc { name: "e", width: "n", about: "step events left, from N" },
+        RegisterDoc::AXIS_POSITIONS,
+    ],
+    choices: &[
+        ChoiceDoc::WIDTH,
+        ChoiceDoc { choice: Choice::Form, values: "magnitude (default) | signed: counters are N lower" },
+        ChoiceDoc { choice: Choice::Compare, values: "ge (default) | gt (default of the signed form)" },
+        ChoiceDoc::ON_OVERFLOW,
+    ],
+    source: "the line tracing of open firmware for printers and mills, after J. E. Bresenham, 1965",
+    plan,
+    netlist,
+    words,
+};
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    let axes = curve.axes();
+    let n = plan::magnitude_bits(choices, plan::longest(curve));
+    let mut registers = Registers::new(NAME, choices);
+    for axis in 0..axes {
+        registers.register(STEPS[axis], n).register(COUNTER[axis], n + 1);
+    }
+    registers.register("events", n).register("e", n).positions(plan::end_positions(curve));
+    let hardware = registers.hardware(axes, EndPoint::Longest)?;
+    let right = if hardware.form == Form::Signed { Compare::Greater } else { Compare::AtLeast };
+    let compare = choices.compare.unwrap_or(right);
+    let bounded = axes == 2 && compare == right;
+    Ok(Hardware { compare, error_bound: bounded.then_some(0.5), ..hardware })
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow(NAME, hardware.on_overflow);
+    let m = module.top();
+    let block = Block::new(m);
+    let names = [(0, "IDLE"), (1, "ADD"), (2, "TEST")].map(|(value, name)| (value, name.to_owned()));
+    let beat = m.reg("beat", 2).shown(Format::States(names.to_vec()));
+    let [add, test] = [0, 1].map(|place| beat.q.bit(place));
+    let events = block.held(m, "events", hardware.bits("events"));
+    let e = DownCounter::new(m, &block, "e", hardware.bits("e"));
+    for (i, letter) in hardware.letters().iter().enumerate() {
+        let scope = m.scope(&format!("axis_{letter}"));
+        let steps = block.held(scope, STEPS[i], hardware.bits(STEPS[i]));
+        let step = counter(scope, &block, hardware, COUNTER[i], [add, test], [steps, events]);
+        let negative = block.held(scope, SIGN[i], 1);
+        axis_counter(scope, &block, POSITION[i], hardware.bits(POSITION[i]), step, negative);
+    }
+    let last = e.count(test);
+    beat.when(block.load, m.lit(2, 1)).when(test & last, m.lit(2, 0)).otherwise(add.concat(test));
+    block.close(block.load, test, last);
+    Ok(module.finish()?)
+}
+
+/// The counter of an axis: adds the steps at an edge with `add` = 1; at one with `test` = 1 it loses the events where it
+/// has come to them. Returns 1 bit: it does so at this edge, and the axis steps.
+fn counter<'m>(
+    m: Scope<'m>,
+    block: &Block<'m>,
+    hardware: &Hardware,
+    name: &str,
+    [add, test]: [Signal<'m>; 2],
+    [steps, events]: [Signal<'m>; 2],
+) -> Signal<'m> {
+    let bits = hardware.bits(name);
+    let signed = hardware.form == Form::Signed;
+    let counter = if signed { m.reg_signed(name, bits) } else { m.reg(name, bits) };
+    let wide = bits.max(events.bits());
+    let [count, whole] = [counter.q.extend(wide), events.extend(wide)];
+    let come = match (signed, hardware.compare) {
+        (false, Compare::AtLeast) => !count.less_than(whole),
+        (false, Compare::Greater) => whole.less_than(count),
+        (true, Compare::AtLeast) => !count.msb(),
+        (true, Compare::Greater) => !count.msb() & count.is_nonzero(),
+    };
+    let step = m.name("step", test & come);
+    let word = if signed { block.word_signed(name, bits) } else { block.word(name, bits) };
+    let sum = counter.q.strict_add(steps, add & !block.load);
+    let rest = counter.q.strict_sub(events, step & !block.load);
+    counter.when(block.load, word).when(add, sum).when(step, rest).else_hold();
+    step
+}
+
+fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(line) = plan::line(curve) else { return Vec::new() };
+    let events = i128::from(plan::longest(curve));
+    let half = events / 2;
+    let mut words: Words = vec![("events", events), ("e", events)];
+    for (axis, (delta, from)) in line.delta().into_iter().zip(line.from()).enumerate() {
+        words.push((STEPS[axis], i128::from(delta).abs()));
+        words.push((COUNTER[axis], if hardware.form == Form::Signed { -half } else { half }));
+        words.push((SIGN[axis], i128::from(delta < 0)));
+        words.push((POSITION[axis], i128::from(*from)));
+    }
+    vec![words]
+}

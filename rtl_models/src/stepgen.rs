@@ -1,0 +1,230 @@
+//! `stepgen`: the step generator of FPGA motion cards, line of 2 to 6 axes.
+//!
+//! ```text
+//!   for each axis i:   ratei ──► + ──► acci ──┐                         2^k accumulations
+//!                                ▲────────────┤                         e, last step over ──► done
+//!                                ┊            └─► pick-off bit changes: step ──► stepi, diri ──► position i
+//!                                ┊                                       │          │
+//!                                └┄┄┄┄ hold of all axes ◄── not yet ◄────┴──── timers: length, space, setup, hold
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | ratex, ratey, … | n+1+p-k, two's complement | d·2^(p-k) |
+//! | accx, accy, … | n+1+p, two's complement | the preset, below 2^p |
+//! | e | k+1 | 2^k accumulations |
+//! | stepx, dirx, … | 1 | the outputs; they and the timers run on between blocks |
+//!
+//! Every accumulation adds the rate to the accumulator of each axis. A change of its pick-off bit p is a step in the
+//! direction of the rate: the axis stands at floor(acc / 2^p) steps from its start. The position counters count the steps
+//! that are sent.
+//!
+//! **End of a block.** A block has 2^k accumulations, and rates are loaded that make it exact: d·2^(p-k) is a whole number
+//! as long as k <= p, and 2^k of them are d·2^p, d steps to the bit, whatever the preset. No rate is rounded. (A host that
+//! chooses its number N of accumulations freely must round, and d·2^p / N up is exact from an accumulator of 0 where
+//! N <= 2^p: what it is too much stays below a step.) At most one step is made in an accumulation, so 2^k is at
+//! least the longest abs(d). Without a choice k is n + ceil(log2(length + space)): no step of the fastest axis has to wait
+//! for the one before it. The width of e sets another k, and so the feed: `--width e=N` makes 2^(N-1) accumulations. A block
+//! is done when the last step and the space behind it are over.
+//!
+//! **Timers.** A step is sent at the edge of its accumulation. Where the timers of its axis do not allow that, the
+//! accumulation waits, and with it those of all axes, as on a card whose hold inputs are joined: no step is lost, and the
+//! path stays that of the accumulators. Step output: 1 for `length` clocks, 0 for `space` clocks at least. Direction output:
+//! changes `hold` clocks behind the end of a step at least, `setup` clocks before the next.
+//!
+//! **Widths.** n bits hold the longest abs(d). What an accumulator comes to lies from -(2^n - 1)·2^p to 2^n·2^p - 1, which
+//! n+1+p bits hold. Without `--pick-off` p is k, the least that makes every rate whole. The cards of today have 48 bits,
+//! rates of 32 bits and p = 32 (`--pick-off 32 --width acc=48,rate=32`): lines of less than 2^15 steps. Too narrow an
+//! accumulator traps. Wrapped around it still makes every step as long as it has its pick-off bit, but tells its host a
+//! wrong position; where it ends below that bit its sign is picked off, and the steps are too many.
+//!
+//! Each axis is less than one step off its ideal place, and with the preset `half` at most half a step: the path stays
+//! within sqrt(2) BLU, or sqrt(1/2).
+//!
+//! The line (3, -2), from the golden file `waves/stepgen-3-2.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/stepgen-3-2.csv")]
+//! ```
+
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+
+use stepwave_kernel::dsl::Module;
+use stepwave_kernel::{Netlist, Width};
+use stepwave_nc::Curve;
+
+use crate::choices::{Choice, Choices, EndPoint, Preset, StepTiming};
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::hardware::names::{ACC, POSITION, RATE};
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{Block, DownCounter, PhaseAccumulator, StepOutput, axis_counter};
+use crate::plan;
+use crate::registers::Registers;
+
+const NAME: &str = "stepgen";
+
+/// Longest time of an output, in clocks.
+const LONGEST_TIME: u64 = 1 << 20;
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Phase accumulators of a motion card, line of 2 to 6 axes",
+    method: "modern step generators",
+    curve: CurveKind::Line { max_axes: 6 },
+    registers: &[
+        RegisterDoc { name: "ratex, ratey, …", width: "n+1+p-k", about: "rate, d·2^(p-k), signed" },
+        RegisterDoc { name: "accx, accy, …", width: "n+1+p", about: "phase accumulator, signed, from the preset" },
+        RegisterDoc { name: "e", width: "k+1", about: "accumulations left, from 2^k" },
+        RegisterDoc { name: "stepx, dirx, …", width: "1", about: "step and direction output of each axis" },
+        RegisterDoc::AXIS_POSITIONS,
+    ],
+    choices: &[
+        ChoiceDoc::WIDTH,
+        ChoiceDoc { choice: Choice::Preset, values: "zero (default) | half | full | N below 2^p, or accx=N,accy=N" },
+        ChoiceDoc { choice: Choice::PickOff, values: "bit p whose changes are steps (default: k; on many cards 32)" },
+        ChoiceDoc {
+            choice: Choice::Timing,
+            values: "length=CLOCKS,space=CLOCKS,setup=CLOCKS,hold=CLOCKS (default: 2, 2, 4, 4)",
+        },
+        ChoiceDoc::ON_OVERFLOW,
+    ],
+    source: "the step generators of FPGA motion cards: direct digital synthesis of step and direction",
+    plan,
+    netlist,
+    words,
+};
+
+/// The least number whose power of two is not less.
+fn log2_up(value: u64) -> u32 {
+    if value <= 1 { 0 } else { Width::needed_unsigned(u128::from(value - 1)) }
+}
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    let axes = curve.axes();
+    let timing = timing(choices)?;
+    let longest = plan::longest(curve);
+    let n = plan::magnitude_bits(choices, longest);
+    let undelayed = n + log2_up(timing.length + timing.space);
+    let mut registers = Registers::new(NAME, choices);
+    let given = choices.pick_off.map(|bit| u32::try_from(bit).unwrap_or(u32::MAX));
+    registers.hidden("e", given.map_or(undelayed, |bit| undelayed.min(bit)).max(log2_up(longest)) + 1);
+    let k = registers.bits("e") - 1;
+    let pick_off = given.unwrap_or(k);
+    accumulations(longest, k, pick_off)?;
+    let rate_bits = (n + 1).saturating_add(pick_off - k);
+    for axis in 0..axes {
+        registers.register(RATE[axis], rate_bits).register(ACC[axis], (n + 1).saturating_add(pick_off));
+    }
+    registers.shown("e").positions(plan::end_positions(curve));
+    let hardware = registers.hardware(axes, EndPoint::Iterations)?;
+    presets(&hardware, pick_off)?;
+    let rounds = hardware.presets.iter().all(|preset| *preset == Preset::Half);
+    // An axis of one step may make it at the end, behind all delays.
+    let delays = 2 * (timing.length + timing.space + timing.setup + timing.hold);
+    let accumulations = 1_u64.checked_shl(k).unwrap_or(u64::MAX);
+    Ok(Hardware {
+        pick_off: pick_off.into(),
+        timing,
+        stall_clocks: accumulations.saturating_add(delays).saturating_add(16),
+        error_bound: (axes == 2).then_some(if rounds { FRAC_1_SQRT_2 } else { SQRT_2 }),
+        ..hardware
+    })
+}
+
+/// The times chosen, which must be possible.
+fn timing(choices: &Choices) -> Result<StepTiming, ModelError> {
+    let timing = choices.timing.unwrap_or_default();
+    let times = [timing.length, timing.space, timing.setup, timing.hold];
+    if times[..2].contains(&0) || times.into_iter().any(|clocks| clocks > LONGEST_TIME) {
+        return Err(ModelError::Value {
+            model: NAME,
+            choice: Choice::Timing,
+            value: timing.to_string(),
+            reason: format!("length and space are 1 clock at least, and no time is more than {LONGEST_TIME}"),
+        });
+    }
+    Ok(timing)
+}
+
+/// Refuses 2^k accumulations that cannot make every step of the line, or not with whole rates.
+fn accumulations(longest: u64, k: u32, pick_off: u32) -> Result<(), ModelError> {
+    let least = log2_up(longest);
+    let bits = k + 1;
+    if k < least {
+        let made = 1_u64 << k;
+        return Err(ModelError::Widths(format!(
+            "{NAME}: e of {bits} bits counts {made} accumulations, but the longest axis has {longest} steps, and an \
+             accumulation makes one at most: give --width e={} or more",
+            least + 1
+        )));
+    }
+    if k > pick_off {
+        let fewer = if pick_off >= least { format!(", or --width e={}", pick_off + 1) } else { String::new() };
+        return Err(ModelError::Widths(format!(
+            "{NAME}: 2^{k} accumulations (e of {bits} bits) and pick-off bit {pick_off} would give the rates a fraction: \
+             give --pick-off {k} or more{fewer}"
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses a preset that is a step or more.
+fn presets(hardware: &Hardware, pick_off: u32) -> Result<(), ModelError> {
+    let step = 1_u128.checked_shl(pick_off).unwrap_or(u128::MAX);
+    match hardware.presets.iter().find(|preset| preset.value(step).is_none()) {
+        Some(preset) => Err(ModelError::Value {
+            model: NAME,
+            choice: Choice::Preset,
+            value: preset.to_string(),
+            reason: format!("a preset is a part of a step, from 0 to {}, with pick-off bit {pick_off}", step - 1),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow(NAME, hardware.on_overflow);
+    let m = module.top();
+    let block = Block::new(m);
+    let e = DownCounter::new(m, &block, "e", hardware.bits("e"));
+    let axis = |(i, letter): (usize, &&'static str)| {
+        let scope = m.scope(&format!("axis_{letter}"));
+        let bits = [ACC[i], RATE[i]].map(|name| hardware.bits(name));
+        let acc = PhaseAccumulator::new(scope, &block, letter, bits, hardware.pick_off, hardware.on_overflow);
+        let output = StepOutput::new(scope, letter, hardware.timing, acc.negative());
+        (scope, acc, output)
+    };
+    let axes: Vec<_> = hardware.letters().iter().enumerate().map(axis).collect();
+
+    // An accumulation waits until every step that it makes may be sent.
+    let waiting = axes.iter().map(|(_, acc, output)| acc.steps() & !output.ready()).reduce(|a, b| a | b);
+    let counting = block.busy & e.running();
+    let hold = m.name("hold", waiting.map_or(!counting, |waiting| counting & waiting));
+    let accumulate = m.name("accumulate", counting & !hold);
+    let mut resting = e.count(accumulate);
+    for (i, (scope, acc, output)) in axes.into_iter().enumerate() {
+        let send = scope.name("send", accumulate & acc.steps());
+        axis_counter(scope, &block, POSITION[i], hardware.bits(POSITION[i]), send, acc.negative());
+        acc.close(&block, accumulate);
+        resting = resting & output.close(send);
+    }
+    block.close_behind(block.load, accumulate, block.busy & resting);
+    Ok(module.finish()?)
+}
+
+fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(line) = plan::line(curve) else { return Vec::new() };
+    let k = hardware.bits("e") - 1;
+    let step = 1_u128.checked_shl(u32::try_from(hardware.pick_off).unwrap_or(u32::MAX)).unwrap_or(0);
+    let unit = i128::try_from(step >> k).unwrap_or(0);
+    let mut words: Words = vec![("e", 1 << k)];
+    for (axis, (delta, from)) in line.delta().into_iter().zip(line.from()).enumerate() {
+        let preset = hardware.presets[axis].value(step).unwrap_or(0);
+        words.push((RATE[axis], i128::from(delta) * unit));
+        words.push((ACC[axis], i128::try_from(preset).unwrap_or(0)));
+        words.push((POSITION[axis], i128::from(*from)));
+    }
+    vec![words]
+}
