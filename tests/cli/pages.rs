@@ -8,9 +8,9 @@ use super::{Folder, engines, good};
 
 const COMMANDS: [&str; 7] = ["list", "run", "diff", "export", "golden", "completions", "man"];
 
-const RUN_OPTIONS: &str = "--from --to --center --cw --ccw --width --preset --normalize --end-point --form --beats \
-    --on-overflow --clock-hz --blu --engine --vcd --trace --trace-exclude --trace-depth --trace-from --trace-to --trace-on \
-    --no-clk --steps --json --plot --bits --help";
+const RUN_OPTIONS: &str = "--from --to --center --cw --ccw --width --preset --normalize --end-point --form --compare \
+    --pick-off --timing --beats --on-overflow --clock-hz --blu --engine --vcd --trace --trace-exclude --trace-depth \
+    --trace-from --trace-to --trace-on --no-clk --steps --json --plot --bits --help";
 
 /// The options that a text speaks of.
 fn options(text: &str) -> BTreeSet<String> {
@@ -99,6 +99,65 @@ fn the_list_names_every_model_with_its_registers_and_options() {
 }
 
 #[test]
+fn the_list_groups_its_models_by_method_under_one_heading_each() {
+    let list = good("list");
+    let models: Vec<Value> = serde_json::from_str(&good("list --json")).unwrap();
+    let text = |model: &Value, key: &str| model[key].as_str().unwrap().to_owned();
+    let methods: BTreeSet<String> = models.iter().map(|model| text(model, "method")).collect();
+    let lines: Vec<&str> = list.lines().collect();
+    assert_eq!(lines[0], format!("{} models by method", models.len()));
+    let mut seen = 0;
+    for method in &methods {
+        let of_method = |model: &&Value| text(model, "method") == *method;
+        let names: Vec<String> = models.iter().filter(of_method).map(|model| text(model, "name")).collect();
+        // In the overview, with its models.
+        let overview =
+            lines.iter().filter(|line| line.trim_end().ends_with(&names.join(", ")) && line.contains(method));
+        assert_eq!(overview.count(), 1, "{method}: {list}");
+        // As a heading, with a rule of the same length below.
+        let headings: Vec<usize> = (0..lines.len()).filter(|&at| lines[at] == method).collect();
+        let [heading] = headings[..] else { panic!("{method} heads {} parts", headings.len()) };
+        assert_eq!(lines[heading + 1], "─".repeat(method.chars().count()));
+        // Its models, in order, up to the next heading.
+        let part = lines[heading + 2..].iter().take_while(|line| line.is_empty() || line.starts_with(' '));
+        let titles: Vec<&&str> = part.filter(|line| line.starts_with("  ") && !line.starts_with("   ")).collect();
+        assert_eq!(titles.len(), names.len(), "{method}: {titles:?}");
+        for (title, name) in titles.iter().zip(&names) {
+            assert!(title.starts_with(&format!("  {name}  ")), "{title}");
+        }
+        seen += names.len();
+    }
+    assert_eq!(seen, models.len());
+}
+
+#[test]
+fn registers_and_options_of_the_list_stand_in_columns() {
+    let list = good("list");
+    let models: Vec<Value> = serde_json::from_str(&good("list --json")).unwrap();
+    let mut columns = BTreeSet::new();
+    for model in &models {
+        for (kind, fields) in [("registers", ["name", "default_width"]), ("options", ["option", "values"])] {
+            for entry in model[kind].as_array().unwrap() {
+                let [name, next] = fields.map(|field| entry[field].as_str().unwrap());
+                let shown = list.lines().filter(|line| {
+                    let rest = line.strip_prefix("      ").and_then(|line| line.strip_prefix(name));
+                    rest.is_some_and(|rest| rest.starts_with("  ") && rest.trim_start().starts_with(next))
+                });
+                let places: BTreeSet<usize> = shown
+                    .map(|line| {
+                        let behind: String = line.chars().skip(6 + name.chars().count()).collect();
+                        line.chars().count() - behind.trim_start().chars().count()
+                    })
+                    .collect();
+                assert!(!places.is_empty(), "{entry} is not in the list");
+                columns.extend(places);
+            }
+        }
+    }
+    assert_eq!(columns.len(), 1, "one column for all widths and values: {columns:?}");
+}
+
+#[test]
 fn the_list_tells_which_choices_a_model_takes() {
     // A choice in the list is taken, one that is not there is refused.
     let values = [
@@ -107,6 +166,9 @@ fn the_list_tells_which_choices_a_model_takes() {
         ("--normalize", ""),
         ("--end-point", "total"),
         ("--form", "signed"),
+        ("--compare", "ge"),
+        ("--pick-off", "40"),
+        ("--timing", "length=3"),
         ("--beats", "1"),
         ("--on-overflow", "wrap"),
     ];
