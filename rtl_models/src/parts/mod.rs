@@ -14,6 +14,7 @@ mod integrator;
 mod line_frame;
 mod normalizer;
 mod quadrant;
+mod rate_multiplier;
 mod sign;
 
 pub use arc_frame::{ArcFrame, square_gain};
@@ -29,6 +30,7 @@ pub use integrator::integrator;
 pub use line_frame::LineFrame;
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
 pub use quadrant::{Kind, next_quadrant, quadrant_register, x_grows};
+pub use rate_multiplier::{RateMultiplier, Units};
 pub use sign::{magnitude, negated};
 
 #[cfg(test)]

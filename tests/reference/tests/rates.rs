@@ -2,8 +2,8 @@
 //! claims.
 
 use super::super::{
-    AXES, EndPoint, bresenham, dda_arc, dda_helix, dda_line, dda_line_decimal, dpm_line, dpm_line_decade,
-    dpm_line_override, helix_words, stepgen,
+    AXES, EndPoint, bresenham, dda_arc, dda_helix, dda_line, dda_line_decimal, dpm_line, dpm_line_cascade,
+    dpm_line_decade, dpm_line_override, helix_words, stepgen,
 };
 use super::{assert_pulses_make_the_path, end_of, lattice_arcs, pulse_steps};
 
@@ -77,6 +77,24 @@ fn the_worst_deviation_is_that_of_the_closed_form() {
         // 18·2^n·((3n + 7)/18 + sign/(9·2^n)).
         let closed = (3 * i64::from(n) + 7) * modulus + 2 * sign;
         assert_eq!(18 * worst_deviation(n), closed, "n = {n}");
+    }
+}
+
+#[test]
+fn cascaded_units_give_the_pulses_of_one_unit_of_all_their_bits() {
+    for (units, bits) in [(1, 3), (2, 1), (2, 2), (3, 1), (2, 3), (3, 2), (4, 2), (6, 1)] {
+        let limit = 1_i64 << (units * bits);
+        for c in 0..limit {
+            let to = [c, 1 - limit + c / 3];
+            let (cascade, one) = (dpm_line_cascade(units, bits, &[0, 0], &to), dpm_line(units * bits, &[0, 0], &to));
+            assert_eq!(cascade.path(), one.path());
+            assert_pulses_make_the_path(&cascade);
+            // The units hold the count of the one, the first its lowest bits.
+            for (row, q) in cascade.rows.iter().zip(one.column("q")) {
+                let counters = row[..usize::try_from(units).expect("small")].iter().rev();
+                assert_eq!(counters.fold(0, |whole, unit| (whole << bits) + unit), q);
+            }
+        }
     }
 }
 
