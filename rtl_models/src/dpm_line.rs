@@ -34,6 +34,7 @@
 //! 10^(digits) clocks. A decade has a pulse train for each bit of a digit: bit 8 in the counts 0 to 3 and 5 to 8, bit 4 in
 //! 1, 3, 5, 7, bit 2 in 2, 6, bit 1 in 4, and none in 9, where the next decade counts. Trains that meet (8 and 4, 8 and 2)
 //! belong to no common digit. These counts are a definition of this project; other decade rate multipliers choose others.
+//! An axis stands up to 7k/9 + 56/81·(1 - 10^(-k)) pulses off its place with k digits, and so far where all of them are 7.
 //!
 //! **Feed override** (`--override PERCENT`, the *multiply* mode). Two decade units count every clock and gate their
 //! pulses by the digits of the percentage; the line's own counter takes a step at their pulses only. A block needs about
@@ -122,12 +123,10 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     hardware.stall_clocks = clocks.saturating_mul(slower).saturating_add(16);
     hardware.scale = &["m"];
     hardware.pace = Pace::Cycle(COEFFICIENT[0]);
-    if units.radix == Radix::Binary {
-        let bound = rate_bound(n);
-        hardware.rate_bound = Some(bound);
-        // Where all axes should be lies on the line.
-        hardware.error_bound = Some((0..axes).fold(0.0, |sum, _| f64::hypot(sum, bound)));
-    }
+    let bound = rate_bound(units.radix, n);
+    hardware.rate_bound = Some(bound);
+    // The place where all axes should be lies on the line.
+    hardware.error_bound = Some((0..axes).fold(0.0, |sum, _| f64::hypot(sum, bound)));
     Ok(hardware)
 }
 
@@ -197,9 +196,14 @@ fn check_widths(hardware: &Hardware, units: Units) -> Result<(), ModelError> {
 }
 
 /// Greatest deviation of an axis from its uniform rate, in pulses, whatever its coefficient of `n` bits.
-fn rate_bound(n: u32) -> f64 {
-    let n = f64::from(n);
-    (3.0 * n + 7.0) / 18.0 + (-0.5_f64).powf(n) / 9.0
+fn rate_bound(radix: Radix, n: u32) -> f64 {
+    match radix {
+        Radix::Binary => (3.0 * f64::from(n) + 7.0) / 18.0 + (-0.5_f64).powf(f64::from(n)) / 9.0,
+        Radix::Decimal => {
+            let digits = f64::from(n / 4);
+            7.0 * digits / 9.0 + 56.0 / 81.0 * (1.0 - 0.1_f64.powf(digits))
+        }
+    }
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {

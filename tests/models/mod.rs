@@ -7,6 +7,7 @@ mod dda;
 mod dpm;
 mod eight;
 mod ppc;
+mod spacing;
 mod widths;
 
 use std::cell::RefCell;

@@ -16,4 +16,5 @@ mod frames;
 mod integrator;
 mod normalizer;
 mod quadrant;
+mod rate_multiplier;
 mod sign;
