@@ -138,7 +138,7 @@ fn size(choices: &Choices, largest: u64) -> Result<u32, ModelError> {
         return Err(refuse(Choice::Override, percent.to_string(), reason));
     }
     let radix = choices.radix.unwrap_or_default();
-    let unit = units(radix, choices.cascade, 1).bits;
+    let unit = unit(radix, choices.cascade);
     if let (Radix::Decimal, Some(bits)) = (radix, choices.cascade) {
         let reason = "decades are cascaded as they are, 4 bits a unit: leave --cascade or --radix 10 out".to_owned();
         return Err(refuse(Choice::Cascade, bits.get().to_string(), reason));
@@ -159,7 +159,7 @@ fn size(choices: &Choices, largest: u64) -> Result<u32, ModelError> {
             };
             let more = Some(bits.next_multiple_of(unit)).filter(|&more| more <= Width::MAX.get());
             let whole = more.unwrap_or(bits - bits % unit);
-            let reason = format!("it is no whole number of {what}; {whole} is");
+            let reason = format!("it is no whole number of {what}; give --width {whole}");
             Err(refuse(Choice::Width, bits.to_string(), reason))
         }
         Some(bits) => Ok(bits),
@@ -167,32 +167,42 @@ fn size(choices: &Choices, largest: u64) -> Result<u32, ModelError> {
     }
 }
 
+/// What the bits of a counter must be a multiple of.
+fn unit(radix: Radix, cascade: Option<Width>) -> u32 {
+    match radix {
+        Radix::Binary => cascade.map_or(1, Width::get),
+        Radix::Decimal => 4,
+    }
+}
+
 /// The units of a counter of `n` bits.
 fn units(radix: Radix, cascade: Option<Width>, n: u32) -> Units {
-    let bits = match (radix, cascade) {
-        (Radix::Decimal, _) => 4,
-        (Radix::Binary, Some(bits)) => bits.get(),
-        (Radix::Binary, None) => n,
-    };
+    let whole = radix == Radix::Binary && cascade.is_none();
+    let bits = if whole { n } else { unit(radix, cascade) };
     Units { radix, bits, count: n / bits }
 }
 
 /// Coefficients must be as wide as the counter, and units as wide as they are said to be.
 fn check_widths(hardware: &Hardware, units: Units) -> Result<(), ModelError> {
     let counter = hardware.widths.get("q").map_or(units.bits * units.count, |q| q.get());
+    let mut widest = counter;
+    let mut odd = None;
     for (name, width) in &hardware.widths {
         let (wanted, what) = match name.as_str() {
             name if COEFFICIENT.contains(&name) => (counter, "the counter has"),
             name if name != "q" && name.starts_with('q') => (units.bits, "each unit has"),
             _ => continue,
         };
+        if wanted == counter {
+            widest = widest.max(width.get());
+        }
         if width.get() != wanted {
-            let sentence =
-                format!("{NAME}: {name} of {width}, but {what} {wanted}: give one --width N for all of them");
-            return Err(ModelError::Widths(sentence));
+            odd = odd.or(Some(format!("{name} of {width}, but {what} {wanted}")));
         }
     }
-    Ok(())
+    let unit = unit(hardware.radix, hardware.cascade);
+    let all = Some(widest.next_multiple_of(unit)).filter(|&all| all <= Width::MAX.get()).unwrap_or(counter);
+    odd.map_or(Ok(()), |odd| Err(ModelError::Widths(format!("{NAME}: {odd}: give --width {all}"))))
 }
 
 /// Greatest deviation of an axis from its uniform rate, in pulses, whatever its coefficient of `n` bits.

@@ -70,6 +70,8 @@ fn lines_stay_within_the_bounds_of_their_methods() {
         assert!(lines(model) < 1.0, "{model}");
     }
     assert!(lines("mindev-line") <= 0.5);
+    // Two axes, each off by as much as five bits allow.
+    assert!(lines("dpm-line") <= f64::sqrt(2.0) * (22.0 / 18.0 - 1.0 / 288.0));
 }
 
 /// Greatest deviation of any axis from its uniform rate behind any step, over all coefficients of `n` bits or of so many

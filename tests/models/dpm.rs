@@ -161,9 +161,9 @@ fn choices_that_do_not_go_together_are_refused_with_the_way_out() {
         refused(Choices { feed_override: Some(percent), ..usual.clone() }, "leave it out");
     }
     refused(Choices { radix: decimal, cascade: width(4), ..usual.clone() }, "leave --cascade or --radix 10 out");
-    refused(Choices { radix: decimal, width: width(10), ..usual.clone() }, "12 is");
-    refused(Choices { cascade: width(5), width: width(12), ..usual.clone() }, "15 is");
-    refused(Choices { cascade: width(40), width: width(50), ..usual.clone() }, "40 is");
+    refused(Choices { radix: decimal, width: width(10), ..usual.clone() }, "give --width 12");
+    refused(Choices { cascade: width(5), width: width(12), ..usual.clone() }, "give --width 15");
+    refused(Choices { cascade: width(40), width: width(50), ..usual.clone() }, "give --width 40");
     refused(Choices { widths: widths("my", 7), ..usual.clone() }, "my of 7 bits, but the counter has 6");
     refused(Choices { cascade: width(3), widths: widths("q2", 4), ..usual.clone() }, "each unit has 3");
     refused(Choices { normalize: true, ..usual }, "does not take --normalize");

@@ -1,7 +1,7 @@
 //! Whatever widths are chosen, a model builds, or refuses them with the user's way out: its netlist is never wrong.
 
 use stepwave_kernel::Width;
-use stepwave_models::{Beats, Choices, EndPoint, Form, Model, ModelError, catalogue};
+use stepwave_models::{Beats, Choices, EndPoint, Form, Model, ModelError, Radix, catalogue};
 use stepwave_nc::{Conic, Curve, Direction};
 
 use super::{arc, line};
@@ -9,6 +9,7 @@ use super::{arc, line};
 /// Every form of every model: geometry, and the choices beside the widths.
 fn forms(model: &Model) -> Vec<(Curve, Choices)> {
     let curves = match model.name {
+        "dpm-line" => return pulse_multipliers(),
         "dda-line" => vec![line(&[0, 0], &[8, -6]), line(&[1, 2, 3], &[4, -9, 12])],
         name if name.ends_with("line") => vec![line(&[0, 0], &[6, -4])],
         name if name.ends_with("conic") => vec![
@@ -33,6 +34,19 @@ fn forms(model: &Model) -> Vec<(Curve, Choices)> {
         }
     }
     forms
+}
+
+/// One unit, two of three bits, two decades, each with a feed override and without.
+fn pulse_multipliers() -> Vec<(Curve, Choices)> {
+    let units = [
+        Choices::default(),
+        Choices { cascade: Some(Width::new(3).unwrap()), ..Choices::default() },
+        Choices { radix: Some(Radix::Decimal), ..Choices::default() },
+    ];
+    let all = units
+        .into_iter()
+        .flat_map(|units| [None, Some(35)].map(|percent| Choices { feed_override: percent, ..units.clone() }));
+    all.map(|choices| (line(&[0, 0], &[42, -7]), choices)).collect()
 }
 
 #[test]
