@@ -32,6 +32,7 @@ fn measure(worst: &Worst, model: &str, curve: &Curve, choices: &Choices) {
 }
 
 /// Prints the greatest path error; gives it.
+#[allow(clippy::print_stdout)]
 fn report(what: &str, worst: Worst) -> f64 {
     let (error, place, count) = worst.into_inner().unwrap();
     println!("{what:<24} {error:.6} BLU at {place}, of {count}");
