@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use stepwave_kernel::bits::Reading;
 use stepwave_kernel::{OnOverflow, Width};
 
 /// Value that a remainder register J_R starts from.
@@ -93,6 +94,17 @@ pub enum Radix {
 
 impl Named for Radix {
     const ALL: &'static [(&'static str, Radix)] = &[("2", Radix::Binary), ("10", Radix::Decimal)];
+}
+
+impl Radix {
+    /// How registers of this radix are read.
+    #[must_use]
+    pub fn reading(self) -> Reading {
+        match self {
+            Radix::Binary => Reading::Unsigned,
+            Radix::Decimal => Reading::Decimal,
+        }
+    }
 }
 
 /// How an integrator adds.

@@ -32,7 +32,7 @@ use stepwave_nc::Curve;
 
 use crate::choices::{Choice, Choices, EndPoint};
 use crate::error::ModelError;
-use crate::hardware::Hardware;
+use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{Block, Side, comparison_integral};
@@ -70,7 +70,8 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let mut registers = Registers::new(NAME, choices);
     registers.register("f", n + 1).register("a", n).register("b", n).shown("base").end_counters(2, n);
     registers.positions(plan::end_positions(curve));
-    Ok(Hardware { error_bound: Some(1.0), ..registers.hardware(2, EndPoint::PerAxis)? })
+    let hardware = registers.hardware(2, EndPoint::PerAxis)?;
+    Ok(Hardware { error_bound: Some(1.0), pace: Pace::Longest, ..hardware })
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {

@@ -31,8 +31,8 @@ use stepwave_nc::{Curve, Line};
 
 use crate::choices::{Choice, Choices, EndPoint};
 use crate::error::ModelError;
-use crate::hardware::Hardware;
 use crate::hardware::names::{END, JR, JV, LONGEST, POSITION, SIGN};
+use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{Block, DownCounter, Normalizer, axis_counter, integrator, population_count, shifted_left};
@@ -86,7 +86,7 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     registers.positions(plan::end_positions(curve));
     let hardware = registers.integrators(axes, end_point, 1)?;
     let bounded = axes == 2 && end_point == EndPoint::Iterations;
-    Ok(Hardware { error_bound: bounded.then_some(1.0), ..hardware })
+    Ok(Hardware { error_bound: bounded.then_some(1.0), pace: Pace::Cycle(JR[0]), ..hardware })
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {

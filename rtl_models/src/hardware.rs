@@ -17,11 +17,26 @@ pub(crate) mod names {
     pub(crate) const RATE: [&str; 6] = ["ratex", "ratey", "ratez", "ratea", "rateb", "ratec"];
     pub(crate) const COUNTER: [&str; 6] = ["cntx", "cnty", "cntz", "cnta", "cntb", "cntc"];
     pub(crate) const STEPS: [&str; 6] = ["stepsx", "stepsy", "stepsz", "stepsa", "stepsb", "stepsc"];
+    pub(crate) const COEFFICIENT: [&str; 6] = ["mx", "my", "mz", "ma", "mb", "mc"];
     pub(crate) const END: [&str; 6] = ["ex", "ey", "ez", "ea", "eb", "ec"];
     pub(crate) const SIGN: [&str; 6] = ["sx", "sy", "sz", "sa", "sb", "sc"];
     pub(crate) const POSITION: [&str; 6] = super::AXES;
     pub(crate) const LONGEST: [&str; 6] =
         ["x_is_longest", "y_is_longest", "z_is_longest", "a_is_longest", "b_is_longest", "c_is_longest"];
+}
+
+/// How many steps a line takes by its method: the pulses of each axis are to be spread over them evenly.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Pace {
+    /// The axes have no constant rates.
+    #[default]
+    Varying,
+    /// A step is a pulse of one axis.
+    Total,
+    /// A step is a pulse of the longest axis.
+    Longest,
+    /// Once through all numbers of the register of this name; normalised, through those that the longest way needs.
+    Cycle(&'static str),
 }
 
 /// All that fixes a netlist.
@@ -67,6 +82,10 @@ pub struct Hardware {
     pub stall_clocks: u64,
     /// Greatest path error in BLU that the method promises, if it promises one.
     pub error_bound: Option<f64>,
+    /// Steps of a line.
+    pub pace: Pace,
+    /// Greatest deviation of an axis from its uniform rate, in pulses, that the method promises, if it promises one.
+    pub rate_bound: Option<f64>,
     /// Beginnings of the names of registers that share one scale and are widened together.
     pub scale: &'static [&'static str],
 }
@@ -83,6 +102,19 @@ impl Hardware {
     #[must_use]
     pub fn modulus(&self, bits: u32) -> u128 {
         modulus(self.radix, bits)
+    }
+
+    /// Steps that a line of these ways, in BLU, takes by the method; `None` where the axes have no constant rates.
+    #[must_use]
+    pub fn steps(&self, ways: &[u64]) -> Option<u128> {
+        let longest = ways.iter().copied().max().unwrap_or(0);
+        match self.pace {
+            Pace::Varying => None,
+            Pace::Total => Some(ways.iter().map(|&way| u128::from(way)).sum()),
+            Pace::Longest => Some(longest.into()),
+            Pace::Cycle(_) if self.normalize => Some(1 << Width::needed_unsigned(longest.into())),
+            Pace::Cycle(register) => Some(self.modulus(self.bits(register))),
+        }
     }
 
     /// Preset of an axis's remainder register, in that register. A value that does not fit is kept, so that loading it
@@ -106,6 +138,8 @@ impl Hardware {
     pub fn widening(&self, register: &str, bits: u32, all: u32) -> String {
         let room = register.strip_prefix("jv").map(|axis| self.bits(&format!("jr{axis}")));
         let fits = room.is_some_and(|room| bits <= room) && !self.normalize;
+        // Whole units of a pulse multiplier.
+        let all = self.cascade.map_or(all, |unit| all.next_multiple_of(unit.get()));
         if self.shares_scale(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
     }
 

@@ -22,6 +22,7 @@ pub mod cim_conic;
 pub mod cim_line;
 pub mod dda_arc;
 pub mod dda_line;
+pub mod dpm_line;
 pub mod mindev_arc;
 pub mod mindev_line;
 pub mod parts;
@@ -44,7 +45,7 @@ mod words;
 
 pub use choices::{Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Named, Preset, Radix, StepTiming, Weights};
 pub use error::ModelError;
-pub use hardware::{AXES, Hardware};
+pub use hardware::{AXES, Hardware, Pace};
 pub use machine::{Machine, Port, Words};
 pub use model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 pub use stepwave_kernel::OnOverflow;
@@ -58,6 +59,7 @@ pub fn catalogue() -> &'static [Model] {
         ppc_conic::MODEL,
         dda_line::MODEL,
         dda_arc::MODEL,
+        dpm_line::MODEL,
         cim_line::MODEL,
         cim_arc::MODEL,
         cim_conic::MODEL,

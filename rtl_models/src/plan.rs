@@ -5,7 +5,7 @@ use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Curve, Helix, Line, Sector,
 
 use crate::choices::{Choice, Choices, EndPoint, Named};
 use crate::error::ModelError;
-use crate::hardware::Hardware;
+use crate::hardware::{Hardware, Pace};
 use crate::registers::Registers;
 
 /// The line of a curve; `Model::plan` has checked that it is one.
@@ -153,7 +153,7 @@ pub(crate) fn judged_line(
     }
     registers.register("f", n + deviation).register("e", n);
     registers.positions(end_positions(curve));
-    registers.hardware(2, EndPoint::Longest)
+    Ok(Hardware { pace: Pace::Longest, ..registers.hardware(2, EndPoint::Longest)? })
 }
 
 /// The end-point scheme chosen, which must be among those that the model takes.

@@ -32,7 +32,7 @@ use stepwave_nc::{Curve, Line};
 
 use crate::choices::{Choice, Choices, EndPoint, Form};
 use crate::error::ModelError;
-use crate::hardware::Hardware;
+use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{BeatRing, Block, DeviationAccumulator, DownCounter, axis_counter};
@@ -87,7 +87,7 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
         _ => registers.register("e", n + 1),
     };
     registers.positions(plan::end_positions(curve));
-    Ok(Hardware { error_bound: Some(1.0), ..registers.hardware(2, end_point)? })
+    Ok(Hardware { error_bound: Some(1.0), pace: Pace::Total, ..registers.hardware(2, end_point)? })
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {

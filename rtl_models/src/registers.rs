@@ -6,7 +6,7 @@ use stepwave_kernel::Width;
 
 use crate::choices::{Choice, Choices, EndPoint, Radix};
 use crate::error::ModelError;
-use crate::hardware::{AXES, Hardware};
+use crate::hardware::{AXES, Hardware, Pace};
 
 /// Collects the registers of a model in the order of its step table.
 pub(crate) struct Registers<'a> {
@@ -138,6 +138,8 @@ impl<'a> Registers<'a> {
             table: self.table.clone(),
             stall_clocks: 16,
             error_bound: None,
+            pace: Pace::default(),
+            rate_bound: None,
             scale: &[],
         })
     }

@@ -7,7 +7,9 @@ use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::models::find;
 use stepwave::report::plot::Plot;
 use stepwave::report::{self, CsvTable, Report, TEXTBOOK_STEPS, TextbookTable};
-use stepwave::testbench::{Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, Step, Testbench};
+use stepwave::testbench::{
+    Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, Step, Testbench,
+};
 
 use super::geometry::curve;
 use super::progress::Progress;
@@ -59,9 +61,10 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let mut picture = plot.map(|sink| (Picture(Plot::new(&curve)), sink));
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
     let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.outputs.bits));
-    let mut progress = Progress::new();
+    let (mut spacing, mut progress) = (SpacingWatch::new(&bench, &curve), Progress::new());
 
-    let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut ranges, &mut path, &mut table, &mut progress];
+    let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut ranges, &mut path, &mut spacing];
+    observers.extend([&mut table as &mut dyn Observer, &mut progress]);
     observers.extend(waves.iter_mut().flat_map(Waves::observers));
     observers.extend(csv.as_mut().map(|csv| csv as &mut dyn Observer));
     observers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Observer));
@@ -82,6 +85,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         outcome,
         ranges: ranges.finish(),
         worst: path.worst,
+        trains: spacing.finish(),
         overflows: overflow.events(),
         overflow_count: overflow.count,
         clock_hz: args.clock.clock_hz,

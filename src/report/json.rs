@@ -113,6 +113,22 @@ impl Report<'_> {
         let letters = self.hardware.letters();
         let pulses: Map<String, Value> =
             letters.iter().zip(&outcome.pulses).map(|(axis, count)| ((*axis).to_owned(), json!(count))).collect();
+        let axes = || letters.iter().zip(&self.trains);
+        let spacing: Map<String, Value> = axes()
+            .map(|(axis, train)| {
+                let [least, greatest] = [0, 1].map(|end| train.spacing.map(|spacing| spacing[end]));
+                let spacing = json!({ "least": least, "greatest": greatest, "ideal": train.ideal_spacing });
+                ((*axis).to_owned(), spacing)
+            })
+            .collect();
+        let deviations: Map<String, Value> = axes()
+            .filter_map(|(axis, train)| {
+                let deviation = train.deviation?;
+                Some(((*axis).to_owned(), json!({ "greatest": deviation.pulses, "step": deviation.step })))
+            })
+            .collect();
+        let rate_deviation =
+            (!deviations.is_empty()).then(|| json!({ "axes": deviations, "bound": self.hardware.rate_bound }));
         let path_error = self.worst.as_ref().map(|worst| {
             json!({
                 "greatest": worst.error,
@@ -144,6 +160,8 @@ impl Report<'_> {
                 "exact": self.end_exact(),
             },
             "path_error": path_error,
+            "pulse_spacing": spacing,
+            "rate_deviation": rate_deviation,
             "overflow": {
                 "count": self.overflow_count,
                 "events": self.overflows.iter().map(event).collect::<Vec<_>>(),

@@ -9,7 +9,7 @@ use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Hardware, Model};
 use stepwave_nc::Curve;
 
-use crate::testbench::{Ending, Outcome, OverflowEvent, RegisterRange, WorstError};
+use crate::testbench::{Ending, Outcome, OverflowEvent, PulseTrain, RegisterRange, WorstError};
 
 pub use summary::{choices, geometry, title};
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
@@ -34,6 +34,8 @@ pub struct Report<'a> {
     pub ranges: Vec<RegisterRange>,
     /// Greatest path error.
     pub worst: Option<WorstError>,
+    /// The pulses of each axis.
+    pub trains: Vec<PulseTrain>,
     /// The first overflows in full.
     pub overflows: Vec<OverflowEvent>,
     /// Number of overflows.

@@ -107,6 +107,7 @@ impl Report<'_> {
             let at = point(&worst.position);
             let _ = writeln!(text, "greatest path error {:.3} BLU at {at} after step {}", worst.error, worst.step);
         }
+        text += &self.pulse_trains();
         if self.overflow_count > 0 {
             let first = self.overflows.first().map(ToString::to_string).unwrap_or_default();
             let _ = writeln!(text, "{} overflow(s), the first: {first}", self.overflow_count);
@@ -118,6 +119,35 @@ impl Report<'_> {
             .map(|range| format!("{} {}/{}", range.name, self.needed_bits(range), range.width.get()))
             .collect();
         let _ = writeln!(text, "bits needed/given: {}", spare.join(", "));
+        text
+    }
+
+    /// How even the pulses of each axis are.
+    fn pulse_trains(&self) -> String {
+        let axes = || {
+            let pulsing = |&axis: &usize| self.outcome.pulses[axis] > 0;
+            (0..self.trains.len()).filter(pulsing).map(|axis| (&self.trains[axis], self.hardware.letters()[axis]))
+        };
+        let apart = axes().filter_map(|(train, axis)| {
+            let [least, greatest] = train.spacing?;
+            let ideal = train.ideal_spacing.map(|ideal| format!(" (evenly {ideal:.3})")).unwrap_or_default();
+            let range = if least == greatest { least.to_string() } else { format!("{least} to {greatest}") };
+            Some(format!("{axis} {range}{ideal}"))
+        });
+        let off = axes().filter_map(|(train, axis)| {
+            let deviation = train.deviation?;
+            Some(format!("{axis} {:.3} after step {}", deviation.pulses, deviation.step))
+        });
+        let (apart, off): (Vec<_>, Vec<_>) = (apart.collect(), off.collect());
+        let mut text = String::new();
+        if !apart.is_empty() {
+            text += &format!("clocks from pulse to pulse: {}\n", apart.join(", "));
+        }
+        if !off.is_empty() {
+            let bound =
+                self.hardware.rate_bound.map(|bound| format!("; never more than {bound:.3}")).unwrap_or_default();
+            text += &format!("pulses off an even rate: {}{bound}\n", off.join(", "));
+        }
         text
     }
 }

@@ -75,6 +75,9 @@ impl<'a> PathWatch<'a> {
     }
 }
 
+/// What a watch writes down: rows, position, and step and position of the worst error.
+type Gathered = (u64, Vec<i64>, Option<(u64, Vec<i64>)>);
+
 impl Observer for PathWatch<'_> {
     fn wants_steps(&self) -> bool {
         false
@@ -86,9 +89,9 @@ impl Observer for PathWatch<'_> {
     }
 
     fn recall(&mut self, memory: &Memory) {
-        let gathered: Option<(u64, Vec<i64>, Option<(u64, Vec<i64>)>)> = recalled(memory, "path");
+        let gathered: Option<Gathered> = recalled(memory, "path");
         let axes = self.position.len();
-        let fits = |(rows, position, worst): &(u64, Vec<i64>, Option<(u64, Vec<i64>)>)| {
+        let fits = |(rows, position, worst): &Gathered| {
             *rows <= GREATEST && position.len() == axes && worst.as_ref().is_none_or(|(_, at)| at.len() == axes)
         };
         if let Some((rows, position, worst)) = gathered.filter(fits) {

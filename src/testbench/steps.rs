@@ -26,9 +26,9 @@ pub struct Step {
 /// Columns of the nets that make the step table.
 #[derive(Clone, Debug)]
 pub(super) struct StepColumns {
-    loaded: usize,
-    stepped: usize,
-    pulses: Vec<usize>,
+    pub(super) loaded: usize,
+    pub(super) stepped: usize,
+    pub(super) pulses: Vec<usize>,
     pub(super) positions: Vec<usize>,
     table: Vec<usize>,
 }

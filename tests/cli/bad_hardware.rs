@@ -64,6 +64,15 @@ fn the_width_that_a_message_advises_is_taken() {
         ("dda-line --to 8,6 --normalize", "3"),
         ("dda-line --to 8,6 --preset jry=16", "4"),
         ("dda-line --to 8,6,3 --preset 99 --end-point per-axis", "4"),
+        ("dpm-line --to 37,5", "4"),
+        ("dpm-line --to 37,5", "m=7"),
+        ("dpm-line --to 37,5", "q=5"),
+        ("dpm-line --to 37,5 --cascade 4", "4"),
+        ("dpm-line --to 37,5 --cascade 4", "9"),
+        ("dpm-line --to 37,5 --cascade 4", "my=9"),
+        ("dpm-line --to 37,5 --cascade 4", "q2=3"),
+        ("dpm-line --to 37,5 --radix 10", "4"),
+        ("dpm-line --to 37,5 --radix 10", "6"),
         ("dda-arc --from 6,6 --to -6,6 --ccw", "2"),
         ("dda-arc --from 4,3 --to 0,5 --ccw", "jvx=2"),
         ("dda-arc --from 6,2 --to 2,6 --ccw --preset 3", "jv=2,jr=3"),
@@ -89,6 +98,18 @@ fn integrators_that_do_not_fit_each_other_are_refused() {
     run_refused("dda-line --to 8,6 --width jr=3", &["jvx of 4 bits", "jrx of 3 bits", "--width"]);
     run_refused("dda-line --to 8,6 --width jrx=5", &["jry of 4 bits and jrx of 5 bits", "same width"]);
     run_refused("dda-line --to 8,6 --normalize --width jr=6,e=7", &["jvx of 4 bits", "jrx of 6 bits", "as wide as"]);
+}
+
+#[test]
+fn units_of_a_pulse_multiplier_that_do_not_go_together_are_refused() {
+    run_refused("dpm-line --to 37,5 --radix 10 --cascade 4", &["--cascade 4", "leave --cascade or --radix 10 out"]);
+    run_refused("dpm-line --to 37,5 --cascade 5 --width 12", &["--width 12", "units of 5 bits", "give --width 15"]);
+    run_refused("dpm-line --to 37,5 --width 8,my=7", &["my of 7 bits, but the counter has 8", "give --width 8"]);
+    let wide = "dpm-line --to 1000000000000,3 --cascade 33";
+    run_refused(wide, &["--cascade 33", "66 bits", "1 to 64 bits", "units of fewer bits"]);
+    for percent in ["0", "100", "-5", "x"] {
+        run_refused(&format!("dpm-line --to 5,3 --override={percent}"), &[percent, "percentage from 1 to 99"]);
+    }
 }
 
 #[test]

@@ -5,9 +5,10 @@ use serde_json::{Value, json};
 use super::{Folder, engines};
 
 /// Runs of more than 2^17 clocks: a state is kept every 2^16.
-const LONG: [&str; 4] = [
+const LONG: [&str; 5] = [
     "dda-line --to 120000,-90000 --width 18",
     "ppc-line --to -30000,20000 --from 5,7",
+    "dpm-line --to 120000,-43691 --override 70",
     // Loaded anew in every quadrant.
     "dda-arc --from 30000,0 --to 30000,0 --ccw --preset half --width 16",
     // More overflows than are told in full.
@@ -119,6 +120,15 @@ fn whatever_stands_in_a_file_of_states_nothing_panics() {
         "/memory/path/1",
         "/memory/path/2/1",
         "/memory/ranges",
+        "/memory/spacing/0",
+        "/memory/spacing/1",
+        "/memory/spacing/2",
+        "/memory/spacing/3",
+        "/memory/spacing/3/0/0",
+        "/memory/spacing/3/0/1",
+        "/memory/spacing/3/0/2/0",
+        "/memory/spacing/3/0/2/1",
+        "/memory/spacing/3/0/3/0",
         "/memory/overflows/0",
     ] {
         for value in [json!(u64::MAX), json!([]), json!([1, 2, 3]), json!({}), json!(-1), json!("x"), json!(1e300)] {

@@ -69,6 +69,18 @@ fn dda_lines_run_in_two_to_six_axes() {
 }
 
 #[test]
+fn pulse_multipliers_of_every_kind_run_in_two_to_six_axes() {
+    for to in ["8,6", "-37,5,0", "99,-1,2,-3,4,-63"] {
+        let shown = format!("({})", to.replace(',', ", "));
+        for units in ["", " --cascade 3", " --radix 10"] {
+            let printed = reaches(&format!("dpm-line --to {to}{units}"), &shown);
+            assert!(printed.contains("\npulses off an even rate: x "), "{printed}");
+            reaches(&format!("dpm-line --to {to}{units} --override 77"), &shown);
+        }
+    }
+}
+
+#[test]
 fn a_line_from_a_start_point_moves_the_machine_from_there() {
     let table = Csv::of("dda-line --from 10,-20 --to 12,-17");
     assert_eq!((table.path()[0], table.path().last()), ((10, -20), Some(&(12, -17))));

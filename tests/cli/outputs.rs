@@ -30,7 +30,9 @@ fn json_to_standard_output_is_the_report_and_nothing_else() {
         "model",
         "overflow",
         "path_error",
+        "pulse_spacing",
         "pulses",
+        "rate_deviation",
         "registers",
         "schema",
         "steps",
@@ -53,6 +55,12 @@ fn json_to_standard_output_is_the_report_and_nothing_else() {
     let error = &report["path_error"];
     assert!((error["greatest"].as_f64().unwrap() - 4.0 / 52f64.sqrt()).abs() < 1e-12, "{error}");
     assert_eq!((&error["step"], &error["position"], &error["within_bound"]), (&json!(1), &json!([1, 0]), &json!(true)));
+    // X in the steps 1, 3, 5, 6, 8, 10 and Y in the others, of four clocks each.
+    let spacing = json!({ "x": { "least": 4, "greatest": 8, "ideal": 40.0 / 6.0 },
+                          "y": { "least": 8, "greatest": 12, "ideal": 10.0 } });
+    assert_eq!(report["pulse_spacing"], spacing);
+    let off = json!({ "greatest": 0.4, "step": 1 });
+    assert_eq!(report["rate_deviation"], json!({ "axes": { "x": off, "y": off }, "bound": null }));
     let per_step = report["feed"]["mean_per_step"].as_f64().unwrap();
     assert!((per_step - 52f64.sqrt() / 10.0).abs() < 1e-12, "{per_step}");
 }
@@ -63,6 +71,8 @@ fn the_report_of_an_arc_gives_centre_direction_and_radius() {
         serde_json::from_str(&good("run dda-arc --from 15,10 --to 10,15 --center 10,10 --ccw --json -")).unwrap();
     let geometry = &report["geometry"];
     assert_eq!((&geometry["curve"], &geometry["center"]), (&json!("arc"), &json!([10, 10])));
+    assert_eq!(report["rate_deviation"], Value::Null);
+    assert_eq!(report["pulse_spacing"]["x"]["ideal"], Value::Null);
     assert_eq!((&geometry["radius"], &geometry["direction"]), (&json!(5.0), &json!("counter-clockwise")));
 }
 

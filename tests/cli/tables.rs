@@ -226,3 +226,42 @@ fn minimum_deviation_line_to_5_3() {
     assert_eq!(table.column("f"), [1, -3, 3, -1, 5, 1]);
     assert_eq!((table.pulses("x"), table.pulses("y")), (vec![1, 2, 3, 4, 5], vec![1, 3, 5]));
 }
+
+#[test]
+fn pulse_multiplier_to_5_3_in_three_bits() {
+    let table = on_every_engine("dpm-line --to 5,3 --width 3");
+    assert_eq!(table.heading.join(","), "step,clock,q,mx,my,dx,dy,x,y");
+    assert_eq!((table.pulses("x"), table.pulses("y")), (vec![1, 3, 4, 5, 7], vec![2, 4, 6]));
+    assert_eq!(table.column("q"), [0, 1, 2, 3, 4, 5, 6, 7, 0]);
+    assert_eq!(table.path().last(), Some(&(5, 3)));
+}
+
+#[test]
+fn pulse_multiplier_of_one_decade() {
+    // 8 in the counts 0 to 3 and 5 to 8; 7 = 4 + 2 + 1 in 1, 3, 5, 7 and 2, 6 and 4. The clock is one more than the count.
+    let table = on_every_engine("dpm-line --to 8,-7 --radix 10");
+    assert_eq!((table.pulses("x"), table.pulses("y")), (vec![1, 2, 3, 4, 6, 7, 8, 9], vec![2, 3, 4, 5, 6, 7, 8]));
+    assert_eq!(table.column("q"), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0]);
+}
+
+#[test]
+fn pulse_multiplier_of_two_units_of_two_bits() {
+    // 11 = 10|11: every second clock, and of the second unit its own first and second stage: 4, 12 and 8.
+    let table = on_every_engine("dpm-line --to 11,6 --cascade 2");
+    assert_eq!(table.heading.join(","), "step,clock,q1,q2,mx,my,dx,dy,x,y");
+    assert_eq!(table.pulses("x"), [1, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15]);
+    assert_eq!(table.pulses("y"), [2, 4, 6, 10, 12, 14]);
+    assert_eq!(table.column("q1"), [0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0]);
+    assert_eq!(table.column("q2"), [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 0]);
+}
+
+#[test]
+fn pulse_multiplier_at_35_per_cent() {
+    // 3 = 2 + 1 in the counts 2, 4, 6 of every ten, and 5 = 4 + 1 in the counts 1, 3, 4, 5, 7 of the second decade.
+    let table = on_every_engine("dpm-line --to 5,3 --width 3 --override 35");
+    let clocks = table.column("clock");
+    assert_eq!(clocks[0], 1);
+    assert_eq!(clocks[1..].iter().map(|clock| clock - 1).collect::<Vec<_>>(), [3, 5, 7, 13, 15, 17, 20, 23]);
+    assert_eq!(table.column("o"), [0, 3, 5, 7, 13, 15, 17, 20, 23]);
+    assert_eq!((table.pulses("x"), table.pulses("y")), (vec![1, 3, 4, 5, 7], vec![2, 4, 6]));
+}

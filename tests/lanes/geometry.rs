@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use stepwave::testbench::{Ending, LaneOutcome, Observer, ObserverError, Testbench};
 use stepwave_kernel::engine::{EngineKind, Rows};
 use stepwave_kernel::{OnOverflow, Width};
-use stepwave_models::{Beats, Choices, EndPoint, ModelError, Preset, find};
+use stepwave_models::{Beats, Choices, EndPoint, ModelError, Preset, Radix, find};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
 
 const LIMIT: u64 = 1 << 20;
@@ -104,6 +104,19 @@ fn every_line_of_up_to_five_bits_in_all_quadrants_ends_as_alone() {
     let curves = lines(5);
     assert!(all_done(&assert_each_as_alone("dda-line", &curves, &choices(5, 7))));
     assert!(all_done(&assert_each_as_alone("ppc-line", &curves, &choices(5, 7))));
+}
+
+#[test]
+fn every_line_of_the_pulse_multiplier_ends_as_alone() {
+    let units = [
+        choices(4, 6),
+        Choices { cascade: Some(width(2)), ..choices(4, 6) },
+        Choices { radix: Some(Radix::Decimal), ..choices(8, 6) },
+        Choices { feed_override: Some(35), ..choices(5, 6) },
+    ];
+    for choices in units {
+        assert!(all_done(&assert_each_as_alone("dpm-line", &lines(4), &choices)), "{choices:?}");
+    }
 }
 
 #[test]

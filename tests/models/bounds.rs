@@ -4,9 +4,11 @@
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use std::sync::Mutex;
 
-use stepwave::testbench::{Ending, Observer, PathWatch};
+use rayon::prelude::*;
+use stepwave::testbench::{Ending, Observer, ObserverError, PathWatch, SpacingWatch, Step};
+use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Beats, Choices, Compare, EndPoint, Form, Preset, Weights, find};
+use stepwave_models::{Beats, Choices, Compare, EndPoint, Form, Preset, Radix, Weights, find};
 use stepwave_nc::Curve;
 
 use super::{arc, bench, every_lattice_arc, every_line, line};
@@ -31,6 +33,7 @@ fn measure(worst: &Worst, model: &str, curve: &Curve, choices: &Choices) {
 }
 
 /// Prints the greatest path error; gives it.
+#[allow(clippy::print_stdout)]
 fn report(what: &str, worst: Worst) -> f64 {
     let (error, place, count) = worst.into_inner().unwrap();
     println!("{what:<24} {error:.6} BLU at {place}, of {count}");
@@ -72,6 +75,76 @@ fn lines_stay_within_the_bounds_of_their_methods() {
         assert!(lines(model) < 1.0, "{model}");
     }
     assert!(lines("mindev-line") <= 0.5);
+    // Two axes, each off by as much as five bits allow.
+    assert!(lines("dpm-line") <= f64::sqrt(2.0) * (22.0 / 18.0 - 1.0 / 288.0));
+}
+
+/// Greatest deviation of any axis from its uniform rate behind any step, over all coefficients of `n` bits or of so many
+/// digits, in pulses times the steps of a block: six coefficients a run. What the report says must be the same.
+#[allow(clippy::cast_precision_loss)]
+fn worst_rate_deviation(choices: &Choices, steps: i64) -> i64 {
+    let worst = Mutex::new(0);
+    let runs = (0..steps).step_by(6).collect::<Vec<_>>();
+    runs.into_par_iter().for_each(|first| {
+        let ways: Vec<i64> = (0..6).map(|axis| (first + axis).min(steps - 1)).collect();
+        let curve = line(&[0; 6], &ways);
+        let bench = bench("dpm-line", &curve, choices);
+        let (mut rows, mut spacing) =
+            (Farthest { ways: &ways, steps, worst: vec![0; 6] }, SpacingWatch::new(&bench, &curve));
+        let outcome = bench.run(EngineKind::Word, &mut [&mut rows, &mut spacing]).unwrap();
+        assert_eq!((outcome.ending, i64::try_from(outcome.steps).unwrap()), (Ending::Done, steps));
+        for (train, off) in spacing.finish().iter().zip(&rows.worst) {
+            let reported = train.deviation.unwrap().pulses * steps as f64;
+            assert!((reported - *off as f64).abs() < 1e-9, "{reported} for {off} / {steps}");
+            assert!(train.deviation.unwrap().pulses <= bench.hardware().rate_bound.unwrap() + 1e-12);
+        }
+        let mut worst = worst.lock().unwrap();
+        *worst = rows.worst.into_iter().fold(*worst, i64::max);
+    });
+    worst.into_inner().unwrap()
+}
+
+/// How far each axis is off behind any row of the step table.
+struct Farthest<'a> {
+    ways: &'a [i64],
+    steps: i64,
+    worst: Vec<i64>,
+}
+
+impl Observer for Farthest<'_> {
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        let t = i64::try_from(step.number)?;
+        for ((worst, way), position) in self.worst.iter_mut().zip(self.ways).zip(&step.position) {
+            *worst = (position * self.steps - way * t).abs().max(*worst);
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn the_worst_deviation_of_a_pulse_multiplier_is_that_of_the_closed_form() {
+    for n in 1..=11 {
+        let steps = 1_i64 << n;
+        let choices = Choices { width: Some(Width::new(n).unwrap()), ..Choices::default() };
+        let worst = worst_rate_deviation(&choices, steps);
+        // Times 18·2^n: (3n + 7)/18 + (-1)^n/(9·2^n).
+        let n = i64::try_from(n).unwrap();
+        let closed = (3 * n + 7) * steps + if n % 2 == 0 { 2 } else { -2 };
+        assert_eq!(18 * worst, closed, "n = {n}");
+    }
+}
+
+#[test]
+fn the_worst_deviation_of_decades_is_that_of_a_number_of_sevens() {
+    // Digit 7 has all its pulses in the counts 1 to 7, so that 8 clocks bring 1.4 more than 8·0.7.
+    for (digits, literal) in [(1, 14), (2, 224), (3, 3024)] {
+        let (width, steps) = (Some(Width::new(4 * digits).unwrap()), 10_i64.pow(u32::try_from(digits).unwrap()));
+        let choices = Choices { width, radix: Some(Radix::Decimal), ..Choices::default() };
+        let worst = worst_rate_deviation(&choices, steps);
+        assert_eq!(worst, literal);
+        // Times 81·10^k: 7k/9 + 56/81·(1 - 10^(-k)).
+        assert_eq!(81 * worst, 63 * i64::try_from(digits).unwrap() * steps + 56 * (steps - 1));
+    }
 }
 
 #[test]

@@ -66,8 +66,11 @@ pub(super) fn every_quarter_ellipse(limit: i64, check: impl Fn(&Case) + Sync) {
     });
 }
 
+/// Where a curve opens, and where that takes a point of one that opens in the direction +x.
+type Image = (Opens, fn([i64; 2]) -> [i64; 2]);
+
 /// The four images of a curve that opens to +x: where each opens to, and where a point goes.
-fn images() -> [(Opens, fn([i64; 2]) -> [i64; 2]); 4] {
+fn images() -> [Image; 4] {
     [
         (Opens::PlusX, |p| p),
         (Opens::MinusX, |[x, y]| [-x, y]),

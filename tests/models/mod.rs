@@ -4,9 +4,11 @@ mod bounds;
 mod cim;
 mod conics;
 mod dda;
+mod dpm;
 mod eight;
 mod modern;
 mod ppc;
+mod spacing;
 mod widths;
 
 use std::cell::RefCell;
@@ -91,12 +93,15 @@ fn run(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind) -> Ran
     let mut keep = Keep(Vec::new());
     let outcome = bench.run(engine, &mut [&mut keep]).unwrap();
     let letters = bench.hardware().letters();
-    let mut columns: Vec<String> = bench.machine().table.iter().map(|(name, _)| name.clone()).collect();
+    // Clocks since the block was loaded, then the registers.
+    let mut columns = vec!["clock".to_owned()];
+    columns.extend(bench.machine().table.iter().map(|(name, _)| name.clone()));
     columns.extend(letters.iter().map(|axis| format!("d{axis}")));
     columns.extend(letters.iter().map(|axis| (*axis).to_owned()));
     let row = |step: Step| {
         let registers = step.registers.iter().map(|&value| i64::try_from(value).unwrap());
-        registers.chain(step.pulses).chain(step.position).collect()
+        let clock = i64::try_from(step.clock).unwrap() - 1;
+        [clock].into_iter().chain(registers).chain(step.pulses).chain(step.position).collect()
     };
     Ran { columns, rows: keep.0.into_iter().map(row).collect(), outcome }
 }

@@ -1,7 +1,9 @@
 //! Whatever widths are chosen, a model builds, or refuses them with the user's way out: its netlist is never wrong.
 
 use stepwave_kernel::Width;
-use stepwave_models::{Beats, Choices, Compare, EndPoint, Form, Model, ModelError, OnOverflow, StepTiming, catalogue};
+use stepwave_models::{
+    Beats, Choices, Compare, EndPoint, Form, Model, ModelError, OnOverflow, Radix, StepTiming, catalogue,
+};
 use stepwave_nc::{Conic, Curve, Direction};
 
 use super::{arc, line};
@@ -10,6 +12,7 @@ use super::{arc, line};
 fn forms(model: &Model) -> Vec<(Curve, Choices)> {
     let curves = match model.name {
         "dda-line" | "stepgen" | "bresenham" => vec![line(&[0, 0], &[8, -6]), line(&[1, 2, 3], &[4, -9, 12])],
+        "dpm-line" => return pulse_multipliers(),
         name if name.ends_with("line") => vec![line(&[0, 0], &[6, -4])],
         name if name.ends_with("conic") => vec![
             Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], Direction::CounterClockwise).unwrap().into(),
@@ -49,6 +52,19 @@ fn step_generators() -> Vec<Choices> {
         Choices { pick_off: Some(32), timing: Some(timing), ..Choices::default() },
         Choices { pick_off: Some(4), on_overflow: Some(OnOverflow::Saturate), ..Choices::default() },
     ]
+}
+
+/// One unit, two of three bits, two decades, each with a feed override and without.
+fn pulse_multipliers() -> Vec<(Curve, Choices)> {
+    let units = [
+        Choices::default(),
+        Choices { cascade: Some(Width::new(3).unwrap()), ..Choices::default() },
+        Choices { radix: Some(Radix::Decimal), ..Choices::default() },
+    ];
+    let all = units
+        .into_iter()
+        .flat_map(|units| [None, Some(35)].map(|percent| Choices { feed_override: percent, ..units.clone() }));
+    all.map(|choices| (line(&[0, 0], &[42, -7]), choices)).collect()
 }
 
 #[test]

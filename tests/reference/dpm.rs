@@ -30,6 +30,50 @@ pub(crate) fn dpm_line(n: u32, from: &[i64], to: &[i64]) -> Table {
     table
 }
 
+/// The step table of a straight line in 2 to 6 axes, in BLU, with `units` cascaded binary units of `bits` bits each.
+///
+/// Every unit has a counter of its own and a word of `bits` bits of each |d|: the first, which counts every clock, the
+/// highest ones. A further unit takes part in the clocks that find all units before it at all ones, where these give no
+/// pulse. The carry of the last unit ends the block after 2^(`units`·`bits`) clocks.
+///
+/// The columns are `q1`, `q2`, … (the counters after the clock; `q` where there is but one), then `dx`, `dy`, …, then
+/// `x`, `y`, ….
+///
+/// Source: the method of the digital pulse multiplier, units that add.
+///
+/// # Panics
+/// When the slices differ in length, or a |d| does not fit, or there are no units or more than 30 bits.
+pub(crate) fn dpm_line_cascade(units: u32, bits: u32, from: &[i64], to: &[i64]) -> Table {
+    assert!(units >= 1 && units * bits <= 30, "1 to 30 bits in units");
+    let unit = Binary::new(bits);
+    let mut line = Line::load(from, to, 1 << (units * bits));
+    let names: Vec<String> = match units {
+        1 => vec!["q".to_owned()],
+        _ => (1..=units).map(|index| format!("q{index}")).collect(),
+    };
+    let mut table = Table::new(line.columns(&names.iter().map(String::as_str).collect::<Vec<_>>()));
+    let mut counters = vec![0; names.len()];
+    table.push(&[&counters, &line.pulse, &line.position]);
+    let mut running = true;
+    while running {
+        // The units before the first that is not at all ones go to 0 with it.
+        let last = (1 << bits) - 1;
+        let full = counters.iter().take_while(|&&q| q == last).count();
+        let pulsing = counters.get(full).copied();
+        line.step(|word| {
+            let rank = u32::try_from(full).expect("few units");
+            pulsing.is_some_and(|q| unit.gives((word >> (bits * (units - 1 - rank))) & last, q))
+        });
+        for q in counters.iter_mut().take(full + 1) {
+            *q = unit.next(*q);
+        }
+        running = pulsing.is_some();
+        table.push(&[&counters, &line.pulse, &line.position]);
+    }
+    table.finished = true;
+    table
+}
+
 /// The step table of a straight line in 2 to 6 axes, in BLU, with `digits` cascaded decade units.
 ///
 /// A unit passes as many of its ten clocks as its digit says; see [`decade_gives`]. The first unit,

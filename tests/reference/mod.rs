@@ -10,7 +10,7 @@
 //! - [`dda_line`], [`dda_line_decimal`], [`dda_arc`], [`dda_conic`], [`dda_helix`]: digital
 //!   differential analyser, one accumulation per axis per step, the overflow of the accumulator is
 //!   the pulse.
-//! - [`dpm_line`], [`dpm_line_decade`], [`dpm_line_override`]: digital pulse multiplier, a counter
+//! - [`dpm_line`], [`dpm_line_cascade`], [`dpm_line_decade`], [`dpm_line_override`]: digital pulse multiplier, a counter
 //!   whose stages pass pulses as the bits of a coefficient say.
 //! - [`cim_line`], [`cim_arc`], [`cim_conic`]: comparison-integral method, one axis steps every time
 //!   and the sign of `f` tells whether the other does.
@@ -45,7 +45,7 @@ pub(crate) use dda::{dda_arc, dda_line};
 pub(crate) use dda_conic::dda_conic;
 pub(crate) use dda_decimal::dda_line_decimal;
 pub(crate) use dda_helix::{dda_helix, helix_words};
-pub(crate) use dpm::{dpm_line, dpm_line_decade, dpm_line_override};
+pub(crate) use dpm::{dpm_line, dpm_line_cascade, dpm_line_decade, dpm_line_override};
 pub(crate) use eight_arcs::{mindev_arc, vector_arc};
 pub(crate) use eight_lines::{mindev_line, vector_line};
 pub(crate) use ppc::{ppc_arc, ppc_line};

@@ -1,7 +1,7 @@
 //! The runs whose waves are tested.
 
 use stepwave_kernel::OnOverflow;
-use stepwave_models::{Beats, Choices, EndPoint, Form, Preset};
+use stepwave_models::{Beats, Choices, EndPoint, Form, Preset, Radix};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
 
 use super::GOOD;
@@ -42,6 +42,7 @@ pub(super) fn cases() -> Vec<Case> {
     let ending = |end_point| Choices { end_point: Some(end_point), ..Choices::default() };
     let overflowing = |on_overflow| Choices { on_overflow: Some(on_overflow), ..widths(&[("f", 3)]) };
     let preset = |preset| Choices { preset: Some(preset), ..Choices::default() };
+    let bits = |bits| stepwave_kernel::Width::new(bits).ok();
     let six_axes = [9, -30, 4, 0, -17, 31];
     vec![
         case("line in four beats", "ppc-line", line(&[6, 4]), &usual),
@@ -75,6 +76,19 @@ pub(super) fn cases() -> Vec<Case> {
             "dda-line",
             line(&[3, 2]),
             &Choices { normalize: true, ..widths(&[("jv", 9), ("jr", 9)]) },
+        ),
+        case("pulse multiplier", "dpm-line", line(&[5, -3]), &usual),
+        case(
+            "pulse multiplier of six axes",
+            "dpm-line",
+            line(&six_axes),
+            &Choices { cascade: bits(2), ..usual.clone() },
+        ),
+        case(
+            "decades at 35 per cent",
+            "dpm-line",
+            line(&[42, 7]),
+            &Choices { radix: Some(Radix::Decimal), feed_override: Some(35), ..usual.clone() },
         ),
         case("dda arc", "dda-arc", arc([5, 0], [0, 5], [0, 0], CounterClockwise), &usual),
         case("dda full circle", "dda-arc", arc([0, -9], [0, -9], [0, 0], Clockwise), &preset(Preset::Half)),

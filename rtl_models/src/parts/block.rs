@@ -1,7 +1,9 @@
 //! The block loader: inputs for the words of a block, and the registers that say how far it is.
 
 use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_kernel::netlist::Format;
 
+use crate::choices::Radix;
 use crate::machine::input_name;
 
 /// Block loader and sequencer.
@@ -43,6 +45,15 @@ impl<'m> Block<'m> {
         self.words.input_signed(&input_name(register), bits)
     }
 
+    /// The load word of a register that holds a number in this radix: decimal digits have 4 bits each.
+    #[must_use]
+    pub fn word_in(&self, radix: Radix, register: &str, bits: u32) -> Signal<'m> {
+        match radix {
+            Radix::Binary => self.word(register, bits),
+            Radix::Decimal => self.words.input_decimal(&input_name(register), bits),
+        }
+    }
+
     /// A register that is loaded with its word and holds it for the whole block.
     #[must_use]
     pub fn held(&self, m: Scope<'m>, register: &str, bits: u32) -> Signal<'m> {
@@ -56,6 +67,17 @@ impl<'m> Block<'m> {
     pub fn held_signed(&self, m: Scope<'m>, register: &str, bits: u32) -> Signal<'m> {
         let held = m.reg_signed(register, bits);
         held.when(self.load, self.word_signed(register, bits)).else_hold();
+        held.q
+    }
+
+    /// As [`held`](Block::held), a number in this radix.
+    #[must_use]
+    pub fn held_in(&self, m: Scope<'m>, radix: Radix, register: &str, bits: u32) -> Signal<'m> {
+        let held = match radix {
+            Radix::Binary => m.reg(register, bits),
+            Radix::Decimal => m.reg(register, bits).shown(Format::Decimal),
+        };
+        held.when(self.load, self.word_in(radix, register, bits)).else_hold();
         held.q
     }
 

@@ -15,6 +15,7 @@ mod line_frame;
 mod normalizer;
 mod phase_accumulator;
 mod quadrant;
+mod rate_multiplier;
 mod sign;
 mod step_output;
 
@@ -32,6 +33,7 @@ pub use line_frame::LineFrame;
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
 pub use phase_accumulator::PhaseAccumulator;
 pub use quadrant::{Kind, next_quadrant, quadrant_register, x_grows};
+pub use rate_multiplier::{RateMultiplier, Units};
 pub use sign::{magnitude, negated};
 pub use step_output::{StepOutput, Timer};
 

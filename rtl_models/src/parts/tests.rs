@@ -17,5 +17,6 @@ mod integrator;
 mod normalizer;
 mod phase_accumulator;
 mod quadrant;
+mod rate_multiplier;
 mod sign;
 mod step_output;

@@ -1,8 +1,8 @@
 //! Rate multiplier, decimal and helical integration: worked tables and claims.
 
 use super::super::{
-    AXES, EndPoint, dda_arc, dda_helix, dda_line, dda_line_decimal, dpm_line, dpm_line_decade, dpm_line_override,
-    helix_words,
+    AXES, EndPoint, Table, dda_arc, dda_helix, dda_line, dda_line_decimal, dpm_line, dpm_line_cascade, dpm_line_decade,
+    dpm_line_override, helix_words,
 };
 use super::{assert_pulses_make_the_path, end_of, lattice_arcs, pulse_steps};
 
@@ -51,17 +51,15 @@ fn each_clock_but_the_last_fires_one_stage() {
     assert!(fired.into_iter().all(|count| count == 1));
 }
 
-/// The greatest |pulses - c·t/2^n| behind a clock t = 0 ..= 2^n, in units of 2^-n, over all
-/// coefficients c.
-fn worst_deviation(n: u32) -> i64 {
-    let modulus = 1_i64 << n;
+/// The greatest |pulses - c·t/T| behind a clock t = 0 ..= T, in units of 1/T, over all coefficients c below T, of which
+/// `table` takes two at once.
+fn worst_deviation(clocks: i64, table: impl Fn(&[i64]) -> Table) -> i64 {
     let mut worst = 0;
-    for c in (0..modulus).step_by(2) {
-        // Two coefficients at once.
-        let table = dpm_line(n, &[0, 0], &[c, c + 1]);
+    for c in (0..clocks).step_by(2) {
+        let table = table(&[c, c + 1]);
         for (axis, c) in [("x", c), ("y", c + 1)] {
             for (t, pulses) in (0..).zip(table.column(axis)) {
-                worst = worst.max((pulses * modulus - c * t).abs());
+                worst = worst.max((pulses * clocks - c * t).abs());
             }
         }
     }
@@ -75,7 +73,25 @@ fn the_worst_deviation_is_that_of_the_closed_form() {
         let sign = if n % 2 == 0 { 1 } else { -1 };
         // 18·2^n·((3n + 7)/18 + sign/(9·2^n)).
         let closed = (3 * i64::from(n) + 7) * modulus + 2 * sign;
-        assert_eq!(18 * worst_deviation(n), closed, "n = {n}");
+        assert_eq!(18 * worst_deviation(modulus, |to| dpm_line(n, &[0, 0], to)), closed, "n = {n}");
+    }
+}
+
+#[test]
+fn cascaded_units_give_the_pulses_of_one_unit_of_all_their_bits() {
+    for (units, bits) in [(1, 3), (2, 1), (2, 2), (3, 1), (2, 3), (3, 2), (4, 2), (6, 1)] {
+        let limit = 1_i64 << (units * bits);
+        for c in 0..limit {
+            let to = [c, 1 - limit + c / 3];
+            let (cascade, one) = (dpm_line_cascade(units, bits, &[0, 0], &to), dpm_line(units * bits, &[0, 0], &to));
+            assert_eq!(cascade.path(), one.path());
+            assert_pulses_make_the_path(&cascade);
+            // The units hold the count of the one, the first its lowest bits.
+            for (row, q) in cascade.rows.iter().zip(one.column("q")) {
+                let counters = row[..usize::try_from(units).expect("small")].iter().rev();
+                assert_eq!(counters.fold(0, |whole, unit| (whole << bits) + unit), q);
+            }
+        }
     }
 }
 
@@ -110,6 +126,16 @@ fn decades_give_every_word_exactly() {
     assert_eq!(pulse_steps(&table, "dx")[..10], [2, 4, 6, 8, 12, 14, 16, 18, 22, 24]);
     let units: Vec<usize> = pulse_steps(&table, "dx").into_iter().filter(|clock| clock % 10 == 0).collect();
     assert_eq!(units, [30, 70]);
+}
+
+#[test]
+fn the_worst_deviation_of_decades_is_that_of_the_closed_form() {
+    for digits in 1..=2 {
+        let clocks = 10_i64.pow(digits);
+        // 81·10^k·(7k/9 + 56/81·(1 - 10^(-k))).
+        let closed = 63 * i64::from(digits) * clocks + 56 * (clocks - 1);
+        assert_eq!(81 * worst_deviation(clocks, |to| dpm_line_decade(digits, &[0, 0], to)), closed, "{digits}");
+    }
 }
 
 #[test]

@@ -1,9 +1,11 @@
 //! The block loader and sequencer.
 
+use stepwave_kernel::bits::Reading;
 use stepwave_kernel::dsl::Scope;
 
 use super::super::Block;
 use super::bench::{loader, numbers, on_every_engine};
+use crate::choices::Radix;
 
 fn sequencer(m: Scope<'_>) {
     let block = Block::new(m);
@@ -105,4 +107,28 @@ fn a_held_register_takes_its_word_at_the_load_and_no_other() {
             },
         );
     }
+}
+
+#[test]
+fn a_number_is_held_and_shown_in_its_radix() {
+    on_every_engine(
+        |m| {
+            let block = loader(m);
+            m.name("b", block.held_in(m, Radix::Binary, "binary", 8));
+            m.name("d", block.held_in(m, Radix::Decimal, "decimal", 8));
+        },
+        |bench| {
+            let reading = |name| bench.design().netlist().find(name).unwrap().format.reading();
+            for name in ["binary", "binary_in"] {
+                assert_eq!(reading(name), Reading::Unsigned);
+            }
+            for name in ["decimal", "decimal_in"] {
+                assert_eq!(reading(name), Reading::Decimal);
+            }
+            bench.clock(&[("load", 1), ("binary_in", 0x42), ("decimal_in", 0x42)]);
+            bench.clock(&[("load", 0), ("binary_in", 0), ("decimal_in", 0)]);
+            bench.clock(&[]);
+            assert_eq!((bench.value("b"), bench.value("d")), (0x42, 0x42));
+        },
+    );
 }

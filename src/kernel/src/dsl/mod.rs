@@ -194,6 +194,14 @@ impl<'m> Scope<'m> {
         self.name(name, signal)
     }
 
+    /// An input of decimal digits, 4 bits each.
+    #[track_caller]
+    #[must_use]
+    pub fn input_decimal(self, name: &str, bits: u32) -> Signal<'m> {
+        let signal = self.new_signal(Op::Input, bits, false);
+        self.show(name, signal, Format::Decimal)
+    }
+
     /// An unsigned register, 0 at reset.
     #[track_caller]
     pub fn reg(self, name: &str, bits: u32) -> Register<'m> {

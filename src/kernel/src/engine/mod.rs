@@ -15,6 +15,7 @@ use crate::elaborate::Design;
 use crate::netlist::{Net, Op};
 
 pub use rows::Rows;
+pub(crate) use rows::packed;
 
 /// What an engine is to observe, fixed before it is built so that it can be compiled in.
 #[derive(Clone, Debug, Default)]

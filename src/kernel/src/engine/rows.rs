@@ -72,6 +72,18 @@ impl Rows {
         self.column(column).iter().fold(0, |seen, value| seen | value) != 0
     }
 
+    /// A bit for each of the next 64 rows from `first` on, or of those there are, the first the lowest: 1 where the value
+    /// of a column is not 0.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[inline]
+    #[must_use]
+    pub fn nonzero(&self, column: usize, first: usize) -> u64 {
+        let values = self.column(column).get(first..).unwrap_or_default();
+        dispatch!(self.level, _simd => nonzero(&values[..values.len().min(64)]))
+    }
+
     /// Least and greatest value of a column, all taken with the bits of `turned` turned over; `None` without a row. With
     /// the sign bit turned over, two's complement sorts as unsigned numbers do.
     ///
@@ -171,4 +183,45 @@ impl Rows {
 fn extremes(values: &[u64], turned: u64) -> (u64, u64) {
     let turn = |value: &u64| value ^ turned;
     values.iter().map(turn).fold((u64::MAX, 0), |(least, greatest), value| (least.min(value), greatest.max(value)))
+}
+
+#[inline(always)]
+fn nonzero(values: &[u64]) -> u64 {
+    let mut flags = [0; 64];
+    for (flag, value) in flags.iter_mut().zip(values) {
+        *flag = u8::from(*value != 0);
+    }
+    packed(&flags)
+}
+
+/// Flags of a byte each, 0 or 1, as bits, the first the lowest.
+#[inline(always)]
+pub(crate) fn packed(flags: &[u8; 64]) -> u64 {
+    // Eight of them into eight bits: the product gathers them in its highest byte.
+    let octets = flags.as_chunks::<8>().0.iter().enumerate();
+    octets.fold(0, |bits, (index, octet)| {
+        bits | (u64::from_le_bytes(*octet).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * index)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_whose_value_is_not_0_has_its_bit() {
+        let value = |clock: u64| [0, 1, u64::MAX, 1 << 63][usize::try_from(clock * clock % 11 % 4).unwrap()];
+        let mut rows = Rows::new(2, 150);
+        for clock in 7..137 {
+            rows.push(clock, |column| if column == 0 { clock } else { value(clock) });
+        }
+        for first in [0, 1, 63, 64, 66, 129, 130, 200] {
+            let bits = rows.nonzero(1, first);
+            for index in 0..64 {
+                let row = first + index;
+                let expected = row < rows.len() && value(7 + row as u64) != 0;
+                assert_eq!(bits >> index & 1 == 1, expected, "row {row}");
+            }
+        }
+    }
 }

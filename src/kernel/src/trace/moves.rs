@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use fearless_simd::{Level, dispatch};
 
-use crate::engine::Rows;
+use crate::engine::{Rows, packed};
 
 /// Samples looked at together.
 pub(super) const SPAN: usize = 64;
@@ -75,11 +75,7 @@ fn changes(values: &[u64], before: u64) -> u64 {
     for ((flag, before), value) in flags[1..].iter_mut().zip(values).zip(&values[1..]) {
         *flag = u8::from(value != before);
     }
-    // Eight flags of a byte each into eight bits: the product gathers them in its highest byte.
-    let octets = flags.as_chunks::<8>().0.iter().enumerate();
-    octets.fold(0, |bits, (index, octet)| {
-        bits | (u64::from_le_bytes(*octet).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * index)
-    })
+    packed(&flags)
 }
 
 /// Turns rows into columns: bit `b` of word `w` becomes bit `w` of word `b`.

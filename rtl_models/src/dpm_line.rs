@@ -1,0 +1,257 @@
+//! `dpm-line`: digital pulse multiplier, or rate multiplier (数字脉冲乘法器), line of 2 to 6 axes.
+//!
+//! ```text
+//!   clock ──► counter q, stages 0 … n-1 ──► carry ──► done
+//!                │ one pulse line a stage
+//!                ▼
+//!   for each axis i:   p0 ──► & ◄── bit n-1 of mi
+//!                      p1 ──► & ◄── bit n-2            ──► or ──► di ──► position i
+//!                      …      …
+//!                    pn-1 ──► & ◄── bit 0
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | q | n | 0 |
+//! | q1, q2, … | the units of a cascade, so many bits each | 0 |
+//! | mx, my, … | n | coefficient M = abs(d) |
+//! | percent, o | 8, two decimal digits | the feed override, and 0 |
+//!
+//! One synchronous counter is shared by all axes. Stage k, from the lowest on, offers a pulse at the clock at which it goes
+//! from 0 to 1, when all stages below it are 1: exactly one stage a clock, but for the clock that takes the counter from
+//! all ones to 0. That carry ends the block after 2^n clocks. Stage k pulses in 2^(n-1-k) of them and is gated by bit
+//! n-1-k of the coefficient, so that every axis gets as many pulses as its coefficient says. They are not evenly spread:
+//! an axis may stand up to (3n+7)/18 + (-1)^n/(9·2^n) pulses off the place t·M/2^n where it should be after clock t. The
+//! report tells how far it did, and the least and greatest distance of its pulses.
+//!
+//! **Cascade** (`--cascade BITS`, the *add* mode). The counter is made of units of so many bits. The first counts every
+//! clock and holds the high bits of the coefficients; the word of each further one extends them below, and it counts only
+//! in the state of all ones of the units before it, where these give no pulse. Unit by unit these are the stages of one
+//! counter of all bits, so a cascade gives the same pulses at the same clocks as one unit of the same n; n is a whole
+//! number of units.
+//!
+//! **Decades** (`--radix 10`). Coefficients are binary-coded decimal, a decade unit counts a digit, and a block lasts
+//! 10^(digits) clocks. A decade has a pulse train for each bit of a digit: bit 8 in the counts 0 to 3 and 5 to 8, bit 4 in
+//! 1, 3, 5, 7, bit 2 in 2, 6, bit 1 in 4, and none in 9, where the next decade counts. Trains that meet (8 and 4, 8 and 2)
+//! belong to no common digit. These counts are a definition of this project; other decade rate multipliers choose others.
+//! An axis stands up to 7k/9 + 56/81·(1 - 10^(-k)) pulses off its place with k digits, and so far where all of them are 7.
+//!
+//! **Feed override** (`--override PERCENT`, the *multiply* mode). Two decade units count every clock and gate their
+//! pulses by the digits of the percentage; the line's own counter takes a step at their pulses only. A block needs about
+//! 100/PERCENT times as many clocks for the same pulses in the same order.
+//!
+//! The line (5, 3) in 3 bits, from the golden file `waves/dpm-line-5-3.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/dpm-line-5-3.csv")]
+//! ```
+
+use stepwave_kernel::dsl::{Module, Scope, Signal};
+use stepwave_kernel::{Netlist, Width};
+use stepwave_nc::Curve;
+
+use crate::choices::{Choice, Choices, EndPoint, Radix};
+use crate::error::ModelError;
+use crate::hardware::names::{COEFFICIENT, POSITION, SIGN};
+use crate::hardware::{Hardware, Pace};
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{Block, RateMultiplier, Units, axis_counter};
+use crate::plan;
+use crate::registers::Registers;
+
+const NAME: &str = "dpm-line";
+
+/// The units of the feed override.
+const OVERRIDE: Units = Units { radix: Radix::Decimal, bits: 4, count: 2 };
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Digital pulse multiplier (rate multiplier), line of 2 to 6 axes",
+    method: "digital pulse multiplier",
+    curve: CurveKind::Line { max_axes: 6 },
+    registers: &[
+        RegisterDoc { name: "o", width: "8", about: "count of the feed override, two decimal digits (override)" },
+        RegisterDoc { name: "q", width: "n", about: "counter that all axes share" },
+        RegisterDoc { name: "q1, q2, …", width: "BITS", about: "counters of the units, the fastest first (cascade)" },
+        RegisterDoc { name: "mx, my, …", width: "n", about: "coefficient M of each axis, |d|" },
+        RegisterDoc::AXIS_POSITIONS,
+    ],
+    choices: &[
+        ChoiceDoc::WIDTH,
+        ChoiceDoc { choice: Choice::Radix, values: "2 (default) | 10: decade units, 4 bits a digit" },
+        ChoiceDoc {
+            choice: Choice::Cascade,
+            values: "BITS of each unit, of which n is a multiple (default: one unit)",
+        },
+        ChoiceDoc { choice: Choice::Override, values: "1 … 99: percentage of the clock (default: all of it)" },
+        ChoiceDoc::ON_OVERFLOW,
+    ],
+    source: "数字脉冲乘法器, the digital pulse multiplier of Chinese NC textbooks, known as binary rate multiplier; the \
+             counts of a decade are a definition of this project",
+    plan,
+    netlist,
+    words,
+};
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    let axes = curve.axes();
+    let n = size(choices, plan::longest(curve))?;
+    let units = units(choices.radix.unwrap_or_default(), choices.cascade, n);
+    let mut registers = Registers::new(NAME, choices);
+    if choices.feed_override.is_some() {
+        registers.shown("o");
+    }
+    match units {
+        Units { radix: Radix::Decimal, .. } => _ = registers.shown("q"),
+        Units { count: 1, .. } => _ = registers.register("q", n),
+        Units { bits, count, .. } => {
+            for index in 1..=count {
+                registers.register(format!("q{index}"), bits);
+            }
+        }
+    }
+    for name in &COEFFICIENT[..axes] {
+        registers.register(*name, n);
+    }
+    registers.positions(plan::end_positions(curve));
+    let mut hardware = registers.hardware(axes, EndPoint::Iterations)?;
+    check_widths(&hardware, units)?;
+    let n = hardware.bits(COEFFICIENT[0]);
+    let clocks = u64::try_from(hardware.modulus(n)).unwrap_or(u64::MAX);
+    let slower = if choices.feed_override.is_some() { 100 } else { 1 };
+    hardware.stall_clocks = clocks.saturating_mul(slower).saturating_add(16);
+    hardware.scale = &["m"];
+    hardware.pace = Pace::Cycle(COEFFICIENT[0]);
+    let bound = rate_bound(units.radix, n);
+    hardware.rate_bound = Some(bound);
+    // The place where all axes should be lies on the line.
+    hardware.error_bound = Some((0..axes).fold(0.0, |sum, _| f64::hypot(sum, bound)));
+    Ok(hardware)
+}
+
+/// Bits of a coefficient: as chosen, or the least whole number of units that holds `largest`.
+fn size(choices: &Choices, largest: u64) -> Result<u32, ModelError> {
+    let refuse = |choice, value, reason: String| ModelError::Value { model: NAME, choice, value, reason };
+    if let Some(percent) = choices.feed_override.filter(|percent| !(1..=99).contains(percent)) {
+        let reason = "its two decades pass 1 to 99 of 100 clocks; leave it out for all of them".to_owned();
+        return Err(refuse(Choice::Override, percent.to_string(), reason));
+    }
+    let radix = choices.radix.unwrap_or_default();
+    let unit = unit(radix, choices.cascade);
+    if let (Radix::Decimal, Some(bits)) = (radix, choices.cascade) {
+        let reason = "decades are cascaded as they are, 4 bits a unit: leave --cascade or --radix 10 out".to_owned();
+        return Err(refuse(Choice::Cascade, bits.get().to_string(), reason));
+    }
+    let least = radix.reading().needed(largest.into()).next_multiple_of(unit);
+    if choices.width.is_none() && radix == Radix::Binary && least > Width::MAX.get() {
+        let reason = format!(
+            "this line needs registers of {least} bits in whole units, but a register holds 1 to 64 bits: give units of \
+             fewer bits"
+        );
+        return Err(refuse(Choice::Cascade, unit.to_string(), reason));
+    }
+    match choices.width.map(Width::get) {
+        Some(bits) if bits % unit != 0 => {
+            let what = match radix {
+                Radix::Binary => format!("units of {unit} bits"),
+                Radix::Decimal => "decimal digits of 4 bits".to_owned(),
+            };
+            let more = Some(bits.next_multiple_of(unit)).filter(|&more| more <= Width::MAX.get());
+            let whole = more.unwrap_or(bits - bits % unit);
+            let reason = format!("it is no whole number of {what}; give --width {whole}");
+            Err(refuse(Choice::Width, bits.to_string(), reason))
+        }
+        Some(bits) => Ok(bits),
+        None => Ok(least),
+    }
+}
+
+/// What the bits of a counter must be a multiple of.
+fn unit(radix: Radix, cascade: Option<Width>) -> u32 {
+    match radix {
+        Radix::Binary => cascade.map_or(1, Width::get),
+        Radix::Decimal => 4,
+    }
+}
+
+/// The units of a counter of `n` bits.
+fn units(radix: Radix, cascade: Option<Width>, n: u32) -> Units {
+    let whole = radix == Radix::Binary && cascade.is_none();
+    let bits = if whole { n } else { unit(radix, cascade) };
+    Units { radix, bits, count: n / bits }
+}
+
+/// Coefficients must be as wide as the counter, and units as wide as they are said to be.
+fn check_widths(hardware: &Hardware, units: Units) -> Result<(), ModelError> {
+    let counter = hardware.widths.get("q").map_or(units.bits * units.count, |q| q.get());
+    let mut widest = counter;
+    let mut odd = None;
+    for (name, width) in &hardware.widths {
+        let (wanted, what) = match name.as_str() {
+            name if COEFFICIENT.contains(&name) => (counter, "the counter has"),
+            name if name != "q" && name.starts_with('q') => (units.bits, "each unit has"),
+            _ => continue,
+        };
+        if wanted == counter {
+            widest = widest.max(width.get());
+        }
+        if width.get() != wanted {
+            odd = odd.or(Some(format!("{name} of {width}, but {what} {wanted}")));
+        }
+    }
+    let unit = unit(hardware.radix, hardware.cascade);
+    let all = Some(widest.next_multiple_of(unit)).filter(|&all| all <= Width::MAX.get()).unwrap_or(counter);
+    odd.map_or(Ok(()), |odd| Err(ModelError::Widths(format!("{NAME}: {odd}: give --width {all}"))))
+}
+
+/// Greatest deviation of an axis from its uniform rate, in pulses, whatever its coefficient of `n` bits.
+fn rate_bound(radix: Radix, n: u32) -> f64 {
+    match radix {
+        Radix::Binary => (3.0 * f64::from(n) + 7.0) / 18.0 + (-0.5_f64).powf(f64::from(n)) / 9.0,
+        Radix::Decimal => {
+            let digits = f64::from(n / 4);
+            7.0 * digits / 9.0 + 56.0 / 81.0 * (1.0 - 0.1_f64.powf(digits))
+        }
+    }
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("dpm_line", hardware.on_overflow);
+    let m = module.top();
+    let bits = |name: &str| hardware.bits(name);
+    let block = Block::new(m);
+    let step = match hardware.feed_override {
+        Some(_) => feed_override(m.scope("feed_override"), &block),
+        None => block.busy,
+    };
+    let units = units(hardware.radix, hardware.cascade, bits(COEFFICIENT[0]));
+    let counter = RateMultiplier::new(m.scope("counter"), &block, "q", units, step);
+    for (axis, letter) in hardware.letters().iter().enumerate() {
+        let scope = m.scope(&format!("axis_{letter}"));
+        let coefficient = block.held_in(scope, hardware.radix, COEFFICIENT[axis], bits(COEFFICIENT[axis]));
+        let negative = block.held(scope, SIGN[axis], 1);
+        let pulse = scope.name("pulse", counter.gated(scope, coefficient));
+        axis_counter(scope, &block, letter, bits(letter), pulse, negative);
+    }
+    block.close(block.load, step, counter.carry);
+    Ok(module.finish()?)
+}
+
+/// Two decades that pass a percentage of the clocks of a block: 1 bit, the line takes a step at this edge.
+fn feed_override<'m>(m: Scope<'m>, block: &Block<'m>) -> Signal<'m> {
+    let percent = block.held_in(m, Radix::Decimal, "percent", OVERRIDE.bits * OVERRIDE.count);
+    let counter = RateMultiplier::new(m, block, "o", OVERRIDE, block.busy);
+    m.name("feed", counter.gated(m, percent))
+}
+
+fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(line) = plan::line(curve) else { return Vec::new() };
+    let mut words: Words = hardware.feed_override.map(|percent| ("percent", percent.into())).into_iter().collect();
+    for (axis, delta) in line.delta().into_iter().enumerate() {
+        words.push((COEFFICIENT[axis], i128::from(delta).abs()));
+        words.push((SIGN[axis], i128::from(delta < 0)));
+        words.push((POSITION[axis], i128::from(line.from()[axis])));
+    }
+    vec![words]
+}

@@ -1,0 +1,251 @@
+//! Pulse trains: how far apart the pulses of each axis are, and how far each axis is off a uniform rate.
+
+use fearless_simd::{Level, dispatch};
+use serde_json::json;
+use stepwave_kernel::engine::Rows;
+use stepwave_nc::Curve;
+
+use super::checkpoint::{GREATEST, Memory, recalled};
+use super::{Observer, ObserverError, StepColumns, Testbench};
+
+/// Samples looked at together.
+const SPAN: usize = 64;
+
+/// The pulses of one axis in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PulseTrain {
+    /// Least and greatest distance of a pulse from the one before it, in clocks; `None` with less than two pulses.
+    pub spacing: Option<[u64; 2]>,
+    /// The distance in clocks, were the pulses evenly spread over the clocks of the run: of lines whose steps are known.
+    pub ideal_spacing: Option<f64>,
+    /// How far the axis was off a uniform rate: of lines whose steps are known.
+    pub deviation: Option<RateDeviation>,
+}
+
+/// The greatest distance of an axis from where a uniform rate would have brought it behind the same step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateDeviation {
+    /// abs(p - t·M/T) in pulses, where p of the M pulses of a line were made in t of its T steps.
+    pub pulses: f64,
+    /// The first step t behind which it was so great.
+    pub step: u64,
+}
+
+/// What is known of an axis so far.
+#[derive(Clone, Debug)]
+struct Train {
+    /// Steps of the line and way of the axis, which is not longer; `None` where the axis has no constant rate.
+    rate: Option<(i64, i64)>,
+    /// Pulses so far.
+    pulses: u64,
+    /// Clock of the last pulse.
+    last: Option<u64>,
+    /// Least and greatest distance, in this order once there was one.
+    spacing: [u64; 2],
+    /// The first pulses and steps with which the axis was farthest off, and how far, as [`off`](Train::off) says.
+    worst: (u64, u64),
+    greatest: u128,
+}
+
+impl Train {
+    /// How far off the uniform rate the axis is with so many pulses in so many steps, times the steps of the line.
+    fn off(&self, pulses: u64, steps: u64) -> i128 {
+        let (all, way) = self.rate.unwrap_or_default();
+        i128::from(pulses) * i128::from(all) - i128::from(way) * i128::from(steps)
+    }
+
+    fn stands(&mut self, pulses: u64, steps: u64) {
+        let off = self.off(pulses, steps).unsigned_abs();
+        if off > self.greatest {
+            (self.greatest, self.worst) = (off, (pulses, steps));
+        }
+    }
+
+    /// The distances of pulses, a bit each, in the samples from a clock on.
+    #[inline(always)]
+    fn space(&mut self, pulses: u64, clock: u64) {
+        let at = |index: u32| clock + u64::from(index);
+        if let Some(last) = self.last {
+            self.apart(at(pulses.trailing_zeros()).saturating_sub(last));
+        }
+        self.last = Some(at(pulses.ilog2()));
+        let behind = pulses & (pulses - 1);
+        let [least, greatest] = self.spacing;
+        let closer = behind != 0 && (1..least.min(64)).any(|gap| behind & (pulses << gap) != 0);
+        // Most samples hold no distance that is new.
+        if closer || behind & !reached(pulses, greatest) != 0 {
+            let (mut before, mut rest) = (pulses.trailing_zeros(), behind);
+            while rest != 0 {
+                let index = rest.trailing_zeros();
+                self.apart(u64::from(index - before));
+                (before, rest) = (index, rest & (rest - 1));
+            }
+        }
+    }
+
+    fn apart(&mut self, clocks: u64) {
+        self.spacing = [self.spacing[0].min(clocks), self.spacing[1].max(clocks)];
+    }
+
+    /// Where the axis stands right before each of these pulses, a bit each, and right behind it: only there can it be
+    /// farther off than ever. `stepped` has a bit for each sample that completes a step, `steps` are those before.
+    #[inline(always)]
+    fn measure(&mut self, pulses: u64, stepped: u64, steps: u64) {
+        let Some((all, way)) = self.rate else { return };
+        let done = |index: u32| u64::from((stepped & !(u64::MAX << index)).count_ones());
+        let before = self.off(self.pulses, steps);
+        // Both are far below 2^63: all of a line, at most 2^56, in each of 64 samples.
+        let (mut least, mut greatest, mut made, mut rest) = (i64::MAX, i64::MIN, 0, pulses);
+        while rest != 0 {
+            let off = made - way * done(rest.trailing_zeros()).cast_signed();
+            (least, greatest, made) = (least.min(off), greatest.max(off), made + all);
+            rest &= rest - 1;
+        }
+        let (least, greatest) = (before + i128::from(least), before + i128::from(greatest + all - way));
+        if least.unsigned_abs().max(greatest.unsigned_abs()) > self.greatest {
+            let (mut count, mut rest) = (self.pulses, pulses);
+            while rest != 0 {
+                let steps = steps + done(rest.trailing_zeros());
+                self.stands(count, steps);
+                self.stands(count + 1, steps + 1);
+                (count, rest) = (count + 1, rest & (rest - 1));
+            }
+        }
+    }
+
+    // Counts of clocks and pulses are far below 2^53.
+    #[allow(clippy::cast_precision_loss)]
+    fn finish(&self, steps: u64, clocks: u64) -> PulseTrain {
+        let rate = self.rate.map(|(all, way)| (all as f64, way as f64));
+        let even = rate.filter(|&(_, way)| way > 0.0 && steps > 0);
+        PulseTrain {
+            spacing: (self.spacing[0] <= self.spacing[1]).then_some(self.spacing),
+            ideal_spacing: even.map(|(all, way)| clocks as f64 * all / (steps as f64 * way)),
+            deviation: rate.map(|(all, _)| RateDeviation { pulses: self.greatest as f64 / all, step: self.worst.1 }),
+        }
+    }
+}
+
+/// Watches the pulses of every axis.
+pub struct SpacingWatch {
+    columns: StepColumns,
+    trains: Vec<Train>,
+    /// Steps completed.
+    steps: u64,
+    /// Clocks behind which the first block stood loaded and the last step was completed.
+    loaded: Option<u64>,
+    stepped: u64,
+    level: Level,
+}
+
+impl SpacingWatch {
+    /// Of a machine on this curve.
+    #[must_use]
+    pub fn new(bench: &Testbench, curve: &Curve) -> SpacingWatch {
+        let ends = curve.from().iter().zip(curve.to());
+        let ways: Vec<u64> = ends.map(|(from, to)| to.abs_diff(*from)).collect();
+        // A line of more steps comes to no end.
+        let steps = bench.hardware().steps(&ways).and_then(|steps| i64::try_from(steps).ok());
+        let steps = steps.filter(|steps| (1..=1 << 56).contains(steps));
+        let train = |&way: &u64| Train {
+            rate: steps.zip(i64::try_from(way).ok()).filter(|(steps, way)| way <= steps),
+            pulses: 0,
+            last: None,
+            spacing: [u64::MAX, 0],
+            worst: (0, 0),
+            greatest: 0,
+        };
+        SpacingWatch {
+            columns: StepColumns::of(bench),
+            trains: ways.iter().map(train).collect(),
+            steps: 0,
+            loaded: None,
+            stepped: 0,
+            level: Level::new(),
+        }
+    }
+
+    /// The pulses seen so far, axis by axis.
+    #[must_use]
+    pub fn finish(mut self) -> Vec<PulseTrain> {
+        let (steps, clocks) = (self.steps, self.stepped.saturating_sub(self.loaded.unwrap_or(0)));
+        self.trains.iter_mut().for_each(|train| train.stands(train.pulses, steps));
+        self.trains.iter().map(|train| train.finish(steps, clocks)).collect()
+    }
+}
+
+/// The bits at most so far above one that is set, but not those themselves.
+#[inline(always)]
+fn reached(bits: u64, distance: u64) -> u64 {
+    if distance == 0 {
+        return 0;
+    }
+    let (mut reached, mut so_far) = (bits << 1, 1);
+    while so_far < distance.min(63) {
+        let more = so_far.min(distance - so_far);
+        reached |= reached << more;
+        so_far += more;
+    }
+    reached
+}
+
+/// The samples of a block from `first` on, at most [`SPAN`].
+#[inline(always)]
+fn scan(trains: &mut [Train], columns: &StepColumns, rows: &Rows, first: usize, stepped: u64, steps: u64) {
+    for (train, &column) in trains.iter_mut().zip(&columns.pulses) {
+        let pulses = rows.nonzero(column, first);
+        if pulses != 0 {
+            train.space(pulses, rows.first_clock() + first as u64);
+            train.measure(pulses, stepped, steps);
+            train.pulses += u64::from(pulses.count_ones());
+        }
+    }
+}
+
+/// What a train writes down: pulses, clock of the last, spacing, and the worst pulses and steps.
+type Gathered = (u64, Option<u64>, [u64; 2], (u64, u64));
+
+impl Observer for SpacingWatch {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn remember(&self, memory: &mut Memory) {
+        let trains = self.trains.iter().map(|train| (train.pulses, train.last, train.spacing, train.worst));
+        let trains: Vec<Gathered> = trains.collect();
+        memory.insert("spacing".to_owned(), json!((self.steps, self.loaded, self.stepped, trains)));
+    }
+
+    fn recall(&mut self, memory: &Memory) {
+        let gathered: Option<(u64, Option<u64>, u64, Vec<Gathered>)> = recalled(memory, "spacing");
+        let Some((steps, loaded, stepped, trains)) = gathered else { return };
+        let fits = |&(pulses, last, _, (worst, step)): &Gathered| {
+            [pulses, last.unwrap_or(0), worst, step].iter().all(|&count| count <= GREATEST)
+        };
+        if trains.len() != self.trains.len() || steps.max(stepped) > GREATEST || !trains.iter().all(fits) {
+            return;
+        }
+        (self.steps, self.loaded, self.stepped) = (steps, loaded, stepped);
+        for (train, gathered) in self.trains.iter_mut().zip(trains) {
+            (train.pulses, train.last, train.spacing, train.worst) = gathered;
+            train.greatest = train.off(train.worst.0, train.worst.1).unsigned_abs();
+        }
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        for first in (0..rows.len()).step_by(SPAN) {
+            if self.loaded.is_none() {
+                let loaded = rows.nonzero(self.columns.loaded, first);
+                let clock = |row: u32| rows.first_clock() + first as u64 + u64::from(row);
+                self.loaded = (loaded != 0).then(|| clock(loaded.trailing_zeros()));
+            }
+            let stepped = rows.nonzero(self.columns.stepped, first);
+            dispatch!(self.level, _simd => scan(&mut self.trains, &self.columns, rows, first, stepped, self.steps));
+            self.steps += u64::from(stepped.count_ones());
+            if stepped != 0 {
+                self.stepped = rows.first_clock() + first as u64 + u64::from(stepped.ilog2());
+            }
+        }
+        Ok(())
+    }
+}
