@@ -111,7 +111,7 @@ fn cascaded_units_count_and_pulse_as_one_counter_with_pauses_too() {
             );
         }
         let played = played.into_inner();
-        assert_eq!(played[0][0], "0012_3445_6789_9abc_def0_0123");
+        assert_eq!(played[0][0], "0012_3445_6789_9abc_def0_1123");
         assert!(played.windows(2).all(|pair| pair[0] == pair[1]), "{word}: {played:?}");
     }
 }
