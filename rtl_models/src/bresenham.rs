@@ -45,8 +45,8 @@ use stepwave_nc::Curve;
 
 use crate::choices::{Choice, Choices, Compare, EndPoint, Form};
 use crate::error::ModelError;
-use crate::hardware::Hardware;
 use crate::hardware::names::{COUNTER, POSITION, SIGN, STEPS};
+use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
 use crate::parts::{Block, DownCounter, axis_counter};
@@ -91,7 +91,7 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let right = if hardware.form == Form::Signed { Compare::Greater } else { Compare::AtLeast };
     let compare = choices.compare.unwrap_or(right);
     let bounded = axes == 2 && compare == right;
-    Ok(Hardware { compare, error_bound: bounded.then_some(0.5), ..hardware })
+    Ok(Hardware { compare, error_bound: bounded.then_some(0.5), pace: Pace::Longest, ..hardware })
 }
 
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {

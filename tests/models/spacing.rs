@@ -105,6 +105,7 @@ fn every_line_model_takes_the_steps_of_its_method() {
             for choices in all {
                 check("dda-line", &line(&from, &to), &choices, engine, Some(cycle));
             }
+            check("bresenham", &line(&from, &to), &usual, engine, Some(a.max(b)));
             check("dpm-line", &line(&from, &to), &usual, engine, Some(cycle));
         }
     }
