@@ -92,6 +92,17 @@ pub enum Radix {
     Decimal,
 }
 
+impl Radix {
+    /// Bits of a digit.
+    #[must_use]
+    pub fn digit_bits(self) -> u32 {
+        match self {
+            Radix::Binary => 1,
+            Radix::Decimal => 4,
+        }
+    }
+}
+
 impl Named for Radix {
     const ALL: &'static [(&'static str, Radix)] = &[("2", Radix::Binary), ("10", Radix::Decimal)];
 }

@@ -25,7 +25,8 @@
 //! coordinate.
 //!
 //! Two limits of the method itself: with a preset of zero or full the motion can come to a stand one pulse before an
-//! axis, where J_V is 0 already (the preset `half` was never seen to); and the counter `total` may miss the end.
+//! axis, where J_V is 0 already (with `half` only arcs were seen to whose end lies beside their circle); and the counter
+//! `total` may miss the end.
 //!
 //! The arc NR1 from (5, 0) to (0, 5) in 3 bits, from the golden file `waves/dda-arc-nr1.csv`; the wave stands beside it:
 //!
@@ -35,19 +36,16 @@
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::Module;
-use stepwave_nc::{Crossing, Curve, Direction, Sector};
+use stepwave_nc::{Crossing, Curve, Sector};
 
 use crate::choices::{Choice, Choices, EndPoint};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
-use crate::parts::{
-    Block, DownCounter, Kind, Normalizer, axis_counter, integrator, population_count, quadrant_register, shifted_left,
-    up_down_counter,
-};
-use crate::plan;
+use crate::parts::{Block, IntegratorPair, Kind, Normalizer, shifted_left};
 use crate::registers::Registers;
+use crate::{plan, words};
 
 const NAME: &str = "dda-arc";
 
@@ -79,14 +77,7 @@ pub(crate) const MODEL: Model = Model {
 };
 
 fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let end_point = plan::end_point(
-        NAME,
-        choices,
-        EndPoint::PerAxis,
-        &[EndPoint::PerAxis, EndPoint::Total],
-        "the longest axis of an arc may arrive while the other still has steps to go, and iterations say nothing of \
-         where an arc stands",
-    )?;
+    let end_point = plan::integrated_end_point(NAME, choices)?;
     let sectors = plan::arc(curve).map(|arc| arc.sectors(Crossing::RoundedRadius)).unwrap_or_default();
     let n = plan::magnitude_bits(choices, plan::largest_coordinate(&sectors));
     let mut registers = Registers::new(NAME, choices);
@@ -105,17 +96,13 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
 fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let module = Module::with_overflow("dda_arc", hardware.on_overflow);
     let m = module.top();
-    let bits = |name: &str| hardware.bits(name);
     let block = Block::new(m);
     let normalizer = Normalizer::new(m, &block, hardware.normalize);
-    let ccw = block.held(m, "ccw", 1);
-    let quad = quadrant_register(m);
-    quad.when(block.load, block.word("quad", 2)).else_hold();
-    let kind = Kind::decode(m.scope("quadrant"), quad.q, ccw);
-    let (sx, sy) = (m.scope("axis_x"), m.scope("axis_y"));
-    let (jvx, jvy) = (sx.reg("jvx", bits("jvx")), sy.reg("jvy", bits("jvy")));
-    let wide = bits("jvx").max(bits("jvy"));
-    let normalized = normalizer.close(&[jvx.q.extend(wide), jvy.q.extend(wide)], wide.min(2));
+    let kind = Kind::held(m, &block);
+    let pair = IntegratorPair::new(m, &block, hardware);
+    let integrands = pair.integrands();
+    let wide = integrands[0].bits();
+    let normalized = normalizer.close(&integrands, wide.min(2));
     let unit = if hardware.normalize {
         let unit = m.reg("unit", wide);
         unit.when(block.load, m.lit(wide, 1)).when(normalized.shift, shifted_left(m, unit.q)).else_hold();
@@ -124,52 +111,13 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         m.name("unit", m.lit(1, 1))
     };
 
-    // An exhausted axis stops adding.
-    let per_axis = (hardware.end_point == EndPoint::PerAxis)
-        .then(|| (DownCounter::new(sx, &block, "ex", bits("ex")), DownCounter::new(sy, &block, "ey", bits("ey"))));
-    let run = normalized.run;
-    let (step_x, step_y) = per_axis.map_or((run, run), |(ex, ey)| (run & ex.running(), run & ey.running()));
-    let pulse_x = integrator(sx, &block, "x", bits("jrx"), jvx.q, step_x);
-    let pulse_y = integrator(sy, &block, "y", bits("jry"), jvy.q, step_y);
-    axis_counter(sx, &block, "x", bits("x"), pulse_x, kind.x_negative);
-    axis_counter(sy, &block, "y", bits("y"), pulse_y, kind.y_negative);
-
-    // A Y pulse changes |y|, which is J_VX; an X pulse changes |x|, which is J_VY.
-    for (scope, jv, name, pulse, grows) in
-        [(sx, jvx, "jvx", pulse_y, !kind.x_grows), (sy, jvy, "jvy", pulse_x, kind.x_grows)]
-    {
-        let loads = [(block.load, block.word(name, bits(name))), (normalized.shift, shifted_left(scope, jv.q))];
-        up_down_counter(jv, &loads, pulse & grows, pulse & !grows, unit);
-    }
-
-    let last = match per_axis {
-        Some((ex, ey)) => ex.count(pulse_x) & ey.count(pulse_y),
-        None => DownCounter::new(m, &block, "e", bits("e")).count_pulses(population_count(m, 2, &[pulse_x, pulse_y])),
-    };
-    block.close(normalized.ready, run, last);
+    let last = pair.close(hardware, normalized, kind.pair_sides(unit));
+    block.close(normalized.ready, normalized.run, last);
     Ok(module.finish()?)
 }
 
 fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
     let Some(arc) = plan::arc(curve) else { return Vec::new() };
-    let block = |sector: &Sector| -> Words {
-        let [x, y] = sector.start.map(i128::from);
-        let [ex, ey] = sector.steps().map(i128::from);
-        let mut words = vec![
-            ("jvx", y.abs()),
-            ("jvy", x.abs()),
-            ("jrx", hardware.preset(0, "jrx")),
-            ("jry", hardware.preset(1, "jry")),
-            ("quad", i128::from(sector.quadrant.index())),
-            ("ccw", i128::from(arc.direction() == Direction::CounterClockwise)),
-            ("x", i128::from(arc.center()[0]) + x),
-            ("y", i128::from(arc.center()[1]) + y),
-        ];
-        match hardware.end_point {
-            EndPoint::PerAxis => words.extend([("ex", ex), ("ey", ey)]),
-            _ => words.push(("e", ex + ey)),
-        }
-        words
-    };
+    let block = |sector: &Sector| words::integrated_sector(hardware, arc, sector);
     arc.sectors(Crossing::RoundedRadius).iter().map(block).collect()
 }

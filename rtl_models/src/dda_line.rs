@@ -5,6 +5,11 @@
 //!                                 ▲───────────┘       e ──► done
 //!                                 │ carry
 //!                                 └──► di ──► position i
+//!
+//!   with --adder serial:  jvi ──┬──► full ──► jri ──┐       n clocks an iteration
+//!                          ▲────┘    adder          │
+//!                                  ▲  ▲─────────────┘
+//!                                  └──┴─ carry flip-flop; behind the last bit it is di
 //! ```
 //!
 //! | register | width | load value |
@@ -13,6 +18,8 @@
 //! | jrx, jry, … | n | remainder J_R: the preset |
 //! | e | n+1 | 2^n iterations (`iterations`), all steps (`total`), steps of the longest axis (`longest`) |
 //! | ex, ey, … | n | steps of each axis (`per-axis`) |
+//! | carry | 1 | kept carry of each axis (`--adder serial`) |
+//! | place | as it needs | the bit, in radix 10 the digit, that is added next (`--adder serial`) |
 //!
 //! On every iteration {carry, J_R} := J_R + J_V; the carry is the axis's pulse. After t iterations the axis stands at
 //! floor((t·abs(d) + P) / 2^n): at d after 2^n, for every preset P, and J_R is back at P. 2^n must be greater than every
@@ -24,18 +31,38 @@
 //! ```text
 #![doc = include_str!("../../waves/dda-line-8-6.csv")]
 //! ```
+//!
+//! Radix 10: J_V and J_R hold k BCD digits of 4 bits (n = 4k), each added by a binary adder whose sum beyond 9 is
+//! corrected by 6 and carries to the next digit; 10^k iterations, which e counts in binary, as all end-point counters
+//! do. The same line in one digit, from `waves/dda-line-decimal.csv`:
+//!
+//! ```text
+#![doc = include_str!("../../waves/dda-line-decimal.csv")]
+//! ```
+//!
+//! Serial adder: one full adder and a carry flip-flop for each axis, the lowest bit first. J_R is a shift register, J_V
+//! goes round, and an iteration takes n clocks; with its last one the step is completed and all registers stand as those
+//! of the parallel form. In radix 10 one digit adder for each axis takes a digit a clock, k clocks an iteration. The
+//! line (8, 6) in 4 bits, from `waves/dda-line-serial.csv`:
+//!
+//! ```text
+#![doc = include_str!("../../waves/dda-line-serial.csv")]
+//! ```
 
-use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::Module;
+use stepwave_kernel::{Netlist, Width};
 use stepwave_nc::{Curve, Line};
 
-use crate::choices::{Choice, Choices, EndPoint};
+use crate::choices::{Adder, Choice, Choices, EndPoint, Radix};
 use crate::error::ModelError;
 use crate::hardware::names::{END, JR, JV, LONGEST, POSITION, SIGN};
-use crate::hardware::{Hardware, Pace};
+use crate::hardware::{Hardware, Pace, modulus};
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
-use crate::parts::{Block, DownCounter, Normalizer, axis_counter, integrator, population_count, shifted_left};
+use crate::parts::{
+    Block, DownCounter, Iteration, Normalizer, axis_counter, digits, integrator, population_count, rotated,
+    shifted_left,
+};
 use crate::plan;
 use crate::registers::Registers;
 
@@ -51,12 +78,15 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "jrx, jry, …", width: "n", about: "remainder J_R of each axis, from the preset" },
         RegisterDoc { name: "e", width: "n+1", about: "end-point down-counter (iterations, total, longest)" },
         RegisterDoc { name: "ex, ey, …", width: "n", about: "end-point down-counter of each axis (per-axis)" },
-        RegisterDoc { name: "x, y, …", width: "as the path needs, + 1", about: "machine position, signed" },
+        RegisterDoc { name: "place", width: "as it needs", about: "digit that is added next, 0 the lowest (serial)" },
+        RegisterDoc::AXIS_POSITIONS,
     ],
     choices: &[
         ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the line)" },
         ChoiceDoc { choice: Choice::Preset, values: "zero (default) | half | full | N, or jrx=N,jry=N" },
         ChoiceDoc { choice: Choice::Normalize, values: "left-shift normalisation (default: none)" },
+        ChoiceDoc { choice: Choice::Radix, values: "2 (default) | 10, BCD digits of 4 bits, not normalised" },
+        ChoiceDoc { choice: Choice::Adder, values: "parallel (default) | serial, a digit a clock" },
         ChoiceDoc { choice: Choice::EndPoint, values: "iterations (default) | total | per-axis | longest" },
         ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
     ],
@@ -70,22 +100,42 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let axes = curve.axes();
     let delta = plan::line(curve).map(Line::delta).unwrap_or_default();
     let n = plan::magnitude_bits(choices, delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0));
+    let radix = choices.radix.unwrap_or_default();
+    if radix == Radix::Decimal && choices.normalize {
+        return Err(ModelError::Value {
+            model: NAME,
+            choice: Choice::Normalize,
+            value: "with --radix 10".to_owned(),
+            reason:
+                "decimal registers shift by whole digits, which leaves the first digit as small as it was, and the \
+                     iterations would have to be divided by 10: leave one of both out"
+                    .to_owned(),
+        });
+    }
     let all = [EndPoint::Iterations, EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest];
     let end_point = plan::end_point(NAME, choices, EndPoint::Iterations, &all, "")?;
     let mut registers = Registers::new(NAME, choices);
     for axis in 0..axes {
         registers.register(JV[axis], n).register(JR[axis], n);
     }
+    // End points are counted in binary, whatever the radix.
+    let steps = Width::needed_unsigned(modulus(radix, n) - 1);
     match end_point {
-        EndPoint::PerAxis => registers.end_counters(axes, n),
+        EndPoint::PerAxis => registers.end_counters(axes, steps),
         // The sum of up to 2, 4 or 6 axes.
-        EndPoint::Total => registers.register("e", n + axes.next_power_of_two().trailing_zeros()),
-        EndPoint::Iterations => registers.register("e", registers.bits(JR[0]) + 1),
-        EndPoint::Longest => registers.register("e", n + 1),
+        EndPoint::Total => registers.register("e", steps + axes.next_power_of_two().trailing_zeros()),
+        EndPoint::Iterations => registers.register("e", Width::needed_unsigned(modulus(radix, registers.bits(JR[0])))),
+        EndPoint::Longest => registers.register("e", steps + 1),
     };
     registers.positions(plan::end_positions(curve));
-    let hardware = registers.integrators(axes, end_point, 1)?;
-    let bounded = axes == 2 && end_point == EndPoint::Iterations;
+    let clocks = match choices.adder.unwrap_or_default() {
+        Adder::Parallel => 1,
+        Adder::Serial => registers.bits(JR[0]) / radix.digit_bits(),
+    };
+    let hardware = registers.integrators(axes, end_point, clocks.into())?;
+    // With unequal presets one axis may lead while another lags.
+    let equal = hardware.presets.windows(2).all(|pair| pair[0] == pair[1]);
+    let bounded = axes == 2 && end_point == EndPoint::Iterations && equal;
     Ok(Hardware { error_bound: bounded.then_some(1.0), pace: Pace::Cycle(JR[0]), ..hardware })
 }
 
@@ -97,20 +147,26 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let block = Block::new(m);
     let normalizer = Normalizer::new(m, &block, hardware.normalize);
     let scopes: Vec<_> = hardware.letters().iter().map(|letter| m.scope(&format!("axis_{letter}"))).collect();
-    let integrands: Vec<_> = axes.clone().map(|i| scopes[i].reg(JV[i], bits(JV[i]))).collect();
+    let integrand = |i: usize| scopes[i].reg(JV[i], bits(JV[i])).shown(digits(hardware));
+    let integrands: Vec<_> = axes.clone().map(integrand).collect();
     let normalized = normalizer.close(&integrands.iter().map(|jv| jv.q).collect::<Vec<_>>(), 1);
 
     let counters: Option<Vec<_>> = (hardware.end_point == EndPoint::PerAxis)
         .then(|| axes.clone().map(|i| DownCounter::new(scopes[i], &block, END[i], bits(END[i]))).collect());
+    let iteration = Iteration::new(m, &block, hardware, normalized.run);
     let mut pulses = Vec::new();
     for i in axes {
         let (scope, jv) = (scopes[i], integrands[i]);
-        jv.when(block.load, block.word(JV[i], bits(JV[i])))
-            .when(normalized.shift, shifted_left(scope, jv.q))
-            .else_hold();
         // An exhausted axis stops adding.
-        let step = counters.as_ref().map_or(normalized.run, |counters| normalized.run & counters[i].running());
-        let pulse = integrator(scope, &block, hardware.letters()[i], bits(JR[i]), jv.q, step);
+        let step = counters.as_ref().map_or(iteration, |counters| iteration.only(counters[i].running()));
+        let loaded = jv
+            .when(block.load, block.word_in(hardware.radix, JV[i], bits(JV[i])))
+            .when(normalized.shift, shifted_left(scope, jv.q));
+        match hardware.adder {
+            Adder::Parallel => loaded.else_hold(),
+            Adder::Serial => loaded.when(step.add, rotated(hardware, jv.q)).else_hold(),
+        }
+        let pulse = integrator(scope, &block, hardware, i, jv.q, step);
         let negative = block.held(scope, SIGN[i], 1);
         axis_counter(scope, &block, POSITION[i], bits(POSITION[i]), pulse, negative);
         pulses.push(pulse);
@@ -127,9 +183,9 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
             let longest = (0..hardware.axes).map(|i| block.held(scopes[i], LONGEST[i], 1) & pulses[i]);
             e().count(longest.reduce(|a, b| a | b).unwrap_or(block.load))
         }
-        (_, None) => e().count_or_halve(normalized.run, normalized.shift),
+        (_, None) => e().count_or_halve(iteration.complete, normalized.shift),
     };
-    block.close(normalized.ready, normalized.run, last);
+    block.close(normalized.ready, iteration.complete, last);
     Ok(module.finish()?)
 }
 
@@ -151,7 +207,11 @@ fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
         }
     }
     match hardware.end_point {
-        EndPoint::Iterations => words.push(("e", 1 << hardware.bits(JR[0]))),
+        EndPoint::Iterations => {
+            // At most 2^64.
+            let iterations = hardware.modulus(hardware.bits(JR[0]));
+            words.push(("e", i128::try_from(iterations).unwrap_or(i128::MAX)));
+        }
         EndPoint::Total => words.push(("e", (0..hardware.axes).map(way).sum())),
         EndPoint::Longest => words.push(("e", way(longest))),
         EndPoint::PerAxis => {}

@@ -132,12 +132,18 @@ impl Hardware {
         self.scale.iter().any(|kind| register.starts_with(kind))
     }
 
+    /// Bits of the fraction in a register of an integrator: those that the remainder of its axis has beyond `jrx`.
+    pub(crate) fn fraction(&self, register: &str) -> u32 {
+        let remainder = register.get(2..).map(|axis| format!("jr{axis}")).unwrap_or_default();
+        self.widths.get(&remainder).map_or(0, |jr| jr.get().saturating_sub(self.bits("jrx")))
+    }
+
     /// What to give as `--width` for a register to have `bits`. Registers of one scale are widened together, to the
     /// `all` bits that the widest of them needs, where one alone would no longer fit the others.
     #[must_use]
     pub fn widening(&self, register: &str, bits: u32, all: u32) -> String {
         let room = register.strip_prefix("jv").map(|axis| self.bits(&format!("jr{axis}")));
-        let fits = room.is_some_and(|room| bits <= room) && !self.normalize;
+        let fits = room.is_some_and(|room| bits <= room) && !self.normalize && self.adder == Adder::Parallel;
         // Whole units of a pulse multiplier.
         let all = self.cascade.map_or(all, |unit| all.next_multiple_of(unit.get()));
         if self.shares_scale(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
@@ -154,6 +160,6 @@ impl Hardware {
 pub(crate) fn modulus(radix: Radix, bits: u32) -> u128 {
     match radix {
         Radix::Binary => 1 << bits,
-        Radix::Decimal => 10u128.pow(bits / 4),
+        Radix::Decimal => 10u128.pow(bits / radix.digit_bits()),
     }
 }

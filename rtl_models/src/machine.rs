@@ -102,7 +102,8 @@ fn does_not_fit(register: &str, port: &Port, hardware: &Hardware, blocks: &[Word
     let own = words().filter(|&(name, _)| name == register).map(|(_, value)| value);
     let value = own.max_by_key(|&value| need(value)).unwrap_or_default();
     let integrators = words().filter(|(name, _)| hardware.shares_scale(name));
-    let all = integrators.map(|(_, value)| need(value)).max().unwrap_or(1);
+    // Registers with a fraction are that much wider than the width that is given for all.
+    let all = integrators.map(|(name, value)| need(value).saturating_sub(hardware.fraction(name))).max().unwrap_or(1);
     ModelError::DoesNotFit {
         register: register.to_owned(),
         value,

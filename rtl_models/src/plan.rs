@@ -1,9 +1,10 @@
 //! What the plans of several models need: the size of a geometry, and the values that a choice may have.
 
 use stepwave_kernel::Width;
+use stepwave_kernel::bits::Reading;
 use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Curve, Helix, Line, Sector, Weight};
 
-use crate::choices::{Choice, Choices, EndPoint, Named};
+use crate::choices::{Choice, Choices, EndPoint, Named, Radix};
 use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace};
 use crate::registers::Registers;
@@ -42,7 +43,11 @@ pub(crate) fn helix(curve: &Curve) -> Option<&Helix> {
 
 /// Bits of a magnitude register: as chosen, or the least that hold `largest`.
 pub(crate) fn magnitude_bits(choices: &Choices, largest: u64) -> u32 {
-    choices.width.map_or_else(|| Width::needed_unsigned(u128::from(largest)), Width::get)
+    let reading = match choices.radix.unwrap_or_default() {
+        Radix::Binary => Reading::Unsigned,
+        Radix::Decimal => Reading::Decimal,
+    };
+    choices.width.map_or_else(|| reading.needed(i128::from(largest)), Width::get)
 }
 
 /// Bits that a weight needs.
@@ -175,4 +180,16 @@ pub(crate) fn end_point(
         value: chosen.word().to_owned(),
         reason: format!("{why_not}; it takes {}", list.join(", ")),
     })
+}
+
+/// The end-point scheme of a curve that a pair of integrators draws.
+pub(crate) fn integrated_end_point(model: &'static str, choices: &Choices) -> Result<EndPoint, ModelError> {
+    end_point(
+        model,
+        choices,
+        EndPoint::PerAxis,
+        &[EndPoint::PerAxis, EndPoint::Total],
+        "the longest axis of an arc may arrive while the other still has steps to go, and iterations say nothing of \
+         where an arc stands",
+    )
 }

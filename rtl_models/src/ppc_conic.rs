@@ -149,9 +149,7 @@ fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
         let at = |axis: usize| derivative(conic.shape(), weights[axis], sector.start[axis].abs());
         let ([gx, ux], [gy, uy]) = (at(0), at(1));
         let own = vec![("f", conic.implicit(sector.start)), ("gx", gx), ("gy", gy), ("ux", ux), ("uy", uy)];
-        let [ex, ey] = sector.steps().map(i128::from);
-        let end =
-            if hardware.end_point == EndPoint::PerAxis { vec![("ex", ex), ("ey", ey)] } else { vec![("e", ex + ey)] };
+        let end = words::end_counters(hardware, sector.steps());
         let side = vec![("x_lowers", i128::from(sector.x_lowers))];
         [own, end, side, words::conic_sector(conic, sector)].concat()
     };

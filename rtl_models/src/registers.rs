@@ -145,15 +145,33 @@ impl<'a> Registers<'a> {
     }
 
     /// Hardware whose integrators (`jr…`, `jv…`) share one scale: equally wide remainders, and integrands that fit in
-    /// them. `after` clocks more than an integration may pass without a pulse.
+    /// them. An iteration takes so many `clocks`.
     pub(crate) fn integrators(&self, axes: usize, end_point: EndPoint, clocks: u64) -> Result<Hardware, ModelError> {
+        self.integrators_with_fraction(axes, axes, end_point, clocks)
+    }
+
+    /// As [`integrators`](Registers::integrators), but only the first `whole` of the axes count whole steps. The
+    /// integrands of the others have a fraction: as many bits as their remainders are wider than `jrx`.
+    pub(crate) fn integrators_with_fraction(
+        &self,
+        axes: usize,
+        whole: usize,
+        end_point: EndPoint,
+        clocks: u64,
+    ) -> Result<Hardware, ModelError> {
         let mut hardware = self.hardware(axes, end_point)?;
         hardware.scale = &["jv", "jr"];
         let (model, widths) = (self.model, &hardware.widths);
         let first = widths["jrx"];
-        for axis in &AXES[..axes] {
+        for (index, axis) in AXES[..axes].iter().enumerate() {
             let (jr, jv) = (widths[&format!("jr{axis}")], widths[&format!("jv{axis}")]);
-            if jr != first {
+            if index >= whole && jr < first {
+                return Err(ModelError::Widths(format!(
+                    "{model}: jr{axis} of {jr} is narrower than jrx of {first}, but its bits beyond those are the \
+                     fraction of jv{axis}: change --width"
+                )));
+            }
+            if index < whole && jr != first {
                 return Err(ModelError::Widths(format!(
                     "{model}: jr{axis} of {jr} and jrx of {first} would count at unequal rates: give all jr the same \
                      width"
@@ -175,7 +193,7 @@ impl<'a> Registers<'a> {
         }
         // An integrator that has not pulsed in so many additions never will; and as many clocks of normalisation as
         // bits, and those of loading.
-        let n = first.get();
+        let n = widths.iter().filter(|(name, _)| name.starts_with("jr")).map(|(_, jr)| jr.get()).max().unwrap_or(1);
         let additions = u64::try_from(hardware.modulus(n)).unwrap_or(u64::MAX);
         hardware.stall_clocks = additions.saturating_mul(clocks).saturating_add(u64::from(n) + 8);
         Ok(hardware)

@@ -18,6 +18,24 @@ pub(crate) fn sector(arc: &Arc, sector: &Sector) -> Words {
     ]
 }
 
+/// Steps of a sector: of each axis, or of both.
+pub(crate) fn end_counters(hardware: &Hardware, steps: [i64; 2]) -> Words {
+    let [ex, ey] = steps.map(i128::from);
+    if hardware.end_point == EndPoint::PerAxis { vec![("ex", ex), ("ey", ey)] } else { vec![("e", ex + ey)] }
+}
+
+/// Integrands J_VX and J_VY, and the remainders.
+pub(crate) fn integrators(hardware: &Hardware, [jvx, jvy]: [i128; 2]) -> Words {
+    let [jrx, jry] = [(0, "jrx"), (1, "jry")].map(|(axis, name)| hardware.preset(axis, name));
+    vec![("jvx", jvx), ("jvy", jvy), ("jrx", jrx), ("jry", jry)]
+}
+
+/// Integrands of a sector of an arc, J_VX = |y| and J_VY = |x|, remainders, end counters, and [`sector`].
+pub(crate) fn integrated_sector(hardware: &Hardware, arc: &Arc, at: &Sector) -> Words {
+    let [x, y] = at.start.map(|c| i128::from(c.abs()));
+    [integrators(hardware, [y, x]), end_counters(hardware, at.steps()), sector(arc, at)].concat()
+}
+
 /// Blocks of a machine that judges every step of an arc: one where the hardware crosses the axes by itself, else one
 /// for each sector.
 pub(crate) fn judged_arc(hardware: &Hardware, curve: &Curve, crossing: Crossing) -> Vec<Words> {
@@ -29,10 +47,7 @@ pub(crate) fn judged_arc(hardware: &Hardware, curve: &Curve, crossing: Crossing)
         [own, sector(arc, at)].concat()
     };
     if hardware.end_point == EndPoint::PerAxis {
-        let block = |sector: &Sector| {
-            let [ex, ey] = sector.steps().map(i128::from);
-            [begin(sector), vec![("ex", ex), ("ey", ey)]].concat()
-        };
+        let block = |sector: &Sector| [begin(sector), end_counters(hardware, sector.steps())].concat();
         return sectors.iter().map(block).collect();
     }
     // Counted to its end.

@@ -1,7 +1,7 @@
 //! `stepwave compare`: every method on one curve, side by side.
 
 use stepwave::kernel::engine::EngineKind;
-use stepwave::models::{Beats, Choice, Choices, CurveKind, Model, ModelError, Preset, catalogue};
+use stepwave::models::{Adder, Beats, Choice, Choices, CurveKind, Model, ModelError, Preset, Radix, catalogue};
 use stepwave::nc::Curve;
 use stepwave::testbench::{Ending, Observer, PathWatch, Testbench};
 
@@ -48,6 +48,12 @@ fn forms(model: &Model) -> Vec<(String, Choices)> {
         if takes(Choice::Normalize) {
             forms.push((" --preset half --normalize".to_owned(), Choices { normalize: true, ..half }));
         }
+    }
+    if takes(Choice::Radix) {
+        forms.push((" --radix 10".to_owned(), Choices { radix: Some(Radix::Decimal), ..Choices::default() }));
+    }
+    if takes(Choice::Adder) {
+        forms.push((" --adder serial".to_owned(), Choices { adder: Some(Adder::Serial), ..Choices::default() }));
     }
     forms
 }

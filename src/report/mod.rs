@@ -6,7 +6,7 @@ mod summary;
 mod table;
 
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Hardware, Model};
+use stepwave_models::{Hardware, Model, Preset};
 use stepwave_nc::Curve;
 
 use crate::testbench::{Ending, Outcome, OverflowEvent, PulseTrain, RegisterRange, WorstError};
@@ -84,8 +84,9 @@ impl Report<'_> {
             }
             Ending::Stalled { clocks } => {
                 let position = summary::point(&self.outcome.reached);
-                let way_out = if self.model.name == "dda-arc" {
-                    "; give --preset half, with which arcs were never seen to"
+                let by_curve = self.model.name == "dda-arc";
+                let way_out = if by_curve && self.hardware.presets.iter().any(|preset| *preset != Preset::Half) {
+                    "; give --preset half, with which curves whose ends lie on them exactly were never seen to"
                 } else {
                     ""
                 };

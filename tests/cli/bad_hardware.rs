@@ -41,6 +41,9 @@ fn a_width_too_narrow_for_the_geometry_is_refused_with_the_width_that_would_hold
         ("dda-arc --from 5,0 --to 0,5 --ccw --width 2", ["jvy = 5", "2 bits", "3 bits would hold it", "--width 3"]),
         // The first sector begins at (6, 6), the second at (0, 8): the advice is for both.
         ("dda-arc --from 6,6 --to -6,6 --ccw --width 2", ["jvx = 8", "2 bits", "4 bits would hold it", "--width 4"]),
+        // Whole digits.
+        ("dda-line --to 12,6 --radix 10 --width 4", ["jvx = 12", "4 bits", "8 bits would hold it", "--width 8"]),
+        ("dda-line --to 9,6 --radix 10 --preset 10", ["jrx = 10", "4 bits", "8 bits would hold it", "--width 8"]),
         ("ppc-line --to 6,4 --width xe=2", ["xe = 6", "2 bits", "3 bits would hold it", "--width xe=3"]),
         (
             "ppc-arc --from 5,0 --to 0,5 --ccw --width xi=2,yi=3",
@@ -76,6 +79,9 @@ fn the_width_that_a_message_advises_is_taken() {
         ("dda-arc --from 6,6 --to -6,6 --ccw", "2"),
         ("dda-arc --from 4,3 --to 0,5 --ccw", "jvx=2"),
         ("dda-arc --from 6,2 --to 2,6 --ccw --preset 3", "jv=2,jr=3"),
+        ("dda-line --to 12,100 --radix 10", "4"),
+        ("dda-line --to 12,100 --radix 10", "jv=4,jr=12"),
+        ("dda-line --to 12,7 --adder serial", "3"),
     ] {
         let refused = Folder::new().run(&format!("run {words} --width {width}"));
         assert!(refused.code > 0, "{words} --width {width}: {refused:?}");
@@ -97,7 +103,22 @@ fn a_register_of_the_model_wider_than_64_bits_is_refused() {
 fn integrators_that_do_not_fit_each_other_are_refused() {
     run_refused("dda-line --to 8,6 --width jr=3", &["jvx of 4 bits", "jrx of 3 bits", "--width"]);
     run_refused("dda-line --to 8,6 --width jrx=5", &["jry of 4 bits and jrx of 5 bits", "same width"]);
-    run_refused("dda-line --to 8,6 --normalize --width jr=6,e=7", &["jvx of 4 bits", "jrx of 6 bits", "as wide as"]);
+    for form in ["--normalize", "--adder serial"] {
+        let words = format!("dda-line --to 8,6 {form} --width jr=6,e=7");
+        run_refused(&words, &["jvx of 4 bits", "jrx of 6 bits", "as wide as"]);
+    }
+}
+
+#[test]
+fn decimal_integrators_hold_whole_digits_and_are_not_normalised() {
+    for width in ["6", "jv=3,jr=4", "jv=4,jr=6"] {
+        let words = format!("dda-line --to 8,6 --radix 10 --width {width}");
+        run_refused(&words, &["hold no whole decimal digits of 4 bits", "multiple of 4"]);
+    }
+    run_refused(
+        "dda-line --to 8,6 --radix 10 --normalize",
+        &["does not take --normalize with --radix 10", "whole digits", "leave one of both out"],
+    );
 }
 
 #[test]
@@ -127,12 +148,13 @@ fn an_unknown_model_is_refused_with_those_there_are() {
 fn a_choice_that_the_model_does_not_take_is_refused_with_those_it_takes() {
     let [ppc_line, ppc_arc] =
         ["--width, --form, --end-point, --beats, --on-overflow", "--width, --end-point, --beats, --on-overflow"];
+    let dda_line = "--width, --preset, --normalize, --radix, --adder, --end-point, --on-overflow";
     let dda = "--width, --preset, --normalize, --end-point, --on-overflow";
     for (model, options, takes) in [
         ("ppc-line --to 6,4", ["--preset half", "--normalize"].as_slice(), ppc_line),
         ("ppc-arc --from 5,0 --to 0,5 --cw", &["--preset 0", "--normalize", "--form signed"], ppc_arc),
-        ("dda-line --to 8,6", &["--beats 1", "--beats 4", "--form signed", "--form magnitude"], dda),
-        ("dda-arc --from 5,0 --to 0,5 --ccw", &["--beats 4", "--form signed"], dda),
+        ("dda-line --to 8,6", &["--beats 1", "--beats 4", "--form signed", "--form magnitude"], dda_line),
+        ("dda-arc --from 5,0 --to 0,5 --ccw", &["--beats 4", "--form signed", "--radix 10", "--adder serial"], dda),
     ] {
         for option in options {
             let [name, option_name] = [model, option].map(|words| words.split(' ').next().unwrap());

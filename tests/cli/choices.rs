@@ -62,6 +62,39 @@ fn the_preset_is_what_the_remainders_start_from_and_return_to() {
 }
 
 #[test]
+fn decimal_registers_hold_decimal_digits_and_are_told_as_numbers() {
+    let words = "dda-line --to 58,6 --radix 10 --preset half";
+    let table = Csv::of(words);
+    assert_eq!((table.column("jvx")[0], table.column("jrx")[0], table.rows.len()), (58, 50, 1 + 100));
+    assert_eq!(table.column("jrx")[1], 8);
+    let report = report(words);
+    assert_eq!(report["widths"], json!({ "jvx": 8, "jvy": 8, "jrx": 8, "jry": 8, "e": 7, "x": 8, "y": 5 }));
+    let register = |name: &str| {
+        let registers = report["registers"].as_array().unwrap();
+        let found = registers.iter().find(|register| register["name"] == name).unwrap();
+        ["radix", "least", "greatest", "needed_width"].map(|field| found[field].as_i64().unwrap())
+    };
+    assert_eq!(register("jvx"), [10, 0, 58, 8]);
+    assert_eq!(register("jvy"), [10, 0, 6, 4]);
+    assert_eq!(register("e"), [2, 0, 100, 7]);
+    // Digits show as such in binary too.
+    assert!(good("run dda-line --to 8,6 --radix 10 --bits").contains(" 1000"));
+}
+
+#[test]
+fn a_serial_adder_makes_the_same_table_in_as_many_more_clocks_as_there_are_bits() {
+    for words in ["dda-line --to 8,6 --width 5", "dda-line --to 83,-6,40 --radix 10 --end-point per-axis"] {
+        let [parallel, serial] = ["", " --adder serial"].map(|adder| Csv::of(&format!("{words}{adder}")));
+        let clocks = |table: &Csv| *table.column("clock").last().unwrap() - 1;
+        let digits = if words.contains("radix") { 2 } else { 5 };
+        assert_eq!(clocks(&serial), digits * clocks(&parallel), "{words}");
+        for name in parallel.heading.iter().filter(|name| *name != "clock") {
+            assert_eq!(serial.column(name), parallel.column(name), "{words}: {name}");
+        }
+    }
+}
+
+#[test]
 fn single_presets_win_over_the_one_for_all() {
     let table = Csv::of("dda-line --to 8,6 --preset half --preset jry=1");
     assert_eq!((table.column("jrx")[0], table.column("jry")[0]), (8, 1));
@@ -142,12 +175,17 @@ fn clock_and_blu_scale_the_feed() {
 
 #[test]
 fn the_report_names_the_choices_and_the_engine() {
-    let words =
-        "dda-line --to 3,2 --width 4 --preset half --normalize --end-point total --on-overflow wrap --engine gates";
+    let words = "dda-line --to 3,2 --width 4 --preset half --normalize --adder serial --end-point total \
+                 --on-overflow wrap --engine gates";
     let report = report(words);
-    assert_eq!(
-        report["choices"],
-        json!({ "preset": "half", "normalize": "yes", "end_point": "total", "on_overflow": "wrap" })
-    );
+    let choices = json!({
+        "preset": "half",
+        "normalize": "yes",
+        "radix": "2",
+        "adder": "serial",
+        "end_point": "total",
+        "on_overflow": "wrap",
+    });
+    assert_eq!(report["choices"], choices);
     assert_eq!(report["engine"], "gates");
 }

@@ -114,3 +114,15 @@ fn an_end_point_missed_by_a_total_counter_is_exit_code_1() {
     assert_eq!(ran.err, "stepwave: the end point (1, 5) was missed: the machine stands at (2, 6)\n");
     reaches("ppc-arc --from 6,0 --to 1,5 --ccw", "(1, 5)");
 }
+
+#[test]
+fn compare_has_a_row_for_each_form_of_the_dda() {
+    let rows = |words: &str| -> Vec<String> {
+        let printed = good(&format!("compare {words}"));
+        assert!(printed.lines().skip(1).all(|line| line.ends_with("exact")), "{printed}");
+        let name = |line: &str| line.split("  ").next().unwrap().to_owned();
+        printed.lines().map(name).filter(|name| name.starts_with("dda-")).collect()
+    };
+    let forms = ["", " --preset half", " --preset half --normalize", " --radix 10", " --adder serial"];
+    assert_eq!(rows("--to 100,62"), forms.map(|form| format!("dda-line{form}")));
+}

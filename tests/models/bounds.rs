@@ -1,5 +1,5 @@
 //! The path errors that the methods promise, measured over every line of up to five bits and every lattice arc of a
-//! radius below 30. `cargo test --test main models::bounds -- --nocapture` prints them.
+//! radius below 30, and those that have no promise. `cargo test --test main models::bounds -- --nocapture` prints them.
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use std::sync::Mutex;
@@ -21,8 +21,8 @@ fn measure(worst: &Worst, model: &str, curve: &Curve, choices: &Choices) {
     let mut path = PathWatch::new(&bench, curve);
     let mut observers: [&mut dyn Observer; 1] = [&mut path];
     let outcome = bench.run(EngineKind::Word, &mut observers).unwrap();
-    // Arcs of the DDA may hang; what they do until then counts.
-    let hangs = model == "dda-arc" && matches!(outcome.ending, Ending::Stalled { .. });
+    // Curves of the DDA may hang; what they do until then counts.
+    let hangs = model.starts_with("dda-") && matches!(outcome.ending, Ending::Stalled { .. });
     assert!(hangs || outcome.ending == Ending::Done && outcome.reached == curve.to(), "{model} {curve:?} {outcome:?}");
     let error = path.worst.unwrap().error;
     let mut worst = worst.lock().unwrap();
@@ -191,4 +191,14 @@ fn comparison_integral_stays_within_one_blu_with_the_weights_of_the_middle_only(
 fn arcs_of_the_dda_may_leave_the_circle_by_more_than_one_blu() {
     let with = |preset| Choices { preset: Some(preset), ..Choices::default() };
     assert!(arcs("dda-arc", &with(Preset::Half)) > 1.0);
+}
+
+#[test]
+fn a_line_with_unequal_presets_may_leave_by_more_than_one_blu_and_promises_nothing() {
+    let presets = [("jrx".to_owned(), Preset::Full), ("jry".to_owned(), Preset::Zero)];
+    let choices = Choices { presets: presets.into(), ..Choices::default() };
+    let worst = Worst::default();
+    every_line(|to| measure(&worst, "dda-line", &line(&[0, 0], &to), &choices));
+    assert!(report("dda-line jrx=full,jry=zero", worst) > 1.0);
+    assert_eq!(bench("dda-line", &line(&[0, 0], &[5, 3]), &choices).hardware().error_bound, None);
 }

@@ -8,17 +8,17 @@ use stepwave_models::{Choices, EndPoint, Preset, find};
 use stepwave_nc::Curve;
 
 use super::{arc, assert_equal, check, every_line, lattice, line, run};
-use crate::reference::{self, dda_arc, dda_line};
+use crate::reference::{self, Table, dda_arc, dda_line};
 
-const END_POINTS: [(EndPoint, reference::EndPoint); 4] = [
+pub(super) const END_POINTS: [(EndPoint, reference::EndPoint); 4] = [
     (EndPoint::Iterations, reference::EndPoint::Iterations),
     (EndPoint::PerAxis, reference::EndPoint::PerAxis),
     (EndPoint::Total, reference::EndPoint::Total),
     (EndPoint::Longest, reference::EndPoint::Longest),
 ];
-const PRESETS: [Preset; 4] = [Preset::Zero, Preset::Half, Preset::Full, Preset::Value(1)];
+pub(super) const PRESETS: [Preset; 4] = [Preset::Zero, Preset::Half, Preset::Full, Preset::Value(1)];
 
-fn preset_value(preset: Preset, n: u32) -> i64 {
+pub(super) fn preset_value(preset: Preset, n: u32) -> i64 {
     match preset {
         Preset::Zero => 0,
         Preset::Half => 1 << (n - 1),
@@ -27,7 +27,7 @@ fn preset_value(preset: Preset, n: u32) -> i64 {
     }
 }
 
-fn choices(n: u32, preset: Preset, normalize: bool, end_point: EndPoint) -> Choices {
+pub(super) fn choices(n: u32, preset: Preset, normalize: bool, end_point: EndPoint) -> Choices {
     Choices {
         width: Some(Width::new(u64::from(n)).unwrap()),
         preset: Some(preset),
@@ -67,12 +67,27 @@ fn check_arc(n: u32, curve: &Curve, preset: Preset, normalize: bool, engine: Eng
         check("dda-arc", curve, &choices, engine, &table);
         return false;
     }
-    let mut ran = run("dda-arc", curve, &choices, engine);
-    assert!(matches!(ran.outcome.ending, Ending::Stalled { .. }), "{curve:?} {choices:?}");
-    // The test bench waits a few clocks longer before it gives up.
-    ran.rows.truncate(table.rows.len());
-    assert_equal(&format!("{curve:?} {choices:?}"), &ran, &table);
+    check_hang("dda-arc", curve, &choices, engine, &table);
     true
+}
+
+/// Wants the machine to come to a stand where the reference does.
+pub(super) fn check_hang(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind, table: &Table) {
+    let what = format!("{model} {curve:?} {choices:?} on {}", engine.name());
+    let mut ran = run(model, curve, choices, engine);
+    assert!(matches!(ran.outcome.ending, Ending::Stalled { .. }), "{what}: {:?}", ran.outcome);
+    // Both wait before they give up, the one longer than the other: once at rest, all rows are alike but for the pulses
+    // of the first.
+    let mut table = table.clone();
+    let at_rest = table.rows.iter().rposition(|row| Some(row) != table.rows.last()).map_or(0, |row| row + 1);
+    table.rows.truncate(at_rest + 1);
+    let rest = ran.rows.split_off(table.rows.len());
+    assert_equal(&what, &ran, &table);
+    for name in &table.columns {
+        let last = if name.starts_with('d') { 0 } else { table.column(name)[at_rest] };
+        let index = ran.columns.iter().position(|column| column == name).unwrap();
+        assert!(rest.iter().all(|row| row[index] == last), "{what}: {name} is not at rest");
+    }
 }
 
 #[test]

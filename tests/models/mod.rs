@@ -4,6 +4,8 @@ mod bounds;
 mod cim;
 mod conics;
 mod dda;
+mod dda_decimal;
+mod dda_serial;
 mod dpm;
 mod eight;
 mod modern;

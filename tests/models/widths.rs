@@ -2,7 +2,7 @@
 
 use stepwave_kernel::Width;
 use stepwave_models::{
-    Beats, Choices, Compare, EndPoint, Form, Model, ModelError, OnOverflow, Radix, StepTiming, catalogue,
+    Adder, Beats, Choices, Compare, EndPoint, Form, Model, ModelError, OnOverflow, Radix, StepTiming, catalogue,
 };
 use stepwave_nc::{Conic, Curve, Direction};
 
@@ -26,9 +26,12 @@ fn forms(model: &Model) -> Vec<(Curve, Choices)> {
             for form in [None, Some(Form::Signed)] {
                 for beats in [None, Some(Beats::One)] {
                     for normalize in [false, true] {
-                        let choices = Choices { end_point, form, beats, normalize, ..Choices::default() };
-                        if model.plan(&curve, &choices).is_ok() {
-                            forms.push((curve.clone(), choices));
+                        for (radix, adder) in ADDERS {
+                            let choices =
+                                Choices { end_point, form, beats, normalize, radix, adder, ..Choices::default() };
+                            if model.plan(&curve, &choices).is_ok() {
+                                forms.push((curve.clone(), choices));
+                            }
                         }
                     }
                 }
@@ -67,9 +70,17 @@ fn pulse_multipliers() -> Vec<(Curve, Choices)> {
     all.map(|choices| (line(&[0, 0], &[42, -7]), choices)).collect()
 }
 
+/// Number systems and adders.
+const ADDERS: [(Option<Radix>, Option<Adder>); 4] = [
+    (None, None),
+    (None, Some(Adder::Serial)),
+    (Some(Radix::Decimal), None),
+    (Some(Radix::Decimal), Some(Adder::Serial)),
+];
+
 #[test]
 fn any_two_registers_of_any_width_build_or_are_refused() {
-    const WIDTHS: [u64; 6] = [1, 2, 3, 5, 33, 64];
+    const WIDTHS: [u64; 6] = [1, 2, 3, 8, 33, 64];
     let (mut built, mut refused) = (0, 0);
     for model in catalogue() {
         for (curve, choices) in forms(model) {

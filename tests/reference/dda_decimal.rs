@@ -8,15 +8,18 @@ use super::{AXES, EndPoint, Table, counter_columns, per_axis_columns};
 /// J_V = |d|, J_R starts at the `preset` of its axis. Each of the 10^`digits` iterations adds J_V to
 /// J_R modulo 10^`digits`; the carry is the pulse.
 ///
-/// The columns are `jvx`, `jrx`, `jvy`, `jry`, … (values, not digits), then `e` (the iterations
-/// left), then `dx`, `dy`, …, then `x`, `y`, ….
+/// The columns are `jvx`, `jrx`, `jvy`, `jry`, … (values, not digits), then `e` or `ex`, `ey`, …, then
+/// `dx`, `dy`, …, then `x`, `y`, ….
+///
+/// `e` counts what [`dda_line`](super::dda_line) counts, and an axis whose own counter is 0 adds no
+/// more.
 ///
 /// Source: the method of digital integration (DDA), decimal.
 ///
 /// # Panics
 /// When the slices differ in length, a |d| or a preset does not fit the digits, or there are more
 /// than 9.
-pub(crate) fn dda_line_decimal(digits: u32, from: &[i64], to: &[i64], preset: &[i64]) -> Table {
+pub(crate) fn dda_line_decimal(digits: u32, from: &[i64], to: &[i64], preset: &[i64], end: EndPoint) -> Table {
     assert!((1..=9).contains(&digits), "1 to 9 digits");
     let modulus = 10_i64.pow(digits);
     let axes = from.len();
@@ -28,26 +31,40 @@ pub(crate) fn dda_line_decimal(digits: u32, from: &[i64], to: &[i64], preset: &[
 
     let mut columns: Vec<String> =
         AXES[..axes].iter().flat_map(|axis| [format!("jv{axis}"), format!("jr{axis}")]).collect();
-    columns.extend(counter_columns(EndPoint::Iterations, axes));
+    columns.extend(counter_columns(end, axes));
     columns.extend(per_axis_columns("d", axes));
     columns.extend(per_axis_columns("", axes));
     let mut table = Table::new(columns);
 
+    let greatest = d.iter().map(|d| d.abs()).max();
+    let longest = d.iter().position(|d| Some(d.abs()) == greatest);
     let mut jr = preset.to_vec();
-    let mut pulse = vec![0; axes];
-    let mut position = from.to_vec();
-    for left in (0..=modulus).rev() {
-        if left < modulus {
-            for axis in 0..axes {
+    let mut made = vec![0; axes];
+    for iteration in 0..=modulus {
+        let mut pulse = vec![0; axes];
+        for axis in 0..axes {
+            let exhausted = end == EndPoint::PerAxis && made[axis] == d[axis].abs();
+            if iteration > 0 && !exhausted {
                 let sum = jr[axis] + d[axis].abs();
                 jr[axis] = sum % modulus;
                 pulse[axis] = sum / modulus * d[axis].signum();
-                position[axis] += pulse[axis];
+                made[axis] += sum / modulus;
             }
         }
+        let open = |axis: usize| d[axis].abs() - made[axis];
+        let left: Vec<i64> = match end {
+            EndPoint::Iterations => vec![modulus - iteration],
+            EndPoint::Total => vec![(0..axes).map(open).sum()],
+            EndPoint::Longest => vec![longest.map_or(0, open)],
+            EndPoint::PerAxis => (0..axes).map(open).collect(),
+        };
         let registers: Vec<i64> = d.iter().zip(&jr).flat_map(|(d, &jr)| [d.abs(), jr]).collect();
-        table.push(&[&registers, &[left], &pulse, &position]);
+        let position: Vec<i64> = (0..axes).map(|axis| from[axis] + made[axis] * d[axis].signum()).collect();
+        table.push(&[&registers, &left, &pulse, &position]);
+        if left.iter().all(|&count| count == 0) {
+            table.finished = true;
+            break;
+        }
     }
-    table.finished = true;
     table
 }

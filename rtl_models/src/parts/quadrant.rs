@@ -3,6 +3,8 @@
 use stepwave_kernel::dsl::{Register, Scope, Signal};
 use stepwave_kernel::netlist::Format;
 
+use super::{Block, PairSide};
+
 /// The kind of an arc (SR1 … NR4), decoded. 1 bit each.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind<'m> {
@@ -15,6 +17,24 @@ pub struct Kind<'m> {
 }
 
 impl<'m> Kind<'m> {
+    /// The kind of the arc that was loaded: `ccw`, 1 bit, and [`quad`](quadrant_register) hold their words.
+    #[must_use]
+    pub fn held(m: Scope<'m>, block: &Block<'m>) -> Kind<'m> {
+        let ccw = block.held(m, "ccw", 1);
+        let quad = quadrant_register(m);
+        quad.when(block.load, block.word("quad", 2)).else_hold();
+        Kind::decode(m.scope("quadrant"), quad.q, ccw)
+    }
+
+    /// The sides of the pair of integrators that draws the arc: a Y pulse changes |y|, which is J_VX, an X pulse |x|,
+    /// which is J_VY, both by `unit` (unsigned).
+    #[must_use]
+    pub fn pair_sides(self, unit: Signal<'m>) -> [PairSide<'m>; 2] {
+        let x = PairSide { negative: self.x_negative, raised: !self.x_grows, unit };
+        let y = PairSide { negative: self.y_negative, raised: self.x_grows, unit };
+        [x, y]
+    }
+
     /// Decodes a quadrant (2 bits, Q1 = 0 … Q4 = 3) and a direction (1 bit, 1 is counter-clockwise), and shows the kind
     /// by its textbook name in the wave.
     #[must_use]

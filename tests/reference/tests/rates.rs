@@ -157,7 +157,7 @@ fn the_override_makes_the_steps_of_the_line_at_its_own_pulses() {
 
 #[test]
 fn the_worked_decimal_line_is_reproduced_to_the_digit() {
-    let table = dda_line_decimal(1, &[0, 0], &[8, 6], &[0, 0]);
+    let table = dda_line_decimal(1, &[0, 0], &[8, 6], &[0, 0], EndPoint::Iterations);
     assert_eq!(table.column("jrx")[1..], [8, 6, 4, 2, 0, 8, 6, 4, 2, 0]);
     assert_eq!(pulse_steps(&table, "dx"), [2, 3, 4, 5, 7, 8, 9, 10]);
     assert_eq!(pulse_steps(&table, "dy"), [2, 4, 5, 7, 9, 10]);
@@ -171,7 +171,7 @@ fn every_decimal_line_follows_the_closed_form() {
         for &dx in &words {
             for &dy in &words {
                 for preset in [[0, modulus / 2], [modulus - 1, 3]] {
-                    let table = dda_line_decimal(digits, &[5, 0], &[5 + dx, dy], &preset);
+                    let table = dda_line_decimal(digits, &[5, 0], &[5 + dx, dy], &preset, EndPoint::Iterations);
                     assert_eq!(end_of(&table), [5 + dx, dy]);
                     for (t, [x, y]) in (0..).zip(table.path()) {
                         let place = |d: i64, p| d.signum() * ((t * d.abs() + p) / modulus);
@@ -184,6 +184,37 @@ fn every_decimal_line_follows_the_closed_form() {
                         dda_line(1, &[0; 2], &[0; 2], &[0; 2], false, EndPoint::Iterations).columns
                     );
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_decimal_line_ends_where_its_counter_says() {
+    for end in [EndPoint::Total, EndPoint::Longest, EndPoint::PerAxis, EndPoint::Iterations] {
+        for preset in [0, 50, 99] {
+            for to in [[8, 6], [-40, 99], [7, 7], [0, 1]] {
+                let table = dda_line_decimal(2, &[0, 0], &to, &[preset; 2], end);
+                assert!(table.finished);
+                assert_pulses_make_the_path(&table);
+                if end == EndPoint::PerAxis || end == EndPoint::Total {
+                    assert_eq!(table.path().last(), Some(&to));
+                }
+                let [first, last] = [0, table.steps()].map(|row| {
+                    let names = if end == EndPoint::PerAxis { vec!["ex", "ey"] } else { vec!["e"] };
+                    names.into_iter().map(|name| table.column(name)[row]).collect::<Vec<_>>()
+                });
+                assert!(last.iter().all(|&count| count == 0));
+                let [a, b] = to.map(i64::abs);
+                assert_eq!(
+                    first,
+                    match end {
+                        EndPoint::Total => vec![a + b],
+                        EndPoint::Longest => vec![a.max(b)],
+                        EndPoint::PerAxis => vec![a, b],
+                        EndPoint::Iterations => vec![100],
+                    }
+                );
             }
         }
     }

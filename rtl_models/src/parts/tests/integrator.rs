@@ -1,23 +1,63 @@
 //! The DDA integrator.
 
+use stepwave_kernel::Width;
+use stepwave_kernel::bits::Reading;
 use stepwave_kernel::dsl::Scope;
+use stepwave_nc::{Curve, Line};
 
-use super::super::integrator;
-use super::bench::{loader, numbers, on_every_engine};
+use super::super::{Iteration, digits, integrator, rotated};
+use super::bench::{Bench, loader, numbers, on_every_engine};
+use crate::{Adder, Choices, Hardware, Radix, find};
 
-/// Remainder `jrx` of `bits` bits, integrand `jv` of `jv_bits`, and the pulse.
-fn axis(m: Scope<'_>, bits: u32, jv_bits: u32) {
+/// Integrators of `bits` bits, the integrand of x of `jv_bits`.
+fn hardware(bits: u32, jv_bits: u32, radix: Radix, adder: Adder) -> Hardware {
+    let line = Curve::Line(Line::new(vec![0, 0], vec![1, 1]).unwrap());
+    let width = |bits: u32| Width::new(bits.into()).unwrap();
+    let choices = Choices {
+        width: Some(width(bits)),
+        widths: [("jvx".to_owned(), width(jv_bits))].into(),
+        radix: Some(radix),
+        adder: Some(adder),
+        ..Choices::default()
+    };
+    find("dda-line").unwrap().plan(&line, &choices).unwrap()
+}
+
+/// Remainder `jrx`, integrand `jv`, and the pulse; one clock an iteration.
+fn axis(m: Scope<'_>, hardware: &Hardware) {
     let block = loader(m);
-    let pulse = integrator(m, &block, "x", bits, m.input("jv", jv_bits), m.input("step", 1));
-    m.name("pulse", pulse);
+    let step = m.input("step", 1);
+    let jv = m.input("jv", hardware.bits("jvx"));
+    let step = Iteration::new(m, &block, hardware, step);
+    m.name("pulse", integrator(m, &block, hardware, 0, jv, step));
+}
+
+/// The same, serial: the integrand `jv` goes round.
+fn serial_axis(m: Scope<'_>, hardware: &Hardware) {
+    let block = loader(m);
+    let jv = m.reg("jv", hardware.bits("jvx")).shown(digits(hardware));
+    let word = block.word_in(hardware.radix, "jv", hardware.bits("jvx"));
+    let step = Iteration::new(m, &block, hardware, m.input("step", 1));
+    jv.when(block.load, word).when(step.add, rotated(hardware, jv.q)).else_hold();
+    m.name("complete", step.complete);
+    m.name("sent", integrator(m, &block, hardware, 0, jv.q, step));
+}
+
+/// One more than the greatest number in `bits` bits, and the bits of a number.
+fn scale(radix: Radix, bits: u32) -> (i128, impl Fn(i128) -> i128) {
+    let reading = if radix == Radix::Decimal { Reading::Decimal } else { Reading::Unsigned };
+    let full = if radix == Radix::Decimal { 10i128.pow(bits / 4) } else { 1 << bits };
+    let width = Width::new(bits.into()).unwrap();
+    (full, move |number| i128::from(reading.bits(width, number).unwrap().value()))
 }
 
 #[test]
 fn every_integrand_from_every_preset_gives_the_floor_of_its_sum() {
     for bits in 1..=4 {
         for jv_bits in 1..=bits {
+            let hardware = hardware(bits, jv_bits, Radix::Binary, Adder::Parallel);
             on_every_engine(
-                |m| axis(m, bits, jv_bits),
+                |m| axis(m, &hardware),
                 |bench| {
                     let full = 1 << bits;
                     for preset in numbers(bits, false) {
@@ -44,9 +84,93 @@ fn every_integrand_from_every_preset_gives_the_floor_of_its_sum() {
 }
 
 #[test]
-fn six_of_sixteen_pulses_where_the_textbook_table_has_them() {
+fn a_decimal_integrator_counts_from_9_to_0_in_every_digit() {
+    for (bits, integrands) in [(4, (0..10).collect::<Vec<i128>>()), (8, vec![0, 1, 9, 10, 37, 50, 90, 99])] {
+        let hardware = hardware(bits, bits, Radix::Decimal, Adder::Parallel);
+        let (full, coded) = scale(Radix::Decimal, bits);
+        on_every_engine(
+            |m| axis(m, &hardware),
+            |bench| {
+                for &jv in &integrands {
+                    for preset in [0, full / 2, full - 1] {
+                        bench.clock(&[("load", 1), ("jrx_in", coded(preset)), ("step", 0), ("jv", coded(jv))]);
+                        bench.clock(&[("load", 0), ("step", 1)]);
+                        let mut pulses = 0;
+                        for t in 1..=full {
+                            pulses += bench.value("pulse");
+                            bench.clock(&[]);
+                            let sum = t * jv + preset;
+                            assert_eq!(pulses, sum / full, "J_V = {jv}, preset {preset}, step {t}");
+                            assert_eq!(bench.value("jrx"), coded(sum % full), "J_V = {jv}, preset {preset}, step {t}");
+                        }
+                    }
+                }
+            },
+        );
+    }
+}
+
+/// Adds every pair once, digit by digit, and looks at every clock.
+fn check_serial(bench: &mut Bench, radix: Radix, bits: u32) {
+    let (full, coded) = scale(radix, bits);
+    let clocks = bits / radix.digit_bits();
+    for preset in 0..full {
+        for jv in 0..full {
+            bench.clock(&[("load", 1), ("jrx_in", coded(preset)), ("jv_in", coded(jv)), ("step", 0)]);
+            bench.clock(&[("load", 0), ("step", 1)]);
+            // Twice, so that a carry left over from the first would be seen.
+            for before in [preset, (preset + jv) % full] {
+                for place in 0..clocks {
+                    let last = place + 1 == clocks;
+                    assert_eq!(bench.value("place"), i128::from(place), "{preset} + {jv}");
+                    assert_eq!(bench.value("complete"), i128::from(last));
+                    let pulse = i128::from(last && before + jv >= full);
+                    assert_eq!(bench.value("sent"), pulse, "{preset} + {jv} at place {place}");
+                    bench.clock(&[]);
+                }
+                assert_eq!(bench.value("jrx"), coded((before + jv) % full), "{before} + {jv}");
+                assert_eq!(bench.value("jv"), coded(jv), "the integrand is back");
+                assert_eq!(bench.value("carry"), 0);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_serial_integrator_adds_as_the_parallel_one_does_and_its_integrand_comes_back() {
+    for bits in 1..=4 {
+        let hardware = hardware(bits, bits, Radix::Binary, Adder::Serial);
+        on_every_engine(|m| serial_axis(m, &hardware), |bench| check_serial(bench, Radix::Binary, bits));
+    }
+}
+
+#[test]
+fn a_serial_integrator_in_radix_10_adds_a_digit_a_clock() {
+    let one_digit = hardware(4, 4, Radix::Decimal, Adder::Serial);
+    on_every_engine(|m| serial_axis(m, &one_digit), |bench| check_serial(bench, Radix::Decimal, 4));
+    let two_digits = hardware(8, 8, Radix::Decimal, Adder::Serial);
     on_every_engine(
-        |m| axis(m, 4, 4),
+        |m| serial_axis(m, &two_digits),
+        |bench| {
+            // 57 + 68 = 125: 7 + 8 leave 5 and a carry, 5 + 6 + 1 leave 2 and the pulse.
+            bench.play(&[("load", "1000_00"), ("jrx_in", "0000_00"), ("jv_in", "0000_00"), ("step", "0111_11")]);
+            assert_eq!(bench.row("place"), "0010_10");
+            bench.clock(&[("load", 1), ("jrx_in", 0x57), ("jv_in", 0x68), ("step", 0)]);
+            let mut seen = Vec::new();
+            for step in [1, 1, 0] {
+                bench.clock(&[("load", 0), ("step", step)]);
+                seen.push(["jrx", "jv", "carry", "sum_low", "sent"].map(|name| bench.value(name)));
+            }
+            assert_eq!(seen, [[0x57, 0x68, 0, 5, 0], [0x55, 0x86, 1, 2, 1], [0x25, 0x68, 0, 3, 0]]);
+        },
+    );
+}
+
+#[test]
+fn six_of_sixteen_pulses_where_the_textbook_table_has_them() {
+    let hardware = hardware(4, 4, Radix::Binary, Adder::Parallel);
+    on_every_engine(
+        |m| axis(m, &hardware),
         |bench| {
             bench.play(&[
                 ("load", "1_0000_0000_0000_0000"),
@@ -63,8 +187,9 @@ fn six_of_sixteen_pulses_where_the_textbook_table_has_them() {
 
 #[test]
 fn an_axis_that_does_not_step_freezes_its_remainder_and_sends_no_pulse() {
+    let hardware = hardware(3, 3, Radix::Binary, Adder::Parallel);
     on_every_engine(
-        |m| axis(m, 3, 3),
+        |m| axis(m, &hardware),
         |bench| {
             bench.play(&[("load", "1000_0000_0000"), ("step", "0110_0101_1000"), ("jv", "0555_5550_5000")]);
             assert_eq!(bench.row("jrx"), "0052_2277_7444");
@@ -75,11 +200,28 @@ fn an_axis_that_does_not_step_freezes_its_remainder_and_sends_no_pulse() {
 
 #[test]
 fn a_load_wins_over_a_step() {
+    let parallel = hardware(3, 3, Radix::Binary, Adder::Parallel);
     on_every_engine(
-        |m| axis(m, 3, 3),
+        |m| axis(m, &parallel),
         |bench| {
             bench.play(&[("load", "0010_00"), ("jrx_in", "0040_00"), ("step", "1111_00"), ("jv", "3333_33")]);
             assert_eq!(bench.row("jrx"), "0364_77");
+        },
+    );
+    let serial = hardware(3, 3, Radix::Binary, Adder::Serial);
+    on_every_engine(
+        |m| serial_axis(m, &serial),
+        |bench| {
+            // A load in the middle of an iteration drops the carry and begins at the lowest bit.
+            bench.play(&[
+                ("load", "1001_0000"),
+                ("jrx_in", "3003_0000"),
+                ("jv_in", "1001_0000"),
+                ("step", "0111_1111"),
+            ]);
+            assert_eq!(bench.row("place"), "0012_0120");
+            assert_eq!(bench.row("carry"), "0011_0110");
+            assert_eq!(bench.row("jrx"), "0310_3104");
         },
     );
 }

@@ -1,0 +1,80 @@
+//! The pair of integrators that draws a curve of second order.
+
+use stepwave_kernel::dsl::{Register, Scope, Signal};
+
+use super::{Block, DownCounter, Iteration, Normalized, axis_counter, integrator, population_count, up_down_counter};
+use crate::choices::EndPoint;
+use crate::hardware::Hardware;
+use crate::hardware::names::{END, JV, POSITION};
+use crate::parts::shifted_left;
+
+/// What is particular to one axis of the curve.
+#[derive(Clone, Copy, Debug)]
+pub struct PairSide<'m> {
+    /// 1 bit: the motion is negative.
+    pub negative: Signal<'m>,
+    /// 1 bit: a pulse of the other axis raises the integrand of this one; else it lowers it.
+    pub raised: Signal<'m>,
+    /// By how much, unsigned.
+    pub unit: Signal<'m>,
+}
+
+/// Integrators of x and y, each of which corrects the integrand of the other.
+///
+/// - `jvx`, `jvy`, unsigned: integrands J_V. A pulse of y corrects jvx, one of x corrects jvy.
+/// - `jrx`, `jry`, unsigned: remainders J_R.
+/// - `ex` and `ey` with [`EndPoint::PerAxis`]: an exhausted axis stops adding and freezes its remainder. Else `e`, which
+///   counts the pulses of both.
+#[derive(Clone, Copy, Debug)]
+pub struct IntegratorPair<'m> {
+    m: Scope<'m>,
+    block: Block<'m>,
+    scopes: [Scope<'m>; 2],
+    jv: [Register<'m>; 2],
+}
+
+impl<'m> IntegratorPair<'m> {
+    /// The integrands.
+    #[must_use]
+    pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware) -> IntegratorPair<'m> {
+        let scopes = ["axis_x", "axis_y"].map(|name| m.scope(name));
+        let jv = [0, 1].map(|axis| scopes[axis].reg(JV[axis], hardware.bits(JV[axis])));
+        IntegratorPair { m, block: *block, scopes, jv }
+    }
+
+    /// The integrands, equally wide.
+    #[must_use]
+    pub fn integrands(&self) -> [Signal<'m>; 2] {
+        let wide = self.jv.map(|jv| jv.q.bits()).into_iter().max().unwrap_or(1);
+        self.jv.map(|jv| jv.q.extend(wide))
+    }
+
+    /// Closes integrators, axes and end counters. Returns 1 bit: the end point is reached at this edge.
+    #[must_use]
+    pub fn close(self, hardware: &Hardware, normalized: Normalized<'m>, sides: [PairSide<'m>; 2]) -> Signal<'m> {
+        let IntegratorPair { m, block, scopes, jv } = self;
+        let counter = |axis: usize| DownCounter::new(scopes[axis], &block, END[axis], hardware.bits(END[axis]));
+        let counters = (hardware.end_point == EndPoint::PerAxis).then(|| [0, 1].map(counter));
+        let run = Iteration::new(m, &block, hardware, normalized.run);
+        let steps = counters.map_or([run; 2], |counters| counters.map(|counter| run.only(counter.running())));
+        let pulses = [0, 1].map(|axis| integrator(scopes[axis], &block, hardware, axis, jv[axis].q, steps[axis]));
+        for axis in [0, 1] {
+            let (letter, negative) = (POSITION[axis], sides[axis].negative);
+            axis_counter(scopes[axis], &block, letter, hardware.bits(letter), pulses[axis], negative);
+        }
+        for axis in [0, 1] {
+            let (scope, register, PairSide { raised, unit, .. }) = (scopes[axis], jv[axis], sides[axis]);
+            let word = block.word(JV[axis], register.q.bits());
+            let loads = [(block.load, word), (normalized.shift, shifted_left(scope, register.q))];
+            let pulse = pulses[1 - axis];
+            up_down_counter(register, &loads, pulse & raised, pulse & !raised, unit);
+        }
+        match counters {
+            Some([ex, ey]) => ex.count(pulses[0]) & ey.count(pulses[1]),
+            None => {
+                let e = DownCounter::new(m, &block, "e", hardware.bits("e"));
+                e.count_pulses(population_count(m, 2, &pulses))
+            }
+        }
+    }
+}
