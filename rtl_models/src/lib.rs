@@ -21,6 +21,8 @@ pub mod cim_arc;
 pub mod cim_conic;
 pub mod cim_line;
 pub mod dda_arc;
+pub mod dda_conic;
+pub mod dda_helix;
 pub mod dda_line;
 pub mod dpm_line;
 pub mod mindev_arc;
@@ -59,6 +61,8 @@ pub fn catalogue() -> &'static [Model] {
         ppc_conic::MODEL,
         dda_line::MODEL,
         dda_arc::MODEL,
+        dda_conic::MODEL,
+        dda_helix::MODEL,
         dpm_line::MODEL,
         cim_line::MODEL,
         cim_arc::MODEL,

@@ -84,7 +84,7 @@ impl Report<'_> {
             }
             Ending::Stalled { clocks } => {
                 let position = summary::point(&self.outcome.reached);
-                let by_curve = self.model.name == "dda-arc";
+                let by_curve = matches!(self.model.name, "dda-arc" | "dda-conic" | "dda-helix");
                 let way_out = if by_curve && self.hardware.presets.iter().any(|preset| *preset != Preset::Half) {
                     "; give --preset half, with which curves whose ends lie on them exactly were never seen to"
                 } else {

@@ -41,9 +41,17 @@ fn a_width_too_narrow_for_the_geometry_is_refused_with_the_width_that_would_hold
         ("dda-arc --from 5,0 --to 0,5 --ccw --width 2", ["jvy = 5", "2 bits", "3 bits would hold it", "--width 3"]),
         // The first sector begins at (6, 6), the second at (0, 8): the advice is for both.
         ("dda-arc --from 6,6 --to -6,6 --ccw --width 2", ["jvx = 8", "2 bits", "4 bits would hold it", "--width 4"]),
-        // Whole digits.
+        // Whole digits; a fraction is not counted.
         ("dda-line --to 12,6 --radix 10 --width 4", ["jvx = 12", "4 bits", "8 bits would hold it", "--width 8"]),
         ("dda-line --to 9,6 --radix 10 --preset 10", ["jrx = 10", "4 bits", "8 bits would hold it", "--width 8"]),
+        (
+            "dda-helix --from 5,0,0 --to 5,0,-200 --ccw --width 4",
+            ["jvz = 8149", "12 bits", "13 bits would hold it", "--width 5"],
+        ),
+        (
+            "dda-conic --ellipse 6,4 --from 6,0 --to 0,4 --ccw --width 6",
+            ["jvy = 96", "6 bits", "7 bits would hold it", "--width 7"],
+        ),
         ("ppc-line --to 6,4 --width xe=2", ["xe = 6", "2 bits", "3 bits would hold it", "--width xe=3"]),
         (
             "ppc-arc --from 5,0 --to 0,5 --ccw --width xi=2,yi=3",
@@ -82,6 +90,10 @@ fn the_width_that_a_message_advises_is_taken() {
         ("dda-line --to 12,100 --radix 10", "4"),
         ("dda-line --to 12,100 --radix 10", "jv=4,jr=12"),
         ("dda-line --to 12,7 --adder serial", "3"),
+        ("dda-conic --ellipse 6,4 --from 6,0 --to 6,0 --ccw --normalize", "5"),
+        ("dda-conic --ellipse 6,4 --from 6,0 --to 6,0 --ccw", "ux=3"),
+        ("dda-helix --from 5,0,0 --to 5,0,-200 --cw --preset half", "3"),
+        ("dda-helix --from 5,0,0 --to 0,5,9 --ccw --preset jrx=1,jrz=9999", "4"),
     ] {
         let refused = Folder::new().run(&format!("run {words} --width {width}"));
         assert!(refused.code > 0, "{words} --width {width}: {refused:?}");
@@ -107,6 +119,10 @@ fn integrators_that_do_not_fit_each_other_are_refused() {
         let words = format!("dda-line --to 8,6 {form} --width jr=6,e=7");
         run_refused(&words, &["jvx of 4 bits", "jrx of 6 bits", "as wide as"]);
     }
+    run_refused(
+        "dda-helix --from 5,0,0 --to 0,5,3 --ccw --width jrz=2,jvz=2",
+        &["jrz of 2 bits is narrower than jrx of 3 bits", "fraction of jvz"],
+    );
 }
 
 #[test]
@@ -155,6 +171,12 @@ fn a_choice_that_the_model_does_not_take_is_refused_with_those_it_takes() {
         ("ppc-arc --from 5,0 --to 0,5 --cw", &["--preset 0", "--normalize", "--form signed"], ppc_arc),
         ("dda-line --to 8,6", &["--beats 1", "--beats 4", "--form signed", "--form magnitude"], dda_line),
         ("dda-arc --from 5,0 --to 0,5 --ccw", &["--beats 4", "--form signed", "--radix 10", "--adder serial"], dda),
+        ("dda-conic --parabola 4 --to 4,4", &["--beats 4", "--radix 10", "--adder serial"], dda),
+        (
+            "dda-helix --from 5,0,0 --to 0,5,3 --ccw",
+            &["--normalize", "--end-point total", "--radix 10"],
+            "--width, --preset, --on-overflow",
+        ),
     ] {
         for option in options {
             let [name, option_name] = [model, option].map(|words| words.split(' ').next().unwrap());
@@ -178,6 +200,10 @@ fn an_end_point_scheme_that_the_model_does_not_have_is_refused_with_the_reason()
             run_refused(&words, &[&refusal, reason, &format!("it takes {taken}")]);
         }
     }
+    run_refused(
+        "dda-conic --ellipse 6,4 --from 6,0 --to 0,4 --ccw --end-point longest",
+        &["dda-conic does not take --end-point longest: ", "it takes per-axis, total"],
+    );
 }
 
 #[test]

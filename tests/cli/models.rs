@@ -116,6 +116,24 @@ fn an_end_point_missed_by_a_total_counter_is_exit_code_1() {
 }
 
 #[test]
+fn conics_and_helices_of_the_dda_reach_their_ends_in_every_orientation() {
+    for direction in ["--cw", "--ccw"] {
+        let words = format!("dda-conic --ellipse 6,4 --center 10,-3 --from 16,-3 --to 4,-3 {direction}");
+        reaches(&words, "(4, -3)");
+        reaches(&format!("{words} --preset half --normalize"), "(4, -3)");
+        let words = format!("dda-helix --center 1,2 --from 6,2,-5 --to 6,2,20 {direction}");
+        let printed = reaches(&words, "(6, 2, 20)");
+        assert!(printed.contains("pulses x 20, y 20, z 25"), "{printed}");
+    }
+    for (opens, to, shown) in
+        [("+x", "9,6", "(9, 6)"), ("-x", "-9,-6", "(-9, -6)"), ("+y", "6,9", "(6, 9)"), ("-y", "-6,-9", "(-6, -9)")]
+    {
+        reaches(&format!("dda-conic --parabola 4 --opens {opens} --to {to}"), shown);
+    }
+    reaches("dda-conic --hyperbola 3,3 --from 5,4 --to 3,0", "(3, 0)");
+}
+
+#[test]
 fn compare_has_a_row_for_each_form_of_the_dda() {
     let rows = |words: &str| -> Vec<String> {
         let printed = good(&format!("compare {words}"));
@@ -125,4 +143,10 @@ fn compare_has_a_row_for_each_form_of_the_dda() {
     };
     let forms = ["", " --preset half", " --preset half --normalize", " --radix 10", " --adder serial"];
     assert_eq!(rows("--to 100,62"), forms.map(|form| format!("dda-line{form}")));
+    let forms = &forms[..3];
+    assert_eq!(
+        rows("--ellipse 6,4 --from 6,0 --to 0,4 --ccw"),
+        forms.iter().map(|form| format!("dda-conic{form}")).collect::<Vec<_>>()
+    );
+    assert_eq!(rows("--from 5,0,0 --to 0,5,3 --ccw"), ["dda-helix", "dda-helix --preset half"]);
 }

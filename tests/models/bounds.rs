@@ -9,8 +9,10 @@ use stepwave::testbench::{Ending, Observer, ObserverError, PathWatch, SpacingWat
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Beats, Choices, Compare, EndPoint, Form, Preset, Radix, Weights, find};
-use stepwave_nc::Curve;
+use stepwave_nc::{Conic, Curve, Direction};
 
+use super::conics::every_quarter_ellipse;
+use super::dda_helix::helix;
 use super::{arc, bench, every_lattice_arc, every_line, line};
 
 /// Greatest path error so far, where, and how many geometries were measured.
@@ -191,6 +193,47 @@ fn comparison_integral_stays_within_one_blu_with_the_weights_of_the_middle_only(
 fn arcs_of_the_dda_may_leave_the_circle_by_more_than_one_blu() {
     let with = |preset| Choices { preset: Some(preset), ..Choices::default() };
     assert!(arcs("dda-arc", &with(Preset::Half)) > 1.0);
+}
+
+/// By the DDA, in the least bits and normalised in four more.
+fn ellipses(preset: Preset, normalize: bool) -> f64 {
+    let worst = Worst::default();
+    every_quarter_ellipse(30, |case| {
+        let curve = case.curve();
+        let mut choices = Choices { preset: Some(preset), ..Choices::default() };
+        if normalize {
+            let least = find("dda-conic").unwrap().plan(&curve, &choices).unwrap().widths["jrx"];
+            choices.width = Width::new(u64::from(least.get()) + 4).ok();
+            choices.normalize = true;
+        }
+        measure(&worst, "dda-conic", &curve, &choices);
+    });
+    report(&format!("dda-conic {preset:?}{}", if normalize { " normalised" } else { "" }), worst)
+}
+
+#[test]
+fn ellipses_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_nothing() {
+    let [zero, half, full] = [Preset::Zero, Preset::Half, Preset::Full].map(|preset| ellipses(preset, false));
+    assert!(zero > 2.0 && half > 1.0 && half < 1.2 && full > 1.0, "{zero} {half} {full}");
+    assert_eq!(ellipses(Preset::Half, true), half);
+    let ellipse = Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], Direction::CounterClockwise).unwrap();
+    assert_eq!(find("dda-conic").unwrap().plan(&ellipse.into(), &Choices::default()).unwrap().error_bound, None);
+}
+
+#[test]
+fn helices_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_nothing() {
+    for preset in [Preset::Zero, Preset::Half, Preset::Full] {
+        let worst = Worst::default();
+        every_lattice_arc(122, |from, to, clockwise| {
+            for rise in [0, 1, -5, 20, -100] {
+                let curve = helix([from[0], from[1], 0], [to[0], to[1], rise], [0, 0], clockwise);
+                measure(&worst, "dda-helix", &curve, &Choices { preset: Some(preset), ..Choices::default() });
+            }
+        });
+        assert!(report(&format!("dda-helix {preset:?}"), worst) > 1.0);
+    }
+    let curve = helix([5, 0, 0], [0, 5, 3], [0, 0], false);
+    assert_eq!(find("dda-helix").unwrap().plan(&curve, &Choices::default()).unwrap().error_bound, None);
 }
 
 #[test]

@@ -4,13 +4,16 @@ use stepwave_kernel::Width;
 use stepwave_models::{
     Adder, Beats, Choices, Compare, EndPoint, Form, Model, ModelError, OnOverflow, Radix, StepTiming, catalogue,
 };
-use stepwave_nc::{Conic, Curve, Direction};
+use stepwave_nc::{Conic, Curve, Direction, Helix};
 
 use super::{arc, line};
 
 /// Every form of every model: geometry, and the choices beside the widths.
 fn forms(model: &Model) -> Vec<(Curve, Choices)> {
     let curves = match model.name {
+        name if name.ends_with("helix") => {
+            vec![Helix::new([5, 0, 0], [0, 5, -9], [0, 0], Direction::CounterClockwise).unwrap().into()]
+        }
         "dda-line" | "stepgen" | "bresenham" => vec![line(&[0, 0], &[8, -6]), line(&[1, 2, 3], &[4, -9, 12])],
         "dpm-line" => return pulse_multipliers(),
         name if name.ends_with("line") => vec![line(&[0, 0], &[6, -4])],

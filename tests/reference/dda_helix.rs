@@ -121,7 +121,8 @@ pub(crate) fn helix_words(
     for (index, sector) in list.iter().enumerate() {
         swept += angle(sector);
         let is_last = index + 1 == list.len();
-        let share = if is_last { z } else { to_integer((z as f64 * swept / total + 0.5).floor()) };
+        // What the angles lose to rounding must not turn a half down.
+        let share = if is_last { z } else { to_integer((z as f64 * swept / total + 0.5 + 1e-9).floor()) };
         words.push((jvz, share - made));
         made = share;
     }

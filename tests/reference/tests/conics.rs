@@ -28,7 +28,7 @@ const METHODS: [Method; 8] = [
 fn integrated(shape: Shape, from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, which: usize) -> Table {
     let n = bits_for(shape, from, to, center);
     let preset = [0, 1 << (n - 1), (1 << n) - 1][which];
-    dda_conic(n, shape, from, to, center, clockwise, [preset; 2])
+    dda_conic(n, shape, from, to, center, clockwise, [preset; 2], false, EndPoint::PerAxis)
 }
 
 /// The bits of the largest weight on a curve.
@@ -138,7 +138,8 @@ fn small_curves_by_hand() {
     assert_eq!(table.column("base"), [1, 1, 0, 0]);
     assert_eq!(table.column("f"), [0, -2, -4, 0]);
     // In three bits: Y at every fourth iteration, X follows J_VX = 2y.
-    let table = dda_conic(3, Shape::Parabola(2, Opens::PlusX), [0, 0], [2, 2], [0, 0], false, [0, 0]);
+    let table =
+        dda_conic(3, Shape::Parabola(2, Opens::PlusX), [0, 0], [2, 2], [0, 0], false, [0, 0], false, EndPoint::PerAxis);
     assert_eq!(table.column("jvx"), [0, 0, 0, 0, 2, 2, 2, 2, 4, 4, 4]);
     assert_eq!(table.column("jrx"), [0, 0, 0, 0, 0, 2, 4, 6, 0, 4, 0]);
     assert_eq!(table.column("jvy"), [2; 11]);
@@ -195,7 +196,7 @@ fn every_quarter_ellipse_lands_exactly_by_every_method() {
 
 #[test]
 fn a_full_preset_can_hang_on_an_ellipse() {
-    let table = dda_conic(3, Shape::Ellipse([1, 2]), [1, 0], [0, 2], [0, 0], false, [7, 7]);
+    let table = dda_conic(3, Shape::Ellipse([1, 2]), [1, 0], [0, 2], [0, 0], false, [7, 7], false, EndPoint::PerAxis);
     assert!(!table.finished && !table.overflow);
     assert_eq!(table.column("ex").last(), Some(&0));
     assert_eq!(table.column("jvy").last(), Some(&0));
@@ -383,7 +384,41 @@ fn a_mid_comparison_value_starts_as_the_deviation_with_the_sign_of_the_base() {
 #[test]
 fn an_integrand_that_outgrows_its_register_is_told() {
     // y² = 4x up to (9,6): J_VX = 2y becomes 8 with the fourth Y pulse.
-    let table = dda_conic(3, Shape::Parabola(4, Opens::PlusX), [0, 0], [9, 6], [0, 0], false, [0, 0]);
+    let table =
+        dda_conic(3, Shape::Parabola(4, Opens::PlusX), [0, 0], [9, 6], [0, 0], false, [0, 0], false, EndPoint::PerAxis);
     assert!(table.overflow && !table.finished);
     assert_eq!(table.column("jvx").last(), Some(&6));
+}
+
+#[test]
+fn a_normalised_curve_is_that_of_the_fewest_bits() {
+    for semi_axes in [[5, 2], [2, 5], [7, 6], [3, 20]] {
+        for clockwise in [false, true] {
+            for (from, to) in quarters(semi_axes, clockwise) {
+                let shape = Shape::Ellipse(semi_axes);
+                let n = bits_for(shape, from, to, [0, 0]);
+                let plain = integrated(shape, from, to, [0, 0], clockwise, 1);
+                let half = [1 << (n + 2); 2];
+                let scaled = dda_conic(n + 3, shape, from, to, [0, 0], clockwise, half, true, EndPoint::PerAxis);
+                assert_eq!(scaled.path(), plain.path());
+                for name in ["jvx", "jvy", "jrx", "jry", "ux", "uy"] {
+                    let eightfold: Vec<i64> = plain.column(name).into_iter().map(|value| 8 * value).collect();
+                    assert_eq!(scaled.column(name), eightfold, "{shape:?} {name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn one_counter_of_both_integrators_counts_every_pulse() {
+    let shape = Shape::Ellipse([5, 2]);
+    let table = dda_conic(7, shape, [5, 0], [0, 2], [0, 0], false, [64; 2], false, EndPoint::Total);
+    assert!(table.finished);
+    assert_eq!(table.column("e")[0], 7);
+    let mut counted = 0;
+    for ((dx, dy), e) in table.column("dx").into_iter().zip(table.column("dy")).zip(table.column("e")) {
+        counted += dx.abs() + dy.abs();
+        assert_eq!(e, (7 - counted).max(0));
+    }
 }

@@ -1,0 +1,169 @@
+//! `dda-conic`: digital differential analyser, DDA (数字积分法), arcs of ellipses, parabolas and hyperbolas.
+//!
+//! ```text
+//!            ┌──────────────────────────────────────────────┐
+//!            ▼ ±ux on a Y pulse                             │
+//!         jvx ──► + ──► jrx    carry ──► dx ──► x, ex ──┐   │
+//!                 ▲──────┘                              ▼   │
+//!         jvy ──► + ──► jry    carry ──► dy ──► y, ey ──┼───┘
+//!          ▲      ▲──────┘                              │
+//!          └── ±uy on an X pulse ───────────────────────┘
+//! ```
+//!
+//! | register | width | ellipse x²/a² + y²/b² = 1, hyperbola | parabola y² = cx |
+//! |---|---|---|---|
+//! | jvx | n | integrand J_VX = a²·abs(y) | 2·abs(y) |
+//! | jvy | n | integrand J_VY = b²·abs(x) | c |
+//! | jrx, jry | n | remainders J_R: the preset | |
+//! | ux | as it needs, n when normalised | a², the correction of jvx by a Y pulse | 2 |
+//! | uy | as it needs, n when normalised | b², the correction of jvy by an X pulse | 0 |
+//! | jvm | n | when normalised: the greatest of J_V, ux, uy in the sector | |
+//! | ex, ey | as they need | steps of each axis in the sector (`per-axis`) | |
+//! | e | as it needs | steps of both axes in the sector (`total`) | |
+//!
+//! On every iteration both integrators add with the old J_V; a pulse of one axis corrects the integrand of the other:
+//! upward where its coordinate grows, downward where it shrinks. On an ellipse one coordinate grows and the other shrinks,
+//! on an open curve both grow, or on the way back both shrink. An exhausted axis stops adding and freezes its remainder.
+//! A hyperbola whose branch runs along y has a and b, and a parabola that opens along y has x and y changed over. What
+//! grows and where the axes run are load words (`x_grows`, `y_grows`, `sx`, `sy`), so that one machine runs every conic,
+//! mirrored or not. The loader splits an ellipse where it meets its axes, and the others at their vertex.
+//!
+//! 2^n must be greater than every J_V on the arc. An integrand may grow from 0 to a²·b, however small the other is;
+//! so normalised, all of them and their corrections are shifted left until the greatest of the sector, which the loader
+//! knows, has its top bit set.
+//!
+//! Limits of the method itself: the path may leave the curve by more than one BLU (on quarter ellipses of semi-axes
+//! below 30 by up to 2.13 with the preset zero, 1.17 with half, 2.07 with full); with a preset of full, seldom with
+//! zero, the motion can come to a stand before an axis or a vertex, where J_V is 0 already (with `half` it was never seen
+//! to on a curve whose ends lie on it); and the counter `total` may miss the end.
+//!
+//! The quarter of the ellipse with semi-axes 6 and 4 from (6, 0) to (0, 4), from the golden file
+//! `waves/dda-conic-ellipse.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/dda-conic-ellipse.csv")]
+//! ```
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Conic, ConicSector, Curve};
+
+use crate::choices::{Choice, Choices, EndPoint};
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::hardware::names::{JR, JV};
+use crate::machine::Words;
+use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::parts::{Block, IntegratorPair, Normalizer, PairSide, shifted_left};
+use crate::registers::Registers;
+use crate::{plan, words};
+
+const NAME: &str = "dda-conic";
+
+pub(crate) const MODEL: Model = Model {
+    name: NAME,
+    title: "Digital differential analyser, ellipse, parabola, hyperbola",
+    method: "digital differential analyser",
+    curve: CurveKind::Conic,
+    registers: &[
+        RegisterDoc {
+            name: "jvx, jvy", width: "n", about: "integrands J_VX = a²|y|, J_VY = b²|x|; parabola 2|y|, c"
+        },
+        RegisterDoc { name: "jrx, jry", width: "n", about: "remainders J_R, from the preset" },
+        RegisterDoc { name: "ux, uy", width: "as they need", about: "corrections of jvx by a Y, of jvy by an X pulse" },
+        RegisterDoc { name: "jvm", width: "n", about: "greatest integrand or correction of the sector (normalised)" },
+        RegisterDoc::EX_EY_NEEDED,
+        RegisterDoc { name: "e", width: "as it needs", about: "end-point down-counter of both axes (total)" },
+        RegisterDoc::POSITIONS,
+    ],
+    choices: &[
+        ChoiceDoc::WIDTH,
+        ChoiceDoc::PRESET,
+        ChoiceDoc::NORMALIZE,
+        ChoiceDoc { choice: Choice::EndPoint, values: "per-axis (default) | total" },
+        ChoiceDoc::ON_OVERFLOW,
+    ],
+    source: "数字积分法 for curves of second order, as in Chinese NC textbooks",
+    plan,
+    netlist,
+    words,
+};
+
+/// The integrands J_VX and J_VY at a point: what weighs a pulse of the other axis.
+fn integrands(conic: &Conic, [x, y]: [i64; 2]) -> [i128; 2] {
+    let [of_x, of_y] = conic.weights();
+    [of_y.at(y.abs()), of_x.at(x.abs())]
+}
+
+/// Their corrections by a pulse of the other axis.
+fn corrections(conic: &Conic) -> [i128; 2] {
+    let [of_x, of_y] = conic.weights();
+    [of_y.slope, of_x.slope]
+}
+
+fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    let end_point = plan::integrated_end_point(NAME, choices)?;
+    let size = plan::ConicSize::of(curve, |weight, at| weight.at(at).max(weight.slope));
+    let n = choices.width.map_or(plan::needed(size.greatest), stepwave_kernel::Width::get);
+    let mut registers = Registers::new(NAME, choices);
+    for axis in [0, 1] {
+        registers.register(JV[axis], n).register(JR[axis], n);
+    }
+    for (name, slope) in [("ux", size.slopes[1]), ("uy", size.slopes[0])] {
+        if choices.normalize {
+            registers.shown(name)
+        } else {
+            registers.register(name, slope)
+        };
+    }
+    match end_point {
+        EndPoint::PerAxis => registers.end_counters(2, size.steps),
+        _ => registers.register("e", size.steps + 1),
+    };
+    registers.positions(size.positions);
+    registers.integrators(2, end_point, 1)
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("dda_conic", hardware.on_overflow);
+    let m = module.top();
+    let block = Block::new(m);
+    let normalizer = Normalizer::new(m, &block, hardware.normalize);
+    let pair = IntegratorPair::new(m, &block, hardware);
+
+    // What shifts along has the width of the integrands.
+    let bits = |name: &str| if hardware.normalize { hardware.bits("jvx") } else { hardware.bits(name) };
+    let [ux, uy] = ["ux", "uy"].map(|name| m.reg(name, bits(name)));
+    let greatest = hardware.normalize.then(|| m.reg("jvm", bits("jvm")));
+    let normalized = normalizer.close(&greatest.map(|greatest| greatest.q).into_iter().collect::<Vec<_>>(), 1);
+    for (name, register) in [("ux", Some(ux)), ("uy", Some(uy)), ("jvm", greatest)] {
+        let Some(register) = register else { continue };
+        let shifted = shifted_left(m, register.q);
+        register.when(block.load, block.word(name, bits(name))).when(normalized.shift, shifted).else_hold();
+    }
+
+    // A pulse of an axis raises the integrand of the other where its own coordinate grows.
+    let [x_grows, y_grows] = ["x_grows", "y_grows"].map(|name| block.held(m, name, 1));
+    let x = PairSide { negative: block.held(m, "sx", 1), raised: y_grows, unit: ux.q };
+    let y = PairSide { negative: block.held(m, "sy", 1), raised: x_grows, unit: uy.q };
+    let last = pair.close(hardware, normalized, [x, y]);
+    block.close(normalized.ready, normalized.run, last);
+    Ok(module.finish()?)
+}
+
+fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+    let Some(conic) = plan::conic(curve) else { return Vec::new() };
+    let units = corrections(conic);
+    let block = |sector: &ConicSector| {
+        let start = integrands(conic, sector.start);
+        let mut own = words::integrators(hardware, start);
+        if hardware.normalize {
+            // Each integrand is greatest at one of the ends.
+            let all = [start, integrands(conic, sector.end), units];
+            own.push(("jvm", all.into_iter().flatten().max().unwrap_or(0)));
+        }
+        own.extend([("ux", units[0]), ("uy", units[1])]);
+        [own, words::end_counters(hardware, sector.steps()), words::conic_sector(conic, sector)].concat()
+    };
+    conic.sectors().iter().map(block).collect()
+}
