@@ -278,7 +278,7 @@ fn every_line_that_cannot_be_read_is_named_with_its_number() {
         [
             "line 3: expected the end of the line in '%0:4 = input extra' [Syntax]",
             "line 4: expected scope 1 in an earlier one in 'scope 5 in 0 \"x\"' [Syntax]",
-            "line 5: expected a cell, 'netlist' (once, first), 'scope', 'name' or 'property' in 'nonsense' [Syntax]",
+            "line 5: expected a cell, 'netlist' (once, first), 'scope', 'name', 'property' or 'between-steps' in 'nonsense' [Syntax]",
             "line 6: expected a format in 'name %0 in 0 \"a\" green' [Syntax]",
         ]
     );

@@ -35,8 +35,10 @@ pub mod dsl;
 mod elaborate;
 pub mod engine;
 pub mod export;
+pub mod formula;
 pub mod netlist;
 pub mod passes;
+pub mod prove;
 pub mod text;
 pub mod trace;
 

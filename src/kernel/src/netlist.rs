@@ -8,6 +8,7 @@ use std::panic::Location;
 
 use crate::bits::{Reading, Width};
 use crate::diag::Code;
+use crate::formula::Clause;
 
 /// A net, named by the cell that drives it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -267,6 +268,9 @@ pub struct Netlist {
     pub names: Vec<NamedNet>,
     /// What must never happen.
     pub properties: Vec<Property>,
+    /// What holds of registers between two steps of a block, in formulas of their leaf names: for tests and proofs. No
+    /// hardware comes of it.
+    pub invariants: Vec<Clause>,
     /// Source line of each cell, where it is known; same index as `cells`.
     pub sources: Vec<Option<&'static Location<'static>>>,
 }
@@ -278,6 +282,7 @@ impl PartialEq for Netlist {
             && self.scopes == other.scopes
             && self.names == other.names
             && self.properties == other.properties
+            && self.invariants == other.invariants
     }
 }
 

@@ -11,16 +11,18 @@
 //! %4:1 = carry %1 %2
 //! name %1 in 1 "count" unsigned
 //! property "counter.x.count" never %4 add %1 unsigned %2 unsigned
+//! between-steps "counter.x.even" count - 2 | -count
 //! ```
 //!
 //! `name` ends in the format: `unsigned`, `signed`, `analog`, `binary` or `states 0x1 "JUDGE" 0x2 "FEED"`. `property`
-//! ends in `invariant` or in the strict operation with its operands. Text in quotes is escaped as in Rust.
+//! ends in `invariant` or in the strict operation with its operands, `between-steps` in formulas with `|` between them. Text in quotes is escaped as in Rust.
 
 use std::fmt::{self, Write as _};
 use std::str::CharIndices;
 
 use crate::bits::Width;
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
+use crate::formula::{Clause, Formula};
 use crate::netlist::{
     Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Operand, Property, ScopeData, ScopeId,
 };
@@ -128,6 +130,10 @@ impl fmt::Display for Netlist {
                 }
             }
         }
+        for Clause { name, any } in &self.invariants {
+            let any: Vec<String> = any.iter().map(Formula::to_string).collect();
+            writeln!(f, "between-steps {name:?} {}", any.join(" | "))?;
+        }
         Ok(())
     }
 }
@@ -223,10 +229,18 @@ impl Parser {
                 };
                 self.netlist.properties.push(Property { name, never, claim });
             }
+            "between-steps" => {
+                let name = words.quoted()?;
+                let any = std::mem::take(&mut words.rest).split('|').map(Formula::parse);
+                let any = any.collect::<Option<_>>().ok_or("formulas such as 'f + 2*a - 1', with '|' between them")?;
+                self.netlist.invariants.push(Clause { name, any });
+            }
             _ => {
                 // It may have been meant for a cell or a scope.
                 (self.next_net, self.next_scope) = (None, None);
-                return Err("a cell, 'netlist' (once, first), 'scope', 'name' or 'property'".to_owned());
+                return Err(
+                    "a cell, 'netlist' (once, first), 'scope', 'name', 'property' or 'between-steps'".to_owned()
+                );
             }
         }
         words.end()

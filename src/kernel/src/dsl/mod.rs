@@ -20,6 +20,7 @@ use std::panic::Location;
 
 use crate::bits::{Bits, Width};
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
+use crate::formula::{Clause, Formula};
 use crate::netlist::{Cell, Claim, Format, NamedNet, Net, Netlist, OnOverflow, Op, Property, ScopeData, ScopeId};
 
 pub use register::{Chain, Register};
@@ -265,6 +266,13 @@ impl<'m> Scope<'m> {
         let never = !self.own(holds);
         let name = format!("{}.{name}", self.module.state.borrow().netlist.scope_path(self.id));
         self.add_property(Property { name, never: never.net(), claim: Claim::Invariant });
+    }
+
+    /// Claims that one of the formulas, of leaf names of this module, is 0 or more between two steps of a block. No
+    /// hardware comes of it: tests check it in recorded runs, and a prover uses it once it has proved it.
+    pub fn between_steps(self, name: &str, any: impl IntoIterator<Item = Formula>) {
+        let name = format!("{}.{name}", self.module.state.borrow().netlist.scope_path(self.id));
+        self.module.state.borrow_mut().netlist.invariants.push(Clause::either(&name, any));
     }
 
     #[track_caller]

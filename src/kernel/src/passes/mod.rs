@@ -16,7 +16,7 @@ use share::Builder;
 /// A simplified netlist, and where each net of the original one went.
 #[derive(Clone, Debug)]
 pub struct Simplified {
-    /// The new netlist, with all names and properties.
+    /// The new netlist, with all names, properties and invariants.
     pub netlist: Netlist,
     /// New net of each old one.
     pub map: Vec<Net>,
@@ -58,6 +58,7 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
         scopes: netlist.scopes.clone(),
         names: netlist.names.clone(),
         properties: netlist.properties.clone(),
+        invariants: netlist.invariants.clone(),
         sources: Vec::new(),
     };
     new.sources = vec![None; new.cells.len()];

@@ -1,0 +1,212 @@
+//! Equalities that hold in every row of recorded runs: candidates for invariants, to be proved like any other.
+
+use std::collections::HashSet;
+
+use super::poly::{Monomial, Poly, Var};
+use crate::formula::{Formula, name, number};
+
+/// A variable and what it always equals.
+pub(crate) type Equality = (Var, Poly);
+
+/// A prime near 2^61, in whose remainders ranks are worked out.
+const PRIME: u64 = (1 << 61) - 1;
+/// Rows that are looked at for each column.
+const ROWS_A_COLUMN: usize = 40;
+
+/// Variables of `defined`, each as a polynomial of degree 1, and then 2, of those that are left: no polynomial uses a
+/// variable that has one; `flags` are not multiplied. `rows` are values of all variables; earlier ones of `defined` are defined first.
+pub(crate) fn equalities(rows: &[Vec<i128>], defined: &[Var], free: &[Var], flags: &[Var]) -> Vec<Equality> {
+    let mut found: Vec<Equality> = Vec::new();
+    let mut left: Vec<Var> = defined.to_vec();
+    for degree in [1, 2] {
+        if degree > 1 {
+            left.retain(|var| !flags.contains(var));
+        }
+        let basis: Vec<Var> = free.iter().chain(&left).copied().collect();
+        let columns = monomials(&basis, degree);
+        let mut new: Vec<Equality> = Vec::new();
+        for relation in relations(rows, &columns) {
+            // In the relation, one variable that stands by itself with the coefficient ±1, and that no other does.
+            let relation = relation.replaced(|var| new.iter().find(|(other, _)| *other == var).map(|(_, poly)| poly));
+            let Some(var) = left.iter().copied().find(|var| matches!(relation.linear_in(*var), Some(1 | -1))) else {
+                continue;
+            };
+            let own = relation.linear_in(var).unwrap_or(1);
+            let value = Poly::from(var).minus(&relation.times_number(own));
+            for (_, poly) in &mut new {
+                *poly = poly.replaced(|other| (other == var).then_some(&value));
+            }
+            left.retain(|other| *other != var);
+            new.push((var, value));
+        }
+        for (_, poly) in &mut found {
+            *poly = poly.replaced(|var| new.iter().find(|(other, _)| *other == var).map(|(_, value)| value));
+        }
+        found.extend(new);
+    }
+    let lost: HashSet<Var> = found.iter().filter(|(_, poly)| poly.is_lost()).map(|(var, _)| *var).collect();
+    found.retain(|(var, _)| !lost.contains(var));
+    found
+}
+
+/// The formula, of degree 2 at most, that gives the last number of every row from those before it, which bear these
+/// names; `None` where there is none.
+#[must_use]
+pub fn fit(names: &[&str], rows: &[Vec<i128>]) -> Option<Formula> {
+    let free: Vec<Var> = (0..names.len()).filter_map(|place| u16::try_from(place).ok()).map(Var).collect();
+    let wanted = Var(u16::try_from(names.len()).ok()?);
+    let found = equalities(rows, &[wanted], &free, &[]);
+    let (_, poly) = found.first()?;
+    let term = |(monomial, coefficient): &(Monomial, i128)| {
+        monomial.vars().fold(number(*coefficient), |product, var| product * name(names[var.index()]))
+    };
+    Some(poly.terms().iter().map(term).fold(number(0), |sum, term| sum + term))
+}
+
+/// Products of up to `degree` variables, those of few first and those of early variables last, so that what is
+/// expressed is what comes late.
+fn monomials(vars: &[Var], degree: usize) -> Vec<Monomial> {
+    let mut all = vec![Monomial::ONE];
+    let singles: Vec<Monomial> = vars.iter().map(|var| Poly::from(*var).terms()[0].0).collect();
+    if degree > 1 {
+        for (index, a) in singles.iter().enumerate() {
+            all.extend(singles[index..].iter().filter_map(|b| a.times(*b)));
+        }
+    }
+    all.extend(singles);
+    all
+}
+
+/// Independent relations between the columns that hold in all rows, with small whole coefficients; each expresses one
+/// column by earlier ones.
+fn relations(rows: &[Vec<i128>], columns: &[Monomial]) -> Vec<Poly> {
+    let step = (rows.len() / (ROWS_A_COLUMN * columns.len()).max(1)).max(1);
+    // A matrix in echelon form, grown row by row, each row scaled to begin with 1.
+    let mut echelon: Vec<(usize, Vec<u64>)> = Vec::new();
+    for row in rows.iter().step_by(step) {
+        let mut values: Vec<u64> = columns.iter().map(|monomial| remainder(*monomial, row)).collect();
+        for (lead, own) in &echelon {
+            let factor = values[*lead];
+            if factor != 0 {
+                for (value, own) in values.iter_mut().zip(own) {
+                    *value = minus(*value, times(factor, *own));
+                }
+            }
+        }
+        if let Some(lead) = values.iter().position(|value| *value != 0) {
+            let inverse = power(values[lead], PRIME - 2);
+            values.iter_mut().for_each(|value| *value = times(*value, inverse));
+            for (_, other) in &mut echelon {
+                let factor = other[lead];
+                if factor != 0 {
+                    for (value, own) in other.iter_mut().zip(&values) {
+                        *value = minus(*value, times(factor, *own));
+                    }
+                }
+            }
+            echelon.push((lead, values));
+        }
+    }
+    let leads: HashSet<usize> = echelon.iter().map(|(lead, _)| *lead).collect();
+    let mut found = Vec::new();
+    for free in (0..columns.len()).filter(|column| !leads.contains(column)) {
+        // columns[free] = sum of echelon[free] * columns[lead].
+        let fractions: Option<Vec<(Monomial, (i128, i128))>> = echelon
+            .iter()
+            .filter(|(_, values)| values[free] != 0)
+            .map(|(lead, values)| Some((columns[*lead], fraction(values[free])?)))
+            .collect();
+        let Some(fractions) = fractions else { continue };
+        let common = fractions.iter().fold(1_i128, |common, (_, (_, below))| lcm(common, *below));
+        let terms = fractions.iter().map(|(monomial, (above, below))| (*monomial, -above * (common / below)));
+        let relation = Poly::of(terms.chain([(columns[free], common)]));
+        let holds = |row: &Vec<i128>| relation.value(|var| row[var.index()]) == Some(0);
+        if rows.iter().all(holds) {
+            found.push(relation);
+        }
+    }
+    found
+}
+
+fn remainder(monomial: Monomial, row: &[i128]) -> u64 {
+    monomial.vars().fold(1, |product, var| times(product, reduced(row[var.index()])))
+}
+
+fn reduced(number: i128) -> u64 {
+    u64::try_from(number.rem_euclid(i128::from(PRIME))).unwrap_or(0)
+}
+
+fn times(a: u64, b: u64) -> u64 {
+    u64::try_from(u128::from(a) * u128::from(b) % u128::from(PRIME)).unwrap_or(0)
+}
+
+fn minus(a: u64, b: u64) -> u64 {
+    if a >= b { a - b } else { a + (PRIME - b) }
+}
+
+fn power(mut base: u64, mut exponent: u64) -> u64 {
+    let mut result = 1;
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            result = times(result, base);
+        }
+        base = times(base, base);
+        exponent >>= 1;
+    }
+    result
+}
+
+/// The fraction of small numbers that has this remainder.
+fn fraction(remainder: u64) -> Option<(i128, i128)> {
+    const MOST: i128 = 1 << 20;
+    let (mut a, mut b) = (i128::from(PRIME), i128::from(remainder));
+    let (mut s, mut t) = (0_i128, 1_i128);
+    while b > MOST {
+        let quotient = a / b;
+        (a, b) = (b, a - quotient * b);
+        (s, t) = (t, s - quotient * t);
+    }
+    let (above, below) = if t < 0 { (-b, -t) } else { (b, t) };
+    (below > 0 && below <= MOST).then_some((above, below))
+}
+
+fn lcm(a: i128, b: i128) -> i128 {
+    let gcd = |mut a: i128, mut b: i128| {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    a / gcd(a, b) * b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_variable_that_is_a_product_of_others_is_found() {
+        // v1 = free, v2 = free, v3 = v1*v2 - 2*v2 + 1, v4 = v1 + v2, v5 = 7.
+        let rows: Vec<Vec<i128>> = (0..60_i128)
+            .map(|i| {
+                let (a, b) = (i * 7 % 13, i * i % 11);
+                vec![0, a, b, a * b - 2 * b + 1, a + b, 7]
+            })
+            .collect();
+        let [a, b, product, sum, seven] = [1, 2, 3, 4, 5].map(Var);
+        let found = equalities(&rows, &[seven, sum, product], &[a, b], &[]);
+        let value = |var| found.iter().find(|(other, _)| *other == var).map(|(_, poly)| poly.clone()).unwrap();
+        let (a, b) = (Poly::from(a), Poly::from(b));
+        assert_eq!(value(seven), Poly::from(7));
+        assert_eq!(value(sum), a.plus(&b));
+        assert_eq!(value(product), a.times(&b).minus(&b.times_number(2)).plus_number(1));
+    }
+
+    #[test]
+    fn fractions_come_back_from_their_remainders() {
+        for (above, below) in [(1, 2), (-3, 7), (0, 1), (5, 1), (-1, 1)] {
+            let remainder = times(reduced(above), power(reduced(below), PRIME - 2));
+            assert_eq!(fraction(remainder), Some((above, below)));
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! Looks for contradictions: which products of conditions to add up, found in floating point and worked out exactly.
+
+use std::collections::{HashMap, HashSet};
+
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+
+use super::farkas::{Part, Refutation, holds, product};
+use super::poly::{Monomial, Poly};
+use super::simplex;
+
+/// How hard to look.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Effort {
+    /// Sums of conditions: to leave out branches that cannot be taken.
+    Sums,
+    /// Products of two conditions too, and all alternatives of clauses: to prove a claim.
+    All,
+}
+
+/// Products of two conditions that are tried at most.
+const MOST_PRODUCTS: usize = 1400;
+/// Sums of products that are looked for to show one contradiction.
+const MOST_SUMS: usize = 300;
+/// Clauses that are taken apart one inside another.
+const DEEPEST: usize = 5;
+
+/// A contradiction in `rows`, all 0 or more, of which those from `own` on are what matters most, and clauses of which
+/// one alternative holds.
+/// Looked for are at most `budget` sums of products, which are taken off it.
+pub(crate) fn refute(
+    rows: &[Poly],
+    own: usize,
+    clauses: &[Vec<Poly>],
+    effort: Effort,
+    budget: &mut usize,
+) -> Option<Refutation> {
+    if let Some(found) = sum(rows, &singles(rows)) {
+        return Some(found);
+    }
+    if effort == Effort::Sums {
+        return None;
+    }
+    let open: Vec<usize> = (0..clauses.len()).collect();
+    let mut own_budget = (*budget).min(MOST_SUMS);
+    *budget -= own_budget;
+    let found = cases(&mut rows.to_vec(), own, clauses, &open, 0, &mut own_budget);
+    *budget += own_budget;
+    found
+}
+
+/// Sums, then products, then one clause after another taken apart.
+fn cases(
+    rows: &mut Vec<Poly>,
+    own: usize,
+    clauses: &[Vec<Poly>],
+    open: &[usize],
+    depth: usize,
+    budget: &mut usize,
+) -> Option<Refutation> {
+    *budget = budget.checked_sub(1)?;
+    if depth > 0
+        && let Some(found) = sum(rows, &singles(rows))
+    {
+        return Some(found);
+    }
+    if let Some(found) = sum(rows, &products(rows, own)) {
+        return Some(found);
+    }
+    if depth == DEEPEST {
+        return None;
+    }
+    // First the clauses of which most alternatives are out at once.
+    let mut ranked: Vec<(usize, usize)> = Vec::new();
+    for &clause in open {
+        let mut alive = 0;
+        for alternative in &clauses[clause] {
+            rows.push(alternative.clone());
+            alive += usize::from(sum(rows, &singles(rows)).is_none());
+            rows.pop();
+        }
+        // A clause that changes nothing is none to take apart: an alternative that holds already.
+        let idle = clauses[clause].iter().any(|alternative| rows.contains(alternative));
+        if !idle {
+            ranked.push((alive, clause));
+        }
+    }
+    ranked.sort_unstable();
+    'clause: for &(alive, clause) in &ranked {
+        let rest: Vec<usize> = open.iter().copied().filter(|other| *other != clause).collect();
+        let mut each = Vec::new();
+        for alternative in &clauses[clause] {
+            rows.push(alternative.clone());
+            let found = cases(rows, own, clauses, &rest, depth + 1, budget);
+            rows.pop();
+            match found {
+                Some(found) => each.push(found),
+                // The other clauses were tried inside, but for those that are decided at once.
+                None if alive > 1 || depth > 0 => return None,
+                None => continue 'clause,
+            }
+        }
+        return Some(Refutation::Cases { clause, each });
+    }
+    None
+}
+
+type Product = (usize, Option<usize>);
+
+fn singles(rows: &[Poly]) -> Vec<Product> {
+    (0..rows.len()).map(|row| (row, None)).collect()
+}
+
+/// Every condition, and products of two: first those of conditions that matter most.
+fn products(rows: &[Poly], own: usize) -> Vec<Product> {
+    let most = rows[own..].iter().map(Poly::degree).max().unwrap_or(1).max(2);
+    let factors = factors(rows);
+    let mut chosen = singles(rows);
+    let room = MOST_PRODUCTS.saturating_sub(chosen.len());
+    let pairs = factors.iter().enumerate().flat_map(|(place, row)| factors[..=place].iter().map(move |by| (*by, *row)));
+    let low = |(row, by): &(usize, usize)| rows[*row].degree() + rows[*by].degree() <= most;
+    // A late condition with all others comes before two early ones.
+    let mut pairs: Vec<(usize, usize)> = pairs.filter(low).collect();
+    pairs.sort_by_key(|(first, second)| std::cmp::Reverse((*second >= own, *first >= own)));
+    chosen.extend(pairs.into_iter().take(room).map(|(row, by)| (row, Some(by))));
+    chosen
+}
+
+/// Conditions that are worth multiplying, each once: those of numbers that others speak of too.
+fn factors(rows: &[Poly]) -> Vec<usize> {
+    let mut met: HashSet<super::poly::Var> = HashSet::new();
+    for row in rows {
+        let vars = row.vars();
+        if vars.len() > 1 || row.degree() > 1 {
+            met.extend(vars);
+        }
+    }
+    let mut seen = HashSet::new();
+    (0..rows.len())
+        .filter(|place| {
+            let row = &rows[*place];
+            row.constant().is_none() && row.vars().iter().all(|var| met.contains(var)) && seen.insert(row)
+        })
+        .collect()
+}
+
+/// A sum of these products that is a negative number.
+fn sum(rows: &[Poly], candidates: &[Product]) -> Option<Refutation> {
+    let mut seen = HashSet::new();
+    let mut columns: Vec<(Product, Poly)> = Vec::with_capacity(candidates.len());
+    for &(row, by) in candidates {
+        let Some(poly) = product(rows, row, by) else { continue };
+        if poly.constant().is_some_and(|number| number >= 0) || !seen.insert(poly.clone()) {
+            continue;
+        }
+        columns.push(((row, by), poly));
+    }
+    prune(&mut columns);
+    let mut numbers: HashMap<Monomial, usize> = HashMap::from([(Monomial::ONE, 0)]);
+    let sparse: Vec<Vec<(usize, f64)>> = columns
+        .iter()
+        .map(|(_, poly)| {
+            let entry = |(monomial, coefficient): &(Monomial, i128)| {
+                let next = numbers.len();
+                let row = *numbers.entry(*monomial).or_insert(next);
+                // The sum is to be -1.
+                let sign = if row == 0 { -1.0 } else { 1.0 };
+                (row, sign * *coefficient as f64)
+            };
+            poly.terms().iter().map(entry).collect()
+        })
+        .collect();
+    let support = simplex::support(&sparse, numbers.len())?;
+    let polys: Vec<&Poly> = support.iter().map(|column| &columns[*column].1).collect();
+    let factors = exact_factors(&polys)?;
+    let parts = support.iter().zip(factors).filter(|(_, factor)| !factor.is_zero());
+    let parts = parts.map(|(column, factor)| {
+        let ((row, by), _) = columns[*column];
+        Part { row, by, factor }
+    });
+    let found = Refutation::Sum(parts.collect());
+    holds(&found, &mut rows.to_vec(), &[]).then_some(found)
+}
+
+/// Takes out what has a product that nothing can take away again: of one sign in all columns.
+fn prune(columns: &mut Vec<(Product, Poly)>) {
+    loop {
+        let mut signs: HashMap<Monomial, (bool, bool)> = HashMap::new();
+        for (_, poly) in columns.iter() {
+            for (monomial, coefficient) in poly.terms().iter().filter(|(monomial, _)| *monomial != Monomial::ONE) {
+                let sign = signs.entry(*monomial).or_default();
+                if *coefficient > 0 { sign.0 = true } else { sign.1 = true }
+            }
+        }
+        let before = columns.len();
+        columns.retain(|(_, poly)| {
+            poly.terms().iter().all(|(monomial, _)| *monomial == Monomial::ONE || signs[monomial] == (true, true))
+        });
+        if columns.len() == before {
+            return;
+        }
+    }
+}
+
+/// Factors of 0 or more with which the polynomials add up to -1.
+fn exact_factors(polys: &[&Poly]) -> Option<Vec<BigRational>> {
+    let rational = |number: i128| BigRational::from(BigInt::from(number));
+    let mut monomials: Vec<Monomial> =
+        polys.iter().flat_map(|poly| poly.terms()).map(|(monomial, _)| *monomial).collect();
+    monomials.push(Monomial::ONE);
+    monomials.sort_unstable();
+    monomials.dedup();
+    // A row for each product: its coefficient in each polynomial, and what the sum is to have.
+    let mut rows: Vec<Vec<BigRational>> = monomials
+        .iter()
+        .map(|monomial| {
+            let coefficient = |poly: &&Poly| {
+                let term = poly.terms().iter().find(|(other, _)| other == monomial);
+                rational(term.map_or(0, |(_, coefficient)| *coefficient))
+            };
+            let wanted = rational(if *monomial == Monomial::ONE { -1 } else { 0 });
+            polys.iter().map(coefficient).chain([wanted]).collect()
+        })
+        .collect();
+    let width = polys.len();
+    let mut pivots = Vec::new();
+    for column in 0..width {
+        let start = pivots.len();
+        let Some(found) = (start..rows.len()).find(|row| !rows[*row][column].is_zero()) else { continue };
+        rows.swap(start, found);
+        let inverse = rows[start][column].recip();
+        rows[start].iter_mut().for_each(|value| *value *= &inverse);
+        let pivot = rows[start].clone();
+        for (index, row) in rows.iter_mut().enumerate() {
+            if index != start && !row[column].is_zero() {
+                let factor = row[column].clone();
+                for (value, own) in row.iter_mut().zip(&pivot) {
+                    if !own.is_zero() {
+                        *value -= &factor * own;
+                    }
+                }
+            }
+        }
+        pivots.push(column);
+    }
+    let solvable = rows[pivots.len()..].iter().all(|row| row[width].is_zero());
+    let mut factors = vec![BigRational::zero(); width];
+    for (row, column) in pivots.into_iter().enumerate() {
+        factors[column].clone_from(&rows[row][width]);
+    }
+    (solvable && factors.iter().all(|factor| !factor.is_negative())).then_some(factors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::poly::Var;
+    use super::*;
+
+    fn var(number: u16) -> Poly {
+        Poly::from(Var(number))
+    }
+
+    #[test]
+    fn a_product_of_two_conditions_is_found_where_one_is_needed() {
+        // x >= 1, y >= 2, x*y <= 1.
+        let rows = [var(1).plus_number(-1), var(2).plus_number(-2), Poly::from(1).minus(&var(1).times(&var(2)))];
+        assert_eq!(refute(&rows, 0, &[], Effort::Sums, &mut 9), None);
+        let found = refute(&rows, 0, &[], Effort::All, &mut 9).unwrap();
+        assert!(holds(&found, &mut rows.to_vec(), &[]));
+        // x*y <= 2 can be.
+        let rows = [var(1).plus_number(-1), var(2).plus_number(-2), Poly::from(2).minus(&var(1).times(&var(2)))];
+        assert_eq!(refute(&rows, 0, &[], Effort::All, &mut 9), None);
+    }
+
+    #[test]
+    fn clauses_are_taken_apart() {
+        let x = var(1);
+        let clauses = [vec![x.plus_number(-3), x.negated().plus_number(-3)]];
+        let within = [x.plus_number(2), Poly::from(2).minus(&x)];
+        let found = refute(&within, 0, &clauses, Effort::All, &mut 9).unwrap();
+        assert!(holds(&found, &mut within.to_vec(), &clauses));
+        assert_eq!(refute(&within[..1], 0, &clauses, Effort::All, &mut 9), None);
+    }
+}
