@@ -7,8 +7,10 @@ use stepwave::nc::Opens;
 
 use crate::commands::diff::DiffArgs;
 
+mod proof;
 mod values;
 
+pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use values::{ClockArgs, HardwareArgs, Point, SimulationArgs};
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware
@@ -29,6 +31,8 @@ pub(crate) enum Command {
     Run(Box<RunArgs>),
     /// Every method on one curve: steps, clocks, greatest error, widest register
     Compare(Box<CompareArgs>),
+    /// Prove, for all geometries and widths: no register overflows, the end point is reached exactly
+    Prove(Box<ProveArgs>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)
     Diff(DiffArgs),
     /// Write a machine as Verilog, with a test bench that runs the geometry

@@ -10,5 +10,6 @@ mod house;
 mod kernel;
 mod lanes;
 mod models;
+mod proofs;
 mod reference;
 mod waves;

@@ -74,6 +74,7 @@ pub(crate) const MODEL: Model = Model {
         ChoiceDoc::ON_OVERFLOW,
     ],
     source: "the line tracing of open firmware for printers and mills, after J. E. Bresenham, 1965",
+    claims: None,
     plan,
     netlist,
     words,
@@ -81,6 +82,15 @@ pub(crate) const MODEL: Model = Model {
 
 fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let axes = curve.axes();
+    if choices.form == Some(Form::Bare) {
+        return Err(ModelError::Value {
+            model: NAME,
+            choice: Choice::Form,
+            value: "bare".to_owned(),
+            reason: "its counters have no case of their own for a line along an axis; give magnitude or signed"
+                .to_owned(),
+        });
+    }
     let n = plan::magnitude_bits(choices, plan::longest(curve));
     let mut registers = Registers::new(NAME, choices);
     for axis in 0..axes {

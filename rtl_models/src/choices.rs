@@ -62,10 +62,13 @@ pub enum Form {
     Magnitude,
     /// Registers hold dx and dy; F = dx·y - dy·x.
     Signed,
+    /// As `Magnitude`, but F >= 0 steps X whatever the line, as textbooks print it: wrong where the line runs along y.
+    Bare,
 }
 
 impl Named for Form {
-    const ALL: &'static [(&'static str, Form)] = &[("magnitude", Form::Magnitude), ("signed", Form::Signed)];
+    const ALL: &'static [(&'static str, Form)] =
+        &[("magnitude", Form::Magnitude), ("signed", Form::Signed), ("bare", Form::Bare)];
 }
 
 /// Clocks of a step that is judged.
@@ -339,5 +342,42 @@ impl Choices {
         .into_iter()
         .filter_map(|(given, choice)| given.then_some(choice))
         .collect()
+    }
+
+    /// The options that give these choices on the command line, in a fixed order.
+    #[must_use]
+    pub fn options(&self) -> Vec<String> {
+        let mut words = Vec::new();
+        let mut add = |choice: Choice, value: Option<String>| {
+            if let Some(value) = value {
+                words.push(choice.option().to_owned());
+                words.extend(Some(value).filter(|value| !value.is_empty()));
+            }
+        };
+        fn word<T: Named>(choice: Option<T>) -> Option<String> {
+            choice.map(|choice| choice.word().to_owned())
+        }
+        fn list<T>(all: Option<String>, single: &BTreeMap<String, T>, text: impl Fn(&T) -> String) -> Option<String> {
+            let single = single.iter().map(|(name, value)| format!("{name}={}", text(value)));
+            let list: Vec<String> = all.into_iter().chain(single).collect();
+            (!list.is_empty()).then(|| list.join(","))
+        }
+        let width = |width: &Width| width.get().to_string();
+        add(Choice::Width, list(self.width.as_ref().map(width), &self.widths, width));
+        add(Choice::Preset, list(self.preset.map(|preset| preset.to_string()), &self.presets, Preset::to_string));
+        add(Choice::Normalize, self.normalize.then(String::new));
+        add(Choice::Radix, word(self.radix));
+        add(Choice::Adder, word(self.adder));
+        add(Choice::EndPoint, word(self.end_point));
+        add(Choice::Form, word(self.form));
+        add(Choice::Weights, word(self.weights));
+        add(Choice::Beats, word(self.beats));
+        add(Choice::Override, self.feed_override.map(|percent| percent.to_string()));
+        add(Choice::Cascade, self.cascade.as_ref().map(width));
+        add(Choice::Compare, word(self.compare));
+        add(Choice::PickOff, self.pick_off.map(|bit| bit.to_string()));
+        add(Choice::Timing, self.timing.map(|timing| timing.to_string()));
+        add(Choice::OnOverflow, word(self.on_overflow));
+        words
     }
 }

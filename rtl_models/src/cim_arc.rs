@@ -35,10 +35,12 @@
 //! ```
 
 use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::formula::{name, number};
 use stepwave_nc::{Crossing, Curve, Sector};
 
 use crate::choices::{Choices, EndPoint, Weights};
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
@@ -64,6 +66,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[ChoiceDoc::WIDTH, ChoiceDoc::WEIGHTS, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
     source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
+    claims: Some(Claims { modes: &["base"], ..Claims::of(Region::QuadrantArcs) }),
     plan,
     netlist,
     words,
@@ -91,8 +94,22 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let kind = Kind::decode(m.scope("quadrant"), quad.q, ccw);
     let side = |negative, grows| Side { negative, change: Some(Change { grows, unit: m.lit(1, 1) }) };
     let sides = [side(kind.x_negative, kind.x_grows), side(kind.y_negative, !kind.x_grows)];
+    if hardware.weights == Weights::Mid {
+        invariants(m);
+    }
     comparison_integral(m, block, hardware, sides);
     Ok(module.finish()?)
+}
+
+/// F is ±(x² + y² - R²), and stays between what a step of the base axis at -1 and a step of both at 0 leave, turned over
+/// where the base axis changes.
+fn invariants(m: Scope<'_>) {
+    let (f, y_is_base) = (|| name("f"), || name("base"));
+    let x_is_base = || number(1) - y_is_base();
+    for (axis, own, other, not) in [("x", "a", "b", y_is_base() - 1), ("y", "b", "a", x_is_base() - 1)] {
+        m.between_steps(&format!("f_from_below_{axis}"), [f() + 2 * name(other), not.clone()]);
+        m.between_steps(&format!("f_from_above_{axis}"), [2 * name(own) - f(), -f(), not]);
+    }
 }
 
 fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {

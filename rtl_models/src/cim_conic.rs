@@ -62,6 +62,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[ChoiceDoc::WIDTH, ChoiceDoc::WEIGHTS, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
     source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
+    claims: None,
     plan,
     netlist,
     words,

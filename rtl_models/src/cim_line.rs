@@ -27,10 +27,12 @@
 //! ```
 
 use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::formula::{name, number};
 use stepwave_nc::Curve;
 
 use crate::choices::{Choice, Choices, EndPoint};
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
@@ -60,6 +62,7 @@ pub(crate) const MODEL: Model = Model {
         ChoiceDoc::ON_OVERFLOW,
     ],
     source: "比较积分法, as in Chinese NC textbooks",
+    claims: Some(Claims { modes: &["base"], ..Claims::of(Region::Lines) }),
     plan,
     netlist,
     words,
@@ -79,8 +82,21 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let m = module.top();
     let block = Block::new(m);
     let sides = ["sx", "sy"].map(|sign| Side { negative: block.held(m, sign, 1), change: None });
+    invariants(m);
+
     comparison_integral(m, block, hardware, sides);
     Ok(module.finish()?)
+}
+
+/// F stays between what a step at 0 and a step at -1 leave.
+fn invariants(m: Scope<'_>) {
+    // Where X is base F is A·x - B·y, where Y is base the negative of it.
+    let (f, a, b, y_is_base) = (|| name("f"), || name("a"), || name("b"), || name("base"));
+    let x_is_base = || number(1) - y_is_base();
+    m.between_steps("f_from_below_x", [f() - a() + b(), y_is_base() - 1]);
+    m.between_steps("f_from_below_y", [f() - b() + a(), x_is_base() - 1]);
+    m.between_steps("f_from_above_x", [a() - 1 - f(), -f(), y_is_base() - 1]);
+    m.between_steps("f_from_above_y", [b() - 1 - f(), -f(), x_is_base() - 1]);
 }
 
 fn words(_: &Hardware, curve: &Curve) -> Vec<Words> {

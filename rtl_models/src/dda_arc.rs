@@ -39,6 +39,7 @@ use stepwave_kernel::dsl::Module;
 use stepwave_nc::{Crossing, Curve, Sector};
 
 use crate::choices::{Choice, Choices, EndPoint};
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
@@ -71,6 +72,7 @@ pub(crate) const MODEL: Model = Model {
         ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
     ],
     source: "数字积分法, the DDA circular interpolator of early NC systems, as in Chinese NC textbooks",
+    claims: Some(Claims { rank: |_| None, ..Claims::of(Region::QuadrantArcs) }),
     plan,
     netlist,
     words,

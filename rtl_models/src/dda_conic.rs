@@ -84,6 +84,7 @@ pub(crate) const MODEL: Model = Model {
         ChoiceDoc::ON_OVERFLOW,
     ],
     source: "数字积分法 for curves of second order, as in Chinese NC textbooks",
+    claims: None,
     plan,
     netlist,
     words,

@@ -76,6 +76,7 @@ pub(crate) const MODEL: Model = Model {
         ChoiceDoc::ON_OVERFLOW,
     ],
     source: "数字积分法: the DDA circular interpolator with a third integrator for the linear axis",
+    claims: None,
     plan,
     netlist,
     words,

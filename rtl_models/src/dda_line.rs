@@ -54,6 +54,7 @@ use stepwave_kernel::{Netlist, Width};
 use stepwave_nc::{Curve, Line};
 
 use crate::choices::{Adder, Choice, Choices, EndPoint, Radix};
+use crate::claims::{Claims, Region, steps_left};
 use crate::error::ModelError;
 use crate::hardware::names::{END, JR, JV, LONGEST, POSITION, SIGN};
 use crate::hardware::{Hardware, Pace, modulus};
@@ -91,6 +92,10 @@ pub(crate) const MODEL: Model = Model {
         ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
     ],
     source: "数字积分法, the DDA linear interpolator of early NC systems, as in Chinese NC textbooks",
+    claims: Some(Claims {
+        rank: |hardware| steps_left(hardware).filter(|_| hardware.end_point == EndPoint::Iterations),
+        ..Claims::of(Region::Lines)
+    }),
     plan,
     netlist,
     words,

@@ -89,6 +89,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     source: "数字脉冲乘法器, the digital pulse multiplier of Chinese NC textbooks, known as binary rate multiplier; the \
              counts of a decade are a definition of this project",
+    claims: None,
     plan,
     netlist,
     words,

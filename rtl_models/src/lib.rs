@@ -36,6 +36,7 @@ pub mod vector_arc;
 pub mod vector_line;
 
 mod choices;
+mod claims;
 mod docs;
 mod error;
 mod hardware;
@@ -46,6 +47,7 @@ mod registers;
 mod words;
 
 pub use choices::{Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Named, Preset, Radix, StepTiming, Weights};
+pub use claims::{Claims, Kind, Region};
 pub use error::ModelError;
 pub use hardware::{AXES, Hardware, Pace};
 pub use machine::{Machine, Port, Words};

@@ -57,6 +57,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
     source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
+    claims: None,
     plan,
     netlist,
     words: |hardware, curve| words::judged_arc(hardware, curve, CROSSING),

@@ -24,10 +24,12 @@
 //! ```
 
 use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::formula::name;
 use stepwave_nc::Curve;
 
 use crate::choices::Choices;
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
@@ -50,6 +52,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[ChoiceDoc::WIDTH, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
     source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
+    claims: Some(Claims::of(Region::LinesByLength)),
     plan,
     netlist,
     words,
@@ -68,6 +71,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let line = LineFrame::new(m, &block, hardware);
 
+    invariants(m);
+
     // Judge.
     let diagonal = beat.decided("diagonal", f.not_negative());
 
@@ -80,6 +85,13 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     // Feed, compare.
     line.close(hardware, beat, diagonal);
     Ok(module.finish()?)
+}
+
+/// D stays between what a diagonal step at 0 and an axis step at -1 leave.
+fn invariants(m: Scope<'_>) {
+    let (f, l, s) = (|| name("f"), || name("l"), || name("s"));
+    m.between_steps("f_from_below", [f() - 2 * s() + 2 * l()]);
+    m.between_steps("f_from_above", [2 * s() - 1 - f()]);
 }
 
 fn words(_: &Hardware, curve: &Curve) -> Vec<Words> {

@@ -4,6 +4,7 @@ use stepwave_kernel::Netlist;
 use stepwave_nc::Curve;
 
 use crate::choices::{Choice, Choices};
+use crate::claims::Claims;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
@@ -99,6 +100,8 @@ pub struct Model {
     pub choices: &'static [ChoiceDoc],
     /// Literature.
     pub source: &'static str,
+    /// What can be proved of it; `None` where nothing is claimed.
+    pub claims: Option<Claims>,
     pub(crate) plan: fn(&Curve, &Choices) -> Result<Hardware, ModelError>,
     pub(crate) netlist: fn(&Hardware) -> Result<Netlist, ModelError>,
     pub(crate) words: fn(&Hardware, &Curve) -> Vec<Words>,

@@ -31,10 +31,12 @@
 //! ```
 
 use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::formula::name;
 use stepwave_nc::{Crossing, Curve};
 
 use crate::choices::Choices;
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
@@ -58,6 +60,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
     source: "逐点比较法, the circular interpolator of early NC systems, as in Chinese NC textbooks",
+    claims: Some(Claims::of(Region::QuadrantArcs)),
     plan,
     netlist,
     words: |hardware, curve| words::judged_arc(hardware, curve, CROSSING),
@@ -77,6 +80,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let beat = BeatRing::new(m, hardware.beats, block.busy);
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
+
+    invariants(m);
 
     // Judge: F >= 0 steps the shrinking coordinate, F < 0 the growing one.
     let grow_x = f.not_negative() ^ arc.kind.x_grows;
@@ -99,4 +104,16 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     beat.close(&block, last);
     block.close(block.load, beat.compare, last);
     Ok(module.finish()?)
+}
+
+/// F stays between what a step at 0 and a step at -1 leave.
+fn invariants(m: Scope<'_>) {
+    // The coordinate that shrinks, and the one that grows.
+    let x_grows = || name("x_grows");
+    let (x, y) = (|| name("xi"), || name("yi"));
+    let shrinking = || y() * x_grows() + x() - x() * x_grows();
+    let growing = || x() * x_grows() + y() - y() * x_grows();
+    m.between_steps("f_from_below", [name("f") + 2 * shrinking() + 1]);
+    m.between_steps("f_from_above", [2 * growing() - 2 - name("f"), -name("f")]);
+    m.between_steps("outside_there_is_a_way_to_shrink", [shrinking() - 1, -name("f") - 1]);
 }

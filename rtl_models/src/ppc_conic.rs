@@ -58,6 +58,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
     source: "逐点比较法 for curves of second order, as in Chinese NC textbooks",
+    claims: None,
     plan,
     netlist,
     words,

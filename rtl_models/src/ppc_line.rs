@@ -16,7 +16,7 @@
 //!
 //! Magnitude form: F >= 0 steps X and F -= b; F < 0 steps Y and F += a. In the signed form F = dx·y - dy·x, whose sign
 //! means the opposite in quadrants 2 and 4; there the tie F = 0 steps Y. A line of a = 0 steps Y only, one of b = 0
-//! steps X only.
+//! steps X only. The bare form leaves this out, as textbooks do: F = 0 steps X, and a line along y ends beside its end.
 //!
 //! Four beats a step: judge, feed, compute, compare; or all at one edge (`--beats 1`). Range of F: [-b, a-1].
 //!
@@ -27,10 +27,12 @@
 //! ```
 
 use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::formula::name;
 use stepwave_nc::{Curve, Line};
 
 use crate::choices::{Choice, Choices, EndPoint, Form};
+use crate::claims::{Claims, Region, steps_left};
 use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
@@ -56,12 +58,16 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[
         ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the line)" },
-        ChoiceDoc { choice: Choice::Form, values: "magnitude (default) | signed" },
+        ChoiceDoc { choice: Choice::Form, values: "magnitude (default) | signed | bare" },
         ChoiceDoc { choice: Choice::EndPoint, values: "total (default) | per-axis | longest" },
         ChoiceDoc { choice: Choice::Beats, values: "4 (default) | 1" },
         ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
     ],
     source: "逐点比较法, the linear interpolator of early NC systems, as in Chinese NC textbooks",
+    claims: Some(Claims {
+        rank: |hardware| steps_left(hardware).filter(|_| hardware.end_point != EndPoint::Longest),
+        ..Claims::of(Region::Lines)
+    }),
     plan,
     netlist,
     words,
@@ -97,7 +103,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.beats, block.busy);
     let end = |name: &str| match hardware.form {
-        Form::Magnitude => block.held(m, name, hardware.bits(name)),
+        Form::Magnitude | Form::Bare => block.held(m, name, hardware.bits(name)),
         Form::Signed => block.held_signed(m, name, hardware.bits(name)),
     };
     let (xe, ye) = (end("xe"), end("ye"));
@@ -106,12 +112,17 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let counter = |name: &str| DownCounter::new(m, &block, name, hardware.bits(name));
 
+    if hardware.form == Form::Magnitude {
+        invariants(m);
+    }
+
     // Judge.
     let outside = if signed { f.not_negative() ^ sx ^ sy } else { f.not_negative() };
     let per_axis = (hardware.end_point == EndPoint::PerAxis).then(|| (counter("ex"), counter("ey")));
     let (x_open, y_open) = match per_axis {
         // An exhausted axis hands its step to the other.
         Some((ex, ey)) => (ex.running(), ey.running()),
+        None if hardware.form == Form::Bare => (m.lit(1, 1), m.lit(1, 1)),
         None => (xe.is_nonzero(), ye.is_nonzero()),
     };
     let take_x = beat.decided("take_x", outside & x_open | !y_open);
@@ -139,12 +150,22 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     Ok(module.finish()?)
 }
 
+/// F stays between what an X step at 0 and a Y step at -1 leave.
+fn invariants(m: Scope<'_>) {
+    let (f, xe, ye) = (|| name("f"), || name("xe"), || name("ye"));
+    m.between_steps("f_from_below", [f() + ye()]);
+    m.between_steps("f_from_above", [xe() - 1 - f(), -f()]);
+    m.between_steps("f_of_a_line_along_y", [f(), xe() - 1]);
+}
+
 fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
     let Some(line) = plan::line(curve) else { return Vec::new() };
     let [dx, dy] = [0, 1].map(|axis| i128::from(line.delta()[axis]));
     let (a, b) = (dx.abs(), dy.abs());
     let mut words = match hardware.form {
-        Form::Magnitude => vec![("xe", a), ("ye", b), ("sx", i128::from(dx < 0)), ("sy", i128::from(dy < 0))],
+        Form::Magnitude | Form::Bare => {
+            vec![("xe", a), ("ye", b), ("sx", i128::from(dx < 0)), ("sy", i128::from(dy < 0))]
+        }
         Form::Signed => vec![("xe", dx), ("ye", dy)],
     };
     words.push(("f", 0));

@@ -91,6 +91,7 @@ pub(crate) const MODEL: Model = Model {
         ChoiceDoc::ON_OVERFLOW,
     ],
     source: "the step generators of FPGA motion cards: direct digital synthesis of step and direction",
+    claims: None,
     plan,
     netlist,
     words,

@@ -57,6 +57,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
     source: "矢量判别法; no primary source survives: a definition of this project",
+    claims: None,
     plan,
     netlist,
     words: |hardware, curve| words::judged_arc(hardware, curve, CROSSING),

@@ -26,10 +26,12 @@
 //! ```
 
 use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::formula::name;
 use stepwave_nc::Curve;
 
 use crate::choices::Choices;
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
@@ -52,6 +54,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[ChoiceDoc::WIDTH, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
     source: "矢量判别法; no primary source survives: a definition of this project",
+    claims: Some(Claims::of(Region::LinesByLength)),
     plan,
     netlist,
     words,
@@ -72,6 +75,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let wide = xe.bits().max(ye.bits()) + 1;
     let [xe, ye] = [xe, ye].map(|way| way.extend(wide).as_signed());
 
+    invariants(m);
+
     // Judge.
     let (below, above) = (!f.not_negative(), f.not_negative() & f.value().is_nonzero());
     let diagonal = beat.decided("diagonal", line.x_is_longest.mux(below, above) | xe.equals(ye));
@@ -85,6 +90,16 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     // Feed, compare.
     line.close(hardware, beat, diagonal);
     Ok(module.finish()?)
+}
+
+/// F stays between what a step of the axis vector at 0 and one of the diagonal beside the line leave.
+fn invariants(m: Scope<'_>) {
+    let (f, xe, ye, x_is_long) = (|| name("f"), || name("xe"), || name("ye"), || name("x_is_longest"));
+    m.between_steps("f_from_below_x", [f() + ye(), -x_is_long()]);
+    m.between_steps("f_from_above_x", [xe() - ye() - 1 - f(), -f(), -x_is_long()]);
+    m.between_steps("f_on_45_degrees", [f(), xe() - ye() - 1, -x_is_long()]);
+    m.between_steps("f_from_below_y", [f() - xe() + ye() - 1, f(), x_is_long() - 1]);
+    m.between_steps("f_from_above_y", [xe() - f(), x_is_long() - 1]);
 }
 
 fn words(_: &Hardware, curve: &Curve) -> Vec<Words> {

@@ -125,6 +125,22 @@ fn parse_bits(text: &str) -> Result<Width, String> {
     Width::new(bits).map_err(|error| error.to_string())
 }
 
+/// `--narrower`: registers, and by how many bits.
+#[derive(Clone, Debug)]
+pub(crate) struct Narrower(pub(crate) Vec<(String, u32)>);
+
+/// `REGISTER=BITS`, or several with commas.
+pub(super) fn parse_narrower(text: &str) -> Result<Narrower, String> {
+    let one = |part: &str| {
+        let pair = part.split_once('=').map(|(name, bits)| (name.trim().to_owned(), bits.trim().parse()));
+        match pair {
+            Some((name, Ok(bits @ 1..=63))) => Ok((name, bits)),
+            _ => Err(format!("'{part}' is no register with a number of bits from 1 to 63: give f=1")),
+        }
+    };
+    text.split(',').map(one).collect::<Result<_, _>>().map(Narrower)
+}
+
 /// Times of step and direction outputs: `length=2,space=2,setup=4,hold=4`, any of them.
 fn parse_timing(text: &str) -> Result<StepTiming, String> {
     let way_out = "give clocks such as length=2,space=2,setup=4,hold=4";

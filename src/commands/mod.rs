@@ -8,6 +8,7 @@ mod golden;
 mod list;
 mod pages;
 mod progress;
+mod prove;
 mod run;
 mod states;
 mod wave;
@@ -24,6 +25,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
         Command::List(args) => list::run(args),
         Command::Run(args) => run::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Prove(args) => prove::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Export(args) => export::run(args),
         Command::Golden(command) => golden::run(command),

@@ -1,5 +1,6 @@
 //! What a run came to, for people and for programs: summary, step table, JSON, picture.
 
+mod command;
 mod json;
 pub mod plot;
 mod summary;
@@ -11,6 +12,7 @@ use stepwave_nc::Curve;
 
 use crate::testbench::{Ending, Outcome, OverflowEvent, PulseTrain, RegisterRange, WorstError};
 
+pub use command::{geometry_options, run_command};
 pub use summary::{choices, geometry, title};
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
 

@@ -123,6 +123,16 @@ impl Testbench {
         Ok(Testbench { hardware, machine, blocks, columns })
     }
 
+    /// Hardware without a geometry, for [`run_many`](Self::run_many) and [`of`](Self::of).
+    ///
+    /// # Errors
+    /// The model itself is wrong.
+    pub fn of_hardware(model: &Model, hardware: Hardware) -> Result<Testbench, ModelError> {
+        let machine = model.machine(&hardware)?;
+        let columns = Columns::of(&machine);
+        Ok(Testbench { hardware, machine, blocks: Vec::new(), columns })
+    }
+
     /// The same hardware with the blocks of another geometry.
     ///
     /// # Errors

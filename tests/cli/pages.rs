@@ -30,7 +30,7 @@ fn the_help_of_run_mentions_every_option() {
 fn the_help_of_run_gives_the_values_of_every_list() {
     let help = good("run --help").split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(engines().chain(["auto"]).all(|engine| help.contains(engine)), "{help}");
-    for values in ["total, per-axis, longest, iterations", "magnitude, signed", "4, 1", "trap, saturate, wrap"] {
+    for values in ["total, per-axis, longest, iterations", "magnitude, signed, bare", "4, 1", "trap, saturate, wrap"] {
         assert!(help.contains(&format!("[possible values: {values}]")), "{values}: {help}");
     }
 }

@@ -43,11 +43,11 @@ struct Ran {
     outcome: Outcome,
 }
 
-fn line(from: &[i64], to: &[i64]) -> Curve {
+pub(crate) fn line(from: &[i64], to: &[i64]) -> Curve {
     Curve::Line(Line::new(from.to_vec(), to.to_vec()).unwrap())
 }
 
-fn arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool) -> Curve {
+pub(crate) fn arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool) -> Curve {
     let direction = if clockwise { Direction::Clockwise } else { Direction::CounterClockwise };
     Curve::Arc(Arc::new(from, to, center, direction).unwrap())
 }

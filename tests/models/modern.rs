@@ -95,7 +95,7 @@ fn a_counter_traps_exactly_where_one_bit_less_cannot_hold_a_sum() {
             let narrow = Choices { form: Some(form), ..widths(&[("cnt", usual - 1)]) };
             let (least, most) = match form {
                 Form::Signed => (-limit / 2, limit / 2 - 1),
-                Form::Magnitude => (0, limit / 2 - 1),
+                Form::Magnitude | Form::Bare => (0, limit / 2 - 1),
             };
             let ran = run("bresenham", &line(&[0, 0], &to), &narrow, EngineKind::Word);
             let holds = ranges.iter().all(|range| range.0 <= most && range.1 >= least);

@@ -1,6 +1,7 @@
 //! The comparison-integral interpolator between its load words and its axes.
 
 use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_kernel::formula::name;
 use stepwave_kernel::netlist::Format;
 
 use super::{BeatRing, Block, DeviationAccumulator, EndCounters, axis_counter, negated};
@@ -40,6 +41,10 @@ pub fn comparison_integral<'m>(m: Scope<'m>, block: Block<'m>, hardware: &Hardwa
     let names = vec![(0, "X".to_owned()), (1, "Y".to_owned())];
     let base = m.reg("base", 1).shown(Format::States(names));
     let end = EndCounters::new(m, &block, hardware);
+
+    let y_is_base = || name("base");
+    m.between_steps("x_is_base", [name("b") - name("a"), y_is_base() - 1]);
+    m.between_steps("y_is_base", [name("a") - name("b"), -y_is_base()]);
 
     // Judge.
     let [base_x, base_y] = [!base.q, base.q];

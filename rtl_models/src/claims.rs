@@ -1,0 +1,142 @@
+//! What is to be proved of a model: over which geometries, and what is to come of them.
+//!
+//! The hardware is the model's own, its load words are those of its loader; said here is only how a geometry is
+//! described by a few numbers, and where the machine stands in the end.
+
+mod arc;
+mod line;
+
+use stepwave_kernel::formula::{Clause, Formula, name, number};
+use stepwave_kernel::prove::Symbol;
+use stepwave_nc::Curve;
+
+use crate::choices::EndPoint;
+use crate::hardware::Hardware;
+
+/// Which geometries are meant.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Region {
+    /// Every line of two axes from the origin, by |dx| and |dy|.
+    Lines,
+    /// The same, those of either long axis by themselves.
+    LinesByLength,
+    /// Every arc about the origin inside one quadrant, with both ends on one circle: from (xs, ys) to (xt, yt),
+    /// magnitudes.
+    QuadrantArcs,
+}
+
+/// What a model claims over a box of geometries.
+#[derive(Clone, Copy, Debug)]
+pub struct Claims {
+    /// Which geometries are meant.
+    pub geometries: Region,
+    /// Never below 0 while a block runs, and less after every step: why it ends. `None` where that is not claimed.
+    pub rank: fn(&Hardware) -> Option<Formula>,
+    /// Registers that change what the others mean.
+    pub modes: &'static [&'static str],
+    /// Registers that are held bit by bit, at one width at a time.
+    pub bitwise: &'static [&'static str],
+}
+
+impl Claims {
+    /// Over these geometries; whatever the end counters are, one of them counts at every step.
+    pub(crate) const fn of(geometries: Region) -> Claims {
+        Claims { geometries, rank: steps_left, modes: &[], bitwise: &[] }
+    }
+}
+
+/// What the end counters still have to count, less the step under way.
+pub(crate) fn steps_left(hardware: &Hardware) -> Option<Formula> {
+    match hardware.end_point {
+        EndPoint::PerAxis => Some(name("ex") + name("ey") - 1),
+        EndPoint::Total | EndPoint::Iterations | EndPoint::Longest => Some(name("e") - 1),
+    }
+}
+
+/// A kind of geometry within a box, without the words of the loader.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kind {
+    /// What tells it from the others.
+    pub name: String,
+    /// Numbers that describe a geometry.
+    pub symbols: Vec<Symbol>,
+    /// Names for numbers that all of them share; such a name is one of the netlist too.
+    pub constants: Vec<(String, i128)>,
+    /// What else is true of them.
+    pub premises: Vec<Clause>,
+    /// Where the machine stands in the end.
+    pub goals: Vec<Clause>,
+}
+
+impl Region {
+    /// In words.
+    #[must_use]
+    pub fn describe(self) -> &'static str {
+        match self {
+            Region::Lines | Region::LinesByLength => "every line from the origin to coordinates of k bits",
+            Region::QuadrantArcs => {
+                "every arc about the origin inside a quadrant, with coordinates of k bits and both ends on the circle"
+            }
+        }
+    }
+
+    /// Every kind of geometry; together they are the box.
+    #[must_use]
+    pub fn kinds(self) -> Vec<Kind> {
+        match self {
+            Region::Lines => line::kinds(false),
+            Region::LinesByLength => line::kinds(true),
+            Region::QuadrantArcs => arc::kinds(),
+        }
+    }
+
+    /// The numbers that describe a curve of this kind, or `None` if it is of another.
+    #[must_use]
+    pub fn symbols(self, kind: &Kind, curve: &Curve) -> Option<Vec<i128>> {
+        let symbols = match self {
+            Region::Lines | Region::LinesByLength => line::symbols(&kind.name, curve),
+            Region::QuadrantArcs => arc::symbols(&kind.name, curve),
+        }?;
+        let value = |name: &str| {
+            let place = kind.symbols.iter().position(|symbol| symbol.name == name)?;
+            symbols.get(place).copied()
+        };
+        kind.premises.iter().all(|clause| clause.holds(value) == Some(true)).then_some(symbols)
+    }
+
+    /// The curve that needs the widest registers among those of k-bit coordinates.
+    #[must_use]
+    pub fn largest(self, k: u32) -> Option<Curve> {
+        let most = (1_i64 << k.min(52)) - 1;
+        match self {
+            Region::Lines | Region::LinesByLength => line::to([most, most]),
+            Region::QuadrantArcs => arc::quarter(most),
+        }
+    }
+
+    /// Curves of k-bit coordinates: all where they are at most `most`, else so many, spread evenly.
+    #[must_use]
+    pub fn curves(self, k: u32, most: usize) -> Vec<Curve> {
+        match self {
+            Region::Lines | Region::LinesByLength => line::curves(k, most),
+            Region::QuadrantArcs => arc::curves(k, most),
+        }
+    }
+}
+
+/// A symbol from 0 to 2^k - 1.
+fn coordinate(letter: &str) -> Symbol {
+    Symbol { name: letter.to_owned(), least: number(0), greatest: name("2^k") - 1 }
+}
+
+/// So many of some, spread evenly over them.
+fn spread<T>(all: Vec<T>, most: usize) -> Vec<T> {
+    let (count, most) = (all.len(), most.max(1));
+    if count <= most {
+        return all;
+    }
+    // A stride that shares no factor with most counts, so that no pattern of the list is met by it.
+    let mut all: Vec<Option<T>> = all.into_iter().map(Some).collect();
+    let stride = (count * 618 / 1000) | 1;
+    (0..count).filter_map(|place| all[place * stride % count].take()).take(most).collect()
+}

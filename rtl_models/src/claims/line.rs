@@ -1,0 +1,72 @@
+//! Lines of two axes from the origin.
+
+use stepwave_kernel::formula::{Clause, name};
+use stepwave_nc::{Curve, Line};
+
+use super::{Kind, coordinate, spread};
+
+/// Signs of the motion.
+const QUADRANTS: [(&str, [i128; 2]); 4] = [("Q1", [1, 1]), ("Q2", [-1, 1]), ("Q3", [-1, -1]), ("Q4", [1, -1])];
+
+/// The lines of each quadrant; those of either long axis by themselves, if wanted.
+pub(super) fn kinds(by_length: bool) -> Vec<Kind> {
+    let (a, b) = (|| name("|dx|"), || name("|dy|"));
+    let lengths = if by_length { vec![", x long", ", y long"] } else { vec![""] };
+    let mut kinds = Vec::new();
+    for (quadrant, [x, y]) in QUADRANTS {
+        for length in &lengths {
+            let mut premises = vec![Clause::at_least_zero("the line has a length", a() + b() - 1)];
+            // Along an axis the sign is positive.
+            if x < 0 {
+                premises.push(Clause::at_least_zero("x moves", a() - 1));
+            }
+            if y < 0 {
+                premises.push(Clause::at_least_zero("y moves", b() - 1));
+            }
+            match *length {
+                ", x long" => premises.push(Clause::at_least_zero("x is long", a() - b())),
+                ", y long" => premises.push(Clause::at_least_zero("y is long", b() - a() - 1)),
+                _ => {}
+            }
+            let ends = [Clause::zero("x ends", name("x") - x * a()), Clause::zero("y ends", name("y") - y * b())];
+            kinds.push(Kind {
+                name: format!("{quadrant}{length}"),
+                symbols: vec![coordinate("|dx|"), coordinate("|dy|")],
+                constants: Vec::new(),
+                premises,
+                goals: ends.into_iter().flatten().collect(),
+            });
+        }
+    }
+    kinds
+}
+
+pub(super) fn symbols(kind: &str, curve: &Curve) -> Option<Vec<i128>> {
+    let Curve::Line(line) = curve else { return None };
+    let [dx, dy] = <[i64; 2]>::try_from(line.delta()).ok()?;
+    let at_origin = line.from().iter().all(|coordinate| *coordinate == 0);
+    let quadrant = match (dx < 0, dy < 0) {
+        (false, false) => "Q1",
+        (true, false) => "Q2",
+        (true, true) => "Q3",
+        (false, true) => "Q4",
+    };
+    (at_origin && kind.starts_with(quadrant)).then(|| vec![i128::from(dx).abs(), i128::from(dy).abs()])
+}
+
+/// The line from the origin to a point.
+pub(super) fn to(point: [i64; 2]) -> Option<Curve> {
+    Line::new(vec![0, 0], point.to_vec()).ok().map(Curve::Line)
+}
+
+pub(super) fn curves(k: u32, most: usize) -> Vec<Curve> {
+    let greatest = (1_i64 << k.min(40)) - 1;
+    let sides: Vec<i64> = if k <= 6 {
+        (-greatest..=greatest).collect()
+    } else {
+        let some = [0, 1, 2, 3, 5, greatest / 3, greatest / 2, greatest / 2 + 1, greatest - 2, greatest - 1, greatest];
+        some.iter().flat_map(|way| [*way, -way]).collect()
+    };
+    let points = sides.iter().flat_map(|x| sides.iter().map(move |y| [*x, *y])).filter(|point| *point != [0, 0]);
+    spread(points.collect(), most).into_iter().filter_map(to).collect()
+}

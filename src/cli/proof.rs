@@ -1,0 +1,53 @@
+//! The command line of `prove`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::HardwareArgs;
+use super::values::{Narrower, parse_narrower};
+
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(
+    after_help = "Verdicts: PROVED for all k; COUNTEREXAMPLE, replayed by the simulator, with the command that shows\n\
+    it; NOT PROVED, with what could not be shown. Exit code 0 only where everything is proved.\n\n\
+    Examples:\n  \
+    stepwave prove ppc-line\n  \
+    stepwave prove ppc-line --narrower f=1 --vcd trap.vcd\n  \
+    stepwave prove dda-line --preset half --certificate line.cert\n  \
+    stepwave prove check line.cert"
+)]
+pub(crate) struct ProveArgs {
+    #[command(subcommand)]
+    pub(crate) check: Option<ProveCommand>,
+    /// The model; `stepwave list` shows them
+    #[arg(required = true)]
+    pub(crate) model: Option<String>,
+    #[command(flatten)]
+    pub(crate) hardware: HardwareArgs,
+    /// Take registers by so many bits narrower than by default: f=1
+    #[arg(long, value_name = "REGISTER=BITS,…", value_parser = parse_narrower)]
+    pub(crate) narrower: Vec<Narrower>,
+    /// Let remainder registers start from any value, not only from --preset
+    #[arg(long, conflicts_with = "preset")]
+    pub(crate) any_preset: bool,
+    /// Write the proof for `stepwave prove check`
+    #[arg(long, value_name = "FILE")]
+    pub(crate) certificate: Option<PathBuf>,
+    /// Write the wave of a counterexample as VCD
+    #[arg(long, value_name = "FILE")]
+    pub(crate) vcd: Option<PathBuf>,
+    /// Tell the invariants that were proved, and the paths on which something could not be shown
+    #[arg(long)]
+    pub(crate) details: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum ProveCommand {
+    /// Check a certificate alone: nothing is searched for, every step is multiplied out in exact arithmetic
+    Check {
+        /// The certificate
+        file: PathBuf,
+    },
+}

@@ -1,0 +1,3 @@
+//! Studies of many geometries: proofs.
+
+pub mod proof;

@@ -1,0 +1,90 @@
+//! Certificates in a file: which hardware, and a certificate for each kind of geometry.
+
+use std::fmt;
+
+use stepwave_kernel::prove::{Certificate, CertificateError};
+
+/// First line of a file of certificates.
+const TITLE: &str = "stepwave certificate 1";
+
+/// What a file of certificates holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CertificateFile {
+    /// The model.
+    pub model: String,
+    /// The choices of hardware, as options.
+    pub options: Vec<String>,
+    /// Registers that are narrower than by default, and by how many bits.
+    pub narrower: Vec<(String, u32)>,
+    /// A certificate for each kind of geometry, by its name.
+    pub kinds: Vec<(String, Certificate)>,
+}
+
+/// Why a file is no file of certificates.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FileError {
+    /// It is something else.
+    #[error("it does not begin with '{TITLE}'")]
+    NoTitle,
+    /// Its head cannot be read.
+    #[error("line {line} cannot be read: '{text}'")]
+    Head {
+        /// Number of the line, from 1.
+        line: usize,
+        /// The line.
+        text: String,
+    },
+    /// A certificate cannot be read.
+    #[error("kind {kind}: {error}")]
+    Certificate {
+        /// The kind of geometry.
+        kind: String,
+        /// Where.
+        error: CertificateError,
+    },
+}
+
+impl fmt::Display for CertificateFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{TITLE}\nmodel {}", self.model)?;
+        for option in &self.options {
+            writeln!(f, "option {option}")?;
+        }
+        for (register, bits) in &self.narrower {
+            writeln!(f, "narrower {bits} {register}")?;
+        }
+        for (kind, certificate) in &self.kinds {
+            write!(f, "kind {kind}\n{certificate}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::str::FromStr for CertificateFile {
+    type Err = FileError;
+
+    fn from_str(text: &str) -> Result<CertificateFile, FileError> {
+        let rest = text.strip_prefix(TITLE).ok_or(FileError::NoTitle)?;
+        let mut parts = rest.split("\nkind ");
+        let mut file =
+            CertificateFile { model: String::new(), options: Vec::new(), narrower: Vec::new(), kinds: Vec::new() };
+        for (index, line) in parts.next().unwrap_or_default().lines().enumerate().filter(|(_, line)| !line.is_empty()) {
+            let wrong = || FileError::Head { line: index + 1, text: line.chars().take(60).collect() };
+            match line.split_once(' ').ok_or_else(wrong)? {
+                ("model", name) => name.clone_into(&mut file.model),
+                ("option", option) => file.options.push(option.to_owned()),
+                ("narrower", pair) => {
+                    let (bits, register) = pair.split_once(' ').ok_or_else(wrong)?;
+                    file.narrower.push((register.to_owned(), bits.parse().map_err(|_| wrong())?));
+                }
+                _ => return Err(wrong()),
+            }
+        }
+        for part in parts {
+            let (kind, body) = part.split_once('\n').unwrap_or((part, ""));
+            let certificate = body.parse().map_err(|error| FileError::Certificate { kind: kind.to_owned(), error })?;
+            file.kinds.push((kind.to_owned(), certificate));
+        }
+        Ok(file)
+    }
+}

@@ -1,0 +1,77 @@
+//! `stepwave prove` as its users meet it.
+
+use crate::cli::Folder;
+
+#[test]
+fn a_proof_is_told_written_and_checked_again_alone() {
+    let folder = Folder::new();
+    let told = folder.good("prove ppc-line --certificate line.cert");
+    for claim in ["no register overflows", "the end point is reached exactly", "every block ends"] {
+        assert!(told.contains(&format!("PROVED for all k: {claim}\n")), "{told}");
+    }
+    assert!(told.contains("for every k from 3 to 52\n") && told.contains("every geometry of 1 and 2 bits\n"), "{told}");
+    assert_eq!(folder.files(), ["line.cert"]);
+    let checked = folder.good("prove check line.cert");
+    assert_eq!(checked, told.split_inclusive("simulated").next().unwrap().replace("simulated", ""));
+}
+
+#[test]
+fn options_go_with_the_certificate() {
+    let folder = Folder::new();
+    folder.good("prove dda-line --any-preset --certificate any.cert");
+    folder.good("prove check any.cert");
+    let half = folder.good("prove ppc-line --beats 1 --end-point per-axis --certificate one.cert");
+    assert!(half.contains("PROVED"));
+    assert!(folder.read("one.cert").contains("option --beats\noption 1\n"));
+    folder.good("prove check one.cert");
+}
+
+#[test]
+fn one_bit_narrower_is_refuted_with_a_command_and_a_wave() {
+    let folder = Folder::new();
+    let ran = folder.run("prove ppc-line --narrower f=1 --vcd trap.vcd");
+    assert_eq!(ran.code, 1);
+    let command = ran.out.trim().split_once(": stepwave ").unwrap();
+    assert!(command.0.starts_with("COUNTEREXAMPLE at k = "), "{ran:?}");
+    assert!(ran.err.contains("overflow of ppc_line.f at clock "), "{ran:?}");
+    let wave = folder.read("trap.vcd");
+    let again = folder.run(command.1);
+    assert_eq!((again.code, folder.read("trap.vcd")), (1, wave));
+    assert!(ran.err.contains(again.err.trim().trim_start_matches("stepwave: ")), "{ran:?} {again:?}");
+}
+
+#[test]
+fn what_is_not_proved_is_said_with_exit_code_1_and_leaves_no_certificate() {
+    let folder = Folder::new();
+    let ran = folder.run("prove dda-arc --certificate arc.cert");
+    assert_eq!(ran.code, 1);
+    assert!(ran.out.contains("PROVED for all k: no register overflows\n"), "{ran:?}");
+    assert!(ran.out.contains("not proved: every block ends (for none of 8 kinds of geometry)\n"), "{ran:?}");
+    assert!(ran.err.starts_with("stepwave: not proved: every block ends; no counterexample"), "{ran:?}");
+    assert_eq!(folder.files(), [""; 0]);
+}
+
+#[test]
+fn bad_input_is_refused_in_a_sentence() {
+    let folder = Folder::new();
+    folder.good("prove ppc-line --certificate line.cert");
+    let broken = folder.read("line.cert").replacen("answer (", "answer ((", 1);
+    std::fs::write(folder.path("broken.cert"), broken).unwrap();
+    std::fs::write(folder.path("other.cert"), "hello\n").unwrap();
+    for (words, hint) in [
+        ("prove", "required"),
+        ("prove nonsense", "no model"),
+        ("prove ppc-conic", "claims nothing"),
+        ("prove ppc-line --narrower g=1", "has no register g"),
+        ("prove ppc-line --narrower f", "give f=1"),
+        ("prove ppc-line --narrower f=40", "cannot be 40 bits narrower"),
+        ("prove ppc-line --preset half", "does not take --preset"),
+        ("prove check missing.cert", "cannot read missing.cert"),
+        ("prove check other.cert", "does not begin with 'stepwave certificate 1'"),
+        ("prove check broken.cert", "cannot be read"),
+    ] {
+        let ran = folder.run(words);
+        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{words}: {ran:?}");
+        assert!(ran.err.contains(hint) && ran.err.lines().count() == 1, "{words}: {ran:?}");
+    }
+}

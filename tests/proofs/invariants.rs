@@ -1,0 +1,91 @@
+//! Invariants that were proved or claimed, looked at in runs.
+
+use stepwave::study::proof::{Subject, states};
+use stepwave_kernel::formula::Clause;
+use stepwave_models::{Beats, Choices, EndPoint, Model, Preset, Weights, catalogue};
+use stepwave_nc::Curve;
+
+use super::subject;
+use crate::models::{arc, line};
+
+/// Geometries of a model whose author claims something between steps.
+fn curves(model: &Model) -> Vec<Curve> {
+    let ends = [[9, 4], [4, 9], [0, 7], [7, 0], [5, 5], [1, 0], [0, 1], [31, 30], [17, 2]];
+    match model.name {
+        name if name.ends_with("line") => {
+            let quadrants = [[1, 1], [-1, 1], [-1, -1], [1, -1]];
+            let to = |[x, y]: [i64; 2]| quadrants.map(|[sx, sy]| line(&[0, 0], &[sx * x, sy * y]));
+            ends.into_iter().flat_map(to).collect()
+        }
+        name if name.ends_with("arc") => {
+            let points =
+                [[5, 0], [4, 3], [3, 4], [0, 5], [-3, 4], [-5, 0], [0, -5], [25, 0], [15, 20], [7, 24], [1, 0]];
+            let pair = |from: [i64; 2]| {
+                let on_one_circle =
+                    |to: &[i64; 2]| to[0] * to[0] + to[1] * to[1] == from[0] * from[0] + from[1] * from[1];
+                let to = points.into_iter().filter(on_one_circle);
+                to.flat_map(move |to| [true, false].map(|clockwise| arc(from, to, [0, 0], clockwise)))
+                    .collect::<Vec<_>>()
+            };
+            points.into_iter().flat_map(pair).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn assert_hold(
+    what: &str,
+    clauses: &[Clause],
+    machine: &stepwave_models::Machine,
+    blocks: &[Vec<(stepwave_kernel::Net, u64)>],
+) -> u32 {
+    let mut looked_at = 0;
+    for words in blocks {
+        for state in states(machine, words) {
+            let value = |name: &str| state.value(machine, name);
+            for clause in clauses {
+                assert_eq!(clause.holds(value), Some(true), "{what}: {} in {:?}", clause.name, clause.any);
+                looked_at += 1;
+            }
+        }
+    }
+    looked_at
+}
+
+#[test]
+fn what_authors_claim_between_steps_holds_in_every_row_of_runs() {
+    for model in catalogue() {
+        let mut looked_at = 0;
+        let mut claimed = false;
+        for curve in curves(model) {
+            for choices in [
+                Choices::default(),
+                Choices { beats: Some(Beats::One), end_point: Some(EndPoint::PerAxis), ..Choices::default() },
+                Choices { weights: Some(Weights::Pre), ..Choices::default() },
+                Choices { preset: Some(Preset::Half), ..Choices::default() },
+            ] {
+                let Ok(hardware) = model.plan(&curve, &choices) else { continue };
+                let machine = model.machine(&hardware).unwrap();
+                let clauses = machine.design.netlist().invariants.clone();
+                claimed |= !clauses.is_empty();
+                let blocks = machine.encode(&hardware, &model.words(&hardware, &curve)).unwrap();
+                looked_at += assert_hold(&format!("{} {curve:?}", model.name), &clauses, &machine, &blocks);
+            }
+        }
+        assert!(!claimed || looked_at > 500, "{}: {looked_at}", model.name);
+    }
+}
+
+#[test]
+fn what_was_proved_holds_in_runs_of_widths_that_nothing_was_learnt_from() {
+    for model in ["ppc-line", "ppc-arc", "dda-line", "cim-arc", "mindev-line"] {
+        let subject: Subject = subject(model, &Choices::default());
+        let mut looked_at = 0;
+        for kind in subject.kinds() {
+            let (proof, certificate) = subject.prove(&kind).unwrap();
+            assert!(proof.is_safe());
+            looked_at += subject.holds_in_runs(&kind, &certificate, 7, 12).unwrap();
+        }
+        assert!(looked_at > 1000, "{model}: {looked_at}");
+    }
+}

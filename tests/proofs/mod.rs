@@ -1,0 +1,180 @@
+//! Proofs for all widths at once: what must be proved is, what is false is not, and what was proved holds where it was
+//! not learnt from.
+
+mod command;
+mod invariants;
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use stepwave::study::proof::{Counterexample, Fault, Narrower, Subject, search};
+use stepwave_kernel::formula::{Clause, name};
+use stepwave_kernel::prove::{Certificate, Proof};
+use stepwave_models::{Beats, Choices, EndPoint, Kind, Preset, find};
+
+/// Attempts at every kind of geometry, each checked again from its certificate alone.
+fn proofs(subject: &Subject) -> Vec<(Kind, Proof)> {
+    let prove = |kind: Kind| {
+        let (proof, certificate) = subject.prove(&kind).unwrap();
+        assert_eq!(subject.check(&kind, &certificate).unwrap(), proof, "{}", kind.name);
+        (kind, proof)
+    };
+    subject.kinds().into_par_iter().map(prove).collect()
+}
+
+fn subject(model: &str, choices: &Choices) -> Subject {
+    Subject::new(find(model).unwrap(), choices, &Narrower::new()).unwrap()
+}
+
+/// Everything is proved for every kind: no overflow, the exact end, and, if `ends`, that it is reached.
+fn assert_proved(model: &str, subject: &Subject, ends: bool) {
+    let (least, greatest) = subject.ks();
+    assert!(least == 3 && greatest == 52, "{model}: {least} to {greatest}");
+    for (kind, proof) in proofs(subject) {
+        let what = format!("{model}, {}: {proof:#?}", kind.name);
+        assert!(proof.is_safe(), "{what}");
+        assert_eq!(proof.endless.is_none(), ends, "{what}");
+        assert!(proof.contradictions > 10 && !proof.invariants.is_empty(), "{what}");
+    }
+}
+
+fn beats() -> [Choices; 2] {
+    [Beats::Four, Beats::One].map(|beats| Choices { beats: Some(beats), ..Choices::default() })
+}
+
+#[test]
+fn lines_are_proved_for_every_width_in_four_beats_and_in_one() {
+    for choices in beats() {
+        for model in ["ppc-line", "cim-line", "mindev-line", "vector-line"] {
+            assert_proved(model, &subject(model, &choices), true);
+        }
+        let per_axis = Choices { end_point: Some(EndPoint::PerAxis), ..choices };
+        assert_proved("ppc-line", &subject("ppc-line", &per_axis), true);
+    }
+}
+
+#[test]
+fn arcs_inside_a_quadrant_are_proved_for_every_width_in_both_directions() {
+    for choices in beats() {
+        for model in ["ppc-arc", "cim-arc"] {
+            assert_proved(model, &subject(model, &choices), true);
+        }
+    }
+}
+
+#[test]
+fn integrators_are_proved_for_every_width_and_every_preset() {
+    for preset in [Preset::Zero, Preset::Half, Preset::Full] {
+        let choices = Choices { preset: Some(preset), ..Choices::default() };
+        assert_proved("dda-line", &subject("dda-line", &choices), true);
+        // An arc may come to a stand with some presets, so that its end is not claimed.
+        assert_proved("dda-arc", &subject("dda-arc", &choices), false);
+    }
+    assert_proved("dda-line", &subject("dda-line", &Choices::default()).with_any_preset(), true);
+    assert_proved("dda-arc", &subject("dda-arc", &Choices::default()).with_any_preset(), false);
+}
+
+fn narrower(register: &str) -> Narrower {
+    BTreeMap::from([(register.to_owned(), 1)])
+}
+
+fn refuted(model: &str, choices: &Choices, narrower: &Narrower) -> Option<Counterexample> {
+    let model = find(model).unwrap();
+    let claims = model.claims.unwrap();
+    search(model, &claims, choices, narrower, 2..=5, |_| true)
+}
+
+#[test]
+fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
+    for model in ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line"] {
+        let found = refuted(model, &Choices::default(), &narrower("f"));
+        assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow), "{model}");
+    }
+    // The proof itself refuses too.
+    for model in ["ppc-line", "mindev-line"] {
+        let subject = Subject::new(find(model).unwrap(), &Choices::default(), &narrower("f")).unwrap();
+        for (kind, proof) in proofs(&subject) {
+            assert!(proof.violated.iter().any(|(claim, _)| subject.claim(*claim).ends_with(".f")), "{}", kind.name);
+        }
+    }
+}
+
+#[test]
+fn nothing_is_refuted_at_the_widths_that_are_proved() {
+    for model in ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line", "dda-line", "dda-arc"] {
+        assert_eq!(refuted(model, &Choices::default(), &Narrower::new()), None, "{model}");
+    }
+}
+
+#[test]
+fn an_end_point_that_is_one_off_is_not_proved() {
+    for (model, symbol) in [("ppc-line", "|dx|"), ("dda-line", "|dx|"), ("ppc-arc", "xt"), ("cim-arc", "xt")] {
+        let subject = subject(model, &Choices::default());
+        let mut kind = subject.kinds().remove(0);
+        kind.goals = vec![Clause::at_least_zero("x ends beyond", name("x") - name(symbol) - 1)];
+        let (proof, certificate) = subject.prove(&kind).unwrap();
+        assert!(proof.holds() && !proof.is_safe() && proof.missed.len() == 1, "{model}: {proof:#?}");
+        // The certificate of the wrong goal does not do for it either.
+        assert!(!subject.check(&kind, &certificate).unwrap().is_safe(), "{model}");
+    }
+}
+
+#[test]
+fn an_arc_that_ends_beside_its_circle_is_not_proved_with_one_counter() {
+    let subject = subject("ppc-arc", &Choices { end_point: Some(EndPoint::Total), ..Choices::default() });
+    for mut kind in subject.kinds().into_iter().take(1) {
+        let before = kind.premises.len();
+        kind.premises.retain(|premise| premise.name != "both ends are on one circle");
+        assert_eq!(kind.premises.len(), before - 2);
+        let (proof, _) = subject.prove(&kind).unwrap();
+        assert!(!proof.is_safe(), "{}: {proof:#?}", kind.name);
+    }
+}
+
+#[test]
+fn a_line_along_y_is_what_the_bare_form_cannot_do() {
+    let bare = Choices { form: Some(stepwave_models::Form::Bare), ..Choices::default() };
+    let example = refuted("ppc-line", &bare, &Narrower::new()).unwrap();
+    assert_eq!((example.fault, example.curve.to()), (Fault::Missed, &[0, 1][..]));
+    assert!(proofs(&subject("ppc-line", &bare)).iter().all(|(_, proof)| !proof.missed.is_empty()));
+}
+
+#[test]
+fn unequal_presets_bring_an_arc_to_a_stand() {
+    let presets = [("jrx", 12), ("jry", 0)].map(|(name, value)| (name.to_owned(), Preset::Value(value)));
+    let choices = Choices { presets: presets.into(), ..Choices::default() };
+    let model = find("dda-arc").unwrap();
+    let example =
+        search(model, &model.claims.unwrap(), &choices, &Narrower::new(), 4..=4, |fault| fault == Fault::Endless);
+    let example = example.unwrap();
+    assert_eq!(example.k, 4);
+    // The one of the literature is among them, by the simulator.
+    let arc = crate::models::arc([3, 4], [0, 5], [0, 0], false);
+    let wide = Choices { width: stepwave_kernel::Width::new(4).ok(), ..choices };
+    let bench = stepwave::testbench::Testbench::new(model, &arc, &wide).unwrap();
+    let outcome = bench.run(stepwave_kernel::engine::EngineKind::Word, &mut []).unwrap();
+    assert!(matches!(outcome.ending, stepwave::testbench::Ending::Stalled { .. }), "{outcome:?}");
+    assert_eq!(outcome.reached, [0, 4]);
+}
+
+#[test]
+fn a_certificate_that_was_changed_is_refused() {
+    let subject = subject("ppc-line", &Choices::default());
+    let kind = subject.kinds().remove(0);
+    let (_, certificate) = subject.prove(&kind).unwrap();
+    let text = certificate.to_string();
+    let changed = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        let certificate: Certificate = text.replacen(from, to, 1).parse().unwrap();
+        subject.check(&kind, &certificate).unwrap()
+    };
+    // An answer left out, one that shows nothing, an invariant that does not hold.
+    assert!(!changed("\nanswer (", "\nanswer -\nanswer (").is_safe());
+    assert!(!changed("answer (1*", "answer (2*").is_safe());
+    let clause = text.lines().find(|line| line.starts_with("clause")).unwrap();
+    assert!(!changed(clause, &format!("{clause} - 1")).is_safe());
+    let equal = text.lines().find(|line| line.starts_with("equal")).unwrap();
+    assert!(!changed(equal, &format!("{equal} + 1")).is_safe());
+    assert!(!subject.check(&kind, &Certificate::default()).unwrap().holds());
+    assert!(!changed("equal v", "equal v999 0\nequal v").holds());
+}
