@@ -38,4 +38,5 @@ pub use stepwave_models as models;
 pub use stepwave_nc as nc;
 
 pub mod report;
+pub mod study;
 pub mod testbench;

@@ -10,6 +10,7 @@ mod pages;
 mod progress;
 mod run;
 mod states;
+mod sweep;
 mod wave;
 
 use crate::cli::{Cli, Command};
@@ -23,6 +24,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
     match &cli.command {
         Command::List(args) => list::run(args),
         Command::Run(args) => run::run(args),
+        Command::Sweep(args) => sweep::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Export(args) => export::run(args),

@@ -1,7 +1,9 @@
 //! What a run came to, for people and for programs: summary, step table, JSON, picture.
 
+pub mod heat;
 mod json;
 pub mod plot;
+mod png;
 mod summary;
 mod table;
 

@@ -11,6 +11,7 @@ mod models;
 mod outputs;
 mod overflow;
 mod pages;
+mod sweep;
 mod tables;
 
 use std::fs;

@@ -2,6 +2,7 @@
 
 mod arithmetic;
 mod geometry;
+mod measured;
 mod programs;
 mod random;
 
