@@ -49,11 +49,12 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     every value of the others. Without --width each geometry has the least widths that hold it, as in\n\
     `stepwave run`.\n\
     \n\
-    Rows. One a run: index, geometry, choices, ending (done, trapped, stalled, limit, refused), clocks,\n\
-    steps, pulses and end point of each axis, whether that is exact, error_max and error_mean (BLU, behind\n\
-    all steps), overflows and the first overflow's component, spacing_min and spacing_max (clocks between\n\
-    two pulses of an axis), and the reason of a refusal. Rows are the same, byte for byte, whatever the\n\
-    number of threads (RAYON_NUM_THREADS).\n\
+    Rows. One a run: index (all points of the grid count, those without a curve too), geometry, choices,\n\
+    ending (done, trapped, stalled, limit, refused), clocks, steps, pulses and end point of each axis,\n\
+    whether that is exact, error_max and error_mean (BLU, behind all steps), overflows and the first\n\
+    overflow's component, spacing_min and spacing_max (clocks between two pulses of an axis), and the\n\
+    reason of a refusal. Rows are the same, byte for byte, whatever the number of threads\n\
+    (RAYON_NUM_THREADS).\n\
     \n\
     A sweep that was killed leaves its rows beside the final file; the same words with --resume go on.\n\
     The exit code is 0 whatever the rows say.")]

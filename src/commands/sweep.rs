@@ -72,7 +72,7 @@ fn space(model: &Model, args: &SpaceArgs) -> Result<Space, Failure> {
     let axes = to.as_ref().or(from.as_ref()).map_or(2, Vec::len);
     let least = if drawn == Drawn::Helix { 3 } else { 2 };
     let most = model.curve.max_axes();
-    for (option, points) in [("--from", &from), ("--to", &to)] {
+    for (option, points) in [("--to", &to), ("--from", &from)] {
         let count = points.as_ref().map_or(axes.max(least), Vec::len);
         if !(least..=most).contains(&count) || (drawn == Drawn::Line && count != axes) {
             let takes = model.curve.describe();
@@ -174,6 +174,7 @@ struct Heat {
     column: usize,
     point: [usize; 2],
     worst: Option<Row>,
+    runs: u64,
 }
 
 impl Heat {
@@ -197,10 +198,12 @@ impl Heat {
             column: column(name),
             point: [column(&names[0]), column(&names[1])],
             worst: None,
+            runs: 0,
         })
     }
 
     fn row(&mut self, row: &Row) {
+        self.runs += 1;
         // Coordinates are within ±2^52, which a real number holds.
         #[expect(clippy::cast_possible_truncation, reason = "whole numbers within ±2^52")]
         let point = self.point.map(|place| row[place].number().unwrap_or(0.0) as i64);
@@ -214,11 +217,11 @@ impl Heat {
         let name = &columns[self.column].name;
         let unit = match name.split('_').next().unwrap_or_default() {
             "error" | "reached" | "from" | "to" | "center" | "size" => "BLU",
-            "clocks" | "spacing" => "clocks",
+            "spacing" => "clocks",
             _ => "",
         };
         let words = self.worst.as_ref().map_or_else(String::new, |row| study::words(model, columns, row));
-        let title = format!("{}: {name} of {} geometries", model.name, sweep.geometries());
+        let title = format!("{}: {name} of {} runs", model.name, self.runs);
         let printed = self
             .map
             .worst()

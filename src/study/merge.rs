@@ -44,10 +44,7 @@ impl CsvPart {
                 return Some(Err(format!("it has {} of its {rows} rows", self.rows)));
             }
             self.ended = true;
-            return match self.lines.next() {
-                None => None,
-                Some(_) => Some(Err("something stands behind its end".to_owned())),
-            };
+            return self.lines.next().map(|_| Err("something stands behind its end".to_owned()));
         }
         self.rows += 1;
         match read_line(&self.columns, &line) {

@@ -252,7 +252,8 @@ impl Draw {
     /// One of so many.
     fn below(&mut self, count: u64) -> u64 {
         // The high half of a product of 128 bits is less than `count`.
-        (u128::from(self.next()) * u128::from(count) >> 64) as u64
+        let product = u128::from(self.next()) * u128::from(count);
+        u64::try_from(product >> 64).unwrap_or(0)
     }
 }
 

@@ -86,7 +86,8 @@ impl Sweep {
     /// Runs of a geometry.
     #[must_use]
     pub fn variants(&self) -> u64 {
-        self.variants.count() as u64
+        // No more than `MOST_RUNS`, unless there is no geometry.
+        u64::try_from(self.variants.count()).unwrap_or(u64::MAX)
     }
 
     /// The part.

@@ -79,8 +79,8 @@ impl Instruments {
             ideal,
             seen,
             deviation,
-            // A full circle of radius 2^(reach - 2) takes 2^(reach + 1) steps, each less than 2 BLU off.
-            bits: [bits, (reach + 2 + ROOT_GAP_UNIT.log2() as u32).min(Width::MAX.get())],
+            // A full circle of radius 2^(reach - 2) takes 2^(reach + 1) steps, each less than 2 BLU or 2^17 units off.
+            bits: [bits, (reach + 18).min(Width::MAX.get())],
             reach,
             pulses,
             properties: properties.map(|property| (property.never, property.name.clone())).collect(),
@@ -139,7 +139,7 @@ impl Instruments {
     /// What was measured of a run; `None` where the instruments cannot have followed it.
     pub(super) fn read(&self, curve: &Curve, outcome: LaneOutcome, values: &[u64]) -> Option<Measured> {
         if outcome.ending.is_none() {
-            return Some(Measured::unfinished(outcome));
+            return Some(Measured::given_up(self.pulses.len(), outcome.clocks));
         }
         self.words(curve)?;
         let trapped = outcome.ending == Some(Ending::Trapped);

@@ -53,6 +53,12 @@ impl Measured {
             spacing,
         }
     }
+
+    /// A run of so many axes that was not done after `clocks` clocks.
+    pub(super) fn given_up(axes: usize, clocks: u64) -> Measured {
+        let (pulses, reached) = (vec![0; axes], vec![0; axes]);
+        Measured::unfinished(LaneOutcome { ending: None, clocks, steps: 0, pulses, reached, overflows: 0 })
+    }
 }
 
 impl Testbench {
@@ -72,10 +78,7 @@ impl Testbench {
             }),
         };
         let Some(Outcome { ending, clocks, steps, pulses, reached }) = outcome else {
-            let axes = self.machine().pulses.len();
-            let (pulses, reached) = (vec![0; axes], vec![0; axes]);
-            let outcome = LaneOutcome { ending: None, clocks: limit, steps: 0, pulses, reached, overflows: 0 };
-            return Ok(Measured::unfinished(outcome));
+            return Ok(Measured::given_up(self.machine().pulses.len(), limit));
         };
         Ok(Measured {
             ending: Some(ending),

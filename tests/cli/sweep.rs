@@ -59,6 +59,13 @@ fn words(model: &str, row: &Row) -> String {
     words
 }
 
+/// The greatest path error of a report, to the bit: the reader of JSON may be off by one.
+fn greatest(report: &str) -> f64 {
+    let error = report.split("\"path_error\": {").nth(1).unwrap();
+    let number = error.split("\"greatest\": ").nth(1).unwrap().split(',').next().unwrap();
+    number.trim().parse().unwrap()
+}
+
 /// Wants a row to be what a single run reports.
 fn assert_as_run(model: &str, row: &Row) {
     let words = words(model, row);
@@ -89,8 +96,7 @@ fn assert_as_run(model: &str, row: &Row) {
     for (name, value) in expected {
         assert_eq!(row[&name], value, "{name}: {what}");
     }
-    let error: f64 = row["error_max"].parse().unwrap();
-    assert_eq!(Some(error), report["path_error"]["greatest"].as_f64(), "{what}");
+    assert_eq!(row["error_max"].parse(), Ok(greatest(&ran.out)), "{what}");
 }
 
 #[test]
@@ -238,16 +244,16 @@ fn killed(folder: &Folder, words: &str, target: &str) -> u64 {
 
 #[test]
 fn a_killed_sweep_goes_on_and_gives_the_same_file() {
-    let words = "sweep dda-line --to-grid 0..127x0..95 --width 14";
+    let words = "sweep dda-line --to-grid 0..127x0..63 --width 14";
     let folder = Folder::new();
     folder.good(&format!("{words} --csv whole.csv"));
     let done = killed(&folder, &format!("{words} --csv s.csv"), "s.csv");
-    assert!((1..128 * 96).contains(&done), "{done}");
+    assert!((1..128 * 64).contains(&done), "{done}");
     // What was written behind the last mark, or in the middle of a line, does not count.
     let part = folder.path(".s.csv.sweep.part");
     fs::write(&part, fs::read_to_string(&part).unwrap() + "999999,1").unwrap();
 
-    let other = folder.run("sweep dda-line --to-grid 0..127x0..95 --width 13 --csv s.csv --resume");
+    let other = folder.run("sweep dda-line --to-grid 0..127x0..63 --width 13 --csv s.csv --resume");
     assert!(other.code == 2 && other.err.contains("it was begun with choices {\"--width\":[\"14\"]}"), "{other:?}");
     let shard = folder.run(&format!("{words} --shard 1/2 --csv s.csv --resume"));
     assert!(shard.code == 2 && shard.err.contains("it was begun with --shard 1/1"), "{shard:?}");
@@ -262,7 +268,7 @@ fn a_killed_sweep_goes_on_and_gives_the_same_file() {
 
 #[test]
 fn a_killed_part_in_parquet_goes_on_with_its_heat_map() {
-    let words = "sweep dda-line --to-grid 0..95x0..127 --width 14 --shard 2/2";
+    let words = "sweep dda-line --to-grid 0..99x0..127 --width 14 --shard 2/2";
     let folder = Folder::new();
     folder.good(&format!("{words} --parquet whole.parquet --plot whole.svg"));
     killed(&folder, &format!("{words} --parquet s.parquet --plot s.svg"), "s.parquet");
@@ -310,8 +316,7 @@ fn the_heat_map_names_the_worst_cell_with_the_words_that_repeat_it() {
     let line = text.lines().find(|line| line.starts_with("greatest error_max ")).unwrap();
     let (number, words) = line.split_once(": stepwave ").unwrap();
     let number: f64 = number.split_whitespace().nth(2).unwrap().parse().unwrap();
-    let report: Value = serde_json::from_str(&folder.good(&format!("{words} --json -"))).unwrap();
-    assert_eq!(report["path_error"]["greatest"].as_f64(), Some(number));
+    assert_eq!(greatest(&folder.good(&format!("{words} --json -"))), number);
     let svg = folder.read("heat.svg");
     for part in [words, "to_x (BLU)", "to_y (BLU)", "error_max (BLU)", "data:image/png;base64,"] {
         assert!(svg.contains(part), "{part}");
@@ -366,7 +371,7 @@ fn bad_words_are_refused_and_leave_no_file() {
 #[test]
 fn two_sweeps_of_one_file_do_not_meet() {
     let folder = Folder::new();
-    let words = "sweep dda-line --to-grid 0..127x0..95 --width 14 --csv s.csv";
+    let words = "sweep dda-line --to-grid 0..127x0..63 --width 14 --csv s.csv";
     let mut first =
         folder.command().args(words.split_whitespace()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let begun = Instant::now();
@@ -382,7 +387,8 @@ fn two_sweeps_of_one_file_do_not_meet() {
 #[test]
 fn the_examples_of_the_help_of_sweep_work_as_written() {
     let help = good("sweep --help");
-    let examples: Vec<&str> = help.lines().filter_map(|line| line.trim().strip_prefix("stepwave sweep ")).collect();
+    let examples = help.lines().filter_map(|line| line.trim().strip_prefix("stepwave sweep "));
+    let examples: Vec<&str> = examples.filter(|example| !example.contains('<')).collect();
     assert_eq!(examples.len(), 5, "{help}");
     for example in examples {
         assert_eq!(Folder::new().run(&format!("sweep {example}")).code, 0, "{example}");

@@ -12,6 +12,8 @@ use stepwave_nc::{Arc, Curve, Direction, Line};
 use crate::kernel::random::config;
 
 const LIMIT: u64 = 1 << 20;
+/// Far more than what is not endless takes in 7 bits.
+const SHORT: u64 = 1 << 14;
 
 fn widths(bits: u64, position: u64) -> Choices {
     let width = |bits| Width::new(bits).unwrap();
@@ -26,10 +28,10 @@ fn models(kind: fn(&CurveKind) -> bool) -> impl Iterator<Item = &'static Model> 
 
 /// Runs all curves of one hardware in lanes, and wants of each what it comes to alone; gives how many had to be run
 /// alone all the same.
-fn assert_measured_as_alone(model: &Model, curves: &[Curve], choices: &Choices) -> usize {
+fn assert_measured_as_alone(model: &Model, curves: &[Curve], choices: &Choices, limit: u64) -> usize {
     let Ok(hardware) = model.plan(&curves[0], choices) else { return 0 };
     let bench = Testbench::of_hardware(model, hardware).unwrap();
-    let lanes = bench.measuring_lanes(LIMIT).unwrap().expect("lines and circles are measured in lanes");
+    let lanes = bench.measuring_lanes(limit).unwrap().expect("lines and circles are measured in lanes");
     let mut all = Vec::new();
     lanes.measure(curves.iter(), |measured| all.push(measured));
     assert_eq!(all.len(), curves.len());
@@ -41,7 +43,7 @@ fn assert_measured_as_alone(model: &Model, curves: &[Curve], choices: &Choices) 
         });
         match (measured, single) {
             (Ok(Some(measured)), Ok(single)) => {
-                let expected = single.measure(curve, LIMIT).unwrap();
+                let expected = single.measure(curve, limit).unwrap();
                 assert_eq!(measured, expected, "{} {curve:?} {choices:?}", model.name);
             }
             (Ok(None), Ok(_)) => alone += 1,
@@ -80,10 +82,10 @@ proptest! {
         let lines: Vec<Curve> = ends.into_iter().filter_map(|(from, to)| line(from, to)).collect();
         prop_assume!(!lines.is_empty());
         for model in models(|kind| matches!(kind, CurveKind::Line { .. })) {
-            let alone = assert_measured_as_alone(model, &lines, &choices_of(model, seed, 7, 8));
+            let alone = assert_measured_as_alone(model, &lines, &choices_of(model, seed, 7, 8), SHORT);
             prop_assert_eq!(alone, 0, "{}", model.name);
             // Positions that leave their counters: what wraps or saturates must be run alone, and is told to be.
-            assert_measured_as_alone(model, &lines, &choices_of(model, seed, 7, 6));
+            assert_measured_as_alone(model, &lines, &choices_of(model, seed, 7, 6), SHORT);
         }
     }
 
@@ -107,10 +109,10 @@ proptest! {
         prop_assume!(!arcs.is_empty());
         for model in models(|kind| *kind == CurveKind::Arc) {
             let choices = choices_of(model, seed, 6, 8);
-            let alone = assert_measured_as_alone(model, &arcs, &choices);
+            let alone = assert_measured_as_alone(model, &arcs, &choices, SHORT);
             let traps = choices.on_overflow.is_none_or(|mode| mode == OnOverflow::Trap);
             prop_assert!(alone == 0 || !traps, "{}: {alone}", model.name);
-            assert_measured_as_alone(model, &arcs, &choices_of(model, seed, 6, 5));
+            assert_measured_as_alone(model, &arcs, &choices_of(model, seed, 6, 5), SHORT);
         }
     }
 }
@@ -127,11 +129,11 @@ fn wide_machines_are_measured_as_alone() {
         [(8_000, true), (30_000, false), (5, true)].into_iter().filter_map(|(r, way)| circle(r, way)).collect();
     for (name, curves) in [("dda-line", &lines), ("mindev-line", &lines), ("dda-arc", &circles), ("ppc-arc", &circles)]
     {
-        assert_eq!(assert_measured_as_alone(find(name).unwrap(), curves, &widths(17, 19)), 0, "{name}");
+        assert_eq!(assert_measured_as_alone(find(name).unwrap(), curves, &widths(17, 19), LIMIT), 0, "{name}");
     }
     // Sums that 32 bits might not hold.
     for (name, curves) in [("ppc-arc", &circles[..1]), ("mindev-arc", &circles[..1])] {
-        assert_eq!(assert_measured_as_alone(find(name).unwrap(), curves, &widths(14, 15)), 0, "{name}");
+        assert_eq!(assert_measured_as_alone(find(name).unwrap(), curves, &widths(14, 15), LIMIT), 0, "{name}");
     }
 }
 
