@@ -8,9 +8,11 @@ use stepwave::nc::Opens;
 use crate::commands::diff::DiffArgs;
 
 mod proof;
+mod sweep;
 mod values;
 
 pub(crate) use proof::{ProveArgs, ProveCommand};
+pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use values::{ClockArgs, HardwareArgs, Point, SimulationArgs};
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware
@@ -29,6 +31,8 @@ pub(crate) enum Command {
     List(ListArgs),
     /// Build a model's netlist, simulate it clock by clock, write waves, step table, report, picture
     Run(Box<RunArgs>),
+    /// Many geometries and hardware choices, a row each: clocks, path error, overflow; CSV, Parquet and heat maps
+    Sweep(Box<SweepArgs>),
     /// Every method on one curve: steps, clocks, greatest error, widest register
     Compare(Box<CompareArgs>),
     /// Prove, for all geometries and widths: no register overflows, the end point is reached exactly

@@ -73,6 +73,20 @@ impl Outputs {
         Ok(BufWriter::with_capacity(1 << 16, self.file(path)?))
     }
 
+    /// Tries whether an output can be written, which is opened later, and keeps its name for it: gives the file that the
+    /// path means. Nothing is written yet.
+    ///
+    /// # Errors
+    /// The file cannot be created, or another output goes there already.
+    pub(crate) fn claim(&mut self, path: &Path) -> Result<PathBuf, Failure> {
+        if path != Path::new("-") {
+            self.file(path)?;
+            // The temporary file goes with its name.
+            self.staged.clear();
+        }
+        Ok(resolved(path))
+    }
+
     fn file(&mut self, path: &Path) -> Result<Named, Failure> {
         if path.as_os_str().as_encoded_bytes().ends_with(b"/") && !path.is_dir() {
             return Err(Failure::Trouble(format!("cannot write {}: there is no such folder", path.display())));
@@ -146,8 +160,16 @@ impl Outputs {
     ///
     /// # Errors
     /// A file cannot be renamed.
-    pub(crate) fn commit(self) -> Result<(), Failure> {
-        for (temporary, target) in self.staged {
+    pub(crate) fn commit(mut self) -> Result<(), Failure> {
+        self.commit_all()
+    }
+
+    /// As [`commit`](Self::commit), and goes on to tell what [`uses_stdout`](Self::uses_stdout).
+    ///
+    /// # Errors
+    /// A file cannot be renamed.
+    pub(crate) fn commit_all(&mut self) -> Result<(), Failure> {
+        for (temporary, target) in self.staged.drain(..) {
             temporary.persist(&target).map_err(|error| cannot_write(&target, &error.error))?;
         }
         Ok(())

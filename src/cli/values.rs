@@ -142,7 +142,7 @@ pub(super) fn parse_narrower(text: &str) -> Result<Narrower, String> {
 }
 
 /// Times of step and direction outputs: `length=2,space=2,setup=4,hold=4`, any of them.
-fn parse_timing(text: &str) -> Result<StepTiming, String> {
+pub(super) fn parse_timing(text: &str) -> Result<StepTiming, String> {
     let way_out = "give clocks such as length=2,space=2,setup=4,hold=4";
     let mut timing = StepTiming::default();
     for part in text.split(',') {

@@ -11,6 +11,7 @@ mod progress;
 mod prove;
 mod run;
 mod states;
+mod sweep;
 mod wave;
 
 use crate::cli::{Cli, Command};
@@ -24,6 +25,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
     match &cli.command {
         Command::List(args) => list::run(args),
         Command::Run(args) => run::run(args),
+        Command::Sweep(args) => sweep::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Prove(args) => prove::run(args),
         Command::Diff(args) => diff::run(args),

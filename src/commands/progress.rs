@@ -53,3 +53,37 @@ impl Observer for Progress {
         Ok(())
     }
 }
+
+/// Counts what is done of a known number, for work longer than a second, on a terminal only.
+pub(crate) struct Counter {
+    start: Instant,
+    all: u64,
+    what: &'static str,
+    bar: Option<ProgressBar>,
+}
+
+impl Counter {
+    /// Nothing is shown yet.
+    pub(crate) fn new(all: u64, what: &'static str) -> Counter {
+        Counter { start: Instant::now(), all, what, bar: None }
+    }
+
+    /// So many are done.
+    pub(crate) fn set(&mut self, done: u64) {
+        if self.bar.is_none() && self.start.elapsed() >= PATIENCE {
+            let template = format!("{{bar:30}} {{human_pos}} of {{human_len}} {}, {{eta}} left", self.what);
+            let style = ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar());
+            self.bar = Some(ProgressBar::new(self.all).with_style(style));
+        }
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+        }
+    }
+
+    /// Takes the bar off the terminal.
+    pub(crate) fn finish(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

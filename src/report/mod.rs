@@ -1,8 +1,10 @@
 //! What a run came to, for people and for programs: summary, step table, JSON, picture.
 
 mod command;
+pub mod heat;
 mod json;
 pub mod plot;
+mod png;
 mod summary;
 mod table;
 

@@ -24,24 +24,25 @@ const SCALE_COARSE: f64 = 4.0;
 const PANEL_LEAST: Pair = [280.0, 110.0];
 const PANEL_MOST: Pair = [860.0, 520.0];
 const CHART_HEIGHT: f64 = 120.0;
-const FONT: f64 = 11.0;
-const TITLE_FONT: f64 = 15.0;
+pub(super) const FONT: f64 = 11.0;
+pub(super) const TITLE_FONT: f64 = 15.0;
 
 // Okabe and Ito's colours. The second style is for a coarse scale: a pale band that thin pulses do not hide.
 const IDEAL: [&str; 2] = [r##"stroke="#d55e00" stroke-width="1.4""##, r##"stroke="#eebf99" stroke-width="5""##];
 const PULSES: [&str; 2] = [r##"stroke="#0072b2" stroke-width="1.8""##, r##"stroke="#0072b2""##];
 const GRID: &str = r##"stroke="#ccc""##;
-const HEAD: &str = r#"xmlns="http://www.w3.org/2000/svg" font-family="Helvetica, Arial, sans-serif" fill="none""#;
-const CENTRED: &str = r#"text-anchor="middle""#;
+pub(super) const HEAD: &str =
+    r#"xmlns="http://www.w3.org/2000/svg" font-family="Helvetica, Arial, sans-serif" fill="none""#;
+pub(super) const CENTRED: &str = r#"text-anchor="middle""#;
 
 // Symbols about the point that they mark.
 const START: &str = r##"<circle r="4" fill="#000"/>"##;
 const END: &str = r##"<circle r="7" stroke="#000" stroke-width="1.6"/>"##;
 const CENTER: &str = r##"<path d="M-5 0H5M0 -5V5" stroke="#000"/>"##;
-const WORST: &str = r##"<path d="M0 -8L8 0L0 8L-8 0Z" stroke="#cc79a7" stroke-width="2.2"/>"##;
+pub(super) const WORST: &str = r##"<path d="M0 -8L8 0L0 8L-8 0Z" stroke="#cc79a7" stroke-width="2.2"/>"##;
 
 /// A point in x and y, a size, or the least and the greatest value of a range.
-type Pair = [f64; 2];
+pub(super) type Pair = [f64; 2];
 
 /// Collects the machine positions of a run, step by step, in bounded memory.
 #[derive(Debug, Clone)]
@@ -164,7 +165,7 @@ impl Plot {
     }
 
     fn draw_path(&self, page: &mut Page, view: &View, coarse: usize) {
-        page.axes(view, ["x (BLU)", "y (BLU)"], true);
+        page.axes(view, ["x (BLU)", "y (BLU)"], true, 1.0);
         let path: Vec<Pair> = self.path.iter().copied().chain(self.last.iter().map(|last| plane(&last.1))).collect();
         page.path(view, IDEAL[coarse], &self.curve.outline(OUTLINE_POINTS));
         page.path(view, PULSES[coarse], &path);
@@ -183,7 +184,7 @@ impl Plot {
             Curve::Line(line) if line.axes() == 2 => "step (deviation positive left of the line)",
             Curve::Line(_) => "step (deviation in all axes, without sign)",
         };
-        page.axes(view, [step, "deviation (BLU)"], false);
+        page.axes(view, [step, "deviation (BLU)"], false, 0.1);
         let gap = if self.spans.len() <= FEW_STEPS + 1 { (0.5 - 8.0 / view.scale(0)).max(0.15) } else { 0.0 };
         let (mut area, mut below) = (Vec::new(), Vec::new());
         for (place, &[least, most]) in self.spans.iter().enumerate() {
@@ -207,10 +208,10 @@ impl Plot {
 }
 
 /// A rectangle of the page, by its upper left corner and its size in pixels, that shows a rectangle of the data.
-struct View {
-    origin: Pair,
-    size: Pair,
-    ranges: [Pair; 2],
+pub(super) struct View {
+    pub(super) origin: Pair,
+    pub(super) size: Pair,
+    pub(super) ranges: [Pair; 2],
 }
 
 impl View {
@@ -231,7 +232,7 @@ impl View {
     }
 
     /// The place on the page.
-    fn at(&self, [x, y]: Pair) -> Pair {
+    pub(super) fn at(&self, [x, y]: Pair) -> Pair {
         let (right, down) = (x - self.ranges[0][0], self.ranges[1][1] - y);
         [self.origin[0] + right * self.scale(0), self.origin[1] + down * self.scale(1)]
     }
@@ -246,7 +247,7 @@ impl View {
 }
 
 /// The elements so far.
-struct Page(String);
+pub(super) struct Page(pub(super) String);
 
 impl Page {
     fn path(&mut self, view: &View, style: &str, points: &[Pair]) {
@@ -258,11 +259,11 @@ impl Page {
         }
     }
 
-    fn symbol(&mut self, symbol: &str, [x, y]: Pair) {
+    pub(super) fn symbol(&mut self, symbol: &str, [x, y]: Pair) {
         self.0 += &format!("<g transform=\"translate({x:.2} {y:.2})\">{symbol}</g>\n");
     }
 
-    fn text(&mut self, [x, y]: Pair, style: &str, text: &str) {
+    pub(super) fn text(&mut self, [x, y]: Pair, style: &str, text: &str) {
         let text = escaped(text);
         self.0 += &format!("<text x=\"{x:.2}\" y=\"{y:.2}\" fill=\"#000\" {style}>{text}</text>\n");
     }
@@ -285,9 +286,10 @@ impl Page {
         y + 12.0
     }
 
-    /// Grid, ticks, frame and names of both axes; where `pulses` show, a fine line for every BLU.
-    fn axes(&mut self, view: &View, names: [&str; 2], pulses: bool) {
-        let ticks = [view.tick(0, 1.0), view.tick(1, if pulses { 1.0 } else { 0.1 })];
+    /// Grid, ticks no finer than 1 to the right and `finest` upwards, frame and names of both axes; where `pulses` show,
+    /// a fine line for every BLU.
+    pub(super) fn axes(&mut self, view: &View, names: [&str; 2], pulses: bool, finest: f64) {
+        let ticks = [view.tick(0, 1.0), view.tick(1, finest)];
         let ticks = if pulses { [ticks[0].max(ticks[1]); 2] } else { ticks };
         let fine = (pulses && view.scale(0) >= 8.0).then_some((1.0, r##"stroke="#eee""##));
         for (axis, tick) in ticks.into_iter().enumerate() {
@@ -335,7 +337,7 @@ fn reaching([x, y]: [Pair; 2], point: Pair) -> [Pair; 2] {
 }
 
 /// A generous guess of the width of a text, in pixels.
-fn text_width(text: &str, font: f64) -> f64 {
+pub(super) fn text_width(text: &str, font: f64) -> f64 {
     text.chars().map(|c| if c < '\u{1100}' { 0.56 } else { 1.0 }).sum::<f64>() * font
 }
 
@@ -345,13 +347,13 @@ fn label_width(range: Pair) -> f64 {
 }
 
 /// A text of at most so many characters, with an ellipsis where it was cut.
-fn cut(text: &str, limit: usize) -> String {
+pub(super) fn cut(text: &str, limit: usize) -> String {
     let long = text.chars().nth(limit).is_some();
     if long { text.chars().take(limit - 1).chain(['…']).collect() } else { text.to_owned() }
 }
 
 /// A text as XML content; characters that XML does not have are replaced.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let foreign = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     text.replace(foreign, "\u{fffd}").replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

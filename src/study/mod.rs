@@ -1,3 +1,58 @@
-//! Studies of many geometries: proofs.
+//! Studies: many geometries with many hardware choices, each run measured; and [proofs](proof) over all of them.
+//!
+//! ```text
+//! Sweep (model, Space of geometries, Variants of hardware)  →  rows, part by part  →  Stage (CSV)  →  Parquet, heat map
+//! ```
+//!
+//! A row is what `stepwave run` comes to with the same words. Rows follow from their number alone: neither the number of
+//! threads nor how the work is cut changes a byte of what is written.
+//!
+//! ```
+//! use stepwave::models::{Choice, find};
+//! use stepwave::study::{Cells, Dimension, Drawn, Part, Range, Space, Sweep, Value, Variants};
+//!
+//! let cells = Cells {
+//!     drawn: Drawn::Line,
+//!     sizes: vec![],
+//!     from: Some(vec![Range::one(0), Range::one(0)]),
+//!     to: Some(vec!["1..7".parse()?, "0..3".parse()?]),
+//!     center: [0, 0],
+//!     directions: vec![],
+//! };
+//! let variants = Variants(vec![Dimension::parse(Choice::Width, "3..4")?]);
+//! let sweep = Sweep::new(find("dda-line")?, Space::Cells(cells), variants, Part::WHOLE, 1 << 20)?;
+//! let rows = sweep.rows(0..sweep.geometries())?;
+//! assert_eq!(rows.len(), 7 * 4 * 2);
+//! let clocks = sweep.column("clocks").unwrap();
+//! assert_eq!(rows[0][clocks], Value::Whole(9)); // (1, 0) in 3 bits: 2^3 steps and the load
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod columns;
+mod error;
+mod machines;
+mod merge;
+mod parquet;
+mod parts;
+mod points;
 pub mod proof;
+mod range;
+mod space;
+mod stage;
+mod summary;
+mod sweep;
+mod table;
+mod variants;
+
+pub use columns::words;
+pub use error::StudyError;
+pub use merge::merge;
+pub use parquet::ParquetTable;
+pub use points::read_points;
+pub use range::{Grid, Range};
+pub use space::{Cells, Drawn, Geometry, Part, Space};
+pub use stage::Stage;
+pub use summary::Summary;
+pub use sweep::{MOST_RUNS, Sweep};
+pub use table::{Column, Kind, Row, Value, heading, read_line, write_line};
+pub use variants::{Dimension, Variants};

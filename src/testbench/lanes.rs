@@ -6,6 +6,8 @@ use stepwave_kernel::{Net, OnOverflow};
 use stepwave_models::{Machine, Model, ModelError, find};
 use stepwave_nc::Curve;
 
+use super::instruments::Instruments;
+use super::measure::Measured;
 use super::{CHUNK, Ending, Testbench};
 
 /// What one geometry came to.
@@ -27,10 +29,13 @@ pub struct LaneOutcome {
 
 /// One hardware, ready to run many geometries.
 #[derive(Debug)]
-pub struct Lanes<'b> {
-    bench: &'b Testbench,
+pub struct Lanes {
+    bench: Testbench,
     model: &'static Model,
     program: LaneProgram,
+    /// Numbers of which an outcome is made; behind them stand those of the instruments.
+    own: usize,
+    instruments: Option<Instruments>,
 }
 
 impl Testbench {
@@ -39,7 +44,21 @@ impl Testbench {
     ///
     /// # Errors
     /// The hardware is of no known model.
-    pub fn lanes(&self, limit: u64) -> Result<Lanes<'_>, ModelError> {
+    pub fn lanes(&self, limit: u64) -> Result<Lanes, ModelError> {
+        self.lanes_with(limit, None)
+    }
+
+    /// As [`lanes`](Self::lanes), and ready to measure what [`Lanes::measure`] gives; `None` where the path of this
+    /// hardware cannot be measured in lanes.
+    ///
+    /// # Errors
+    /// The hardware is of no known model.
+    pub fn measuring_lanes(&self, limit: u64) -> Result<Option<Lanes>, ModelError> {
+        let instruments = find(self.hardware.model).map(|model| Instruments::new(self, model.curve))?;
+        instruments.map(|instruments| self.lanes_with(limit, Some(instruments))).transpose()
+    }
+
+    fn lanes_with(&self, limit: u64, instruments: Option<Instruments>) -> Result<Lanes, ModelError> {
         let model = find(self.hardware.model)?;
         let machine = &self.machine;
         let never: Vec<Net> = self.design().netlist().properties.iter().map(|property| property.never).collect();
@@ -51,6 +70,8 @@ impl Testbench {
         if traps.is_empty() {
             observe.push(Observe::Count(never));
         }
+        let own = observe.len();
+        observe.extend(instruments.iter().flat_map(Instruments::observe));
         let watch = LaneWatch {
             traps,
             rest: vec![(machine.load.net, 0), (machine.preset_position.net, 0)],
@@ -60,7 +81,8 @@ impl Testbench {
             limit,
             ..LaneWatch::new(machine.done.net)
         };
-        Ok(Lanes { bench: self, model, program: LaneProgram::new(self.design(), &watch) })
+        let design = instruments.as_ref().map_or(self.design(), Instruments::design);
+        Ok(Lanes { bench: self.clone(), model, program: LaneProgram::new(design, &watch), own, instruments })
     }
 
     /// Runs many geometries of this hardware and gives what each came to, in their order, exactly as
@@ -75,7 +97,7 @@ impl Testbench {
     }
 }
 
-impl Lanes<'_> {
+impl Lanes {
     /// Runs geometries on all threads; `sink` gets what each came to, in their order, one at a time. Memory does not
     /// grow with their number.
     pub fn run<C: std::borrow::Borrow<Curve> + Send>(
@@ -84,6 +106,32 @@ impl Lanes<'_> {
         mut sink: impl FnMut(Result<LaneOutcome, ModelError>) + Send,
     ) {
         self.program.run(curves, |curve| self.job(curve.borrow()), |end| sink(end.map(|end| self.outcome(&end))));
+    }
+
+    /// Runs geometries as [`run`](Self::run) and gives what was measured of each, exactly as
+    /// [`Testbench::measure`] does alone: `None` where the instruments cannot follow, so that it has to be run alone.
+    /// Lanes that have no instruments give `None` always.
+    pub fn measure<C: std::borrow::Borrow<Curve> + Clone + Send>(
+        &self,
+        curves: impl Iterator<Item = C> + Clone + Send,
+        mut sink: impl FnMut(Result<Option<Measured>, ModelError>) + Send,
+    ) {
+        let prepare = |curve: C| {
+            let mut job = self.job(curve.borrow())?;
+            let words = self.instruments.as_ref().and_then(|instruments| instruments.words(curve.borrow()));
+            if let (Some(first), Some(words)) = (job.blocks.first_mut(), words) {
+                first.extend(words);
+            }
+            Ok(job)
+        };
+        let mut measured = curves.clone();
+        self.program.run(curves, prepare, |end: Result<LaneEnd, ModelError>| {
+            let curve = measured.next();
+            sink(end.map(|end| {
+                let outcome = self.outcome(&end);
+                self.instruments.as_ref()?.read(curve?.borrow(), outcome, end.values.get(self.own..)?)
+            }));
+        });
     }
 
     /// The program that runs the lanes.
@@ -113,7 +161,7 @@ impl Lanes<'_> {
 
     fn outcome(&self, end: &LaneEnd) -> LaneOutcome {
         let Machine { positions, pulses, .. } = self.bench.machine();
-        let (last, counts) = end.values.split_at(positions.len());
+        let (last, counts) = end.values[..self.own].split_at(positions.len());
         let ending = match end.stop {
             LaneStop::Done => Some(Ending::Done),
             LaneStop::Trap(_) => Some(Ending::Trapped),

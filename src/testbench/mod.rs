@@ -3,7 +3,9 @@
 
 mod checkpoint;
 mod columns;
+mod instruments;
 mod lanes;
+mod measure;
 mod overflow;
 mod path;
 mod ranges;
@@ -20,6 +22,7 @@ use stepwave_nc::Curve;
 pub use checkpoint::{CheckpointError, Checkpoints, Memory, State};
 pub use columns::Columns;
 pub use lanes::{LaneOutcome, Lanes};
+pub use measure::Measured;
 pub use overflow::{OverflowEvent, OverflowWatch};
 pub use path::{PathWatch, WorstError};
 pub use ranges::{RangeWatch, RegisterRange};
@@ -116,17 +119,15 @@ impl Testbench {
     /// # Errors
     /// The model does not take the geometry or a choice, or a value does not fit in its register.
     pub fn new(model: &Model, curve: &Curve, choices: &Choices) -> Result<Testbench, ModelError> {
-        let hardware = model.plan(curve, choices)?;
-        let machine = model.machine(&hardware)?;
-        let blocks = machine.encode(&hardware, &model.words(&hardware, curve))?;
-        let columns = Columns::of(&machine);
-        Ok(Testbench { hardware, machine, blocks, columns })
+        let mut bench = Testbench::of_hardware(model, model.plan(curve, choices)?)?;
+        bench.blocks = bench.machine.encode(&bench.hardware, &model.words(&bench.hardware, curve))?;
+        Ok(bench)
     }
 
-    /// Hardware without a geometry, for [`run_many`](Self::run_many) and [`of`](Self::of).
+    /// A machine of this hardware, as yet without blocks: [`of`](Self::of) and [`lanes`](Self::lanes) give it some.
     ///
     /// # Errors
-    /// The model itself is wrong.
+    /// The model itself is wrong, or registers are too wide to be added.
     pub fn of_hardware(model: &Model, hardware: Hardware) -> Result<Testbench, ModelError> {
         let machine = model.machine(&hardware)?;
         let columns = Columns::of(&machine);

@@ -2,10 +2,12 @@
 
 mod arithmetic;
 mod geometry;
+mod measured;
 mod programs;
 mod random;
 
-use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe};
+use stepwave_kernel::bits::to_signed;
+use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, root_gap};
 use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};
 use stepwave_kernel::netlist::Op;
 use stepwave_kernel::{Design, Net};
@@ -18,6 +20,8 @@ struct Alone<'d> {
     /// Registers that what is observed depends on.
     registers: Vec<(Net, Net)>,
     values: Vec<u64>,
+    /// The clock at which the net of a gap was not 0 last.
+    last_set: Vec<Option<u64>>,
     last_alive: u64,
 }
 
@@ -34,6 +38,7 @@ impl<'d> Alone<'d> {
             engine: kind.build(design, &Watch::default()),
             registers: needed(design, watch),
             values: watch.observe.iter().map(start).collect(),
+            last_set: vec![None; watch.observe.len()],
             last_alive: 0,
         }
     }
@@ -45,7 +50,8 @@ impl<'d> Alone<'d> {
     fn sample(&mut self) {
         let netlist = self.design.netlist();
         let mut values = std::mem::take(&mut self.values);
-        for (value, observe) in values.iter_mut().zip(&self.watch.observe) {
+        let clock = self.engine.clock();
+        for ((value, observe), last_set) in values.iter_mut().zip(&self.watch.observe).zip(&mut self.last_set) {
             let now = |net: &Net| self.engine.value(*net);
             let key =
                 |net: &Net, signed: bool, bits: u64| if signed { bits ^ netlist.width(*net).sign_bit() } else { bits };
@@ -54,6 +60,18 @@ impl<'d> Alone<'d> {
                 Observe::Min { net, signed } => *value = (*value).min_by_key(now(net), |bits| key(net, *signed, *bits)),
                 Observe::Max { net, signed } => *value = (*value).max_by_key(now(net), |bits| key(net, *signed, *bits)),
                 Observe::Count(nets) => *value += u64::from(nets.iter().any(|net| now(net) != 0)),
+                Observe::Sum { net, .. } => *value = value.wrapping_add(now(net)),
+                Observe::RootGaps { base, offset, .. } => {
+                    let offset = to_signed(netlist.width(*offset), now(offset));
+                    *value = value.wrapping_add(root_gap(now(base) as f64, offset as f64));
+                }
+                Observe::LeastGap(net) | Observe::GreatestGap(net) => {
+                    if now(net) != 0 {
+                        let gap = last_set.replace(clock).map_or(0, |last| clock - last);
+                        let least = matches!(observe, Observe::LeastGap(_)) && *value > 0 && gap > 0;
+                        *value = if least { gap.min(*value) } else { gap.max(*value) };
+                    }
+                }
             }
         }
         self.values = values;
@@ -119,12 +137,7 @@ fn needed(design: &Design, watch: &LaneWatch) -> Vec<(Net, Net)> {
     let netlist = design.netlist();
     let mut pending = [&[watch.done], &watch.traps[..]].concat();
     pending.extend(watch.quiet.iter().flat_map(|quiet| &quiet.nets));
-    for observe in &watch.observe {
-        match observe {
-            Observe::Last(net) | Observe::Min { net, .. } | Observe::Max { net, .. } => pending.push(*net),
-            Observe::Count(nets) => pending.extend(nets),
-        }
-    }
+    pending.extend(watch.observe.iter().flat_map(Observe::nets));
     let mut registers = Vec::new();
     let mut seen = vec![false; netlist.cells.len()];
     while let Some(net) = pending.pop() {

@@ -64,7 +64,22 @@ fn watch(design: &Design, plan: &Plan) -> LaneWatch {
     let observe = nets.iter().enumerate().flat_map(|(index, &net)| {
         let signed = index % 2 == 0;
         let counted = nets[index..].iter().copied().take(1 + index % 3).collect();
-        [Observe::Last(net), Observe::Min { net, signed }, Observe::Max { net, signed }, Observe::Count(counted)]
+        // Sums that 32 bits hold, whatever the clocks, so that narrow lanes are tried too.
+        let bits = netlist.width(net).get();
+        let sum = (bits <= 16).then_some(Observe::Sum { net, bits: 32 });
+        let gaps = (bits <= 16).then_some(Observe::RootGaps { base: net, offset: nets[index / 2], bits: 32 });
+        let gaps = gaps.filter(|_| netlist.width(nets[index / 2]).get() <= 16);
+        [
+            Observe::Last(net),
+            Observe::Min { net, signed },
+            Observe::Max { net, signed },
+            Observe::Count(counted),
+            Observe::LeastGap(net),
+            Observe::GreatestGap(net),
+        ]
+        .into_iter()
+        .chain(sum)
+        .chain(gaps)
     });
     // Sometimes little is observed, so that much of the netlist is dead.
     let observe: Vec<Observe> =

@@ -196,7 +196,21 @@ impl Arc {
         let [x, y, ..] = *position else {
             return f64::NAN;
         };
-        let reached = norm_squared(between(self.center, [x, y]));
+        self.signed_deviation_at(norm_squared(between(self.center, [x, y])))
+    }
+
+    /// The distance from the whole ideal circle, positive outside, of a position whose distance from the centre has
+    /// this square, in BLU and BLU²: of any such position the same as [`signed_deviation`](Arc::signed_deviation).
+    ///
+    /// ```
+    /// use stepwave_nc::{Arc, Direction};
+    ///
+    /// let arc = Arc::new([5, 0], [0, 5], [0, 0], Direction::CounterClockwise)?;
+    /// assert_eq!(arc.signed_deviation_at(16), -1.0);
+    /// # Ok::<(), stepwave_nc::GeometryError>(())
+    /// ```
+    #[must_use]
+    pub fn signed_deviation_at(&self, reached: u128) -> f64 {
         let wanted = norm_squared(vector(self.start()));
         let distance = reached.abs_diff(wanted) as f64 / ((reached as f64).sqrt() + self.radius());
         if reached < wanted { -distance } else { distance }

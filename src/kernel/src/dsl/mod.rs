@@ -69,6 +69,22 @@ impl Module {
         module
     }
 
+    /// A module that goes on where a finished netlist ended: its nets keep their numbers, and [`Scope::net`] makes
+    /// signals of them. What is added is measured or shown; the netlist itself stays as it is. Its strict cells trap.
+    #[must_use]
+    pub fn continuing(netlist: Netlist) -> Module {
+        let place = |net| place_of(&netlist, net);
+        let nets = netlist.names.iter().map(|named| ((named.scope, named.name.clone()), place(named.net)));
+        let scopes = netlist.scopes.iter().filter_map(|scope| {
+            let place = Place::Component(scope.name.clone());
+            Some(((scope.parent?, scope.name.clone()), place))
+        });
+        let used_names = nets.chain(scopes).collect();
+        let (diagnostics, driven, guesses) = (Vec::new(), HashMap::new(), HashSet::new());
+        let state = State { used_names, netlist, diagnostics, driven, guesses };
+        Module { state: RefCell::new(state), on_overflow: OnOverflow::Trap }
+    }
+
     /// The top scope.
     #[must_use]
     pub fn top(&self) -> Scope<'_> {
@@ -177,6 +193,17 @@ impl<'m> Scope<'m> {
         let id = ScopeId(u32::try_from(scopes.len()).unwrap_or(u32::MAX));
         scopes.push(ScopeData { parent: Some(self.id), name: name.to_owned() });
         Scope { module: self.module, id }
+    }
+
+    /// A net that the module has already, in two's complement if `signed`; one that it has not is a mistake.
+    #[track_caller]
+    #[must_use]
+    pub fn net(self, net: Net, signed: bool) -> Signal<'m> {
+        if net.index() < self.module.state.borrow().netlist.cells.len() {
+            return Signal::new(self, net, signed);
+        }
+        self.module.report(Code::ForeignSignal, format!("there is no net {}", net.index()));
+        Signal::new(self, self.module.guess(), signed)
     }
 
     /// An unsigned input.
@@ -368,6 +395,28 @@ mod tests {
         m.name("a b", a);
         m.name("1st", a);
         assert_eq!(codes(module), [Code::DuplicateName, Code::BadName, Code::BadName]);
+    }
+
+    #[test]
+    fn a_module_goes_on_where_a_netlist_ended_and_knows_its_names_and_nets() {
+        let first = Module::new("counter");
+        let count = first.top().scope("part").reg("count", 3);
+        count.set(count.q.wrapping_add(first.top().lit(3, 1)));
+        let count = count.q.net();
+        let before = first.finish().unwrap();
+
+        let more = Module::continuing(before.clone());
+        let m = more.top().scope("gauge");
+        let twice = m.net(count, false).extend(4);
+        m.name("twice", twice.wrapping_add(twice));
+        let after = more.finish().unwrap();
+        assert_eq!(after.cells[..before.cells.len()], before.cells);
+        assert_eq!(after.find("twice").map(|named| after.path(named)), Some("counter.gauge.twice".to_owned()));
+
+        let wrong = Module::continuing(before.clone());
+        let _ = wrong.top().scope("part");
+        let _ = wrong.top().net(Net(99), false);
+        assert_eq!(codes(wrong), [Code::DuplicateName, Code::ForeignSignal]);
     }
 
     #[test]

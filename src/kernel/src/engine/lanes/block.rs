@@ -6,6 +6,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::code::{Code, Do, Operation, Slot};
 use super::lane::{GROUP, GROUPS, Lane, Row};
+use super::watch::root_gap;
 
 /// A machine that runs the same code in every lane.
 pub(super) struct Block<T> {
@@ -240,5 +241,22 @@ fn perform<T: Lane>(on: Operands<'_, T>, out: &mut Row<T>, what: Do<Slot>) {
         Do::Greatest(a, b) => on.two(out, a, b, |a, b| if a < b { b } else { a }),
         Do::LeastSigned(a, b) => on.two(out, a, b, |a, b| if b.less_signed(a) { b } else { a }),
         Do::GreatestSigned(a, b) => on.two(out, a, b, |a, b| if a.less_signed(b) { b } else { a }),
+        Do::Sum(sum, a, bits) => on.two(out, sum, a, |sum, a| sum.add(a.right(T::BITS - bits))),
+        Do::RootGaps(sum, [(base, p), (offset, q)]) => on.three(out, [sum, base, offset], |sum, base, offset| {
+            let (base, offset) = (base.right(T::BITS - p).real(), offset.right_signed(T::BITS - q).real_signed());
+            sum.add(T::number(root_gap(base, offset)))
+        }),
+        Do::LeastWhere(least, a, at) => on.three(out, [least, a, at], |least, a, at| {
+            let a = a.or(T::mask(at == T::default()));
+            if a < least { a } else { least }
+        }),
+        Do::GreatestWhere(greatest, a, at) => on.three(out, [greatest, a, at], |greatest, a, at| {
+            let a = a.and(T::mask(at != T::default()));
+            if greatest.less_signed(a) { a } else { greatest }
+        }),
+        Do::Since(since, a) => {
+            let one = T::number(1);
+            on.two(out, since, a, |since, a| since.and(T::mask(a == T::default())).add(one));
+        }
     }
 }

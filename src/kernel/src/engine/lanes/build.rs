@@ -126,8 +126,26 @@ fn accumulate(lowering: &mut Lowering, index: usize, reduce: Reduce, nets: &[Net
                 (_, true) => Do::GreatestSigned(own, value),
             }
         }
+        Reduce::Sum => {
+            let [(value, bits)] = numbers(lowering, [nets[0]]);
+            Do::Sum(own, value, bits)
+        }
+        Reduce::RootGaps => Do::RootGaps(own, numbers(lowering, [nets[0], nets[1]])),
+        Reduce::LeastGap { since } | Reduce::GreatestGap { since } => {
+            let (since, at) = (lowering.leaf(Node::Accumulator(since)), lowering.net(nets[0]));
+            match reduce {
+                Reduce::LeastGap { .. } => Do::LeastWhere(own, since, at),
+                _ => Do::GreatestWhere(own, since, at),
+            }
+        }
+        Reduce::Since => Do::Since(own, lowering.net(nets[0])),
     };
     (own, what)
+}
+
+/// The values of nets, each with its number of bits.
+fn numbers<const N: usize>(lowering: &mut Lowering, nets: [Net; N]) -> [(Value, u32); N] {
+    nets.map(|net| (lowering.net(net), lowering.width(net).get()))
 }
 
 /// Which value stands in which row, and until when.

@@ -83,6 +83,16 @@ pub(super) enum Do<V> {
     LeastSigned(V, V),
     /// Accumulator: greatest value in two's complement.
     GreatestSigned(V, V),
+    /// Accumulator: sum of the numbers of so many bits.
+    Sum(V, V, u32),
+    /// Accumulator: sum of the gaps of roots; base and offset with their numbers of bits.
+    RootGaps(V, [(V, u32); 2]),
+    /// Accumulator: least of the second where the third is not zero.
+    LeastWhere(V, V, V),
+    /// Accumulator: greatest of the second, in two's complement, where the third is not zero.
+    GreatestWhere(V, V, V),
+    /// Accumulator: clocks since the second was not zero.
+    Since(V, V),
 }
 
 impl<V: Copy> Do<V> {
@@ -127,6 +137,11 @@ impl<V: Copy> Do<V> {
             Do::Greatest(a, b) => Do::Greatest(go(a), go(b)),
             Do::LeastSigned(a, b) => Do::LeastSigned(go(a), go(b)),
             Do::GreatestSigned(a, b) => Do::GreatestSigned(go(a), go(b)),
+            Do::Sum(a, b, bits) => Do::Sum(go(a), go(b), bits),
+            Do::RootGaps(a, [(b, p), (c, q)]) => Do::RootGaps(go(a), [(go(b), p), (go(c), q)]),
+            Do::LeastWhere(a, b, c) => Do::LeastWhere(go(a), go(b), go(c)),
+            Do::GreatestWhere(a, b, c) => Do::GreatestWhere(go(a), go(b), go(c)),
+            Do::Since(a, b) => Do::Since(go(a), go(b)),
         }
     }
 }

@@ -25,6 +25,10 @@ pub(super) trait Lane: Copy + Default + PartialEq + PartialOrd + Send + Sync + '
     fn number(number: u64) -> Self;
     /// The word as a number.
     fn get(self) -> u64;
+    /// The nearest real number.
+    fn real(self) -> f64;
+    /// The nearest real number of the word in two's complement.
+    fn real_signed(self) -> f64;
     fn add(self, rhs: Self) -> Self;
     fn sub(self, rhs: Self) -> Self;
     fn and(self, rhs: Self) -> Self;
@@ -70,6 +74,16 @@ macro_rules! lane {
             }
             fn get(self) -> u64 {
                 u64::from(self)
+            }
+            #[inline(always)]
+            #[allow(clippy::cast_lossless, clippy::cast_precision_loss)]
+            fn real(self) -> f64 {
+                self as f64
+            }
+            #[inline(always)]
+            #[allow(clippy::cast_lossless, clippy::cast_precision_loss)]
+            fn real_signed(self) -> f64 {
+                self.cast_signed() as f64
             }
             #[inline(always)]
             fn add(self, rhs: Self) -> Self {

@@ -69,6 +69,11 @@ impl<'n> Lowering<'n> {
         self.of(root)
     }
 
+    /// The width of a net.
+    pub(super) fn width(&self, net: Net) -> Width {
+        self.netlist.width(net)
+    }
+
     /// Not zero where one of the nets is not.
     pub(super) fn any_set(&mut self, nets: &[Net]) -> Value {
         let values: Vec<Value> = nets.iter().map(|&net| self.net(net)).collect();

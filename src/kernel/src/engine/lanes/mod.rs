@@ -33,7 +33,7 @@ use build::Wanted;
 use code::Code;
 use feed::Feed;
 use watch::Reduce;
-pub use watch::{Job, LaneEnd, LaneStop, LaneWatch, Observe, Quiet};
+pub use watch::{Job, LaneEnd, LaneStop, LaneWatch, Observe, Quiet, ROOT_GAP_UNIT, root_gap};
 use worker::Worker;
 
 /// Code that runs one design in many lanes.
@@ -62,17 +62,7 @@ impl LaneProgram {
     pub fn new(design: &Design, watch: &LaneWatch) -> LaneProgram {
         let netlist = design.netlist();
         let ends: Vec<Net> = [watch.done].into_iter().chain(watch.traps.iter().copied()).collect();
-        let mut accumulators: Vec<(Reduce, Vec<Net>)> = Vec::new();
-        let mut last = Vec::new();
-        for observe in &watch.observe {
-            match observe {
-                Observe::Last(net) => last.push(*net),
-                Observe::Min { net, signed } => accumulators.push((Reduce::Least { signed: *signed }, vec![*net])),
-                Observe::Max { net, signed } => accumulators.push((Reduce::Greatest { signed: *signed }, vec![*net])),
-                Observe::Count(nets) => accumulators.push((Reduce::Count, nets.clone())),
-            }
-        }
-        accumulators.extend(watch.quiet.iter().map(|quiet| (Reduce::Idle, quiet.nets.clone())));
+        let (accumulators, last) = accumulators(watch);
         let observed = accumulators.iter().flat_map(|(_, nets)| nets).chain(&last).chain(&ends);
         let (registers, widest) = needed(design, observed.copied().collect());
 
@@ -95,13 +85,15 @@ impl LaneProgram {
         let whole = code(&HashMap::new(), &[&ends[..], &last].concat(), &[]);
         let width = |observe: &Observe| match observe {
             Observe::Last(net) | Observe::Min { net, .. } | Observe::Max { net, .. } => netlist.width(*net),
-            Observe::Count(_) => Width::MAX,
+            _ => Width::MAX,
         };
         LaneProgram {
             widths: watch.observe.iter().map(width).collect(),
             inputs: design.inputs().iter().map(|&net| (net, netlist.width(net))).collect(),
             reduce: accumulators.iter().map(|(reduce, _)| *reduce).collect(),
-            wide: widest > 32 || watch.limit >= u64::from(u32::MAX),
+            wide: widest > 32
+                || watch.limit >= u64::from(u32::MAX)
+                || watch.observe.iter().any(|observe| is_wide(observe, watch.limit)),
             watch: watch.clone(),
             running,
             whole,
@@ -152,6 +144,53 @@ impl LaneProgram {
     #[must_use]
     pub fn operations(&self) -> usize {
         self.running.operations.len()
+    }
+}
+
+/// The accumulators, in the order of what is observed and then those that others read, the quiet one last; and the nets
+/// whose last values are wanted.
+fn accumulators(watch: &LaneWatch) -> (Vec<(Reduce, Vec<Net>)>, Vec<Net>) {
+    let mut last = Vec::new();
+    let mut since: Vec<Net> = Vec::new();
+    let mut accumulators: Vec<(Reduce, Vec<Net>)> = Vec::new();
+    // Where the clocks since a net was not 0 will be counted: behind all that is observed.
+    let observed = watch.observe.iter().filter(|observe| !matches!(observe, Observe::Last(_))).count();
+    let mut counted = |net: Net| {
+        let known = since.iter().position(|&known| known == net);
+        observed
+            + known.unwrap_or_else(|| {
+                since.push(net);
+                since.len() - 1
+            })
+    };
+    for observe in &watch.observe {
+        let reduce = match observe {
+            Observe::Last(net) => {
+                last.push(*net);
+                continue;
+            }
+            Observe::Min { signed, .. } => Reduce::Least { signed: *signed },
+            Observe::Max { signed, .. } => Reduce::Greatest { signed: *signed },
+            Observe::Count(_) => Reduce::Count,
+            Observe::Sum { .. } => Reduce::Sum,
+            Observe::RootGaps { .. } => Reduce::RootGaps,
+            Observe::LeastGap(net) => Reduce::LeastGap { since: counted(*net) },
+            Observe::GreatestGap(net) => Reduce::GreatestGap { since: counted(*net) },
+        };
+        accumulators.push((reduce, observe.nets().collect()));
+    }
+    accumulators.extend(since.into_iter().map(|net| (Reduce::Since, vec![net])));
+    accumulators.extend(watch.quiet.iter().map(|quiet| (Reduce::Idle, quiet.nets.clone())));
+    (accumulators, last)
+}
+
+/// What is gathered may not fit in 32 bits.
+fn is_wide(observe: &Observe, limit: u64) -> bool {
+    match observe {
+        Observe::Sum { bits, .. } | Observe::RootGaps { bits, .. } => *bits > 32,
+        // Clocks are counted with a sign.
+        Observe::LeastGap(_) | Observe::GreatestGap(_) => limit >= 1 << 31,
+        _ => false,
     }
 }
 

@@ -24,6 +24,53 @@ pub enum Observe {
     },
     /// Number of samples in which one of the nets is not 0.
     Count(Vec<Net>),
+    /// Sum of the values, unsigned.
+    Sum {
+        /// The net.
+        net: Net,
+        /// Bits that hold every sum; 64 at most. A sum that needs more is told modulo 2^64 or 2^32.
+        bits: u32,
+    },
+    /// Sum of [`root_gap`] over all samples.
+    RootGaps {
+        /// The square that all others are compared with, unsigned.
+        base: Net,
+        /// How much more a square is, in two's complement; with `base` never below 0.
+        offset: Net,
+        /// As of [`Observe::Sum`].
+        bits: u32,
+    },
+    /// Fewest clocks between a sample in which the net is not 0 and the next such one; 0 where there are no two.
+    LeastGap(Net),
+    /// Most clocks between a sample in which the net is not 0 and the next such one; 0 where there are no two.
+    GreatestGap(Net),
+}
+
+impl Observe {
+    /// The nets that are observed.
+    pub fn nets(&self) -> impl Iterator<Item = Net> + '_ {
+        let (one, two, many): (Option<Net>, Option<Net>, &[Net]) = match self {
+            Observe::Last(net) | Observe::Min { net, .. } | Observe::Max { net, .. } => (Some(*net), None, &[]),
+            Observe::Sum { net, .. } | Observe::LeastGap(net) | Observe::GreatestGap(net) => (Some(*net), None, &[]),
+            Observe::RootGaps { base, offset, .. } => (Some(*base), Some(*offset), &[]),
+            Observe::Count(nets) => (None, None, nets),
+        };
+        one.into_iter().chain(two).chain(many.iter().copied())
+    }
+}
+
+/// Units of [`root_gap`] in 1.
+pub const ROOT_GAP_UNIT: f64 = 65536.0;
+
+/// |√(base + offset) - √base| in units of 2^-16, to the nearest: the distance of two circles, from their squares. Below
+/// 2^36 units it is right to the last; 0 where both numbers are 0.
+#[inline(always)]
+#[must_use]
+pub fn root_gap(base: f64, offset: f64) -> u64 {
+    /// What is added to a number below it leaves the number, rounded, in the low bits.
+    const WHOLE: f64 = (1u64 << 52) as f64;
+    let roots = ((base + offset).sqrt() + base.sqrt()).max(f64::MIN_POSITIVE);
+    (offset.abs() / roots * ROOT_GAP_UNIT + WHOLE).to_bits() & ((1 << 52) - 1)
 }
 
 /// How an accumulator takes a sample.
@@ -31,18 +78,34 @@ pub enum Observe {
 pub(super) enum Reduce {
     Count,
     Idle,
-    Least { signed: bool },
-    Greatest { signed: bool },
+    Least {
+        signed: bool,
+    },
+    Greatest {
+        signed: bool,
+    },
+    Sum,
+    RootGaps,
+    /// Of the accumulator `since` with this index.
+    LeastGap {
+        since: usize,
+    },
+    GreatestGap {
+        since: usize,
+    },
+    /// Clocks since the net was not 0, negative where it never was.
+    Since,
 }
 
 impl Reduce {
     /// The word from which any first sample gives the right one.
     pub(super) fn start<T: Lane>(self) -> T {
         match self {
-            Reduce::Count | Reduce::Greatest { signed: false } => T::number(0),
-            Reduce::Idle | Reduce::Least { signed: false } => T::ONES,
+            Reduce::Count | Reduce::Sum | Reduce::RootGaps | Reduce::GreatestGap { .. } => T::number(0),
+            Reduce::Greatest { signed: false } => T::number(0),
+            Reduce::Idle | Reduce::LeastGap { .. } | Reduce::Least { signed: false } => T::ONES,
             Reduce::Least { signed: true } => T::ONES.right(1),
-            Reduce::Greatest { signed: true } => T::ONES.right(1).not(),
+            Reduce::Greatest { signed: true } | Reduce::Since => T::ONES.right(1).not(),
         }
     }
 }

@@ -222,7 +222,14 @@ impl<'p, T: Lane> Worker<'p, T> {
             |row: Option<&Slot>, block: &Block<T>, at: usize| row.map_or(T::default(), |&row| block.get(row, at));
         let value = |(observe, width): (&Observe, &Width)| match observe {
             Observe::Last(_) => word(last.next(), &self.loader, place).decode(*width),
-            Observe::Count(_) => word(accumulators.next(), &self.lanes, lane).get(),
+            Observe::Count(_) | Observe::Sum { .. } | Observe::RootGaps { .. } | Observe::GreatestGap(_) => {
+                word(accumulators.next(), &self.lanes, lane).get()
+            }
+            Observe::LeastGap(_) => {
+                let least = word(accumulators.next(), &self.lanes, lane);
+                // Where there were no two, it is negative.
+                if least.less_signed(T::default()) { 0 } else { least.get() }
+            }
             Observe::Min { .. } | Observe::Max { .. } => word(accumulators.next(), &self.lanes, lane).decode(*width),
         };
         let values = program.watch.observe.iter().zip(&program.widths).map(value).collect();

@@ -1,0 +1,382 @@
+//! `stepwave sweep`: many geometries and hardware choices, a row each.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use stepwave::models::{Choice, CurveKind, Model, find};
+use stepwave::nc::Direction;
+use stepwave::report::heat::HeatMap;
+use stepwave::study::{
+    self, Cells, Dimension, Drawn, Grid, Kind, ParquetTable, Part, Range, Row, Space, Stage, StudyError, Summary,
+    Sweep, Variants, write_line,
+};
+
+use super::progress::Counter;
+use crate::cli::{Point, SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
+use crate::failure::Failure;
+use crate::output::{self, Outputs, Sink, is_stream};
+
+/// Geometries of the first chunk, and most of any.
+const FIRST: u64 = 1 << 12;
+const MOST: u64 = 1 << 15;
+/// How long a chunk should take: a kill loses no more.
+const CHUNK: Duration = Duration::from_secs(1);
+
+/// Does a sweep, or joins parts of one.
+pub(crate) fn run(args: &SweepArgs) -> Result<(), Failure> {
+    if let Some(SweepCommand::Merge { out, parts }) = &args.command {
+        return merge(out, parts);
+    }
+    let model = find(args.model.as_deref().unwrap_or_default())?;
+    let [number, of] = args.outputs.shard.unwrap_or([1, 1]);
+    let space = space(model, &args.space)?;
+    let sweep = Sweep::new(model, space, variants(&args.variants)?, Part { number, of }, args.outputs.max_clocks)?;
+    let mut outputs = Outputs::default();
+    let text = write(&sweep, &args.outputs, &mut outputs)?;
+    if outputs.uses_stdout() { Ok(()) } else { output::print(&text) }
+}
+
+fn trouble<T>(sentence: String) -> Result<T, Failure> {
+    Err(Failure::Trouble(sentence))
+}
+
+/// All geometries that the options tell.
+fn space(model: &Model, args: &SpaceArgs) -> Result<Space, Failure> {
+    if let Some(file) = &args.file {
+        return Ok(study::read_points(file, model)?);
+    }
+    let drawn = drawn(model, args)?;
+    let points = |one: &Option<Point>, many: &Option<Grid>| {
+        let one = one.as_ref().map(|Point(point)| point.iter().map(|&coordinate| Range::one(coordinate)).collect());
+        one.or_else(|| many.as_ref().map(|Grid(ranges)| ranges.clone()))
+    };
+    let (mut from, to) = (points(&args.from, &args.from_grid), points(&args.to, &args.to_grid));
+    let sizes = [&args.ellipse, &args.parabola, &args.hyperbola].into_iter().flatten().next();
+    let mut sizes: Vec<Range> = sizes.map(|Grid(ranges)| ranges.clone()).unwrap_or_default();
+    sizes.extend(args.radius.into_iter().chain(args.height));
+    let who = model.name;
+    let wanted = match drawn {
+        Drawn::Ellipse | Drawn::Hyperbola(_) => 2,
+        Drawn::Parabola(_) => 1,
+        Drawn::Helix if args.height.is_some() => 2,
+        _ => usize::from(args.radius.is_some()),
+    };
+    if sizes.len() != wanted {
+        return trouble(format!(
+            "{} sizes were given where {who} takes {wanted}: see `stepwave sweep --help`",
+            sizes.len()
+        ));
+    }
+    let axes = to.as_ref().or(from.as_ref()).map_or(2, Vec::len);
+    let least = if drawn == Drawn::Helix { 3 } else { 2 };
+    let most = model.curve.max_axes();
+    for (option, points) in [("--to", &to), ("--from", &from)] {
+        let count = points.as_ref().map_or(axes.max(least), Vec::len);
+        if !(least..=most).contains(&count) || (drawn == Drawn::Line && count != axes) {
+            let takes = model.curve.describe();
+            return trouble(format!("{option} has {count} coordinates, but {who} interpolates {takes}"));
+        }
+    }
+    if drawn == Drawn::Line && to.is_none() {
+        return trouble(format!("the end points are missing: give {who} --to-grid such as 0..255x0..255"));
+    }
+    if drawn == Drawn::Line {
+        from = from.or_else(|| Some(vec![Range::one(0); axes]));
+    }
+    if matches!(drawn, Drawn::Arc | Drawn::Helix) && from.is_none() && args.radius.is_none() {
+        return trouble(format!("the start points are missing: give {who} --radius, --from or --from-grid"));
+    }
+    let center = match &args.center {
+        None => [0, 0],
+        Some(Point(point)) => match <[i64; 2]>::try_from(point.as_slice()) {
+            Ok(center) => center,
+            Err(_) => return trouble(format!("--center has {} coordinates: give X,Y", point.len())),
+        },
+    };
+    let ways = [(args.cw, Direction::Clockwise), (args.ccw, Direction::CounterClockwise)];
+    let directions = ways.into_iter().filter(|(given, _)| *given).map(|(_, direction)| direction).collect();
+    let cells = Cells { drawn, sizes, from, to, center, directions };
+    Ok(match args.samples {
+        Some(count) if cells.count() <= u128::from(u64::MAX) => Space::Samples { cells, count, seed: args.seed },
+        Some(_) => return trouble(format!("a grid of {} geometries is too large to draw from", cells.count())),
+        None => Space::Cells(cells),
+    })
+}
+
+/// What the model interpolates, if nothing was given that it has not.
+fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Failure> {
+    let drawn = match model.curve {
+        CurveKind::Line { .. } => Drawn::Line,
+        CurveKind::Arc => Drawn::Arc,
+        CurveKind::Helix => Drawn::Helix,
+        CurveKind::Conic => match (&args.ellipse, &args.parabola, &args.hyperbola) {
+            (Some(_), ..) => Drawn::Ellipse,
+            (_, Some(_), _) => Drawn::Parabola(args.opens),
+            (.., Some(_)) => Drawn::Hyperbola(args.opens),
+            _ => {
+                return trouble(format!(
+                    "the curves are missing: give {} --ellipse, --parabola or --hyperbola",
+                    model.name
+                ));
+            }
+        },
+    };
+    let turns = matches!(drawn, Drawn::Arc | Drawn::Helix | Drawn::Ellipse);
+    let conic = model.curve == CurveKind::Conic;
+    let round = matches!(drawn, Drawn::Arc | Drawn::Helix);
+    let superfluous = [
+        (args.ellipse.is_some() || args.parabola.is_some() || args.hyperbola.is_some(), conic, "sizes of conics"),
+        (args.opens.is_some(), conic && drawn != Drawn::Ellipse, "--opens"),
+        (args.radius.is_some(), round, "--radius"),
+        (args.height.is_some(), drawn == Drawn::Helix, "--height"),
+        (args.cw || args.ccw, turns, "--cw or --ccw"),
+        (args.center.is_some(), drawn != Drawn::Line, "--center"),
+    ];
+    if let Some((_, _, option)) = superfluous.into_iter().find(|(given, taken, _)| *given && !taken) {
+        let takes = model.curve.describe();
+        return trouble(format!("{} interpolates {takes}, which have no {option}: leave it out", model.name));
+    }
+    if turns && !args.cw && !args.ccw {
+        return trouble(format!("the direction is missing: give {} --cw, --ccw or both", model.name));
+    }
+    Ok(drawn)
+}
+
+/// The hardware choices that the options tell.
+fn variants(args: &VariantArgs) -> Result<Variants, Failure> {
+    let lists = [
+        (Choice::Width, &args.width),
+        (Choice::Preset, &args.preset),
+        (Choice::Normalize, &args.normalize),
+        (Choice::Radix, &args.radix),
+        (Choice::Adder, &args.adder),
+        (Choice::EndPoint, &args.end_point),
+        (Choice::Form, &args.form),
+        (Choice::Weights, &args.weights),
+        (Choice::Beats, &args.beats),
+        (Choice::Override, &args.feed_override),
+        (Choice::Cascade, &args.cascade),
+        (Choice::Compare, &args.compare),
+        (Choice::PickOff, &args.pick_off),
+        (Choice::OnOverflow, &args.on_overflow),
+    ];
+    let given = lists.into_iter().filter_map(|(choice, list)| Some(Dimension::parse(choice, list.as_deref()?)));
+    let mut dimensions = given.collect::<Result<Vec<_>, StudyError>>()?;
+    dimensions.extend((!args.timing.is_empty()).then(|| Dimension::timings(&args.timing)));
+    Ok(Variants(dimensions))
+}
+
+/// A heat map being gathered.
+struct Heat {
+    map: HeatMap,
+    column: usize,
+    point: [usize; 2],
+    worst: Option<Row>,
+    runs: u64,
+}
+
+impl Heat {
+    fn new(sweep: &Sweep, name: &str) -> Result<Heat, Failure> {
+        let numbers = sweep.columns().iter().filter(|column| column.kind != Kind::Word && column.name != "index");
+        let known: Vec<&str> = numbers.map(|column| column.name.as_str()).collect();
+        if !known.contains(&name) {
+            let what = match sweep.column(name) {
+                Some(_) => format!("the column '{name}' is no measure"),
+                None => format!("there is no column '{name}'"),
+            };
+            return Err(StudyError::Column { what, known: known.join(", ") }.into());
+        }
+        let Some((point, ranges)) = sweep.map() else {
+            return trouble("a heat map shows a grid of points: give --to-grid or --from-grid".to_owned());
+        };
+        let names = ["x", "y"].map(|axis| format!("{point}_{axis}"));
+        let column = |name: &str| sweep.column(name).unwrap_or(0);
+        Ok(Heat {
+            map: HeatMap::new([&names[0], &names[1]], ranges),
+            column: column(name),
+            point: [column(&names[0]), column(&names[1])],
+            worst: None,
+            runs: 0,
+        })
+    }
+
+    fn row(&mut self, row: &Row) {
+        self.runs += 1;
+        // Coordinates are within ±2^52, which a real number holds.
+        #[expect(clippy::cast_possible_truncation, reason = "whole numbers within ±2^52")]
+        let point = self.point.map(|place| row[place].number().unwrap_or(0.0) as i64);
+        if self.map.point(point, row[self.column].number()) {
+            self.worst = Some(row.clone());
+        }
+    }
+
+    fn svg(&self, sweep: &Sweep) -> (String, String) {
+        let (model, columns) = (sweep.model(), sweep.columns());
+        let name = &columns[self.column].name;
+        let unit = match name.split('_').next().unwrap_or_default() {
+            "error" | "reached" | "from" | "to" | "center" | "size" => "BLU",
+            "spacing" => "clocks",
+            _ => "",
+        };
+        let words = self.worst.as_ref().map_or_else(String::new, |row| study::words(model, columns, row));
+        let title = format!("{}: {name} of {} runs", model.name, self.runs);
+        let printed = self
+            .map
+            .worst()
+            .map_or_else(String::new, |(number, [x, y])| format!("greatest {name} {number} at ({x}, {y}): {words}\n"));
+        (self.map.svg(&title, name, unit, &words), printed)
+    }
+}
+
+/// Where the rows of a sweep go.
+struct Tables {
+    stage: Option<Stage>,
+    stream: Option<Sink>,
+    summary: Summary,
+    heat: Option<Heat>,
+}
+
+impl Tables {
+    /// Shows rows to everybody but the stage.
+    fn show(&mut self, row: &Row) {
+        self.summary.row(row);
+        if let Some(heat) = &mut self.heat {
+            heat.row(row);
+        }
+    }
+
+    /// Takes the rows of some geometries.
+    fn take(&mut self, geometries: u64, rows: Vec<Row>) -> Result<(), Failure> {
+        rows.iter().for_each(|row| self.show(row));
+        let lines = |rows: &[Row]| {
+            let mut lines = String::new();
+            rows.iter().for_each(|row| write_line(row, &mut lines));
+            lines
+        };
+        let texts: Vec<String> = rows.par_chunks(4096).map(lines).collect();
+        if let Some(stage) = &mut self.stage {
+            stage.append(geometries, rows.len() as u64, &texts)?;
+        }
+        if let Some(stream) = &mut self.stream {
+            texts.iter().try_for_each(|text| stream.write_all(text.as_bytes()))?;
+        }
+        Ok(())
+    }
+
+    /// Takes the rows that a killed sweep has left; gives the geometries done.
+    fn recall(&mut self) -> Result<u64, Failure> {
+        let Some(mut stage) = self.stage.take() else { return Ok(0) };
+        stage.replay(|row| {
+            self.show(&row);
+            if let Some(stream) = &mut self.stream {
+                let mut line = String::new();
+                write_line(&row, &mut line);
+                stream.write_all(line.as_bytes())?;
+            }
+            Ok::<(), Failure>(())
+        })?;
+        let [geometries, _] = stage.done();
+        self.stage = Some(stage);
+        Ok(geometries)
+    }
+}
+
+/// Does all runs and writes every output; gives the summary.
+fn write(sweep: &Sweep, args: &TableArgs, outputs: &mut Outputs) -> Result<String, Failure> {
+    let heat = args.plot.is_some().then(|| Heat::new(sweep, args.heat.as_deref().unwrap_or("error_max")));
+    let heat = heat.transpose()?;
+    if args.parquet.as_deref().is_some_and(is_stream) {
+        return trouble("Parquet rows are gathered beside their file before they are written: name a file".to_owned());
+    }
+    // All are tried before the first run, though some are written at the end only.
+    let streamed = args.csv.as_deref().is_some_and(is_stream);
+    let mut claims = Outputs::default();
+    let mut claim = |path: &Option<PathBuf>| path.as_deref().map(|path| claims.claim(path)).transpose();
+    let csv = if streamed { None } else { claim(&args.csv)? };
+    let (parquet, _) = (claim(&args.parquet)?, claim(&args.plot)?);
+    let stage = csv.as_ref().or(parquet.as_ref());
+    if args.resume && stage.is_none() {
+        return trouble("--resume goes on beside the final file: give --csv FILE or --parquet FILE".to_owned());
+    }
+    let mut stream = args.csv.as_deref().filter(|_| streamed).map(|path| outputs.open(path)).transpose()?;
+    let plot_to_stdout = args.plot.as_deref().filter(|path| *path == Path::new("-"));
+    let mut picture = plot_to_stdout.map(|path| outputs.open(path)).transpose()?;
+    let stage = stage.map(|target| Stage::open(target, sweep, args.resume)).transpose()?;
+    if let Some(stream) = &mut stream {
+        writeln!(stream, "{}", study::heading(sweep.columns()))?;
+    }
+    let mut tables = Tables { stage, stream, summary: Summary::new(sweep.columns()), heat };
+    let begun = tables.recall()?;
+    let recalled = tables.summary.rows();
+    all_rows(sweep, begun, &mut tables)?;
+
+    let Tables { mut stage, stream, summary, heat } = tables;
+    if summary.rows() == 0 && sweep.part() == Part::WHOLE {
+        stage.map(Stage::discard).transpose()?;
+        return trouble("no point of the grid lies within 1 BLU of such a curve: give another grid".to_owned());
+    }
+    let mut text = summary.text(sweep.model(), sweep.columns());
+    if let (Some(path), Some(stage)) = (&args.parquet, &mut stage) {
+        let mut table = ParquetTable::new(sweep, outputs.open(path)?)?;
+        stage.replay(|row| table.row(row))?;
+        table.finish()?.flush()?;
+    }
+    if let (Some(path), Some(heat)) = (&args.plot, heat) {
+        let (svg, line) = heat.svg(sweep);
+        let mut sink = match picture.take() {
+            Some(sink) => sink,
+            None => outputs.open(path)?,
+        };
+        sink.write_all(svg.as_bytes())?;
+        sink.flush()?;
+        text += &line;
+    }
+    if let Some(mut stream) = stream {
+        stream.flush()?;
+    }
+    outputs.commit_all()?;
+    stage.map(|stage| stage.finish(csv.is_some())).transpose()?;
+    if recalled > 0 {
+        text += &format!("{recalled} of the runs were done before\n");
+    }
+    Ok(text)
+}
+
+/// Does the runs that are not done, a chunk at a time.
+fn all_rows(sweep: &Sweep, begun: u64, tables: &mut Tables) -> Result<(), Failure> {
+    let all = sweep.geometries();
+    let mut counter = Counter::new(all, "geometries");
+    // Runs, not geometries, are what takes time.
+    let variants = sweep.variants().max(1);
+    let (mut done, mut size) = (begun, (FIRST / variants).max(1));
+    while done < all {
+        let (start, end) = (Instant::now(), all.min(done + size));
+        let rows = sweep.rows(done..end)?;
+        tables.take(end - done, rows)?;
+        done = end;
+        counter.set(done);
+        let taken = start.elapsed();
+        size = if taken > 2 * CHUNK {
+            size / 2
+        } else if taken < CHUNK / 2 {
+            size * 2
+        } else {
+            size
+        };
+        size = size.clamp(1, (MOST / variants).max(1));
+    }
+    counter.finish();
+    Ok(())
+}
+
+/// Joins parts.
+fn merge(out: &Path, parts: &[PathBuf]) -> Result<(), Failure> {
+    let mut outputs = Outputs::default();
+    let as_parquet = out.extension().is_some_and(|extension| extension == "parquet");
+    let rows = study::merge(parts, outputs.open(out)?, as_parquet)?;
+    let quiet = outputs.uses_stdout();
+    outputs.commit()?;
+    if quiet { Ok(()) } else { output::print(&format!("{rows} rows of {} parts\n", parts.len())) }
+}

@@ -1,0 +1,189 @@
+//! Which columns a sweep has, what a run puts into them, and the words that repeat the run.
+
+use stepwave_models::{AXES, Model};
+use stepwave_nc::Opens;
+
+use super::space::{Drawn, Site, Space};
+use super::table::{Column, Kind, Row, Value};
+use super::{StudyError, Variants};
+use crate::testbench::{Ending, Measured};
+
+/// The columns of a sweep.
+pub(super) struct Layout {
+    pub(super) columns: Vec<Column>,
+    drawn: Drawn,
+    axes: usize,
+}
+
+/// What the end of a run is called in a row.
+fn word(ending: Option<Ending>) -> &'static str {
+    match ending {
+        Some(Ending::Done) => "done",
+        Some(Ending::Trapped) => "trapped",
+        Some(Ending::Stalled { .. }) => "stalled",
+        None => "limit",
+    }
+}
+
+impl Layout {
+    /// # Errors
+    /// There are no geometries.
+    pub(super) fn new(model: &Model, space: &Space, variants: &Variants) -> Result<Layout, StudyError> {
+        let none = || StudyError::Geometries("there are no geometries: give a grid or a file that has some".to_owned());
+        let (drawn, axes) = space.drawn().ok_or_else(none)?;
+        if axes > model.curve.max_axes() || axes < 2 {
+            let takes = model.curve.describe();
+            let message = format!("{} interpolates {takes}; points of {axes} axes were given", model.name);
+            return Err(StudyError::Geometries(message));
+        }
+        let mut columns = Vec::new();
+        let mut add = |name: &str, kind| columns.push(Column { name: name.to_owned(), kind });
+        let letters = &AXES[..axes];
+        add("index", Kind::Whole);
+        if is_conic(drawn) {
+            add("curve", Kind::Word);
+            add("size_a", Kind::Whole);
+            add("size_b", Kind::Whole);
+            add("opens", Kind::Word);
+        }
+        for point in ["from", "to"] {
+            letters.iter().for_each(|axis| add(&format!("{point}_{axis}"), Kind::Whole));
+        }
+        if drawn != Drawn::Line {
+            add("center_x", Kind::Whole);
+            add("center_y", Kind::Whole);
+            add("direction", Kind::Word);
+        }
+        for (choice, _) in variants.words() {
+            add(&choice.option().trim_start_matches('-').replace('-', "_"), Kind::Word);
+        }
+        add("ending", Kind::Word);
+        add("clocks", Kind::Whole);
+        add("steps", Kind::Whole);
+        for number in ["pulses", "reached"] {
+            letters.iter().for_each(|axis| add(&format!("{number}_{axis}"), Kind::Whole));
+        }
+        add("exact", Kind::Flag);
+        add("error_max", Kind::Real);
+        add("error_mean", Kind::Real);
+        add("overflows", Kind::Whole);
+        add("overflow", Kind::Word);
+        for axis in letters {
+            add(&format!("spacing_min_{axis}"), Kind::Whole);
+            add(&format!("spacing_max_{axis}"), Kind::Whole);
+        }
+        add("reason", Kind::Word);
+        Ok(Layout { columns, drawn, axes })
+    }
+
+    /// The row of a run, or of a refusal with its reason.
+    pub(super) fn row(&self, index: u64, site: &Site, words: &[&str], run: Result<Measured, String>) -> Row {
+        let word_of = |text: &str| Value::Word(text.to_owned());
+        let mut row = vec![index.into()];
+        if is_conic(self.drawn) {
+            let (curve, opens) = shape(site.drawn);
+            row.extend([word_of(curve), size(site, 0), size(site, 1)]);
+            row.push(opens.map(|opens| opens.to_string()).into());
+        }
+        row.extend(site.from.iter().chain(&site.to).map(|&coordinate| Value::Whole(coordinate)));
+        if self.drawn != Drawn::Line {
+            row.extend(site.center.map(Value::Whole));
+            let turns = !matches!(site.drawn, Drawn::Parabola(_) | Drawn::Hyperbola(_));
+            row.push(if turns { word_of(turn(site)) } else { Value::None });
+        }
+        row.extend(words.iter().map(|text| word_of(text)));
+        match run {
+            Err(reason) => {
+                row.push(word_of("refused"));
+                row.resize(self.columns.len() - 1, Value::None);
+                row.push(reason.into());
+            }
+            Ok(run) if run.ending.is_none() => {
+                row.push(word_of(word(None)));
+                row.resize(self.columns.len() - 1, Value::None);
+                row.push(Value::Word(format!("not done after {} clocks", run.clocks)));
+            }
+            Ok(run) => {
+                row.extend([word_of(word(run.ending)), run.clocks.into(), run.steps.into()]);
+                row.extend(run.pulses.iter().map(|&count| Value::from(count)));
+                row.extend(run.reached.iter().map(|&place| Value::Whole(place)));
+                row.push(Value::Flag(run.reached == site.to));
+                row.extend([run.greatest.into(), run.mean.into(), run.overflows.into(), run.component.into()]);
+                for axis in 0..self.axes {
+                    let gaps = run.spacing.get(axis).copied().flatten();
+                    row.extend([0, 1].map(|end| Value::from(gaps.map(|gaps| gaps[end]))));
+                }
+                row.push(Value::None);
+            }
+        }
+        row
+    }
+}
+
+fn is_conic(drawn: Drawn) -> bool {
+    matches!(drawn, Drawn::Ellipse | Drawn::Parabola(_) | Drawn::Hyperbola(_))
+}
+
+fn shape(drawn: Drawn) -> (&'static str, Option<Opens>) {
+    match drawn {
+        Drawn::Parabola(opens) => ("parabola", opens),
+        Drawn::Hyperbola(opens) => ("hyperbola", opens),
+        Drawn::Ellipse => ("ellipse", None),
+        Drawn::Line => ("line", None),
+        Drawn::Arc => ("arc", None),
+        Drawn::Helix => ("helix", None),
+    }
+}
+
+fn size(site: &Site, index: usize) -> Value {
+    site.sizes.get(index).map_or(Value::None, |&size| Value::Whole(size))
+}
+
+fn turn(site: &Site) -> &'static str {
+    if site.direction == stepwave_nc::Direction::Clockwise { "cw" } else { "ccw" }
+}
+
+/// The words that repeat the run of a row alone: `stepwave run dda-line --to 8,6 --width 4`.
+#[must_use]
+pub fn words(model: &Model, columns: &[Column], row: &[Value]) -> String {
+    let value = |name: &str| {
+        let column = columns.iter().position(|column| column.name == name)?;
+        match row.get(column)? {
+            Value::None | Value::Real(_) => None,
+            Value::Whole(number) => Some(number.to_string()),
+            Value::Flag(flag) => Some(flag.to_string()),
+            Value::Word(word) => Some(word.clone()),
+        }
+    };
+    let point = |name: &str| {
+        let coordinates: Vec<String> = AXES.iter().map_while(|axis| value(&format!("{name}_{axis}"))).collect();
+        Some(coordinates.join(",")).filter(|_| !coordinates.is_empty())
+    };
+    let moved = |text: &String| text.split(',').any(|coordinate| coordinate != "0");
+    let mut words = format!("stepwave run {}", model.name);
+    let mut add = |option: &str, text: Option<String>| {
+        if let Some(text) = text {
+            words += &format!(" --{option} {text}");
+        }
+    };
+    if let Some(curve) = value("curve") {
+        let sizes: Vec<String> = ["size_a", "size_b"].into_iter().filter_map(value).collect();
+        add(&curve, Some(sizes.join(",")));
+        add("opens", value("opens"));
+    }
+    add("from", point("from").filter(moved));
+    add("to", point("to"));
+    add("center", point("center").filter(moved));
+    if let Some(direction) = value("direction") {
+        add(&direction, Some(String::new()));
+    }
+    for doc in model.choices {
+        let option = doc.choice.option().trim_start_matches('-');
+        match (option, value(&option.replace('-', "_"))) {
+            ("normalize", Some(word)) => add(option, (word == "yes").then(String::new)),
+            (_, Some(word)) => add(option, Some(word).filter(|word| word != "none")),
+            (_, None) => {}
+        }
+    }
+    words.split_whitespace().collect::<Vec<_>>().join(" ")
+}

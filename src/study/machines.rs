@@ -1,0 +1,111 @@
+//! The machines of a sweep: geometries that plan the same hardware share one, and its lanes.
+
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock, RwLock};
+
+use stepwave_models::{Choices, Hardware, Model, ModelError};
+use stepwave_nc::Curve;
+
+use super::StudyError;
+use crate::testbench::{Lanes, Measured, Testbench};
+
+/// Machines kept; beyond them all are forgotten and built anew where they are needed.
+const KEPT: usize = 512;
+
+/// One hardware, built when it is needed.
+pub(super) struct Machine {
+    /// Unlike that of any other.
+    pub(super) number: usize,
+    hardware: Hardware,
+    bench: OnceLock<Result<Testbench, ModelError>>,
+    lanes: OnceLock<Option<Lanes>>,
+}
+
+impl Machine {
+    fn bench(&self, model: &Model) -> Result<&Testbench, &ModelError> {
+        self.bench.get_or_init(|| Testbench::of_hardware(model, self.hardware.clone())).as_ref()
+    }
+
+    /// The lanes are there already.
+    pub(super) fn is_built(&self) -> bool {
+        self.lanes.get().is_some()
+    }
+
+    /// The lanes, if its path can be measured in lanes.
+    pub(super) fn lanes(&self, model: &Model, limit: u64) -> Option<&Lanes> {
+        let build = || self.bench(model).ok()?.measuring_lanes(limit).ok().flatten();
+        self.lanes.get_or_init(build).as_ref()
+    }
+
+    /// Runs one geometry alone; inside, why the hardware refuses it.
+    ///
+    /// # Errors
+    /// The run fails by itself.
+    pub(super) fn alone(
+        &self,
+        model: &Model,
+        curve: &Curve,
+        limit: u64,
+    ) -> Result<Result<Measured, String>, StudyError> {
+        let bench = match self.bench(model) {
+            Ok(bench) => bench.of(model, curve),
+            Err(error) => return Ok(Err(error.to_string())),
+        };
+        match bench {
+            Ok(bench) => bench.measure(curve, limit).map(Ok).map_err(|error| StudyError::Run(error.to_string())),
+            Err(error) => Ok(Err(error.to_string())),
+        }
+    }
+}
+
+/// All machines that are known.
+pub(super) struct Machines {
+    model: &'static Model,
+
+    known: RwLock<HashMap<u64, Vec<Arc<Machine>>>>,
+    made: AtomicUsize,
+}
+
+/// What tells most hardware from each other.
+fn digest(hardware: &Hardware) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hardware.widths.values().for_each(|width| width.get().hash(&mut hasher));
+    (hardware.axes, hardware.normalize, hardware.stall_clocks).hash(&mut hasher);
+    hasher.finish()
+}
+
+impl Machines {
+    pub(super) fn new(model: &'static Model) -> Machines {
+        Machines { model, known: RwLock::default(), made: AtomicUsize::new(0) }
+    }
+
+    /// The machine that a geometry plans with these choices.
+    ///
+    /// # Errors
+    /// The model refuses the geometry or a choice.
+    pub(super) fn plan(&self, curve: &Curve, choices: &Choices) -> Result<Arc<Machine>, ModelError> {
+        let hardware = self.model.plan(curve, choices)?;
+        let digest = digest(&hardware);
+        let alike =
+            |machines: &Vec<Arc<Machine>>| machines.iter().find(|machine| machine.hardware == hardware).cloned();
+        // A lock is poisoned only by a panic, which ends the sweep.
+        if let Some(machine) = self.known.read().ok().and_then(|known| known.get(&digest).and_then(alike)) {
+            return Ok(machine);
+        }
+        let number = || self.made.fetch_add(1, Ordering::Relaxed);
+        let machine =
+            |hardware| Arc::new(Machine { number: number(), hardware, bench: OnceLock::new(), lanes: OnceLock::new() });
+        let Ok(mut known) = self.known.write() else { return Ok(machine(hardware)) };
+        if let Some(machine) = known.get(&digest).and_then(alike) {
+            return Ok(machine);
+        }
+        if known.values().map(Vec::len).sum::<usize>() >= KEPT {
+            known.clear();
+        }
+        let machine = machine(hardware);
+        known.entry(digest).or_default().push(Arc::clone(&machine));
+        Ok(machine)
+    }
+}

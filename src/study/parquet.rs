@@ -1,0 +1,195 @@
+//! The rows of a sweep as a Parquet file: a column chunk for each column, in groups of rows of one size, so that the
+//! same rows give the same bytes.
+
+use std::io::{Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{BoolType, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::record::{Field, reader::RowIter};
+use parquet::schema::types::Type;
+
+use super::parts::PartHead;
+use super::table::{Column, Kind, Row, Value};
+use super::{StudyError, Sweep};
+
+/// Rows of a group.
+const GROUP: usize = 1 << 16;
+/// Key of the metadata in which a part tells of itself.
+const PART: &str = "stepwave.part";
+
+fn physical(kind: Kind) -> Physical {
+    match kind {
+        Kind::Whole => Physical::INT64,
+        Kind::Real => Physical::DOUBLE,
+        Kind::Flag => Physical::BOOLEAN,
+        Kind::Word => Physical::BYTE_ARRAY,
+    }
+}
+
+fn schema(columns: &[Column]) -> Result<Type, ParquetError> {
+    let field = |column: &Column| {
+        let field = Type::primitive_type_builder(&column.name, physical(column.kind));
+        let logical = (column.kind == Kind::Word).then_some(LogicalType::String);
+        field.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build().map(Arc::new)
+    };
+    let fields = columns.iter().map(field).collect::<Result<Vec<_>, _>>()?;
+    Type::group_type_builder("sweep").with_fields(fields).build()
+}
+
+/// A Parquet file being written.
+pub struct ParquetTable<W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+    columns: Vec<Column>,
+    rows: Vec<Row>,
+    total: u64,
+    part: Option<PartHead>,
+}
+
+fn failed(error: impl ToString) -> StudyError {
+    StudyError::Run(error.to_string())
+}
+
+impl<W: Write + Send> ParquetTable<W> {
+    /// For the rows of a sweep.
+    ///
+    /// # Errors
+    /// The sink cannot be written.
+    pub fn new(sweep: &Sweep, sink: W) -> Result<ParquetTable<W>, StudyError> {
+        let part = (sweep.part() != super::Part::WHOLE).then(|| PartHead::new(sweep.part(), sweep.identity()));
+        ParquetTable::of(sweep.columns().to_vec(), part, sink)
+    }
+
+    pub(super) fn of(columns: Vec<Column>, part: Option<PartHead>, sink: W) -> Result<ParquetTable<W>, StudyError> {
+        let properties = WriterProperties::builder().set_created_by("stepwave".to_owned()).build();
+        let schema = Arc::new(schema(&columns).map_err(failed)?);
+        let writer = SerializedFileWriter::new(sink, schema, Arc::new(properties)).map_err(failed)?;
+        Ok(ParquetTable { writer, columns, rows: Vec::new(), total: 0, part })
+    }
+
+    /// Appends a row.
+    ///
+    /// # Errors
+    /// The sink cannot be written.
+    pub fn row(&mut self, row: Row) -> Result<(), StudyError> {
+        self.rows.push(row);
+        self.total += 1;
+        if self.rows.len() == GROUP { self.write_group().map_err(failed) } else { Ok(()) }
+    }
+
+    fn write_group(&mut self) -> Result<(), ParquetError> {
+        let rows = std::mem::take(&mut self.rows);
+        let mut group = self.writer.next_row_group()?;
+        for (place, column) in self.columns.iter().enumerate() {
+            let values = rows.iter().map(|row| row.get(place).unwrap_or(&Value::None));
+            match column.kind {
+                Kind::Whole => {
+                    let number = |value: &Value| if let Value::Whole(number) = value { Some(*number) } else { None };
+                    write_column::<Int64Type>(&mut group, values, number)?;
+                }
+                Kind::Real => {
+                    let number = |value: &Value| if let Value::Real(number) = value { Some(*number) } else { None };
+                    write_column::<DoubleType>(&mut group, values, number)?;
+                }
+                Kind::Flag => {
+                    let flag = |value: &Value| if let Value::Flag(flag) = value { Some(*flag) } else { None };
+                    write_column::<BoolType>(&mut group, values, flag)?;
+                }
+                Kind::Word => {
+                    let word =
+                        |value: &Value| if let Value::Word(word) = value { Some(word.as_str().into()) } else { None };
+                    write_column::<ByteArrayType>(&mut group, values, word)?;
+                }
+            }
+        }
+        group.close()?;
+        Ok(())
+    }
+
+    /// Writes what is left and the end of the file; gives the sink, all flushed to it.
+    ///
+    /// # Errors
+    /// The sink cannot be written.
+    pub fn finish(mut self) -> Result<W, StudyError> {
+        if !self.rows.is_empty() {
+            self.write_group().map_err(failed)?;
+        }
+        if let Some(part) = self.part {
+            let text = serde_json::json!({ "head": part.text(), "rows": self.total }).to_string();
+            self.writer.append_key_value_metadata(KeyValue::new(PART.to_owned(), text));
+        }
+        self.writer.into_inner().map_err(failed)
+    }
+}
+
+fn write_column<'v, T: DataType>(
+    group: &mut SerializedRowGroupWriter<'_, impl Write + Send>,
+    values: impl Iterator<Item = &'v Value>,
+    of: impl Fn(&'v Value) -> Option<T::T>,
+) -> Result<(), ParquetError> {
+    let values: Vec<Option<T::T>> = values.map(of).collect();
+    let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
+    let values: Vec<T::T> = values.into_iter().flatten().collect();
+    let Some(mut column) = group.next_column()? else { return Ok(()) };
+    column.typed::<T>().write_batch(&values, Some(&levels), None)?;
+    column.close()
+}
+
+/// A part in Parquet being read.
+pub(super) struct ParquetPart {
+    pub(super) head: PartHead,
+    columns: Vec<Column>,
+    rows: RowIter<'static>,
+}
+
+impl ParquetPart {
+    /// Opens a part; inside, why it is none.
+    pub(super) fn open(path: &Path) -> Result<ParquetPart, String> {
+        let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
+        let reader = SerializedFileReader::new(file).map_err(|error| error.to_string())?;
+        let file = reader.metadata().file_metadata();
+        let told = file.key_value_metadata().into_iter().flatten().find(|pair| pair.key == PART);
+        let told = told.and_then(|pair| serde_json::from_str::<serde_json::Value>(pair.value.as_deref()?).ok());
+        let head = told.as_ref().and_then(|told| PartHead::read(told.get("head")?.as_str()?));
+        let count = told.as_ref().and_then(|told| told.get("rows")?.as_u64());
+        let (Some(head), Some(count)) = (head, count) else {
+            return Err("it is no part of a sweep: --shard makes them".to_owned());
+        };
+        let rows = u64::try_from(file.num_rows()).unwrap_or(0);
+        if rows != count {
+            return Err(format!("it has {rows} of its {count} rows"));
+        }
+        let columns = head.columns().ok_or("its columns are not told")?;
+        let rows = RowIter::from_file_into(Box::new(reader));
+        Ok(ParquetPart { head, columns, rows })
+    }
+
+    /// The next row.
+    pub(super) fn next(&mut self) -> Option<Result<Row, String>> {
+        let row = match self.rows.next()? {
+            Ok(row) => row,
+            Err(error) => return Some(Err(error.to_string())),
+        };
+        let value = |(field, _): (&Field, &Column)| match field {
+            Field::Long(number) => Value::Whole(*number),
+            Field::Double(number) => Value::Real(*number),
+            Field::Bool(flag) => Value::Flag(*flag),
+            Field::Str(word) => Value::Word(word.clone()),
+            _ => Value::None,
+        };
+        Some(Ok(row.get_column_iter().map(|(_, field)| field).zip(&self.columns).map(value).collect()))
+    }
+}
+
+/// A file is in Parquet by its first bytes.
+pub(super) fn is_parquet(path: &Path) -> std::io::Result<bool> {
+    let mut magic = Vec::new();
+    std::fs::File::open(path)?.take(4).read_to_end(&mut magic)?;
+    Ok(magic == b"PAR1")
+}

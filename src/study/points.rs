@@ -1,0 +1,124 @@
+//! Geometries from a file: one a line, in columns named as those of a sweep.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::Path;
+
+use stepwave_models::{AXES, CurveKind, Model};
+use stepwave_nc::{Direction, Opens};
+
+use super::StudyError;
+use super::space::{Drawn, Site, Space};
+use super::table::fields;
+
+/// Reads geometries for a model: `to_x,to_y` and whatever else is not as by default: `from_x`, `center_x`, `direction`
+/// (`cw`, `ccw`), and of conics `curve`, `size_a`, `size_b`, `opens`.
+///
+/// # Errors
+/// The file cannot be read, or has a mistake, which is told with its line.
+pub fn read_points(file: &Path, model: &Model) -> Result<Space, StudyError> {
+    let text = std::fs::read_to_string(file).map_err(|error| StudyError::reading(file, error))?;
+    let mistake = |line: usize, what: String| StudyError::Points { file: file.display().to_string(), line, what };
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let (_, first) = lines.next().ok_or_else(|| mistake(1, "there is no heading: begin with to_x,to_y".to_owned()))?;
+    let heading: Vec<String> = fields(first).iter().map(|name| name.trim().to_owned()).collect();
+    let known = known(model);
+    if let Some(unknown) = heading.iter().find(|name| !known.contains(name)) {
+        let message =
+            format!("there is no column '{unknown}' for {}: its columns are {}", model.name, known.join(", "));
+        return Err(mistake(1, message));
+    }
+    if heading.iter().enumerate().any(|(place, name)| heading[..place].contains(name)) {
+        return Err(mistake(1, "a column stands twice".to_owned()));
+    }
+    let axes = AXES.iter().take_while(|axis| heading.contains(&format!("to_{axis}"))).count();
+    if axes < 2 {
+        return Err(mistake(1, "the columns to_x and to_y are missing".to_owned()));
+    }
+    let site = |(index, line): (usize, &str)| {
+        let words = fields(line);
+        if words.len() != heading.len() {
+            let count = words.len();
+            return Err(mistake(index + 1, format!("{count} values under {} columns", heading.len())));
+        }
+        let line = Line { heading: &heading, words: &words, axes };
+        line.site(model.curve).map_err(|what| mistake(index + 1, what))
+    };
+    let points: Vec<Site> = lines.map(site).collect::<Result<_, _>>()?;
+    let mut hasher = DefaultHasher::new();
+    text.hash(&mut hasher);
+    Ok(Space::Points { points, content: hasher.finish() })
+}
+
+/// Columns that a model's geometries may have.
+fn known(model: &Model) -> Vec<String> {
+    let axes = &AXES[..model.curve.max_axes()];
+    let mut known: Vec<String> = Vec::new();
+    if model.curve == CurveKind::Conic {
+        known.extend(["curve", "size_a", "size_b", "opens"].map(str::to_owned));
+    }
+    known.extend(["from", "to"].iter().flat_map(|point| axes.iter().map(move |axis| format!("{point}_{axis}"))));
+    if !matches!(model.curve, CurveKind::Line { .. }) {
+        known.extend(["center_x", "center_y", "direction"].map(str::to_owned));
+    }
+    known
+}
+
+/// One line of the file.
+struct Line<'a> {
+    heading: &'a [String],
+    words: &'a [String],
+    axes: usize,
+}
+
+impl Line<'_> {
+    fn word(&self, name: &str) -> Option<&str> {
+        let place = self.heading.iter().position(|known| known == name)?;
+        self.words.get(place).map(|word| word.trim()).filter(|word| !word.is_empty())
+    }
+
+    fn number(&self, name: &str) -> Result<i64, String> {
+        let number = |word: &str| word.parse().map_err(|_| format!("'{word}' in {name} is no whole number of BLU"));
+        self.word(name).map_or(Ok(0), number)
+    }
+
+    fn point(&self, name: &str, axes: usize) -> Result<Vec<i64>, String> {
+        AXES[..axes].iter().map(|axis| self.number(&format!("{name}_{axis}"))).collect()
+    }
+
+    fn site(&self, kind: CurveKind) -> Result<Site, String> {
+        let opens = match self.word("opens") {
+            None => None,
+            Some("+x") => Some(Opens::PlusX),
+            Some("-x") => Some(Opens::MinusX),
+            Some("+y") => Some(Opens::PlusY),
+            Some("-y") => Some(Opens::MinusY),
+            Some(word) => return Err(format!("'{word}' in opens is none of +x, -x, +y, -y")),
+        };
+        let drawn = match (kind, self.word("curve")) {
+            (CurveKind::Line { .. }, _) => Drawn::Line,
+            (CurveKind::Arc, _) => Drawn::Arc,
+            (CurveKind::Helix, _) => Drawn::Helix,
+            (CurveKind::Conic, Some("ellipse")) => Drawn::Ellipse,
+            (CurveKind::Conic, Some("parabola")) => Drawn::Parabola(opens),
+            (CurveKind::Conic, Some("hyperbola")) => Drawn::Hyperbola(opens),
+            (CurveKind::Conic, _) => return Err("curve is none of ellipse, parabola, hyperbola".to_owned()),
+        };
+        let direction = match self.word("direction") {
+            Some("cw") => Direction::Clockwise,
+            Some("ccw") => Direction::CounterClockwise,
+            None if matches!(drawn, Drawn::Line | Drawn::Parabola(_) | Drawn::Hyperbola(_)) => {
+                Direction::CounterClockwise
+            }
+            word => return Err(format!("'{}' in direction is neither cw nor ccw", word.unwrap_or(""))),
+        };
+        let sizes = if kind == CurveKind::Conic {
+            let count = if matches!(drawn, Drawn::Parabola(_)) { 1 } else { 2 };
+            ["size_a", "size_b"][..count].iter().map(|name| self.number(name)).collect::<Result<_, _>>()?
+        } else {
+            Vec::new()
+        };
+        let (from, to) = (self.point("from", self.axes)?, self.point("to", self.axes)?);
+        let center = [self.number("center_x")?, self.number("center_y")?];
+        Ok(Site { drawn, sizes, from, to, center, direction })
+    }
+}

@@ -1,0 +1,263 @@
+//! Instruments: cells beside a machine that follow its path while it runs in lanes, so that the path error of every
+//! step is known without a position leaving the lane.
+//!
+//! They stand in a copy of the machine's netlist, in the scope `gauge`, and take its signed pulses:
+//!
+//! ```text
+//! line     d ± gain_x on an X pulse, ± gain_y on a Y pulse;  gain_x = -dy, gain_y = dx, d = dx·y - dy·x from the start
+//! circle   d ± t + 1 on a pulse of an axis, whose t = 2·x or 2·y about the centre then changes by ±2;  d = x² + y² - R²
+//! ```
+//!
+//! The distance from a line is |d| over its length, that from a circle a function of d that only grows, so that the
+//! extremes of d over all steps give the greatest error, in real numbers from exact integers.
+
+use stepwave_kernel::dsl::{Module, Scope, Signal};
+use stepwave_kernel::engine::lanes::{Observe, ROOT_GAP_UNIT, root_gap};
+use stepwave_kernel::{Design, Net, OnOverflow, Width, elaborate};
+use stepwave_models::CurveKind;
+use stepwave_nc::{Arc, Curve, Line};
+
+use super::measure::Measured;
+use super::{Ending, LaneOutcome, Testbench};
+
+/// What the instruments measure against, and the inputs that tell them.
+#[derive(Clone, Debug)]
+enum Ideal {
+    /// Gain of each axis.
+    Line([Net; 2]),
+    /// Twice the start of each axis about the centre, and the square of the radius.
+    Circle { start: [Net; 2], square: Net },
+}
+
+/// The instruments of one hardware.
+#[derive(Clone, Debug)]
+pub(super) struct Instruments {
+    design: Design,
+    ideal: Ideal,
+    /// Behind each step, else 0: |d| of a line, d of a circle.
+    seen: Net,
+    /// d in this sample.
+    deviation: Net,
+    /// Bits of d, and of a sum over all steps.
+    bits: [u32; 2],
+    /// A relative coordinate is less than 2 to this power.
+    reach: u32,
+    pulses: Vec<Net>,
+    /// Flags and names of all properties.
+    properties: Vec<(Net, String)>,
+    traps: bool,
+}
+
+impl Instruments {
+    /// Those for a bench; `None` where its curves are neither circles nor lines of two axes, or too large.
+    pub(super) fn new(bench: &Testbench, kind: CurveKind) -> Option<Instruments> {
+        let machine = bench.machine();
+        let pulses: Vec<Net> = machine.pulses.iter().map(|port| port.net).collect();
+        let [x, y] = <[Net; 2]>::try_from(pulses.clone()).ok()?;
+        if machine.pulses.iter().any(|port| port.width.get() != 2) {
+            return None;
+        }
+        let reach = machine.positions.iter().map(|port| port.width.get()).max()?;
+        let bits = 2 * reach + 2;
+        if bits > Width::MAX.get() {
+            return None;
+        }
+        let module = Module::continuing(bench.design().netlist().clone());
+        let m = module.top().scope("gauge");
+        let ways = [x, y].map(|pulse| Way::of(m.net(pulse, true)));
+        let stepped = m.net(machine.stepped.net, false);
+        let loads = m.net(machine.load.net, false) & m.net(machine.preset_position.net, false);
+        let (ideal, deviation, seen) = match kind {
+            CurveKind::Line { .. } => line(m, bits, ways),
+            CurveKind::Arc => circle(m, bits, ways, loads),
+            CurveKind::Conic | CurveKind::Helix => return None,
+        };
+        let seen = stepped.mux(seen, m.lit(bits, 0)).net();
+        let deviation = deviation.net();
+        let properties = bench.design().netlist().properties.iter();
+        Some(Instruments {
+            ideal,
+            seen,
+            deviation,
+            // A full circle of radius 2^(reach - 2) takes 2^(reach + 1) steps, each less than 2 BLU or 2^17 units off.
+            bits: [bits, (reach + 18).min(Width::MAX.get())],
+            reach,
+            pulses,
+            properties: properties.map(|property| (property.never, property.name.clone())).collect(),
+            traps: bench.hardware().on_overflow == OnOverflow::Trap,
+            design: elaborate(module.finish().ok()?).ok()?,
+        })
+    }
+
+    /// The machine with its instruments; all nets of the machine are what they were.
+    pub(super) fn design(&self) -> &Design {
+        &self.design
+    }
+
+    /// The numbers that [`read`](Self::read) wants.
+    pub(super) fn observe(&self) -> Vec<Observe> {
+        let (net, bits) = (self.seen, self.bits[1]);
+        let path = match self.ideal {
+            Ideal::Line(_) => [Observe::Last(net), Observe::Max { net, signed: false }, Observe::Sum { net, bits: 32 }],
+            Ideal::Circle { square, .. } => [
+                Observe::Min { net, signed: true },
+                Observe::Max { net, signed: true },
+                Observe::RootGaps { base: square, offset: net, bits },
+            ],
+        };
+        let gaps = self.pulses.iter().flat_map(|&net| [Observe::LeastGap(net), Observe::GreatestGap(net)]);
+        let never = self.properties.iter().map(|&(never, _)| Observe::Last(never));
+        path.into_iter().chain([Observe::Last(self.deviation)]).chain(gaps).chain(never).collect()
+    }
+
+    /// What the inputs are to hold for a geometry; `None` where it is too large.
+    pub(super) fn words(&self, curve: &Curve) -> Option<Vec<(Net, u64)>> {
+        let numbers = match (&self.ideal, curve) {
+            (Ideal::Line(gain), Curve::Line(line)) => {
+                let [dx, dy] = <[i64; 2]>::try_from(line.delta()).ok()?.map(|way| self.reached(way));
+                vec![(gain[0], -dy?), (gain[1], dx?)]
+            }
+            (Ideal::Circle { start, square }, Curve::Arc(arc)) => {
+                // So that every position, of whatever bits, is within reach of the centre.
+                let far = |&c: &i64| c.unsigned_abs() >= 1 << (self.reach - 1);
+                if arc.center().iter().any(far) {
+                    return None;
+                }
+                let [x, y] = arc.start().map(|way| self.reached(way));
+                vec![(start[0], 2 * x?), (start[1], 2 * y?), (*square, i64::try_from(arc.radius_squared()).ok()?)]
+            }
+            _ => return None,
+        };
+        Some(numbers.into_iter().map(|(net, number)| (net, number.cast_unsigned())).collect())
+    }
+
+    /// A coordinate, if it is within reach.
+    fn reached(&self, way: i64) -> Option<i64> {
+        (way.unsigned_abs() < 1 << self.reach).then_some(way)
+    }
+
+    /// What was measured of a run; `None` where the instruments cannot have followed it.
+    pub(super) fn read(&self, curve: &Curve, outcome: LaneOutcome, values: &[u64]) -> Option<Measured> {
+        if outcome.ending.is_none() {
+            return Some(Measured::given_up(self.pulses.len(), outcome.clocks));
+        }
+        self.words(curve)?;
+        let trapped = outcome.ending == Some(Ending::Trapped);
+        // A position that has left its register is where no pulse led.
+        if outcome.overflows > 0 && !trapped {
+            return None;
+        }
+        let ([least, greatest, sum, last], rest) = values.split_first_chunk::<4>()?;
+        let width = Width::new(self.bits[0].into()).ok()?;
+        let signed = |bits: u64| stepwave_kernel::bits::to_signed(width, bits);
+        if i128::from(signed(*last)) != reached(curve, &outcome.reached)? {
+            return None;
+        }
+        let (worst, mean, most) = match curve {
+            Curve::Line(line) => {
+                let length = line.length();
+                (*greatest as f64 / length, *sum as f64 / length, *greatest)
+            }
+            Curve::Arc(arc) => {
+                let square = arc.radius_squared();
+                let at = |offset: i64| {
+                    let gap = arc.signed_deviation_at((square + i128::from(offset)).unsigned_abs()).abs();
+                    (gap, root_gap(square as f64, offset as f64))
+                };
+                let ((inside, near), (outside, far)) = (at(signed(*least)), at(signed(*greatest)));
+                (inside.max(outside), *sum as f64 / ROOT_GAP_UNIT, near.max(far))
+            }
+            Curve::Conic(_) | Curve::Helix(_) => return None,
+        };
+        // What 32 bits may not have held.
+        if u128::from(most) * u128::from(outcome.steps) >= 1 << 32 && !self.has_wide_sums() {
+            return None;
+        }
+        let (gaps, never) = rest.split_at_checked(2 * self.pulses.len())?;
+        let flagged = || never.iter().zip(&self.properties).filter(|(flag, _)| **flag == 1);
+        Some(Measured {
+            greatest: Some(worst),
+            mean: (outcome.steps > 0).then(|| mean / outcome.steps as f64),
+            overflows: if self.traps { flagged().count() as u64 } else { 0 },
+            component: flagged().next().filter(|_| self.traps).map(|(_, (_, name))| name.clone()),
+            spacing: gaps.chunks(2).map(|gap| (gap[0] > 0).then_some([gap[0], gap[1]])).collect(),
+            ..Measured::unfinished(outcome)
+        })
+    }
+
+    fn has_wide_sums(&self) -> bool {
+        self.bits.iter().any(|&bits| bits > 32)
+    }
+}
+
+/// The sign of the pulse of an axis; 1 bit each.
+#[derive(Clone, Copy)]
+struct Way<'m> {
+    any: Signal<'m>,
+    up: Signal<'m>,
+    down: Signal<'m>,
+}
+
+impl<'m> Way<'m> {
+    /// Of a pulse of two bits: 0, 1 or -1.
+    fn of(pulse: Signal<'m>) -> Way<'m> {
+        let (any, down) = (pulse.bit(0), pulse.bit(1));
+        Way { any, up: any & !down, down }
+    }
+
+    /// `value` plus `gain` upwards, minus `gain` downwards.
+    fn moved(self, value: Signal<'m>, gain: Signal<'m>) -> Signal<'m> {
+        let up = self.up.mux(value.wrapping_add(gain), value);
+        self.down.mux(up.wrapping_sub(gain), up)
+    }
+}
+
+/// d of a line and its magnitude.
+fn line<'m>(m: Scope<'m>, bits: u32, ways: [Way<'m>; 2]) -> (Ideal, Signal<'m>, Signal<'m>) {
+    let d = m.reg_signed("d", bits);
+    let gain = ["gain_x", "gain_y"].map(|name| m.input_signed(name, bits));
+    let now = ways.iter().zip(gain).fold(d.q, |d, (way, gain)| way.moved(d, gain));
+    d.set(now);
+    let magnitude = now.msb().mux(m.lit_signed(bits, 0).wrapping_sub(now), now).as_unsigned();
+    (Ideal::Line(gain.map(Signal::net)), now, magnitude)
+}
+
+/// d of a circle, twice.
+fn circle<'m>(m: Scope<'m>, bits: u32, ways: [Way<'m>; 2], loads: Signal<'m>) -> (Ideal, Signal<'m>, Signal<'m>) {
+    let d = m.reg_signed("d", bits);
+    let start = ["start_x", "start_y"].map(|name| m.input_signed(name, bits));
+    let mut now = d.q;
+    for ((way, start), name) in ways.into_iter().zip(start).zip(["twice_x", "twice_y"]) {
+        let twice = m.reg_signed(name, bits);
+        now = way.moved(now, twice.q);
+        now = way.any.mux(now.wrapping_add(m.lit_signed(bits, 1)), now);
+        twice.when(loads, start).otherwise(way.moved(twice.q, m.lit_signed(bits, 2)));
+    }
+    d.set(now);
+    let ideal = Ideal::Circle { start: start.map(Signal::net), square: m.input("square", bits).net() };
+    (ideal, now, now)
+}
+
+/// d at a position.
+fn reached(curve: &Curve, position: &[i64]) -> Option<i128> {
+    let position = <[i64; 2]>::try_from(position).ok()?;
+    Some(match curve {
+        Curve::Line(line) => cross(line, position)?,
+        Curve::Arc(arc) => offset(arc, position)?,
+        Curve::Conic(_) | Curve::Helix(_) => return None,
+    })
+}
+
+/// dx·y - dy·x of a position about the start of a line of two axes, in BLU².
+pub(super) fn cross(line: &Line, position: [i64; 2]) -> Option<i128> {
+    let [dx, dy] = <[i64; 2]>::try_from(line.delta()).ok()?.map(i128::from);
+    let way = |axis: usize| i128::from(position[axis]) - i128::from(line.from()[axis]);
+    Some(dx * way(1) - dy * way(0))
+}
+
+/// x² + y² - R² of a position about the centre of an arc, in BLU²; none where it is beyond all measure.
+pub(super) fn offset(arc: &Arc, position: [i64; 2]) -> Option<i128> {
+    let way = |axis: usize| i128::from(position[axis]) - i128::from(arc.center()[axis]);
+    let [x, y] = [way(0).checked_pow(2)?, way(1).checked_pow(2)?];
+    x.checked_add(y)?.checked_sub(arc.radius_squared())
+}

@@ -1,0 +1,222 @@
+//! What is measured of one run: the numbers of a row of a study.
+
+use std::fmt;
+
+use stepwave_kernel::bits::to_signed;
+use stepwave_kernel::engine::lanes::{ROOT_GAP_UNIT, root_gap};
+use stepwave_kernel::engine::{EngineKind, Rows};
+use stepwave_nc::Curve;
+
+use super::instruments::{cross, offset};
+use super::{Ending, LaneOutcome, Observer, ObserverError, Outcome, OverflowWatch, PathWatch, StepColumns, Testbench};
+
+/// What one geometry came to, and how well its path kept to the ideal curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// How it ended; `None` where the limit of clocks was reached: then nothing else of it is told.
+    pub ending: Option<Ending>,
+    /// Clocks since reset: the clock of the last sample.
+    pub clocks: u64,
+    /// Steps completed.
+    pub steps: u64,
+    /// Pulses of each axis, in either direction.
+    pub pulses: Vec<u64>,
+    /// Machine position of each axis in the last sample, in BLU.
+    pub reached: Vec<i64>,
+    /// Greatest path error behind a step, in BLU: that of [`WorstError`](super::WorstError).
+    pub greatest: Option<f64>,
+    /// Mean of the path errors behind all steps, in BLU; of an arc each to 2^-17 BLU. None without a step.
+    pub mean: Option<f64>,
+    /// Violations of properties, as [`OverflowWatch`] counts them.
+    pub overflows: u64,
+    /// Path of the component of the first.
+    pub component: Option<String>,
+    /// Fewest and most clocks between two pulses of each axis; none where it had no two.
+    pub spacing: Vec<Option<[u64; 2]>>,
+}
+
+impl Measured {
+    /// An outcome of which nothing is measured yet.
+    pub(super) fn unfinished(outcome: LaneOutcome) -> Measured {
+        let LaneOutcome { ending, clocks, steps, pulses, reached, .. } = outcome;
+        let spacing = vec![None; pulses.len()];
+        Measured {
+            ending,
+            clocks,
+            steps,
+            pulses,
+            reached,
+            greatest: None,
+            mean: None,
+            overflows: 0,
+            component: None,
+            spacing,
+        }
+    }
+
+    /// A run of so many axes that was not done after `clocks` clocks.
+    pub(super) fn given_up(axes: usize, clocks: u64) -> Measured {
+        let (pulses, reached) = (vec![0; axes], vec![0; axes]);
+        Measured::unfinished(LaneOutcome { ending: None, clocks, steps: 0, pulses, reached, overflows: 0 })
+    }
+}
+
+impl Testbench {
+    /// Runs the blocks of this bench alone, along this curve, for `limit` clocks at most.
+    ///
+    /// # Errors
+    /// None that an observer here would give.
+    pub fn measure(&self, curve: &Curve, limit: u64) -> Result<Measured, ObserverError> {
+        let (mut overflow, mut path) = (OverflowWatch::new(self), PathWatch::new(self, curve));
+        let (mut mean, mut spacing, mut end) = (Mean::new(self, curve), Spacing::new(self), Limit(limit));
+        let run = self.run(EngineKind::Compiled, &mut [&mut end, &mut overflow, &mut path, &mut mean, &mut spacing]);
+        let outcome = match run {
+            Err(error) if error.is::<Reached>() => None,
+            Err(error) => return Err(error),
+            Ok(outcome) => Some(outcome).filter(|outcome| {
+                outcome.clocks < limit || outcome.clocks == limit && !matches!(outcome.ending, Ending::Stalled { .. })
+            }),
+        };
+        let Some(Outcome { ending, clocks, steps, pulses, reached }) = outcome else {
+            return Ok(Measured::given_up(self.machine().pulses.len(), limit));
+        };
+        Ok(Measured {
+            ending: Some(ending),
+            clocks,
+            steps,
+            pulses,
+            reached,
+            greatest: path.worst.map(|worst| worst.error),
+            mean: (steps > 0).then(|| mean.sum() / steps as f64),
+            overflows: overflow.count,
+            component: overflow.events().first().map(|event| event.component().to_owned()),
+            spacing: spacing.axes.iter().map(|axis| axis.seen).collect(),
+        })
+    }
+}
+
+/// The limit of clocks was reached.
+#[derive(Debug)]
+struct Reached;
+
+impl fmt::Display for Reached {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("the limit of clocks was reached")
+    }
+}
+
+impl std::error::Error for Reached {}
+
+/// Ends a run a little behind this clock.
+struct Limit(u64);
+
+impl Observer for Limit {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        if rows.first_clock() > self.0 { Err(Box::new(Reached)) } else { Ok(()) }
+    }
+}
+
+/// Sums the path errors behind all steps.
+struct Mean<'a> {
+    curve: &'a Curve,
+    columns: StepColumns,
+    widths: Vec<stepwave_kernel::Width>,
+    position: Vec<i64>,
+    /// |d| of a line, or units of a circle: see `instruments`.
+    exact: u128,
+    /// What has no such number.
+    rest: f64,
+}
+
+impl<'a> Mean<'a> {
+    fn new(bench: &Testbench, curve: &'a Curve) -> Mean<'a> {
+        let ports = &bench.machine().positions;
+        let (widths, position) = (ports.iter().map(|port| port.width).collect(), vec![0; ports.len()]);
+        Mean { curve, columns: StepColumns::of(bench), widths, position, exact: 0, rest: 0.0 }
+    }
+
+    fn add(&mut self) {
+        let plane = <[i64; 2]>::try_from(self.position.as_slice()).ok();
+        let exact = match (self.curve, plane) {
+            (Curve::Line(line), Some(at)) => cross(line, at).map(i128::unsigned_abs),
+            (Curve::Arc(arc), Some(at)) => {
+                let square = arc.radius_squared() as f64;
+                offset(arc, at).map(|offset| u128::from(root_gap(square, offset as f64)))
+            }
+            _ => None,
+        };
+        match exact {
+            Some(exact) => self.exact = self.exact.saturating_add(exact),
+            None => self.rest += self.curve.deviation(&self.position),
+        }
+    }
+
+    fn sum(&self) -> f64 {
+        let unit = match self.curve {
+            Curve::Line(line) => line.length(),
+            _ => ROOT_GAP_UNIT,
+        };
+        self.exact as f64 / unit + self.rest
+    }
+}
+
+impl Observer for Mean<'_> {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        for row in 0..rows.len() {
+            if self.columns.completes(rows, row, false) {
+                let columns = self.columns.positions.iter().zip(&self.widths);
+                for (place, (&column, &width)) in self.position.iter_mut().zip(columns) {
+                    *place = to_signed(width, rows.value(column, row));
+                }
+                self.add();
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Clocks between the pulses of one axis.
+struct Pulses {
+    column: usize,
+    last: Option<u64>,
+    seen: Option<[u64; 2]>,
+}
+
+/// Clocks between the pulses of each axis.
+struct Spacing {
+    axes: Vec<Pulses>,
+}
+
+impl Spacing {
+    fn new(bench: &Testbench) -> Spacing {
+        let columns = bench.machine().pulses.iter().map(|port| bench.columns().index(port.net));
+        Spacing { axes: columns.map(|column| Pulses { column, last: None, seen: None }).collect() }
+    }
+}
+
+impl Observer for Spacing {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        for axis in &mut self.axes {
+            let pulses = rows.column(axis.column).iter().zip(rows.first_clock()..);
+            for (_, clock) in pulses.filter(|(pulse, _)| **pulse != 0) {
+                if let Some(gap) = axis.last.replace(clock).map(|last| clock - last) {
+                    let [least, most] = axis.seen.unwrap_or([gap, gap]);
+                    axis.seen = Some([least.min(gap), most.max(gap)]);
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,396 @@
+//! `sweep`: rows are what single runs report, whatever the threads, parts and interruptions.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use stepwave_models::{CurveKind, catalogue};
+
+use super::{Folder, good, refused};
+
+/// A row by its columns.
+type Row = BTreeMap<String, String>;
+
+/// The fields of a line; of quoted ones there is nothing in these tests that a comma or a quote stands in.
+fn rows(text: &str) -> Vec<Row> {
+    let mut lines = text.lines();
+    let heading: Vec<&str> = lines.next().expect("a heading").split(',').collect();
+    let row = |line: &str| {
+        let mut fields = vec![String::new()];
+        let mut quoted = false;
+        for c in line.chars() {
+            match c {
+                '"' => quoted = !quoted,
+                ',' if !quoted => fields.push(String::new()),
+                c => fields.last_mut().unwrap().push(c),
+            }
+        }
+        assert_eq!(fields.len(), heading.len(), "{line}");
+        heading.iter().map(|name| (*name).to_owned()).zip(fields).collect()
+    };
+    lines.map(row).collect()
+}
+
+/// The words of `run` for a row, from its columns.
+fn words(model: &str, row: &Row) -> String {
+    let get = |name: &str| row.get(name).filter(|word| !word.is_empty()).cloned();
+    let point = |name: &str| {
+        let axes = ["x", "y", "z", "a", "b", "c"].iter().map_while(|axis| get(&format!("{name}_{axis}")));
+        axes.collect::<Vec<_>>().join(",")
+    };
+    let mut words = format!("run {model} --from {} --to {}", point("from"), point("to"));
+    if let Some(curve) = get("curve") {
+        let sizes = [get("size_a"), get("size_b")].into_iter().flatten().collect::<Vec<_>>().join(",");
+        words += &format!(" --{curve} {sizes}");
+    }
+    words += &get("opens").map_or_else(String::new, |opens| format!(" --opens {opens}"));
+    words += &get("direction").map_or_else(String::new, |way| format!(" --{way}"));
+    if get("center_x").is_some() {
+        words += &format!(" --center {}", point("center"));
+    }
+    for option in ["width", "preset", "beats", "end_point", "weights", "form", "on_overflow"] {
+        words += &get(option).map_or_else(String::new, |word| format!(" --{} {word}", option.replace('_', "-")));
+    }
+    if get("normalize").as_deref() == Some("yes") {
+        words += " --normalize";
+    }
+    words
+}
+
+/// The greatest path error of a report, to the bit: the reader of JSON may be off by one.
+fn greatest(report: &str) -> f64 {
+    let error = report.split("\"path_error\": {").nth(1).unwrap();
+    let number = error.split("\"greatest\": ").nth(1).unwrap().split(',').next().unwrap();
+    number.trim().parse().unwrap()
+}
+
+/// Wants a row to be what a single run reports.
+fn assert_as_run(model: &str, row: &Row) {
+    let words = words(model, row);
+    let ran = Folder::new().run(&format!("{words} --json -"));
+    let what = format!("{words}: {row:?}\n{}", ran.err);
+    if row["ending"] == "refused" {
+        assert_eq!(ran.code, 2, "{what}");
+        let reason = row["reason"].replace('"', "");
+        assert!(ran.err.replace('"', "").contains(&reason) && !reason.is_empty(), "{what}");
+        return;
+    }
+    let report: Value = serde_json::from_str(&ran.out).unwrap_or_else(|error| panic!("{error}: {what}"));
+    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    let mut expected: Vec<(String, String)> = vec![
+        ("ending".to_owned(), text(&report["ending"])),
+        ("clocks".to_owned(), text(&report["clocks"])),
+        ("steps".to_owned(), text(&report["steps"])),
+        ("exact".to_owned(), text(&report["end_point"]["exact"])),
+        ("overflows".to_owned(), text(&report["overflow"]["count"])),
+    ];
+    let first = report["overflow"]["events"].get(0);
+    expected.push(("overflow".to_owned(), first.map_or_else(String::new, |event| text(&event["component"]))));
+    for (place, axis) in report["pulses"].as_object().unwrap().keys().enumerate() {
+        expected.push((format!("pulses_{axis}"), text(&report["pulses"][axis])));
+        let axis = ["x", "y", "z", "a", "b", "c"][place];
+        expected.push((format!("reached_{axis}"), text(&report["end_point"]["reached"][place])));
+    }
+    for (name, value) in expected {
+        assert_eq!(row[&name], value, "{name}: {what}");
+    }
+    assert_eq!(row["error_max"].parse(), Ok(greatest(&ran.out)), "{what}");
+}
+
+#[test]
+fn rows_of_every_model_are_what_single_runs_report() {
+    for model in catalogue() {
+        let name = model.name;
+        let geometries = match model.curve {
+            CurveKind::Line { .. } => "--from -3,4 --to-grid -40..40x-40..40 --samples 12 --seed 5",
+            CurveKind::Arc => "--from-grid 2..17x-9..9 --to-grid -15..19x-19..19 --center 1,-1 --cw --ccw --samples 12",
+            CurveKind::Conic => "--ellipse 3..9,2..9 --to-grid -9..9x-9..9 --cw --ccw --samples 12",
+            CurveKind::Helix => "--radius 3..9 --height -20..20/5 --cw --ccw --samples 12",
+        };
+        let all = rows(&good(&format!("sweep {name} {geometries} --csv -")));
+        assert_eq!(all.len(), 12, "{name}");
+        assert!(all.iter().any(|row| row["ending"] == "done"), "{name}: {all:?}");
+        all.iter().for_each(|row| assert_as_run(name, row));
+    }
+}
+
+#[test]
+fn rows_of_many_choices_overflows_stalls_and_refusals_are_what_single_runs_report() {
+    for (model, words, seen) in [
+        ("ppc-line", "--to-grid 1..9/4x1..9/4 --width f=3..5 --beats 4,1 --on-overflow trap,wrap,saturate", "trapped"),
+        ("dda-line", "--to-grid 0..9/3x-8..8/8 --width 3..4 --normalize no,yes --preset zero,3,full", "refused"),
+        ("dda-line", "--to-grid 3..5x2..3x-4..-3 --end-point total,longest,per-axis,iterations", "done"),
+        (
+            "dda-arc",
+            "--from 3,7 --to-grid -8..8x6..8 --ccw --width 4 --preset zero,half --end-point per-axis,total",
+            "stalled",
+        ),
+        ("cim-conic", "--parabola 4..5 --to-grid 1..16x0..9 --weights mid,pre,post", "done"),
+        ("ppc-conic", "--hyperbola 3..4,2 --to-grid 3..9x-4..4 --opens +x", "done"),
+    ] {
+        let all = rows(&good(&format!("sweep {model} {words} --csv -")));
+        assert!(all.iter().any(|row| row["ending"] == seen), "{model} {words}");
+        assert!(all.len() > 8, "{model} {words}: {}", all.len());
+        // Every second, so that the test stays quick.
+        all.iter().step_by(2).for_each(|row| assert_as_run(model, row));
+    }
+}
+
+/// Runs with this number of threads.
+fn with_threads(folder: &Folder, threads: &str, words: &str) {
+    let output = folder.command().env("RAYON_NUM_THREADS", threads).args(words.split_whitespace()).output().unwrap();
+    assert!(output.status.success(), "{words}: {output:?}");
+}
+
+const SWEEPS: [(&str, &str); 3] = [
+    ("dda-line", "--to-grid -20..20x-20..20 --width 5..6 --preset zero,half"),
+    ("ppc-arc", "--from-grid 3..9x0..4 --to-grid -10..10x-10..10 --cw --ccw"),
+    ("dda-line", "--to-grid 0..99x0..99x0..99 --samples 300 --seed 9"),
+];
+
+#[test]
+fn the_files_are_the_same_whatever_the_number_of_threads() {
+    let folder = Folder::new();
+    for (model, words) in SWEEPS {
+        for threads in ["1", "2", "3"] {
+            let words =
+                format!("sweep {model} {words} --csv {threads}.csv --parquet {threads}.parquet --plot {threads}.svg");
+            with_threads(&folder, threads, &words);
+        }
+        for kind in ["csv", "parquet", "svg"] {
+            let bytes = |threads: &str| fs::read(folder.path(&format!("{threads}.{kind}"))).unwrap();
+            assert!(bytes("1") == bytes("2") && bytes("2") == bytes("3"), "{model} {words}: {kind}");
+        }
+    }
+    assert_eq!(folder.files().len(), 9);
+}
+
+#[test]
+fn parts_in_any_order_join_to_the_file_of_the_whole_sweep() {
+    let folder = Folder::new();
+    for (model, words) in SWEEPS {
+        for kind in ["csv", "parquet"] {
+            folder.good(&format!("sweep {model} {words} --{kind} whole.{kind}"));
+            for part in 1..=3 {
+                folder.good(&format!("sweep {model} {words} --shard {part}/3 --{kind} {part}.{kind}"));
+            }
+            folder.good(&format!("sweep merge joined.{kind} 3.{kind} 1.{kind} 2.{kind}"));
+            let bytes = |name: &str| fs::read(folder.path(&format!("{name}.{kind}"))).unwrap();
+            assert!(bytes("joined") == bytes("whole") && bytes("whole").len() > 1000, "{model} {words}: {kind}");
+        }
+    }
+}
+
+#[test]
+fn parts_that_do_not_make_one_whole_sweep_are_refused() {
+    let folder = Folder::new();
+    let sweep = "sweep dda-line --to-grid 0..9x0..9";
+    for (part, kind) in [1, 2].into_iter().flat_map(|part| [(part, "csv"), (part, "parquet")]) {
+        folder.good(&format!("{sweep} --shard {part}/2 --{kind} {part}.{kind}"));
+    }
+    folder.good(&format!("{sweep} --csv whole.csv"));
+    folder.good(&format!("{sweep} --width 7 --shard 2/2 --csv other.csv"));
+    folder.good(&format!("{sweep} --shard 2/3 --csv third.csv"));
+    let text = folder.read("2.csv");
+    let lines: Vec<&str> = text.lines().collect();
+    folder.write("cut.csv", &lines[..lines.len() - 1].join("\n"));
+    folder.write("torn.csv", &text[..text.len() / 2]);
+    let few = [&lines[..5], &lines[6..]].concat().join("\n");
+    folder.write("few.csv", &few);
+    let before = folder.files();
+    for (parts, hint) in [
+        ("1.csv", "part 2/2 is missing"),
+        ("2.csv", "part 1/2 is missing"),
+        ("1.csv 1.csv", "part 1/2 is given twice"),
+        ("1.csv 2.csv 2.csv", "given twice"),
+        ("1.csv other.csv", "it is of another sweep"),
+        ("1.csv third.csv", "it is of another sweep"),
+        ("1.csv whole.csv", "it is no part of a sweep"),
+        ("1.csv cut.csv", "its end is missing"),
+        ("1.csv torn.csv", "cannot merge torn.csv"),
+        ("1.csv few.csv", "of its 50 rows"),
+        ("1.csv nowhere.csv", "cannot read nowhere.csv"),
+    ] {
+        let ran = folder.run(&format!("sweep merge joined.csv {parts}"));
+        assert!(ran.code == 2 && ran.err.contains(hint) && ran.err.lines().count() == 1, "{parts}: {ran:?}");
+        assert_eq!(folder.files(), before, "{parts}");
+    }
+    // Parts of both kinds make either.
+    folder.good("sweep merge joined.csv 1.parquet 2.csv");
+    assert_eq!(folder.read("joined.csv"), folder.read("whole.csv"));
+}
+
+/// Starts a sweep that takes a while, kills it once a chunk is done, and gives how many geometries were.
+fn killed(folder: &Folder, words: &str, target: &str) -> u64 {
+    let mut child =
+        folder.command().args(words.split_whitespace()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let journal = folder.path(&format!(".{target}.sweep.journal"));
+    let begun = Instant::now();
+    let done = loop {
+        let text = fs::read_to_string(&journal).unwrap_or_default();
+        if let Some(mark) = text.lines().skip(1).last().and_then(|line| serde_json::from_str::<Value>(line).ok()) {
+            break mark["geometries"].as_u64().unwrap();
+        }
+        assert!(begun.elapsed() < Duration::from_secs(300) && child.try_wait().unwrap().is_none(), "{text}");
+        std::thread::sleep(Duration::from_millis(2));
+    };
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!folder.path(target).exists(), "it was done before it was killed");
+    done
+}
+
+#[test]
+fn a_killed_sweep_goes_on_and_gives_the_same_file() {
+    let words = "sweep dda-line --to-grid 0..127x0..63 --width 14";
+    let folder = Folder::new();
+    folder.good(&format!("{words} --csv whole.csv"));
+    let done = killed(&folder, &format!("{words} --csv s.csv"), "s.csv");
+    assert!((1..128 * 64).contains(&done), "{done}");
+    // What was written behind the last mark, or in the middle of a line, does not count.
+    let part = folder.path(".s.csv.sweep.part");
+    fs::write(&part, fs::read_to_string(&part).unwrap() + "999999,1").unwrap();
+
+    let other = folder.run("sweep dda-line --to-grid 0..127x0..63 --width 13 --csv s.csv --resume");
+    assert!(other.code == 2 && other.err.contains("it was begun with choices {\"--width\":[\"14\"]}"), "{other:?}");
+    let shard = folder.run(&format!("{words} --shard 1/2 --csv s.csv --resume"));
+    assert!(shard.code == 2 && shard.err.contains("it was begun with --shard 1/1"), "{shard:?}");
+
+    let text = folder.good(&format!("{words} --csv s.csv --resume"));
+    let before: u64 =
+        text.lines().find_map(|line| line.strip_suffix(" of the runs were done before")?.parse().ok()).unwrap();
+    assert!(before >= done, "{before} {done}");
+    assert!(folder.read("s.csv") == folder.read("whole.csv"));
+    assert_eq!(folder.files(), ["s.csv", "whole.csv"]);
+}
+
+#[test]
+fn a_killed_part_in_parquet_goes_on_with_its_heat_map() {
+    let words = "sweep dda-line --to-grid 0..99x0..127 --width 14 --shard 2/2";
+    let folder = Folder::new();
+    folder.good(&format!("{words} --parquet whole.parquet --plot whole.svg"));
+    killed(&folder, &format!("{words} --parquet s.parquet --plot s.svg"), "s.parquet");
+    folder.good(&format!("{words} --parquet s.parquet --plot s.svg --resume"));
+    for kind in ["parquet", "svg"] {
+        let bytes = |name: &str| fs::read(folder.path(&format!("{name}.{kind}"))).unwrap();
+        assert!(bytes("s") == bytes("whole"), "{kind}");
+    }
+    assert_eq!(folder.files(), ["s.parquet", "s.svg", "whole.parquet", "whole.svg"]);
+}
+
+#[test]
+fn resume_with_nothing_left_begins() {
+    let folder = Folder::new();
+    folder.good("sweep ppc-arc --radius 1..5 --cw --csv s.csv --resume");
+    assert_eq!(folder.read("s.csv"), good("sweep ppc-arc --radius 1..5 --cw --csv -"));
+}
+
+#[test]
+fn geometries_come_from_a_file_as_well() {
+    let folder = Folder::new();
+    folder.write("p.csv", "from_x,from_y,to_x,to_y,direction\n5,0,0,5,ccw\n3,4,3,4,cw\n\n5,0,9,9,cw\n");
+    let all = rows(&folder.good("sweep ppc-arc --file p.csv --csv -"));
+    assert_eq!(all.iter().map(|row| row["ending"].as_str()).collect::<Vec<_>>(), ["done", "done", "refused"]);
+    all.iter().for_each(|row| assert_as_run("ppc-arc", row));
+    folder.write("q.csv", "to_x,to_y\n5,0\n3,4.5\n");
+    folder.write("r.csv", "to_x,to_y,centre_x\n5,0,1\n");
+    folder.write("s.csv", "");
+    for (file, hint) in [
+        ("q.csv", "q.csv: line 3: '4.5' in to_y is no whole number"),
+        ("r.csv", "there is no column 'centre_x'"),
+        ("s.csv", "there is no heading"),
+        ("t.csv", "cannot read t.csv"),
+    ] {
+        let ran = folder.run(&format!("sweep dda-line --file {file} --csv out.csv"));
+        assert!(ran.code == 2 && ran.err.contains(hint), "{file}: {ran:?}");
+    }
+    assert!(!folder.path("out.csv").exists());
+}
+
+#[test]
+fn the_heat_map_names_the_worst_cell_with_the_words_that_repeat_it() {
+    let folder = Folder::new();
+    let text = folder.good("sweep dda-line --to-grid 0..20x0..20 --width 5..6 --heat error_max --plot heat.svg");
+    let line = text.lines().find(|line| line.starts_with("greatest error_max ")).unwrap();
+    let (number, words) = line.split_once(": stepwave ").unwrap();
+    let number: f64 = number.split_whitespace().nth(2).unwrap().parse().unwrap();
+    assert_eq!(greatest(&folder.good(&format!("{words} --json -"))), number);
+    let svg = folder.read("heat.svg");
+    for part in [words, "to_x (BLU)", "to_y (BLU)", "error_max (BLU)", "data:image/png;base64,"] {
+        assert!(svg.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn bad_words_are_refused_and_leave_no_file() {
+    let sweep = "sweep dda-line --to-grid 0..9x0..9";
+    for (words, hints) in [
+        ("sweep dda-line --csv s.csv", &["the end points are missing", "--to-grid"][..]),
+        ("sweep dda-line --to-grid 9..0x0..9 --csv s.csv", &["9..0 begins behind its end", "0..9"]),
+        ("sweep dda-line --to-grid 0..9 --csv s.csv", &["1 coordinates"]),
+        ("sweep ppc-line --to-grid 0..9x0..9x0..9 --csv s.csv", &["3 coordinates", "lines of 2 axes"]),
+        ("sweep dda-line --to-grid 0..9x0..9/0 --csv s.csv", &["a step of 0"]),
+        ("sweep dda-line --to-grid 0..1000000x0..1000000 --csv s.csv", &["are more than 4294967296 runs", "coarser"]),
+        ("sweep ppc-arc --to-grid 1..9x1..9 --csv s.csv --ccw", &["the start points are missing", "--radius"]),
+        ("sweep ppc-arc --radius 1..9 --csv s.csv", &["the direction is missing"]),
+        ("sweep ppc-arc --from 50,0 --to-grid 1..9x1..9 --ccw --csv s.csv", &["no point of the grid", "another grid"]),
+        ("sweep ppc-conic --ellipse 3 --cw --csv s.csv", &["1 sizes", "takes 2"]),
+        ("sweep dda-line --to-grid 1..2x1..2 --radius 4 --csv s.csv", &["no --radius"]),
+        ("sweep nothing --to-grid 1..2x1..2", &["there is no model 'nothing'"]),
+        ("sweep", &["MODEL"]),
+    ] {
+        refused(words, hints);
+    }
+    for (more, hints) in [
+        ("--width 0..4", &["'0..4' is no value of --width", "1 to 64"][..]),
+        ("--end-point both", &["'both' is no value of --end-point", "per-axis"]),
+        ("--beats 1", &["dda-line does not take --beats"]),
+        ("--plot p.svg --heat speed", &["there is no column 'speed'", "error_max"]),
+        ("--plot p.svg --heat ending", &["the column 'ending' is no measure"]),
+        ("--heat clocks", &["--plot"]),
+        ("--resume", &["--csv FILE or --parquet FILE"]),
+        ("--csv - --resume", &["--csv FILE or --parquet FILE"]),
+        ("--csv nowhere/s.csv", &["cannot write nowhere/s.csv", "does not exist"]),
+        ("--csv s.csv --parquet s.csv", &["two outputs would go to s.csv"]),
+        ("--csv s.csv --plot nowhere/p.svg", &["cannot write nowhere/p.svg"]),
+        ("--parquet -", &["name a file"]),
+        ("--shard 4/3", &["'4/3' is no part"]),
+        ("--shard 0/3", &["'0/3' is no part"]),
+        ("--samples 0", &["0"]),
+        ("--max-clocks 0", &["0"]),
+        ("--file p.csv", &["cannot be used with"]),
+    ] {
+        refused(&format!("{sweep} {more}"), hints);
+    }
+    let radius = "sweep ppc-arc --radius 1..5 --ccw";
+    refused(&format!("{radius} --plot p.svg"), &["a heat map shows a grid", "--to-grid"]);
+}
+
+#[test]
+fn two_sweeps_of_one_file_do_not_meet() {
+    let folder = Folder::new();
+    let words = "sweep dda-line --to-grid 0..127x0..63 --width 14 --csv s.csv";
+    let mut first =
+        folder.command().args(words.split_whitespace()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let begun = Instant::now();
+    while !folder.path(".s.csv.sweep.part").exists() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let second = folder.run(words);
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert!(second.code == 2 && second.err.contains("another sweep is writing it"), "{second:?}");
+}
+
+#[test]
+fn the_examples_of_the_help_of_sweep_work_as_written() {
+    let help = good("sweep --help");
+    let examples = help.lines().filter_map(|line| line.trim().strip_prefix("stepwave sweep "));
+    let examples: Vec<&str> = examples.filter(|example| !example.contains('<')).collect();
+    assert_eq!(examples.len(), 5, "{help}");
+    for example in examples {
+        assert_eq!(Folder::new().run(&format!("sweep {example}")).code, 0, "{example}");
+    }
+}
