@@ -88,6 +88,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         trains: spacing.finish(),
         overflows: overflow.events(),
         overflow_count: overflow.count,
+        tallies: overflow.tallies(),
         clock_hz: args.clock.clock_hz,
         blu_mm: args.simulation.blu,
     };

@@ -6,7 +6,7 @@ use stepwave_kernel::netlist::Arithmetic;
 use stepwave_nc::{Curve, Shape};
 
 use super::{Report, summary};
-use crate::testbench::{Ending, OverflowEvent};
+use crate::testbench::{Ending, OverflowEvent, OverflowTally};
 
 /// Version of the report's form; a change of meaning raises it.
 const SCHEMA: u32 = 1;
@@ -81,6 +81,15 @@ fn event(event: &OverflowEvent) -> Value {
     }
 }
 
+fn tally(tally: &OverflowTally) -> Value {
+    json!({
+        "component": tally.first.component(),
+        "count": tally.count,
+        "first_clock": tally.first.clock(),
+        "needed_width": tally.needed,
+    })
+}
+
 impl Report<'_> {
     /// The report as JSON: see the README for its fields.
     #[must_use]
@@ -107,6 +116,8 @@ impl Report<'_> {
                     "least": number(range.least),
                     "greatest": number(range.greatest),
                     "needed_width": self.needed_bits(range),
+                    "stuck_bits": range.stuck_bits(),
+                    "limits": range.limits.iter().copied().map(number).collect::<Vec<_>>(),
                 })
             })
             .collect();
@@ -165,9 +176,11 @@ impl Report<'_> {
             "overflow": {
                 "count": self.overflow_count,
                 "events": self.overflows.iter().map(event).collect::<Vec<_>>(),
+                "components": self.tallies.iter().map(tally).collect::<Vec<_>>(),
             },
             "feed": self.feed(),
             "ending": ending,
+            "warnings": self.warnings(),
             "failures": self.failures(),
         })
     }

@@ -8,11 +8,12 @@ mod png;
 mod summary;
 mod table;
 
+use stepwave_kernel::OnOverflow;
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Hardware, Model, Preset};
 use stepwave_nc::Curve;
 
-use crate::testbench::{Ending, Outcome, OverflowEvent, PulseTrain, RegisterRange, WorstError};
+use crate::testbench::{Ending, Outcome, OverflowEvent, OverflowTally, PulseTrain, RegisterRange, WorstError};
 
 pub use command::{geometry_options, run_command};
 pub use summary::{choices, geometry, title};
@@ -44,6 +45,8 @@ pub struct Report<'a> {
     pub overflows: Vec<OverflowEvent>,
     /// Number of overflows.
     pub overflow_count: u64,
+    /// The overflows of each component.
+    pub tallies: Vec<OverflowTally>,
     /// Clock in Hz.
     pub clock_hz: f64,
     /// One BLU in millimetres.
@@ -69,10 +72,48 @@ impl Report<'_> {
     /// Bits that a register needs: for the values that it held, and for the results that did not fit.
     #[must_use]
     pub fn needed_bits(&self, range: &RegisterRange) -> u32 {
-        let events = self.overflows.iter().filter(|event| event.component() == range.path);
-        let refused =
-            events.filter_map(OverflowEvent::exact).filter(|(exact, _)| range.reading.is_signed() || *exact >= 0);
-        refused.map(|(_, needed)| needed).chain([range.needed()]).max().unwrap_or(1)
+        let own = self.tallies.iter().find(|tally| tally.first.component() == range.path);
+        own.and_then(|tally| tally.needed).unwrap_or(1).max(range.needed())
+    }
+
+    /// Sentences for who chooses widths: how far ranges and bits needed can be trusted, and what did not fit. They come
+    /// from values that were reached: neither bits to spare nor a register that was just wide enough gives one.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let clocks = self.outcome.clocks;
+        let cut = |why: &str| vec![format!("ranges and bits needed are those up to clock {clocks} alone, where {why}")];
+        match self.outcome.ending {
+            Ending::Trapped => return cut("the run was stopped"),
+            Ending::Stalled { .. } => return cut("the machine was given up"),
+            Ending::Done => {}
+        }
+        let mut warnings: Vec<String> = self.tallies.iter().map(|tally| self.went_on(tally)).collect();
+        if let Some(tally) = self.tallies.first() {
+            warnings.push(format!(
+                "what registers held behind clock {} is not what the method makes of this curve, so ranges and bits \
+                 needed say little about it",
+                tally.first.clock()
+            ));
+        }
+        warnings
+    }
+
+    /// How often a component overflowed while the run went on.
+    fn went_on(&self, tally: &OverflowTally) -> String {
+        let (component, clock) = (tally.first.component(), tally.first.clock());
+        let times = if tally.count == 1 { "once".to_owned() } else { format!("{} times", tally.count) };
+        let did = match (&tally.first, self.hardware.on_overflow) {
+            (OverflowEvent::Invariant { .. }, _) => {
+                return format!("invariant {component} did not hold {times}, first at clock {clock}");
+            }
+            (_, OnOverflow::Saturate) => "was held at an end of its range",
+            _ => "wrapped around",
+        };
+        let held = match tally.needed {
+            Some(needed) => format!("{needed} bits would have held every result"),
+            None => "no unsigned width would have held every result".to_owned(),
+        };
+        format!("{component} {did} {times}, first at clock {clock}; {held}")
     }
 
     /// Sentences that say what is wrong with the simulated hardware; none if all is good.

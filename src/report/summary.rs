@@ -6,7 +6,7 @@ use stepwave_models::{Choice, Hardware, Model, Named};
 use stepwave_nc::{Curve, Shape};
 
 use super::Report;
-use crate::testbench::Ending;
+use crate::testbench::{Ending, RegisterRange};
 
 /// `(8, 6)`
 pub(super) fn point(coordinates: &[i64]) -> String {
@@ -112,13 +112,35 @@ impl Report<'_> {
             let first = self.overflows.first().map(ToString::to_string).unwrap_or_default();
             let _ = writeln!(text, "{} overflow(s), the first: {first}", self.overflow_count);
         }
-        let spare: Vec<_> = self
-            .ranges
-            .iter()
-            .filter(|range| self.hardware.widths.contains_key(&range.name))
-            .map(|range| format!("{} {}/{}", range.name, self.needed_bits(range), range.width.get()))
-            .collect();
-        let _ = writeln!(text, "bits needed/given: {}", spare.join(", "));
+        text += &self.registers();
+        for warning in self.warnings() {
+            let _ = writeln!(text, "warning: {warning}");
+        }
+        text
+    }
+
+    /// What the registers with a choice of width needed of it.
+    fn registers(&self) -> String {
+        let chosen = || self.ranges.iter().filter(|range| self.hardware.widths.contains_key(&range.name));
+        let spare = chosen().map(|range| format!("{} {}/{}", range.name, self.needed_bits(range), range.width.get()));
+        let stuck = chosen().flat_map(|range| {
+            // That the bits above did not move is told by those needed, and a sign may well stay.
+            let magnitude = range.needed() - u32::from(range.reading.is_signed());
+            range.stuck_below(magnitude).into_iter().map(|bits| format!("{}{bits}", range.name))
+        });
+        // What went beyond its range is told by itself.
+        let held = |range: &&RegisterRange| self.tallies.iter().all(|tally| tally.first.component() != range.path);
+        let full =
+            chosen().filter(held).flat_map(|range| range.limits.iter().map(|end| format!("{} at {end}", range.name)));
+        let mut text = format!("bits needed/given: {}\n", spare.collect::<Vec<_>>().join(", "));
+        for (what, list) in [
+            ("needed bits that never toggled", stuck.collect::<Vec<_>>()),
+            ("one unit from an overflow", full.collect()),
+        ] {
+            if !list.is_empty() {
+                let _ = writeln!(text, "{what}: {}", list.join(", "));
+            }
+        }
         text
     }
 

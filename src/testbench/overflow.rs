@@ -65,10 +65,7 @@ impl OverflowEvent {
     #[must_use]
     pub fn exact(&self) -> Option<(i128, u32)> {
         let OverflowEvent::Overflow { operation, left, right, signed, .. } = self else { return None };
-        let exact = match operation {
-            Arithmetic::Add => left + right,
-            Arithmetic::Sub => left - right,
-        };
+        let exact = exact(*operation, *left, *right);
         Some((exact, Width::needed(exact, *signed)))
     }
 }
@@ -98,6 +95,17 @@ impl fmt::Display for OverflowEvent {
     }
 }
 
+/// The violations of all properties of one component.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OverflowTally {
+    /// How many.
+    pub count: u64,
+    /// The first.
+    pub first: OverflowEvent,
+    /// Width that would have held every exact result, if one would.
+    pub needed: Option<u32>,
+}
+
 struct Watched {
     property: Property,
     never: usize,
@@ -113,9 +121,36 @@ struct Seen {
     operands: Option<(u64, u64)>,
 }
 
+/// The violations of one property.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Tally {
+    count: u64,
+    first: Option<Seen>,
+    /// As in [`OverflowTally`]; 0 before the first.
+    needed: Option<u32>,
+}
+
+impl Tally {
+    const NONE: Tally = Tally { count: 0, first: None, needed: Some(0) };
+
+    fn count(&mut self, watched: &Watched, seen: &Seen) {
+        self.count += 1;
+        let needed = numbers(watched, seen).and_then(|(operation, left, right, signed)| {
+            let exact = exact(operation, left, right);
+            (signed || exact >= 0).then(|| Width::needed(exact, signed))
+        });
+        self.needed = self.needed.zip(needed).map(|(before, now)| before.max(now));
+        if self.first.is_none() {
+            self.first = Some(seen.clone());
+        }
+    }
+}
+
 /// Records the violations of every property.
 pub struct OverflowWatch {
     watched: Vec<Watched>,
+    /// Of each property.
+    tallies: Vec<Tally>,
     /// The first of them.
     seen: Vec<Seen>,
     /// All of them.
@@ -140,7 +175,8 @@ impl OverflowWatch {
             Watched { property: property.clone(), never: at(property.never), operands }
         });
         let mode = bench.hardware().on_overflow;
-        OverflowWatch { watched: watched.collect(), seen: Vec::new(), count: 0, mode }
+        let watched: Vec<_> = watched.collect();
+        OverflowWatch { tallies: vec![Tally::NONE; watched.len()], watched, seen: Vec::new(), count: 0, mode }
     }
 
     /// The first violations, in full.
@@ -148,23 +184,51 @@ impl OverflowWatch {
     pub fn events(&self) -> Vec<OverflowEvent> {
         self.seen.iter().filter_map(|seen| Some(event(self.watched.get(seen.property)?, seen))).collect()
     }
+
+    /// All violations, counted by component, the component that was first in front.
+    #[must_use]
+    pub fn tallies(&self) -> Vec<OverflowTally> {
+        let mut found: Vec<OverflowTally> = Vec::new();
+        for (watched, tally) in self.watched.iter().zip(&self.tallies) {
+            let Some(first) = tally.first.as_ref().map(|seen| event(watched, seen)) else { continue };
+            match found.iter_mut().find(|known| known.first.component() == first.component()) {
+                None => found.push(OverflowTally { count: tally.count, first, needed: tally.needed }),
+                Some(known) => {
+                    known.count = known.count.saturating_add(tally.count);
+                    known.needed = known.needed.zip(tally.needed).map(|(a, b)| a.max(b));
+                    if first.clock() < known.first.clock() {
+                        known.first = first;
+                    }
+                }
+            }
+        }
+        found.sort_by_key(|tally| tally.first.clock());
+        found
+    }
+}
+
+fn exact(operation: Arithmetic, left: i128, right: i128) -> i128 {
+    match operation {
+        Arithmetic::Add => left + right,
+        Arithmetic::Sub => left - right,
+    }
+}
+
+/// Operation and operands of a strict cell as numbers, and the register's sign.
+fn numbers(watched: &Watched, seen: &Seen) -> Option<(Arithmetic, i128, i128, bool)> {
+    let Claim::NoOverflow { operation, left, right } = watched.property.claim else { return None };
+    let ((_, width, _, right_width), (a, b)) = watched.operands.zip(seen.operands)?;
+    let (a, b) = (bits::number(width, a, left.signed), bits::number(right_width, b, right.signed));
+    Some((operation, a, b, left.signed))
 }
 
 fn event(watched: &Watched, seen: &Seen) -> OverflowEvent {
     let (component, clock) = (watched.property.name.clone(), seen.clock);
-    let (Claim::NoOverflow { operation, left, right }, Some((_, width, _, right_width)), Some((a, b))) =
-        (watched.property.claim, watched.operands, seen.operands)
-    else {
-        return OverflowEvent::Invariant { component, clock };
-    };
-    OverflowEvent::Overflow {
-        component,
-        width,
-        signed: left.signed,
-        operation,
-        left: bits::number(width, a, left.signed),
-        right: bits::number(right_width, b, right.signed),
-        clock,
+    match (numbers(watched, seen), watched.operands) {
+        (Some((operation, left, right, signed)), Some((_, width, ..))) => {
+            OverflowEvent::Overflow { component, width, signed, operation, left, right, clock }
+        }
+        _ => OverflowEvent::Invariant { component, clock },
     }
 }
 
@@ -174,12 +238,18 @@ impl Observer for OverflowWatch {
     }
 
     fn remember(&self, memory: &mut Memory) {
-        memory.insert("overflows".to_owned(), json!([self.count, self.seen]));
+        memory.insert("overflows".to_owned(), json!([self.count, self.seen, self.tallies]));
     }
 
     fn recall(&mut self, memory: &Memory) {
-        let gathered = recalled(memory, "overflows").filter(|(count, _): &(u64, _)| *count <= GREATEST);
-        (self.count, self.seen) = gathered.unwrap_or_default();
+        let gathered: Option<(u64, Vec<Seen>, Vec<Tally>)> = recalled(memory, "overflows");
+        let sound = |count: u64, tallies: &[Tally]| {
+            let counts = || tallies.iter().map(|tally| tally.count).chain([count]);
+            tallies.len() == self.watched.len() && counts().all(|count| count <= GREATEST)
+        };
+        if let Some((count, seen, tallies)) = gathered.filter(|(count, _, tallies)| sound(*count, tallies)) {
+            (self.count, self.seen, self.tallies) = (count, seen, tallies);
+        }
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
@@ -191,10 +261,12 @@ impl Observer for OverflowWatch {
                 if rows.value(watched.never, row) == 0 {
                     continue;
                 }
+                let operands = watched.operands.map(|(a, _, b, _)| (rows.value(a, row), rows.value(b, row)));
+                let seen = Seen { property, clock: rows.first_clock() + row as u64, operands };
                 self.count += 1;
+                self.tallies[property].count(watched, &seen);
                 if self.seen.len() < KEPT {
-                    let operands = watched.operands.map(|(a, _, b, _)| (rows.value(a, row), rows.value(b, row)));
-                    self.seen.push(Seen { property, clock: rows.first_clock() + row as u64, operands });
+                    self.seen.push(seen);
                 }
             }
         }

@@ -1,10 +1,12 @@
-//! Range watch: the least and greatest value that each register held.
+//! Range watch: the least and greatest value that each register held, and the bits of it that never changed.
+
+use std::fmt;
 
 use serde_json::json;
-use stepwave_kernel::Width;
 use stepwave_kernel::bits::Reading;
-use stepwave_kernel::engine::Rows;
-use stepwave_kernel::netlist::Op;
+use stepwave_kernel::engine::{Extremes, Rows};
+use stepwave_kernel::netlist::{Arithmetic, Claim, Netlist, Op};
+use stepwave_kernel::{Net, Width};
 
 use super::checkpoint::{Memory, recalled};
 use super::{Observer, ObserverError, Testbench};
@@ -24,6 +26,35 @@ pub struct RegisterRange {
     pub least: i128,
     /// Greatest value seen.
     pub greatest: i128,
+    /// Bits that were both 0 and 1.
+    pub toggled: u64,
+    /// What the other bits were in every sample; 0 where a bit toggled.
+    pub stuck: u64,
+    /// Ends of its range at which it stood and beyond which a strict cell may carry it, one unit from an overflow. The 0
+    /// of an unsigned register is none, for counters are meant to come to it.
+    pub limits: Vec<i128>,
+}
+
+/// Neighbouring bits of a register that were the same, and alike, in every sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StuckBits {
+    /// The highest of them.
+    pub high: u32,
+    /// The lowest of them.
+    pub low: u32,
+    /// Each of them was 1; otherwise 0.
+    pub ones: bool,
+}
+
+/// As an index: `[5:3] at 0`.
+impl fmt::Display for StuckBits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "[{}", self.high)?;
+        if self.low < self.high {
+            write!(f, ":{}", self.low)?;
+        }
+        write!(f, "] at {}", u8::from(self.ones))
+    }
 }
 
 impl RegisterRange {
@@ -32,12 +63,39 @@ impl RegisterRange {
     pub fn needed(&self) -> u32 {
         self.reading.needed(self.least).max(self.reading.needed(self.greatest))
     }
+
+    /// Every bit, most significant first: `0` or `1` where it was that in every sample, `-` where it toggled.
+    #[must_use]
+    pub fn stuck_bits(&self) -> String {
+        let bit = |bit: u32| match (self.toggled >> bit & 1, self.stuck >> bit & 1) {
+            (0, 0) => '0',
+            (0, _) => '1',
+            _ => '-',
+        };
+        (0..self.width.get()).rev().map(bit).collect()
+    }
+
+    /// The bits that never toggled among the lowest `bits`, the highest first.
+    #[must_use]
+    pub fn stuck_below(&self, bits: u32) -> Vec<StuckBits> {
+        let mut found: Vec<StuckBits> = Vec::new();
+        for bit in (0..bits.min(self.width.get())).rev().filter(|bit| self.toggled >> bit & 1 == 0) {
+            let ones = self.stuck >> bit & 1 == 1;
+            match found.last_mut().filter(|last| last.low == bit + 1 && last.ones == ones) {
+                Some(last) => last.low = bit,
+                None => found.push(StuckBits { high: bit, low: bit, ones }),
+            }
+        }
+        found
+    }
 }
 
 struct Watched {
     column: usize,
-    least: u64,
-    greatest: u64,
+    /// With the bits of [`turned`] turned over; `None` before the first sample.
+    seen: Option<Extremes>,
+    /// Strict cells move it down, up.
+    moved: [bool; 2],
 }
 
 /// Watches every named register.
@@ -55,7 +113,8 @@ impl RangeWatch {
         for named in &netlist.names {
             let cell = netlist.cell(named.net);
             if matches!(cell.op, Op::Register { .. }) {
-                watch.watched.push(Watched { column: bench.columns().index(named.net), least: u64::MAX, greatest: 0 });
+                let (column, moved) = (bench.columns().index(named.net), moved(netlist, named.net));
+                watch.watched.push(Watched { column, seen: None, moved });
                 watch.registers.push(RegisterRange {
                     name: named.name.clone(),
                     path: netlist.path(named),
@@ -63,6 +122,9 @@ impl RangeWatch {
                     reading: named.format.reading(),
                     least: 0,
                     greatest: 0,
+                    toggled: 0,
+                    stuck: 0,
+                    limits: Vec::new(),
                 });
             }
         }
@@ -72,11 +134,16 @@ impl RangeWatch {
     /// The ranges seen so far.
     #[must_use]
     pub fn finish(mut self) -> Vec<RegisterRange> {
-        for (range, watched) in self.registers.iter_mut().zip(&self.watched) {
-            if watched.least <= watched.greatest {
-                let number = |value| range.reading.number(range.width, value ^ turned(range));
-                (range.least, range.greatest) = (number(watched.least), number(watched.greatest));
-            }
+        for (range, Watched { seen, moved, .. }) in self.registers.iter_mut().zip(&self.watched) {
+            let Some(seen) = seen else { continue };
+            let number = |value| range.reading.number(range.width, value ^ turned(range));
+            (range.least, range.greatest) = (number(seen.least), number(seen.greatest));
+            range.toggled = seen.toggled;
+            range.stuck = (seen.first ^ turned(range)) & !seen.toggled;
+            let (least, greatest) = range.width.range(range.reading.is_signed());
+            let [down, up] = *moved;
+            range.limits.extend((down && least < 0 && range.least == least).then_some(least));
+            range.limits.extend((up && range.greatest == greatest).then_some(greatest));
         }
         self.registers
     }
@@ -87,30 +154,71 @@ fn turned(range: &RegisterRange) -> u64 {
     if range.reading.is_signed() { range.width.sign_bit() } else { 0 }
 }
 
+/// A strict cell makes a register less, greater.
+fn moved(netlist: &Netlist, register: Net) -> [bool; 2] {
+    let mut moved = [false; 2];
+    for property in &netlist.properties {
+        if let Claim::NoOverflow { operation, left, right } = property.claim
+            && left.net == register
+        {
+            moved[0] |= operation == Arithmetic::Sub || right.signed;
+            moved[1] |= operation == Arithmetic::Add || right.signed;
+        }
+    }
+    moved
+}
+
 impl Observer for RangeWatch {
     fn wants_steps(&self) -> bool {
         false
     }
 
     fn remember(&self, memory: &mut Memory) {
-        let extremes: Vec<_> = self.watched.iter().map(|watched| (watched.least, watched.greatest)).collect();
+        let of = |seen: Extremes| (seen.least, seen.greatest, seen.first, seen.toggled);
+        let extremes: Vec<_> = self.watched.iter().map(|watched| watched.seen.map(of)).collect();
         memory.insert("ranges".to_owned(), json!(extremes));
     }
 
     fn recall(&mut self, memory: &Memory) {
-        let extremes: Vec<(u64, u64)> = recalled(memory, "ranges").unwrap_or_default();
+        let extremes: Vec<Option<(u64, u64, u64, u64)>> = recalled(memory, "ranges").unwrap_or_default();
         for (watched, extremes) in self.watched.iter_mut().zip(extremes) {
-            (watched.least, watched.greatest) = extremes;
+            watched.seen =
+                extremes.map(|(least, greatest, first, toggled)| Extremes { least, greatest, first, toggled });
         }
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         for (watched, range) in self.watched.iter_mut().zip(&self.registers) {
-            if let Some((least, greatest)) = rows.extremes(watched.column, turned(range)) {
-                watched.least = watched.least.min(least);
-                watched.greatest = watched.greatest.max(greatest);
+            if let Some(later) = rows.extremes(watched.column, turned(range)) {
+                watched.seen = Some(watched.seen.map_or(later, |seen| seen.and(later)));
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stuck_bits_are_told_one_by_one_and_in_runs_of_the_same_value() {
+        let range = RegisterRange {
+            name: "r".to_owned(),
+            path: "m.r".to_owned(),
+            width: Width::new(8).unwrap(),
+            reading: Reading::Unsigned,
+            least: 0,
+            greatest: 0,
+            toggled: 0b0001_0010,
+            stuck: 0b0110_0001,
+            limits: Vec::new(),
+        };
+        assert_eq!(range.stuck_bits(), "011-00-1");
+        let words = |bits| range.stuck_below(bits).iter().map(ToString::to_string).collect::<Vec<_>>();
+        assert_eq!(words(8), ["[7] at 0", "[6:5] at 1", "[3:2] at 0", "[0] at 1"]);
+        assert_eq!(words(3), ["[2] at 0", "[0] at 1"]);
+        assert_eq!(words(0), [""; 0]);
+        assert_eq!(words(99), words(8));
     }
 }

@@ -120,6 +120,8 @@ fn whatever_stands_in_a_file_of_states_nothing_panics() {
         "/memory/path/1",
         "/memory/path/2/1",
         "/memory/ranges",
+        "/memory/ranges/0",
+        "/memory/ranges/0/2",
         "/memory/spacing/0",
         "/memory/spacing/1",
         "/memory/spacing/2",
@@ -130,6 +132,10 @@ fn whatever_stands_in_a_file_of_states_nothing_panics() {
         "/memory/spacing/3/0/2/1",
         "/memory/spacing/3/0/3/0",
         "/memory/overflows/0",
+        "/memory/overflows/2",
+        "/memory/overflows/2/0",
+        "/memory/overflows/2/0/count",
+        "/memory/overflows/2/0/needed",
     ] {
         for value in [json!(u64::MAX), json!([]), json!([1, 2, 3]), json!({}), json!(-1), json!("x"), json!(1e300)] {
             let mut states = states.clone();

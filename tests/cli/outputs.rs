@@ -36,6 +36,7 @@ fn json_to_standard_output_is_the_report_and_nothing_else() {
         "registers",
         "schema",
         "steps",
+        "warnings",
         "widths",
     ];
     assert_eq!(fields, expected);
@@ -45,11 +46,11 @@ fn json_to_standard_output_is_the_report_and_nothing_else() {
     assert_eq!((&report["clocks"], &report["steps"]), (&json!(41), &json!(10)));
     assert_eq!(report["pulses"], json!({ "x": 6, "y": 4 }));
     assert_eq!(report["end_point"], json!({ "wanted": [6, 4], "reached": [6, 4], "exact": true }));
-    assert_eq!(report["overflow"], json!({ "count": 0, "events": [] }));
+    assert_eq!(report["overflow"], json!({ "count": 0, "events": [], "components": [] }));
     assert_eq!((&report["ending"], &report["failures"]), (&json!("done"), &json!([])));
     let f = report["registers"].as_array().unwrap().iter().find(|register| register["name"] == "f").unwrap();
     let expected = json!({ "name": "f", "path": "ppc_line.f", "width": 4, "signed": true, "radix": 2,
-                           "least": -4, "greatest": 4, "needed_width": 4 });
+                           "least": -4, "greatest": 4, "needed_width": 4, "stuck_bits": "---0", "limits": [] });
     assert_eq!(*f, expected);
     // After the first step the machine stands at (1, 0): 4/sqrt(52) off the line.
     let error = &report["path_error"];

@@ -22,7 +22,9 @@ fn a_deviation_register_one_bit_too_narrow_is_trapped_at_its_clock() {
         let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
         let event = json!({ "component": "ppc_line.f", "clock": 15, "width": 3, "signed": true, "operation": "add",
                             "left": -2, "right": 6, "exact": 4, "needed_width": 4 });
-        assert_eq!(report["overflow"], json!({ "count": 1, "events": [event] }), "{engine}");
+        let tally = json!({ "component": "ppc_line.f", "count": 1, "first_clock": 15, "needed_width": 4 });
+        let overflow = json!({ "count": 1, "events": [event], "components": [tally] });
+        assert_eq!(report["overflow"], overflow, "{engine}");
         assert_eq!((&report["clocks"], &report["failures"]), (&json!(15), &json!([SENTENCE])), "{engine}");
     }
 }

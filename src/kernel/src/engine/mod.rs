@@ -14,8 +14,8 @@ mod word;
 use crate::elaborate::Design;
 use crate::netlist::{Net, Op};
 
-pub use rows::Rows;
 pub(crate) use rows::packed;
+pub use rows::{Extremes, Rows};
 
 /// What an engine is to observe, fixed before it is built so that it can be compiled in.
 #[derive(Clone, Debug, Default)]

@@ -4,6 +4,33 @@
 
 use fearless_simd::{Level, dispatch};
 
+/// What the values of a column came to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Extremes {
+    /// The least.
+    pub least: u64,
+    /// The greatest.
+    pub greatest: u64,
+    /// The first.
+    pub first: u64,
+    /// Bits in which one of them was not as the first.
+    pub toggled: u64,
+}
+
+impl Extremes {
+    /// Those of these values and of later ones.
+    #[inline]
+    #[must_use]
+    pub fn and(self, later: Extremes) -> Extremes {
+        Extremes {
+            least: self.least.min(later.least),
+            greatest: self.greatest.max(later.greatest),
+            first: self.first,
+            toggled: self.toggled | later.toggled | self.first ^ later.first,
+        }
+    }
+}
+
 /// Rows of equally many values, one row a sample, with room for a fixed number.
 #[derive(Clone, Debug)]
 pub struct Rows {
@@ -84,16 +111,17 @@ impl Rows {
         dispatch!(self.level, _simd => nonzero(&values[..values.len().min(64)]))
     }
 
-    /// Least and greatest value of a column, all taken with the bits of `turned` turned over; `None` without a row. With
+    /// What the values of a column came to, all taken with the bits of `turned` turned over; `None` without a row. With
     /// the sign bit turned over, two's complement sorts as unsigned numbers do.
     ///
     /// # Panics
     /// If there is no such column.
     #[must_use]
-    pub fn extremes(&self, column: usize, turned: u64) -> Option<(u64, u64)> {
+    pub fn extremes(&self, column: usize, turned: u64) -> Option<Extremes> {
         let values = self.column(column);
-        let extremes = dispatch!(self.level, _simd => extremes(values, turned));
-        (!values.is_empty()).then_some(extremes)
+        let first = values.first()? ^ turned;
+        let (least, greatest, toggled) = dispatch!(self.level, _simd => extremes(values, turned, first));
+        Some(Extremes { least, greatest, first, toggled })
     }
 
     /// The value of a column in a row.
@@ -179,10 +207,18 @@ impl Rows {
     }
 }
 
+/// Least and greatest of the values with the bits of `turned` turned over, and the bits in which one differs from `first`.
 #[inline(always)]
-fn extremes(values: &[u64], turned: u64) -> (u64, u64) {
-    let turn = |value: &u64| value ^ turned;
-    values.iter().map(turn).fold((u64::MAX, 0), |(least, greatest), value| (least.min(value), greatest.max(value)))
+fn extremes(values: &[u64], turned: u64, first: u64) -> (u64, u64, u64) {
+    // Vector units compare signed numbers; with the highest bit turned over they are in the order of the unsigned ones.
+    const HIGHEST: u64 = 1 << 63;
+    let turn = |value: &u64| (value ^ turned ^ HIGHEST).cast_signed();
+    let first = (first ^ HIGHEST).cast_signed();
+    let start = (i64::MAX, i64::MIN, 0);
+    let (least, greatest, toggled) = values.iter().map(turn).fold(start, |(least, greatest, toggled), value| {
+        (least.min(value), greatest.max(value), toggled | value ^ first)
+    });
+    (least.cast_unsigned() ^ HIGHEST, greatest.cast_unsigned() ^ HIGHEST, toggled.cast_unsigned())
 }
 
 #[inline(always)]
@@ -207,6 +243,24 @@ pub(crate) fn packed(flags: &[u8; 64]) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn extremes_are_those_of_all_values_and_of_all_their_bits() {
+        let mut rows = Rows::new(1, 300);
+        assert_eq!(rows.extremes(0, 0), None);
+        for (clock, value) in (0..).zip([0b0110, 0b0111, 0b1110].repeat(100)) {
+            rows.push(clock, |_| value);
+        }
+        let all = Extremes { least: 6, greatest: 14, first: 6, toggled: 0b1001 };
+        assert_eq!(rows.extremes(0, 0), Some(all));
+        // In four bits of two's complement: 6, 7 and -2, with 8 added to each.
+        let signed = Extremes { least: 6, greatest: 15, first: 14, toggled: 0b1001 };
+        assert_eq!(rows.extremes(0, 0b1000), Some(signed));
+        let later = Extremes { least: 3, greatest: 4, first: 4, toggled: 0b0111 };
+        assert_eq!(all.and(later), Extremes { least: 3, greatest: 14, first: 6, toggled: 0b1111 });
+        let same = Extremes { least: 4, greatest: 4, first: 4, toggled: 0 };
+        assert_eq!(all.and(same).toggled, 0b1011);
+    }
 
     #[test]
     fn every_row_whose_value_is_not_0_has_its_bit() {

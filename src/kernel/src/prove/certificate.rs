@@ -205,7 +205,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again_and_nonsense_is_not() {
-        let text = "modes 0 1\nequal v7 v2*v1 + v2 - 3*v8\nclause v9 + v2 | -v9\nanswer -\nanswer (1*3 1/2*4*7)\n\
+        let text = "modes 0 1\nequal v7 v2*v1 - 3*v8 + v2\nclause v9 + v2 | -v9\nanswer -\nanswer (1*3 1/2*4*7)\n\
                     answer [2 (1*3) [0 (5*1) ()]]\n";
         let certificate: Certificate = text.parse().unwrap();
         assert_eq!(certificate.to_string(), text);
