@@ -10,10 +10,12 @@ use crate::commands::diff::DiffArgs;
 mod proof;
 mod sweep;
 mod values;
+mod widths;
 
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use values::{ClockArgs, HardwareArgs, Point, SimulationArgs};
+pub(crate) use widths::WidthsArgs;
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware
 #[derive(Debug, Parser)]
@@ -35,6 +37,8 @@ pub(crate) enum Command {
     Sweep(Box<SweepArgs>),
     /// Every method on one curve: steps, clocks, greatest error, widest register
     Compare(Box<CompareArgs>),
+    /// The least width of every register over a box of geometries, how it is known, and what happens one bit below
+    Widths(Box<WidthsArgs>),
     /// Prove, for all geometries and widths: no register overflows, the end point is reached exactly
     Prove(Box<ProveArgs>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)

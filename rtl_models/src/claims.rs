@@ -114,6 +114,15 @@ impl Region {
         }
     }
 
+    /// [`curves`](Region::curves) has all geometries of k-bit coordinates, if `most` allows.
+    #[must_use]
+    pub fn is_whole(self, k: u32) -> bool {
+        match self {
+            Region::Lines | Region::LinesByLength => k <= line::WHOLE,
+            Region::QuadrantArcs => k <= arc::WHOLE,
+        }
+    }
+
     /// Curves of k-bit coordinates: all where they are at most `most`, else so many, spread evenly.
     #[must_use]
     pub fn curves(self, k: u32, most: usize) -> Vec<Curve> {

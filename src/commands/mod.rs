@@ -13,6 +13,7 @@ mod run;
 mod states;
 mod sweep;
 mod wave;
+mod widths;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
@@ -27,6 +28,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
         Command::Run(args) => run::run(args),
         Command::Sweep(args) => sweep::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Widths(args) => widths::run(args),
         Command::Prove(args) => prove::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Export(args) => export::run(args),

@@ -43,6 +43,7 @@ mod summary;
 mod sweep;
 mod table;
 mod variants;
+pub mod widths;
 
 pub use columns::words;
 pub use error::StudyError;

@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use super::{Folder, engines, good};
 
-const COMMANDS: [&str; 8] = ["list", "run", "sweep", "diff", "export", "golden", "completions", "man"];
+const COMMANDS: [&str; 11] =
+    ["list", "run", "sweep", "compare", "widths", "prove", "diff", "export", "golden", "completions", "man"];
 
 const RUN_OPTIONS: &str = "--from --to --center --cw --ccw --width --preset --normalize --end-point --form --compare \
     --pick-off --timing --beats --on-overflow --clock-hz --blu --engine --vcd --trace --trace-exclude --trace-depth \

@@ -61,7 +61,7 @@ fn bad_input_is_refused_in_a_sentence() {
     for (words, hint) in [
         ("prove", "required"),
         ("prove nonsense", "no model"),
-        ("prove ppc-conic", "claims nothing"),
+        ("prove ppc-conic", "no box of geometries"),
         ("prove ppc-line --narrower g=1", "has no register g"),
         ("prove ppc-line --narrower f", "give f=1"),
         ("prove ppc-line --narrower f=40", "cannot be 40 bits narrower"),

@@ -3,6 +3,7 @@
 
 mod command;
 mod invariants;
+mod widths;
 
 use std::collections::BTreeMap;
 

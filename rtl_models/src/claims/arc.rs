@@ -9,6 +9,9 @@ use super::{Kind, coordinate, spread};
 const QUADRANTS: [[i64; 2]; 4] = [[1, 1], [-1, 1], [-1, -1], [1, -1]];
 const DIRECTIONS: [(&str, Direction); 2] = [("SR", Direction::Clockwise), ("NR", Direction::CounterClockwise)];
 
+/// Most bits of coordinates of which all arcs are listed; of more, those are.
+pub(super) const WHOLE: u32 = 8;
+
 /// |x| grows in this quadrant, 0 to 3: clockwise in Q1 and Q3.
 fn x_grows(quadrant: usize, direction: Direction) -> bool {
     (direction == Direction::Clockwise) == quadrant.is_multiple_of(2)
@@ -71,7 +74,7 @@ pub(super) fn quarter(radius: i64) -> Option<Curve> {
 }
 
 pub(super) fn curves(k: u32, most: usize) -> Vec<Curve> {
-    let greatest = (1_i64 << k.min(7)) - 1;
+    let greatest = (1_i64 << k.min(WHOLE)) - 1;
     let mut points: Vec<(i64, [i64; 2])> =
         (0..=greatest).flat_map(|x| (0..=greatest).map(move |y| (x * x + y * y, [x, y]))).collect();
     points.sort_unstable();

@@ -8,6 +8,9 @@ use super::{Kind, coordinate, spread};
 /// Signs of the motion.
 const QUADRANTS: [(&str, [i128; 2]); 4] = [("Q1", [1, 1]), ("Q2", [-1, 1]), ("Q3", [-1, -1]), ("Q4", [1, -1])];
 
+/// Most bits of coordinates of which all lines are listed.
+pub(super) const WHOLE: u32 = 8;
+
 /// The lines of each quadrant; those of either long axis by themselves, if wanted.
 pub(super) fn kinds(by_length: bool) -> Vec<Kind> {
     let (a, b) = (|| name("|dx|"), || name("|dy|"));
@@ -61,7 +64,7 @@ pub(super) fn to(point: [i64; 2]) -> Option<Curve> {
 
 pub(super) fn curves(k: u32, most: usize) -> Vec<Curve> {
     let greatest = (1_i64 << k.min(40)) - 1;
-    let sides: Vec<i64> = if k <= 6 {
+    let sides: Vec<i64> = if k <= WHOLE {
         (-greatest..=greatest).collect()
     } else {
         let some = [0, 1, 2, 3, 5, greatest / 3, greatest / 2, greatest / 2 + 1, greatest - 2, greatest - 1, greatest];

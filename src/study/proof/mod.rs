@@ -21,7 +21,9 @@ pub use runs::{State, states};
 #[derive(Debug, thiserror::Error)]
 pub enum ProofError {
     /// The model claims nothing.
-    #[error("{model} claims nothing over a box of geometries: `stepwave widths` and `sweep` study it by simulation")]
+    #[error(
+        "{model} has no box of geometries over which something is claimed: `stepwave sweep` studies it by simulation"
+    )]
     NoClaims {
         /// The model.
         model: &'static str,

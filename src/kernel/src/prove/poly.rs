@@ -281,7 +281,7 @@ mod tests {
         let (x, y) = (var(0), var(1));
         let square = x.plus(&y).times(&x.minus(&y));
         assert_eq!(square, x.times(&x).minus(&y.times(&y)));
-        assert_eq!(square.plus_number(-3).display(name), "-y*y + x*x - 3".replace("-y*y + x*x", "-y*y + x*x"));
+        assert_eq!(square.plus_number(-3).display(name), "-y*y + x*x - 3");
         assert_eq!(square.value(|v| [7, 3, 0][v.index()]), Some(40));
         assert_eq!(x.minus(&x).constant(), Some(0));
     }

@@ -220,9 +220,12 @@ fn proof(system: &System<'_>, findings: &Findings, certificate: &Certificate, no
     }
 }
 
+/// The k of a row, and the value of every variable in it.
+type Values = (u32, Vec<i128>);
+
 /// Invariants that the recorded runs suggest, with those of the author.
 fn guess(system: &System<'_>, rows: &[Row]) -> Vec<Invariants> {
-    let mut by_modes: Vec<(Vec<i128>, Vec<(u32, Vec<i128>)>)> = Vec::new();
+    let mut by_modes: Vec<(Vec<i128>, Vec<Values>)> = Vec::new();
     for row in rows {
         let values = system.row(system.family.scale_at(row.k), &row.symbols, &row.registers);
         let modes: Vec<i128> = system.modes.iter().map(|(_, var)| values[var.index()]).collect();
@@ -235,7 +238,7 @@ fn guess(system: &System<'_>, rows: &[Row]) -> Vec<Invariants> {
     by_modes.into_iter().map(|(modes, group)| guess_in(system, modes, &group)).collect()
 }
 
-fn guess_in(system: &System<'_>, modes: Vec<i128>, rows: &[(u32, Vec<i128>)]) -> Invariants {
+fn guess_in(system: &System<'_>, modes: Vec<i128>, rows: &[Values]) -> Invariants {
     let values: Vec<Vec<i128>> = rows.iter().map(|(_, values)| values.clone()).collect();
     let relevant = system.relevant();
     let registers: Vec<Var> =
