@@ -40,10 +40,12 @@
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::{Module, Scope, Signal};
+use stepwave_kernel::formula::name;
 use stepwave_kernel::netlist::Format;
 use stepwave_nc::Curve;
 
 use crate::choices::{Choice, Choices, Compare, EndPoint, Form};
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::names::{COUNTER, POSITION, SIGN, STEPS};
 use crate::hardware::{Hardware, Pace};
@@ -74,7 +76,7 @@ pub(crate) const MODEL: Model = Model {
         ChoiceDoc::ON_OVERFLOW,
     ],
     source: "the line tracing of open firmware for printers and mills, after J. E. Bresenham, 1965",
-    claims: None,
+    claims: Some(Claims::of(Region::LinesHalved)),
     plan,
     netlist,
     words,
@@ -117,6 +119,9 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         let scope = m.scope(&format!("axis_{letter}"));
         let steps = block.held(scope, STEPS[i], hardware.bits(STEPS[i]));
         let step = counter(scope, &block, hardware, COUNTER[i], [add, test], [steps, events]);
+        if hardware.form == Form::Magnitude && hardware.compare == Compare::AtLeast {
+            scope.between_steps("below_the_events", [name("events") - 1 - name(COUNTER[i])]);
+        }
         let negative = block.held(scope, SIGN[i], 1);
         axis_counter(scope, &block, POSITION[i], hardware.bits(POSITION[i]), step, negative);
     }

@@ -20,6 +20,8 @@ pub enum Region {
     Lines,
     /// The same, those of either long axis by themselves.
     LinesByLength,
+    /// The same, with half of the long way, rounded down.
+    LinesHalved,
     /// Every arc about the origin inside one quadrant, with both ends on one circle: from (xs, ys) to (xt, yt),
     /// magnitudes.
     QuadrantArcs,
@@ -73,7 +75,9 @@ impl Region {
     #[must_use]
     pub fn describe(self) -> &'static str {
         match self {
-            Region::Lines | Region::LinesByLength => "every line from the origin to coordinates of k bits",
+            Region::Lines | Region::LinesByLength | Region::LinesHalved => {
+                "every line from the origin to coordinates of k bits"
+            }
             Region::QuadrantArcs => {
                 "every arc about the origin inside a quadrant, with coordinates of k bits and both ends on the circle"
             }
@@ -84,8 +88,9 @@ impl Region {
     #[must_use]
     pub fn kinds(self) -> Vec<Kind> {
         match self {
-            Region::Lines => line::kinds(false),
-            Region::LinesByLength => line::kinds(true),
+            Region::Lines => line::kinds(false, false),
+            Region::LinesByLength => line::kinds(true, false),
+            Region::LinesHalved => line::kinds(true, true),
             Region::QuadrantArcs => arc::kinds(),
         }
     }
@@ -94,7 +99,8 @@ impl Region {
     #[must_use]
     pub fn symbols(self, kind: &Kind, curve: &Curve) -> Option<Vec<i128>> {
         let symbols = match self {
-            Region::Lines | Region::LinesByLength => line::symbols(&kind.name, curve),
+            Region::Lines | Region::LinesByLength => line::symbols(&kind.name, curve, false),
+            Region::LinesHalved => line::symbols(&kind.name, curve, true),
             Region::QuadrantArcs => arc::symbols(&kind.name, curve),
         }?;
         let value = |name: &str| {
@@ -109,7 +115,7 @@ impl Region {
     pub fn largest(self, k: u32) -> Option<Curve> {
         let most = (1_i64 << k.min(52)) - 1;
         match self {
-            Region::Lines | Region::LinesByLength => line::to([most, most]),
+            Region::Lines | Region::LinesByLength | Region::LinesHalved => line::to([most, most]),
             Region::QuadrantArcs => arc::quarter(most),
         }
     }
@@ -118,7 +124,7 @@ impl Region {
     #[must_use]
     pub fn is_whole(self, k: u32) -> bool {
         match self {
-            Region::Lines | Region::LinesByLength => k <= line::WHOLE,
+            Region::Lines | Region::LinesByLength | Region::LinesHalved => k <= line::WHOLE,
             Region::QuadrantArcs => k <= arc::WHOLE,
         }
     }
@@ -127,7 +133,7 @@ impl Region {
     #[must_use]
     pub fn curves(self, k: u32, most: usize) -> Vec<Curve> {
         match self {
-            Region::Lines | Region::LinesByLength => line::curves(k, most),
+            Region::Lines | Region::LinesByLength | Region::LinesHalved => line::curves(k, most),
             Region::QuadrantArcs => arc::curves(k, most),
         }
     }

@@ -49,6 +49,7 @@ fn lines_are_proved_for_every_width_in_four_beats_and_in_one() {
         for model in ["ppc-line", "cim-line", "mindev-line", "vector-line"] {
             assert_proved(model, &subject(model, &choices), true);
         }
+        assert_proved("bresenham", &subject("bresenham", &Choices::default()), true);
         let per_axis = Choices { end_point: Some(EndPoint::PerAxis), ..choices };
         assert_proved("ppc-line", &subject("ppc-line", &per_axis), true);
     }
@@ -91,6 +92,13 @@ fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
         let found = refuted(model, &Choices::default(), &narrower("f"));
         assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow), "{model}");
     }
+    // The counters of early firmware: too narrow, and the wrong test.
+    let found = refuted("bresenham", &Choices::default(), &narrower("cnt"));
+    assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow));
+    let gt = Choices { compare: Some(stepwave_models::Compare::Greater), ..Choices::default() };
+    let model = find("bresenham").unwrap();
+    let found = search(model, &model.claims.unwrap(), &gt, &Narrower::new(), 1..=2, |_| true).unwrap();
+    assert_eq!((found.fault, found.curve.to()), (Fault::Missed, &[0, 1][..]));
     // The proof itself refuses too.
     for model in ["ppc-line", "mindev-line"] {
         let subject = Subject::new(find(model).unwrap(), &Choices::default(), &narrower("f")).unwrap();

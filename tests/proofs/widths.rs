@@ -37,7 +37,7 @@ fn the_least_widths_of_the_methods_are_those_of_the_literature() {
             assert_eq!(own[register], bits, "{model}: {register}");
         }
         let proved = found.registers.iter().all(|register| register.known == Known::Proved);
-        assert_eq!(proved, model != "bresenham" && choices.weights.is_none(), "{model}");
+        assert_eq!(proved, choices.weights.is_none(), "{model}");
         // Every deviation has a geometry that stops it one bit below.
         let f = found.registers.iter().find(|register| register.name == "f");
         assert!(f.is_none_or(|f| f.witness.is_some()), "{model}");
@@ -91,7 +91,7 @@ fn the_table_names_a_run_that_one_bit_less_does_not_hold() {
     let command = f.split_once("stepwave ").unwrap().1;
     let ran = folder.run(command);
     assert!(ran.code == 1 && ran.err.contains("overflow of ppc_line.f"), "{command}: {ran:?}");
-    let json: serde_json::Value = serde_json::from_str(&folder.good("widths bresenham --box 3 --json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&folder.good("widths stepgen --box 3 --json")).unwrap();
     assert_eq!((&json["all"], &json["registers"][0]["known"]), (&true.into(), &"exhaustive".into()));
     for (words, hint) in [
         ("widths ppc-line", "--box"),

@@ -11,8 +11,9 @@ const QUADRANTS: [(&str, [i128; 2]); 4] = [("Q1", [1, 1]), ("Q2", [-1, 1]), ("Q3
 /// Most bits of coordinates of which all lines are listed.
 pub(super) const WHOLE: u32 = 8;
 
-/// The lines of each quadrant; those of either long axis by themselves, if wanted.
-pub(super) fn kinds(by_length: bool) -> Vec<Kind> {
+/// The lines of each quadrant; those of either long axis by themselves, if wanted, and with half of the long way, rounded
+/// down, as a number of its own.
+pub(super) fn kinds(by_length: bool, halved: bool) -> Vec<Kind> {
     let (a, b) = (|| name("|dx|"), || name("|dy|"));
     let lengths = if by_length { vec![", x long", ", y long"] } else { vec![""] };
     let mut kinds = Vec::new();
@@ -26,6 +27,14 @@ pub(super) fn kinds(by_length: bool) -> Vec<Kind> {
             if y < 0 {
                 premises.push(Clause::at_least_zero("y moves", b() - 1));
             }
+            let mut symbols = vec![coordinate("|dx|"), coordinate("|dy|")];
+            if halved {
+                let long = if *length == ", y long" { b() } else { a() };
+                let rest = long - 2 * name("half");
+                symbols.push(coordinate("half"));
+                premises.push(Clause::at_least_zero("half is not more", rest.clone()));
+                premises.push(Clause::at_least_zero("half is rounded down", -rest + 1));
+            }
             match *length {
                 ", x long" => premises.push(Clause::at_least_zero("x is long", a() - b())),
                 ", y long" => premises.push(Clause::at_least_zero("y is long", b() - a() - 1)),
@@ -34,7 +43,7 @@ pub(super) fn kinds(by_length: bool) -> Vec<Kind> {
             let ends = [Clause::zero("x ends", name("x") - x * a()), Clause::zero("y ends", name("y") - y * b())];
             kinds.push(Kind {
                 name: format!("{quadrant}{length}"),
-                symbols: vec![coordinate("|dx|"), coordinate("|dy|")],
+                symbols,
                 constants: Vec::new(),
                 premises,
                 goals: ends.into_iter().flatten().collect(),
@@ -44,7 +53,7 @@ pub(super) fn kinds(by_length: bool) -> Vec<Kind> {
     kinds
 }
 
-pub(super) fn symbols(kind: &str, curve: &Curve) -> Option<Vec<i128>> {
+pub(super) fn symbols(kind: &str, curve: &Curve, halved: bool) -> Option<Vec<i128>> {
     let Curve::Line(line) = curve else { return None };
     let [dx, dy] = <[i64; 2]>::try_from(line.delta()).ok()?;
     let at_origin = line.from().iter().all(|coordinate| *coordinate == 0);
@@ -54,7 +63,9 @@ pub(super) fn symbols(kind: &str, curve: &Curve) -> Option<Vec<i128>> {
         (true, true) => "Q3",
         (false, true) => "Q4",
     };
-    (at_origin && kind.starts_with(quadrant)).then(|| vec![i128::from(dx).abs(), i128::from(dy).abs()])
+    let ways = [i128::from(dx).abs(), i128::from(dy).abs()];
+    let half = halved.then(|| ways[0].max(ways[1]) / 2);
+    (at_origin && kind.starts_with(quadrant)).then(|| ways.into_iter().chain(half).collect())
 }
 
 /// The line from the origin to a point.

@@ -22,8 +22,7 @@ pub(crate) fn equalities(rows: &[Vec<i128>], defined: &[Var], free: &[Var], flag
         if degree > 1 {
             left.retain(|var| !flags.contains(var));
         }
-        let basis: Vec<Var> = free.iter().chain(&left).copied().collect();
-        let columns = monomials(&basis, degree);
+        let columns = monomials(free, &left, degree);
         let mut new: Vec<Equality> = Vec::new();
         for relation in relations(rows, &columns) {
             // In the relation, one variable that stands by itself with the coefficient ±1, and that no other does.
@@ -63,17 +62,19 @@ pub fn fit(names: &[&str], rows: &[Vec<i128>]) -> Option<Formula> {
     Some(poly.terms().iter().map(term).fold(number(0), |sum, term| sum + term))
 }
 
-/// Products of up to `degree` variables, those of few first and those of early variables last, so that what is
-/// expressed is what comes late.
-fn monomials(vars: &[Var], degree: usize) -> Vec<Monomial> {
+/// Products of up to `degree` variables: what is free by itself first, products of two, and what is to be defined last,
+/// so that it is expressed by the others.
+fn monomials(free: &[Var], left: &[Var], degree: usize) -> Vec<Monomial> {
+    let singles: Vec<Monomial> = free.iter().chain(left).map(|var| Poly::from(*var).terms()[0].0).collect();
+    let (given, defined) = singles.split_at(free.len());
     let mut all = vec![Monomial::ONE];
-    let singles: Vec<Monomial> = vars.iter().map(|var| Poly::from(*var).terms()[0].0).collect();
+    all.extend(given);
     if degree > 1 {
         for (index, a) in singles.iter().enumerate() {
             all.extend(singles[index..].iter().filter_map(|b| a.times(*b)));
         }
     }
-    all.extend(singles);
+    all.extend(defined);
     all
 }
 
