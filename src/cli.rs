@@ -43,7 +43,7 @@ pub(crate) enum Command {
     Prove(Box<ProveArgs>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)
     Diff(DiffArgs),
-    /// Write a machine as Verilog, with a test bench that runs the geometry
+    /// Write a machine as Verilog, with a test bench that runs the geometry, or for model checkers and solvers
     Export(Box<ExportArgs>),
     /// Re-simulate the recorded cases of a folder and compare bit by bit
     #[command(subcommand)]
@@ -122,8 +122,13 @@ pub(crate) struct RunArgs {
     stepwave export dda-line --to 8,6 --verilog dda_line.v --testbench dda_line_tb.v\n  \
     stepwave export ppc-arc --from 5,0 --to 0,5 --ccw --width 16 --verilog -\n\
     The wave of the test bench (Icarus Verilog, Verilator) holds the signals of `run --vcd`, so that\n\
-    `stepwave diff` compares them clock by clock.")]
+    `stepwave diff` compares them clock by clock.\n\n  \
+    stepwave export ppc-line --to 6,4 --width f=3 --smt2 line.smt2 && z3 line.smt2\n  \
+    stepwave export ppc-line --to 7,7 --any-geometry=xe,ye --smt2 all.smt2 && cvc5 all.smt2\n\
+    `sat` says that a property is violated: a register overflows. Clocks and names are those of `run --vcd`. The files\n\
+    hold a loader beside the machine, which loads each block as `run` does.")]
 #[command(group(clap::ArgGroup::new("exports").required(true).multiple(true)))]
+#[command(group(clap::ArgGroup::new("checked").multiple(true)))]
 pub(crate) struct ExportArgs {
     /// The model; `stepwave list` shows them
     pub(crate) model: String,
@@ -139,6 +144,21 @@ pub(crate) struct ExportArgs {
     /// Write a Verilog test bench that loads and runs the geometry as `run` does
     #[arg(long, value_name = "FILE", group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) testbench: Option<PathBuf>,
+    /// Write the netlist and its properties as BTOR2, for model checkers
+    #[arg(long, value_name = "FILE", groups = ["exports", "checked"], help_heading = "Outputs (- is standard output)")]
+    pub(crate) btor2: Option<PathBuf>,
+    /// Write an SMT-LIB 2 script that asks whether a property is violated within --depth clocks, for solvers
+    #[arg(long, value_name = "FILE", groups = ["exports", "checked"], help_heading = "Outputs (- is standard output)")]
+    pub(crate) smt2: Option<PathBuf>,
+    /// Leave these load words open, or all: any values, also such as no geometry gives, loaded in the first clock and never
+    /// again. What is known of them is for you to add
+    #[arg(long, requires = "checked", value_name = "WORDS", help_heading = "Model checking")]
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = "all", value_delimiter = ',')]
+    pub(crate) any_geometry: Vec<String>,
+    /// Last clock of the question in --smt2 [default: that of the run, at most 1000]
+    #[arg(long, requires = "smt2", value_name = "CLOCKS", help_heading = "Model checking")]
+    #[arg(value_parser = clap::value_parser!(u64).range(..=100_000))]
+    pub(crate) depth: Option<u64>,
 }
 
 #[derive(Debug, Args)]

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use stepwave::kernel::export::{self, Options};
+use stepwave::kernel::export::{self, Checking, Options};
 use stepwave::kernel::trace::timescale::ClockTime;
+use stepwave::kernel::{Design, Net};
 use stepwave::models::find;
 use stepwave::report;
 use stepwave::testbench::Testbench;
@@ -12,6 +13,9 @@ use super::geometry::curve;
 use crate::cli::ExportArgs;
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
+
+/// Last clock of a question to a solver where nothing is said and the run is longer.
+const DEEPEST: u64 = 1000;
 
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
@@ -33,9 +37,38 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
         let dump = dump_name(path, &bench.design().netlist().scopes[0].name);
         files.write(path, &export::testbench(bench.design(), &options, &bench.stimulus(), time, &dump))?;
     }
+    let (design, held) = driven(&bench, &args.any_geometry)?;
+    let checking = Checking { comment: &comment, held: &held };
+    if let Some(path) = &args.btor2 {
+        files.write(path, &export::btor2(&design, &checking))?;
+    }
+    let mut text = summary(&bench);
+    if let Some(path) = &args.smt2 {
+        let depth = args.depth.or_else(|| bench.clocks_within(DEEPEST)).unwrap_or(DEEPEST);
+        files.write(path, &export::smt2(&design, &checking, depth))?;
+        text += &format!("asked is whether a property is violated in one of the clocks 0 to {depth}\n");
+    }
     let quiet = files.uses_stdout();
     files.commit()?;
-    if quiet { Ok(()) } else { output::print(&summary(&bench)) }
+    if quiet { Ok(()) } else { output::print(&text) }
+}
+
+/// The machine with a loader, and the load words that are left open.
+fn driven(bench: &Testbench, any: &[String]) -> Result<(Design, Vec<Net>), Failure> {
+    if any.is_empty() {
+        return Ok((bench.driven()?, Vec::new()));
+    }
+    let known: Vec<String> = bench.load_words().map(str::to_owned).collect();
+    if any == ["all"] {
+        return Ok(bench.driven_by_any(&known)?);
+    }
+    match any.iter().find(|word| !known.contains(word)) {
+        None => Ok(bench.driven_by_any(any)?),
+        Some(word) => {
+            let known = known.join(", ");
+            Err(Failure::Trouble(format!("--any-geometry={word}: there is no such load word; there are all, {known}")))
+        }
+    }
 }
 
 /// The wave that a test bench writes is named after it.

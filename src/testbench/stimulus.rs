@@ -1,9 +1,11 @@
-//! The loading of blocks as data, for a test bench in another language.
+//! The loading of blocks as data, for a test bench in another language, and as hardware, for model checkers.
 
-use stepwave_kernel::export::{Stall, Step, Stimulus};
-use stepwave_kernel::{Net, OnOverflow};
+use stepwave_kernel::engine::{EngineKind, Rows};
+use stepwave_kernel::export::{Stall, Step, Stimulus, driven};
+use stepwave_kernel::{Design, Diagnostics, Net, OnOverflow};
+use stepwave_models::ModelError;
 
-use super::Testbench;
+use super::{Observer, ObserverError, Testbench};
 
 impl Testbench {
     /// What [`run`](Testbench::run) does to the machine: each block is put on the inputs together with `load` for one
@@ -26,6 +28,44 @@ impl Testbench {
         Stimulus { steps, done: Some(machine.done.net), never, stall: Some(stall) }
     }
 
+    /// The machine with a loader beside it, which loads each block as [`run`](Testbench::run) does: without inputs.
+    ///
+    /// # Errors
+    /// None that a machine gives.
+    pub fn driven(&self) -> Result<Design, Diagnostics> {
+        Ok(driven(self.design(), &self.stimulus(), &[])?.design)
+    }
+
+    /// The machine with a loader beside it that loads one block in the first clock, with any words for these registers: the
+    /// words are its inputs, and given beside it. All other words are those of the first block.
+    ///
+    /// # Errors
+    /// No load word bears such a name.
+    pub fn driven_by_any(&self, registers: &[String]) -> Result<(Design, Vec<Net>), ModelError> {
+        let port = |register: &String| match self.machine.inputs.get(register) {
+            Some(port) => Ok(port.net),
+            None => Err(ModelError::MissingPort(format!("{register}_in"))),
+        };
+        let words = registers.iter().map(port).collect::<Result<Vec<Net>, ModelError>>()?;
+        let mut stimulus = self.stimulus();
+        stimulus.steps.truncate(2);
+        let driven = driven(self.design(), &stimulus, &words)?;
+        let words = words.into_iter().map(|word| driven.net(word)).collect();
+        Ok((driven.design, words))
+    }
+
+    /// The registers that a block is loaded into.
+    pub fn load_words(&self) -> impl Iterator<Item = &str> {
+        self.machine.inputs.keys().map(String::as_str)
+    }
+
+    /// Clock of the last sample of a run, or `None` where a run goes on beyond `most`.
+    #[must_use]
+    pub fn clocks_within(&self, most: u64) -> Option<u64> {
+        let outcome = self.run(EngineKind::Compiled, &mut [&mut Until(most)]).ok()?;
+        (outcome.clocks <= most).then_some(outcome.clocks)
+    }
+
     /// The nets that a user of the machine connects: its strobes, pulses and positions, and the flags of its properties.
     #[must_use]
     pub fn outputs(&self) -> Vec<Net> {
@@ -37,5 +77,19 @@ impl Testbench {
 
     fn properties(&self) -> Vec<Net> {
         self.design().netlist().properties.iter().map(|property| property.never).collect()
+    }
+}
+
+/// Ends a run beyond this clock.
+struct Until(u64);
+
+impl Observer for Until {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        let next = rows.first_clock() + rows.len() as u64;
+        if next > self.0.saturating_add(1) { Err("it takes too long".into()) } else { Ok(()) }
     }
 }

@@ -17,8 +17,8 @@ fn module_and_bench_are_written_and_counted() {
 #[test]
 fn the_same_command_writes_the_same_bytes() {
     let text = |folder: Folder| {
-        folder.good(&format!("export {ARC} --verilog a.v --testbench b.v"));
-        folder.read("a.v") + &folder.read("b.v")
+        folder.good(&format!("export {ARC} --verilog a.v --testbench b.v --btor2 c.btor2 --smt2 d.smt2"));
+        ["a.v", "b.v", "c.btor2", "d.smt2"].map(|file| folder.read(file)).concat()
     };
     assert_eq!(text(Folder::new()), text(Folder::new()));
 }
@@ -30,7 +30,59 @@ fn standard_output_holds_the_file_alone() {
     assert!(verilog.starts_with("// ppc-arc; ") && verilog.ends_with("endmodule\n"), "{verilog}");
     let bench = folder.good(&format!("export {ARC} --testbench -"));
     assert!(bench.contains("$dumpfile(\"ppc_arc_tb.vcd\");"), "{bench}");
+    let model = folder.good(&format!("export {ARC} --btor2 -"));
+    assert!(model.starts_with("; ppc-arc; ") && model.ends_with("_overflow\n"), "{model}");
+    let question = folder.good(&format!("export {ARC} --smt2 -"));
+    assert!(question.starts_with("; ppc-arc; ") && question.ends_with("(check-sat)\n"), "{question}");
     assert_eq!(folder.files(), [""; 0]);
+}
+
+#[test]
+fn a_question_reaches_to_the_end_of_the_run_unless_another_clock_is_given() {
+    let asked = |words: &str| {
+        let folder = Folder::new();
+        let printed = folder.good(&format!("export {words} --smt2 q.smt2"));
+        let last = printed.lines().last().unwrap().to_owned();
+        let clock = last.strip_prefix("asked is whether a property is violated in one of the clocks 0 to ").unwrap();
+        let text = folder.read("q.smt2");
+        assert!(text.contains(&format!("\n; Clock {clock}.\n")), "{words}");
+        assert_eq!(text.matches("\n; Clock ").count(), 1 + clock.parse::<usize>().unwrap(), "{words}");
+        clock.to_owned()
+    };
+    assert_eq!(asked("ppc-line --to 6,4"), "41");
+    // Trapped there: see the tests of overflows.
+    assert_eq!(asked("ppc-line --to 6,4 --width f=3"), "15");
+    assert_eq!(asked("ppc-line --to 6,4 --depth 3"), "3");
+    assert_eq!(asked("ppc-line --to 6,4 --depth 0"), "0");
+    // Days of clocks.
+    assert_eq!(asked("dda-line --to 8,6 --width 50"), "1000");
+}
+
+#[test]
+fn load_words_are_those_of_the_geometry_unless_they_are_left_open() {
+    let inputs = |words: &str| {
+        let text = Folder::new().good(&format!("export {words} --smt2 - --depth 1"));
+        let model = Folder::new().good(&format!("export {words} --btor2 -"));
+        assert!(!model.contains(" input "), "{model}");
+        // One constant for all clocks.
+        let constant =
+            |line: &str| line.strip_prefix("(declare-const ").map(|rest| rest.split(' ').next().unwrap().to_owned());
+        let held: Vec<String> = text.lines().filter_map(constant).filter(|name| !name.contains('@')).collect();
+        // A state without a first value that keeps what it has.
+        let first = |name: &&String| {
+            let state = model.lines().find(|line| line.ends_with(&format!(" {name}"))).unwrap();
+            let number = state.split(' ').next().unwrap();
+            let next =
+                model.lines().find(|line| line.contains(" next ") && line.ends_with(&format!(" {number} {number}")));
+            state.contains(" state ") && next.is_some() && !model.contains(&format!("init 1 {number} "))
+        };
+        assert_eq!(held.iter().filter(first).count(), held.len(), "{model}");
+        held
+    };
+    let line = "ppc-line --to 6,4";
+    assert_eq!(inputs(line), [""; 0]);
+    assert_eq!(inputs(&format!("{line} --any-geometry=xe,ye")), ["ppc_line.block.xe_in", "ppc_line.block.ye_in"]);
+    assert_eq!(inputs(&format!("{line} --any-geometry")).len(), 8);
 }
 
 #[test]
@@ -60,6 +112,15 @@ fn what_cannot_be_exported_leaves_no_file() {
         ("export ppc-line --to 6,4 --verilog a.v --testbench a.v", "give each its own file"),
         ("export ppc-line --to 6,4 --verilog a.v --testbench no/b.v", "no/b.v"),
         ("export ppc-line --to 6,4 --verilog - --testbench -", "standard output"),
+        ("export ppc-line --to 6,4 --btor2 - --smt2 -", "standard output"),
+        ("export ppc-line --to 6,4 --btor2 a.btor2 --smt2 no/b", "no/b"),
+        ("export ppc-line --to 6,4 --verilog a.v --any-geometry", "--btor2"),
+        ("export ppc-line --to 6,4 --btor2 a --depth 3", "--smt2"),
+        ("export ppc-line --to 6,4 --smt2 a --depth 100001", "100001"),
+        (
+            "export ppc-line --to 6,4 --btor2 a --any-geometry=xe,q",
+            "no such load word; there are all, e, f, sx, sy, x,",
+        ),
     ] {
         let folder = Folder::new();
         let ran = folder.run(words);

@@ -1,6 +1,8 @@
-//! Exported Verilog as text; `.ci/peers` runs it in other simulators.
+//! Exported Verilog as text, which `.ci/peers` runs in other simulators, and models for checkers and solvers.
 
 mod command;
+mod driven;
+mod models;
 mod names;
 mod operators;
 

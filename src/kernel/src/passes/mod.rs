@@ -10,7 +10,7 @@ mod share;
 
 use std::collections::HashMap;
 
-use crate::netlist::{Cell, Claim, Net, Netlist, Op, Operand};
+use crate::netlist::{Cell, Claim, Net, Netlist, Op, Property};
 use share::Builder;
 
 /// A simplified netlist, and where each net of the original one went.
@@ -74,17 +74,23 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
         named.net = map[named.net.index()];
     }
     for property in &mut new.properties {
-        property.never = map[property.never.index()];
-        if let Claim::NoOverflow { operation, left, right } = property.claim {
-            let go = |operand: Operand| Operand { net: map[operand.net.index()], ..operand };
-            property.claim = Claim::NoOverflow { operation, left: go(left), right: go(right) };
-        }
+        move_property(property, |net| map[net.index()]);
     }
     Simplified { netlist: new, map }
 }
 
+/// A property about other nets.
+pub(crate) fn move_property(property: &mut Property, go: impl Fn(Net) -> Net) {
+    property.never = go(property.never);
+    if let Claim::NoOverflow { left, right, .. } = &mut property.claim {
+        for operand in [left, right] {
+            operand.net = go(operand.net);
+        }
+    }
+}
+
 /// The operator on other nets.
-fn moved(op: Op, go: impl Fn(Net) -> Net) -> Op {
+pub(crate) fn moved(op: Op, go: impl Fn(Net) -> Net) -> Op {
     match op {
         Op::Input | Op::Const(_) | Op::Register { .. } => op,
         Op::Not(a) => Op::Not(go(a)),

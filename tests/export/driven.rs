@@ -1,0 +1,85 @@
+//! A design with a loader beside it is the design under its test bench, sample by sample.
+
+use stepwave::models::{Choices, find};
+use stepwave::nc::{Arc, Curve, Direction, Line};
+use stepwave::testbench::{Observer, ObserverError, Testbench};
+use stepwave_kernel::engine::{EngineKind, Rows, Watch};
+use stepwave_kernel::export::{Step, Stimulus, driven};
+use stepwave_kernel::{Design, Net};
+
+use super::design;
+
+/// Keeps every sample.
+struct Samples(Vec<Vec<u64>>);
+
+impl Observer for Samples {
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        self.0.extend(rows.iter().map(|(_, row)| row));
+        Ok(())
+    }
+}
+
+/// Samples of a design that nobody drives.
+fn samples(design: &Design, columns: Vec<Net>, clocks: usize) -> Vec<Vec<u64>> {
+    let mut rows = Rows::new(columns.len(), clocks);
+    let mut engine = EngineKind::Word.build(design, &Watch { columns, stops: Vec::new() });
+    engine.reset(&mut rows);
+    engine.run(clocks as u64 - 1, &mut rows);
+    rows.iter().map(|(_, row)| row).collect()
+}
+
+#[test]
+fn a_machine_with_a_loader_runs_as_on_the_bench() {
+    let line = Curve::Line(Line::new(vec![1, 2], vec![-7, 5]).unwrap());
+    // Three quadrants: three blocks, one after another.
+    let arc = Curve::Arc(Arc::new([5, -3], [-5, 3], [0, 0], Direction::CounterClockwise).unwrap());
+    for (model, curve) in [("ppc-line", &line), ("dda-line", &line), ("ppc-arc", &arc), ("dda-arc", &arc)] {
+        let bench = Testbench::new(find(model).unwrap(), curve, &Choices::default()).unwrap();
+        let mut seen = Samples(Vec::new());
+        bench.run(EngineKind::Gates, &mut [&mut seen]).unwrap();
+        let driven = bench.driven().unwrap();
+        assert_eq!(driven.inputs(), []);
+        let netlist = bench.design().netlist();
+        let columns = netlist.names.iter().map(|named| driven.netlist().find(&netlist.path(named)).unwrap().net);
+        let found = samples(&driven, columns.collect(), seen.0.len());
+        for (clock, (found, seen)) in found.iter().zip(&seen.0).enumerate() {
+            for (value, named) in found.iter().zip(&netlist.names) {
+                let wanted = seen[bench.columns().index(named.net)];
+                assert_eq!(*value, wanted, "{model}: {} at clock {clock}", named.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn steps_last_as_long_as_they_are_to_and_done_counts_from_their_second_sample_on() {
+    let mut nets = Vec::new();
+    let design = design("m", |m| {
+        let (a, b) = (m.input("a", 4), m.input("loader", 2));
+        let r = m.reg("r", 4);
+        r.set(a);
+        let done = m.name("done", r.q.is_nonzero());
+        nets.extend([a, b, r.q, done].map(|signal| signal.net()));
+    });
+    let [a, b, r, done] = nets[..] else { unreachable!() };
+    let step = |value, clocks| Step { set: vec![(a, value)], clocks };
+    // Done in the first sample of the second step already, which does not end it; the last step has no end.
+    let steps = vec![step(3, Some(2)), step(9, None), step(1, Some(1))];
+    let stimulus = Stimulus { steps, done: Some(done), never: Vec::new(), stall: None };
+    let driven = driven(&design, &stimulus, &[b]).unwrap();
+    let rows = samples(&driven.design, vec![driven.net(a), driven.net(r)], 7);
+    assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [3, 3, 9, 9, 1, 1, 1]);
+    assert_eq!(rows.iter().map(|row| row[1]).collect::<Vec<_>>(), [0, 3, 3, 9, 9, 1, 1]);
+    // What is open stays an input, and the loader takes a name that is free.
+    assert_eq!(driven.design.inputs(), [driven.net(b)]);
+    assert!(driven.design.netlist().find("m.loader_1.step").is_some());
+}
+
+#[test]
+fn without_steps_all_inputs_are_0() {
+    let design = design("m", |m| _ = m.input("a", 4));
+    let stimulus = Stimulus { steps: Vec::new(), done: None, never: Vec::new(), stall: None };
+    let driven = driven(&design, &stimulus, &[]).unwrap();
+    let a = driven.net(design.inputs()[0]);
+    assert_eq!(samples(&driven.design, vec![a], 3), [[0], [0], [0]]);
+}
