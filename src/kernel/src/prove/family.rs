@@ -208,7 +208,7 @@ impl Family {
         }
     }
 
-    /// The value of [`SCALE`](Family::SCALE) in the netlist of this k.
+    /// The value of the number that stands for the width in the netlist of this k.
     #[must_use]
     pub fn scale_at(&self, k: u32) -> i128 {
         u32::try_from(i64::from(k) + self.offset).map_or(1, |bits| 1_i128 << bits)
