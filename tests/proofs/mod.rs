@@ -109,6 +109,16 @@ fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
 }
 
 #[test]
+fn a_position_counter_without_its_sign_is_never_proved() {
+    // Its adder tells an overflow by its own flag, not by a wider sum.
+    let two_less = BTreeMap::from([("x".to_owned(), 2)]);
+    let subject = Subject::new(find("ppc-line").unwrap(), &Choices::default(), &two_less).unwrap();
+    for (kind, proof) in proofs(&subject) {
+        assert!(proof.violated.iter().any(|(claim, _)| subject.claim(*claim).ends_with(".x")), "{}", kind.name);
+    }
+}
+
+#[test]
 fn nothing_is_refuted_at_the_widths_that_are_proved() {
     for model in ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line", "dda-line", "dda-arc"] {
         assert_eq!(refuted(model, &Choices::default(), &Narrower::new()), None, "{model}");
