@@ -22,6 +22,7 @@
 
 mod arc;
 mod conic;
+mod contour;
 mod curve;
 mod error;
 mod exact;
@@ -35,6 +36,7 @@ mod turn;
 
 pub use arc::Arc;
 pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
+pub use contour::{Cause, Feed, Move, Place, Plane, Point, Segment, Side, ToolMove, Way};
 pub use curve::{Curve, OUTLINE_LIMIT};
 pub use error::{End, GeometryError};
 pub use gauge::{Gauge, Screen};
