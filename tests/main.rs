@@ -10,6 +10,7 @@ mod house;
 mod kernel;
 mod lanes;
 mod models;
+mod programs;
 mod proofs;
 mod reference;
 mod waves;

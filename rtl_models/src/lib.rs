@@ -31,6 +31,7 @@ pub mod parts;
 pub mod ppc_arc;
 pub mod ppc_conic;
 pub mod ppc_line;
+pub mod program;
 pub mod stepgen;
 pub mod vector_arc;
 pub mod vector_line;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use stepwave_kernel::Width;
 
-use crate::choices::{Choice, Choices, EndPoint, Radix};
+use crate::choices::{Choice, Choices, EndPoint, Preset, Radix};
 use crate::error::ModelError;
 use crate::hardware::{AXES, Hardware, Pace};
 
@@ -53,6 +53,11 @@ impl<'a> Registers<'a> {
             self.hidden(*letter, needed.max().unwrap_or(1) + 1);
         }
         self
+    }
+
+    /// The preset that the user gave all remainder registers.
+    pub(crate) fn preset(&self) -> Option<Preset> {
+        self.choices.preset
     }
 
     /// Width of a register given so far: the user's, or its default.

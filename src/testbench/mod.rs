@@ -8,6 +8,7 @@ mod lanes;
 mod measure;
 mod overflow;
 mod path;
+mod program;
 mod ranges;
 mod spacing;
 mod steps;
@@ -25,6 +26,7 @@ pub use lanes::{LaneOutcome, Lanes};
 pub use measure::Measured;
 pub use overflow::{OverflowEvent, OverflowTally, OverflowWatch};
 pub use path::{PathWatch, WorstError};
+pub use program::{Host, Next, Sample};
 pub use ranges::{RangeWatch, RegisterRange, StuckBits};
 pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
 pub use steps::Step;
@@ -132,6 +134,13 @@ impl Testbench {
         let machine = model.machine(&hardware)?;
         let columns = Columns::of(&machine);
         Ok(Testbench { hardware, machine, blocks: Vec::new(), columns })
+    }
+
+    /// A machine that runs whole programs, for [`run_program`](Self::run_program).
+    #[must_use]
+    pub fn of_machine(hardware: Hardware, machine: Machine) -> Testbench {
+        let columns = Columns::of(&machine);
+        Testbench { hardware, machine, blocks: Vec::new(), columns }
     }
 
     /// The same hardware with the blocks of another geometry.

@@ -30,7 +30,7 @@ pub(super) struct StepColumns {
     pub(super) stepped: usize,
     pub(super) pulses: Vec<usize>,
     pub(super) positions: Vec<usize>,
-    table: Vec<usize>,
+    pub(super) table: Vec<usize>,
 }
 
 impl StepColumns {

@@ -22,6 +22,6 @@ pub fn axis_counter<'m>(
     signed_pulse.set((pulse & negative).concat(pulse).as_signed());
     let (up, down) = (pulse & !negative, pulse & negative);
     let position = m.reg_signed(letter, bits).shown(Format::Analog);
-    let preset = block.word_signed(letter, bits);
+    let preset = block.position(letter, bits);
     up_down_counter(position, &[(block.preset_position, preset)], up, down, m.lit_signed(2, 1));
 }

@@ -20,6 +20,8 @@ pub struct Block<'m> {
     /// 1 bit: a block is running.
     pub busy: Signal<'m>,
     registers: [Register<'m>; 4],
+    /// 1 bit: this edge takes the words into a buffer in front of the registers, if there is one.
+    write: Option<Signal<'m>>,
 }
 
 impl<'m> Block<'m> {
@@ -30,19 +32,35 @@ impl<'m> Block<'m> {
         let load = m.input("load", 1);
         let preset_position = load & m.input("preset_position", 1);
         let registers = ["busy", "done", "loaded", "stepped"].map(|name| m.reg(name, 1));
-        Block { words: m, load, preset_position, busy: registers[0].q, registers }
+        Block { words: m, load, preset_position, busy: registers[0].q, registers, write: None }
     }
 
     /// The unsigned load word of a register.
     #[must_use]
     pub fn word(&self, register: &str, bits: u32) -> Signal<'m> {
-        self.words.input(&input_name(register), bits)
+        let input = self.words.input(&input_name(register), bits);
+        self.buffered(register, input, |name| self.words.reg(name, bits))
     }
 
     /// The two's-complement load word of a register.
     #[must_use]
     pub fn word_signed(&self, register: &str, bits: u32) -> Signal<'m> {
-        self.words.input_signed(&input_name(register), bits)
+        let input = self.words.input_signed(&input_name(register), bits);
+        self.buffered(register, input, |name| self.words.reg_signed(name, bits))
+    }
+
+    /// The two's-complement word that presets a position counter; it is never buffered.
+    #[must_use]
+    pub fn position(&self, letter: &str, bits: u32) -> Signal<'m> {
+        self.words.input_signed(&input_name(letter), bits)
+    }
+
+    /// The word itself, or what the buffer holds of it.
+    fn buffered(&self, register: &str, input: Signal<'m>, buffer: impl FnOnce(&str) -> Register<'m>) -> Signal<'m> {
+        let Some(write) = self.write else { return input };
+        let next = buffer(&format!("next_{register}"));
+        next.when(write, input).else_hold();
+        next.q
     }
 
     /// The load word of a register that holds a number in this radix: decimal digits have 4 bits each.
@@ -96,5 +114,59 @@ impl<'m> Block<'m> {
         done.when(self.load, no).when(finish, yes).else_hold();
         loaded.set(ready);
         stepped.set(step);
+    }
+}
+
+/// The buffer in front of a block loader: the host writes the words of the next block into it while the present one
+/// runs, and they go on into the registers at the edge behind the last step.
+///
+/// - `load` = 1 at an edge takes the words on the inputs into the buffer, which must be free: `full` rises.
+/// - `more`, an input: the host has a further block. `call`: it may write it. `at_end`: all is done.
+/// - A block begins, and the buffer is free again, at an edge at which it is full and nothing runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Buffer<'m> {
+    m: Scope<'m>,
+    /// 1 bit: this edge takes the words on the inputs.
+    pub write: Signal<'m>,
+    preset: Signal<'m>,
+    full: Register<'m>,
+    registers: [Register<'m>; 4],
+    more: Signal<'m>,
+}
+
+impl<'m> Buffer<'m> {
+    /// Ports and state in the scope `block`.
+    #[must_use]
+    pub fn new(m: Scope<'m>) -> Buffer<'m> {
+        let m = m.scope("block");
+        let write = m.input("load", 1);
+        let preset = write & m.input("preset_position", 1);
+        let registers = ["busy", "done", "loaded", "stepped"].map(|name| m.reg(name, 1));
+        Buffer { m, write, preset, full: m.reg("full", 1), registers, more: m.input("more", 1) }
+    }
+
+    /// 1 bit: the buffer holds a block.
+    #[must_use]
+    pub fn full(&self) -> Signal<'m> {
+        self.full.q
+    }
+
+    /// A word as the host gives it, for a register of the buffer that does more than hold it.
+    #[must_use]
+    pub fn word(&self, register: &str, bits: u32) -> Signal<'m> {
+        self.m.input(&input_name(register), bits)
+    }
+
+    /// The block loader behind the buffer. While `wait` (1 bit) is 1 the buffer is not ready yet.
+    #[must_use]
+    pub fn block(self, wait: Signal<'m>) -> Block<'m> {
+        let Buffer { m, write, preset, full, registers, more } = self;
+        let busy = registers[0].q;
+        let transfer = m.name("transfer", full.q & !wait & !busy);
+        let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
+        full.when(write, yes).when(transfer, no).else_hold();
+        m.name("call", more & !full.q);
+        m.name("at_end", !more & !full.q & !busy);
+        Block { words: m, load: transfer, preset_position: preset, busy, registers, write: Some(write) }
     }
 }

@@ -29,72 +29,102 @@ pub struct Change<'m> {
 /// Comparison-integral in two axes: the axis of the smaller interval is the base axis and steps always, the other
 /// steps where F >= 0.
 ///
-/// - `a`, `b`, unsigned: interval weights of an X and of a Y pulse.
-/// - `f`, two's complement: what the pulses of the base axis weigh, less those of the other.
-/// - `base`, 1 bit, X or Y: the base axis. Where a and b change places, it changes and F := -F.
 /// - `ex`, `ey`: end-point counters; an exhausted axis is inhibited, and the other forced.
+/// - What [`Weighing`] has.
 pub fn comparison_integral<'m>(m: Scope<'m>, block: Block<'m>, hardware: &Hardware, sides: [Side<'m>; 2]) {
-    let bits = |name: &str| hardware.bits(name);
     let beat = BeatRing::new(m, hardware.beats, block.busy);
-    let f = DeviationAccumulator::new(m, bits("f"));
-    let [a, b] = ["a", "b"].map(|name| m.reg(name, bits(name)));
-    let names = vec![(0, "X".to_owned()), (1, "Y".to_owned())];
-    let base = m.reg("base", 1).shown(Format::States(names));
+    let weighing = Weighing::new(m, hardware);
     let end = EndCounters::new(m, &block, hardware);
 
-    let y_is_base = || name("base");
-    m.between_steps("x_is_base", [name("b") - name("a"), y_is_base() - 1]);
-    m.between_steps("y_is_base", [name("a") - name("b"), -y_is_base()]);
-
     // Judge.
-    let [base_x, base_y] = [!base.q, base.q];
-    let taken = end.redirected([base_x | f.not_negative(), base_y | f.not_negative()]);
+    let taken = end.redirected(weighing.judged());
     let taken = [beat.decided("take_x", taken[0]), beat.decided("take_y", taken[1])];
 
     // Feed.
     for ((letter, side), taken) in ["x", "y"].into_iter().zip(sides).zip(taken) {
-        axis_counter(
-            m.scope(&format!("axis_{letter}")),
-            &block,
-            letter,
-            bits(letter),
-            beat.feed & taken,
-            side.negative,
-        );
+        let scope = m.scope(&format!("axis_{letter}"));
+        axis_counter(scope, &block, letter, hardware.bits(letter), beat.feed & taken, side.negative);
     }
 
-    // Compute: the weights behind the pulses, and F with the weight that the rule says.
-    let wide = bits("a").max(bits("b")) + 3;
-    let [word_a, word_b] = ["a", "b"].map(|name| block.word(name, bits(name)));
-    let intervals = [(a, word_a, taken[0], sides[0]), (b, word_b, taken[1], sides[1])];
-    let [(a_behind, a_weight), (b_behind, b_weight)] = intervals.map(|(register, word, taken, side)| {
-        let behind = moved(&block, beat.compute, register, taken, side.change);
-        register.when(block.load, word).when(beat.compute, behind).else_hold();
-        let zero = m.lit(wide, 0);
-        let weight = if side.change.is_some() {
-            weight(hardware.weights, register.q, behind, wide)
-        } else {
-            register.q.extend(wide)
-        };
-        (behind, taken.mux(weight, zero).as_signed())
-    });
-    let change = m.name("change", base_x.mux(a_weight.wrapping_sub(b_weight), b_weight.wrapping_sub(a_weight)));
-    let wide = bits("a").max(bits("b"));
-    let [a_behind, b_behind] = [a_behind.extend(wide), b_behind.extend(wide)];
-    let turn = m.name("turn", base_x.mux(b_behind.less_than(a_behind), a_behind.less_than(b_behind)));
-    // F + (-2F - change) is -(F + change).
-    let wide = change.bits().max(f.value().bits() + 1) + 1;
-    let [change, twice] = [change.extend(wide), f.value().concat(m.lit(1, 0)).extend(wide)];
-    let operand = turn.mux(negated(m, twice.wrapping_add(change)), change);
-    f.close_adding(&block, beat.compute, m.name("operand", operand));
-    let wide = word_a.bits().max(word_b.bits());
-    let starts_with_y = !word_a.extend(wide).less_than(word_b.extend(wide));
-    base.when(block.load, starts_with_y).when(beat.compute & turn, !base.q).else_hold();
+    // Compute.
+    weighing.close(&block, hardware.weights, beat.compute, taken, sides.map(|side| side.change));
 
     // Compare.
     let last = end.count(beat.compare, taken);
     beat.close(&block, last);
     block.close(block.load, beat.compare, last);
+}
+
+/// What comparison-integral weighs its pulses with.
+///
+/// - `a`, `b`, unsigned: interval weights of an X and of a Y pulse.
+/// - `f`, two's complement: what the pulses of the base axis weigh, less those of the other.
+/// - `base`, 1 bit, X or Y: the base axis. Where a and b change places, it changes and F := -F.
+#[derive(Clone, Copy, Debug)]
+pub struct Weighing<'m> {
+    m: Scope<'m>,
+    f: DeviationAccumulator<'m>,
+    weights: [Register<'m>; 2],
+    base: Register<'m>,
+}
+
+impl<'m> Weighing<'m> {
+    /// The registers.
+    #[must_use]
+    pub fn new(m: Scope<'m>, hardware: &Hardware) -> Weighing<'m> {
+        let f = DeviationAccumulator::new(m, hardware.bits("f"));
+        let weights = ["a", "b"].map(|name| m.reg(name, hardware.bits(name)));
+        let names = vec![(0, "X".to_owned()), (1, "Y".to_owned())];
+        let base = m.reg("base", 1).shown(Format::States(names));
+        let y_is_base = || name("base");
+        m.between_steps("x_is_base", [name("b") - name("a"), y_is_base() - 1]);
+        m.between_steps("y_is_base", [name("a") - name("b"), -y_is_base()]);
+        Weighing { m, f, weights, base }
+    }
+
+    /// 1 bit each: x and y step, but for the end point.
+    #[must_use]
+    pub fn judged(&self) -> [Signal<'m>; 2] {
+        [!self.base.q | self.f.not_negative(), self.base.q | self.f.not_negative()]
+    }
+
+    /// Closes it: at an edge with `compute` = 1 the axes taken (1 bit each) have pulses, which change their weights.
+    pub fn close(
+        self,
+        block: &Block<'m>,
+        rule: Weights,
+        compute: Signal<'m>,
+        taken: [Signal<'m>; 2],
+        changes: [Option<Change<'m>>; 2],
+    ) {
+        let Weighing { m, f, weights: [a, b], base } = self;
+        let base_x = !base.q;
+        let bits = |register: Register<'m>| register.q.bits();
+        // The weights behind the pulses, and F with the weight that the rule says.
+        let wide = bits(a).max(bits(b)) + 3;
+        let [word_a, word_b] = [("a", a), ("b", b)].map(|(name, register)| block.word(name, bits(register)));
+        let intervals = [(a, word_a, taken[0], changes[0]), (b, word_b, taken[1], changes[1])];
+        let [(a_behind, a_weight), (b_behind, b_weight)] = intervals.map(|(register, word, taken, change)| {
+            let behind = moved(block, compute, register, taken, change);
+            register.when(block.load, word).when(compute, behind).else_hold();
+            let zero = m.lit(wide, 0);
+            let weight =
+                if change.is_some() { weight(rule, register.q, behind, wide) } else { register.q.extend(wide) };
+            (behind, taken.mux(weight, zero).as_signed())
+        });
+        let change = m.name("change", base_x.mux(a_weight.wrapping_sub(b_weight), b_weight.wrapping_sub(a_weight)));
+        let wide = bits(a).max(bits(b));
+        let [a_behind, b_behind] = [a_behind.extend(wide), b_behind.extend(wide)];
+        let turn = m.name("turn", base_x.mux(b_behind.less_than(a_behind), a_behind.less_than(b_behind)));
+        // F + (-2F - change) is -(F + change).
+        let wide = change.bits().max(f.value().bits() + 1) + 1;
+        let [change, twice] = [change.extend(wide), f.value().concat(m.lit(1, 0)).extend(wide)];
+        let operand = turn.mux(negated(m, twice.wrapping_add(change)), change);
+        f.close_adding(block, compute, m.name("operand", operand));
+        let wide = word_a.bits().max(word_b.bits());
+        let starts_with_y = !word_a.extend(wide).less_than(word_b.extend(wide));
+        base.when(block.load, starts_with_y).when(compute & turn, !base.q).else_hold();
+    }
 }
 
 /// An interval weight behind a step.

@@ -88,7 +88,7 @@ pub struct Place {
 pub enum Feed {
     /// G00: as fast as the machine runs.
     Rapid,
-    /// G94: along the programmed contour, in mm/min.
+    /// G94: of the tool's centre along its way, in mm/min.
     PerMinute(f64),
     /// G93: the block takes one such part of a minute, in 1/min.
     Inverse(f64),

@@ -1,0 +1,35 @@
+//! The third axis of a machine that interpolates in a plane.
+
+use stepwave_kernel::dsl::{Scope, Signal};
+
+use super::Block;
+
+/// Spreads the pulses of a third axis over those of the two axes in the plane: `share` out of `whole`.
+///
+/// - `whole`, `bits` bits: pulses of both axes in the block. `share`, `bits` bits: those of the third axis, at most half
+///   of them. `rest`, `bits` bits: loaded with half of `whole`.
+///
+/// At an edge with `step` = 1 every pulse of the plane (`taken`, 1 bit each) adds `share` to `rest`; where `whole` is
+/// reached it is taken off, and the third axis has a pulse, 1 bit, which is returned. Behind all pulses of the block the
+/// third axis has had its share exactly, and never stood more than a pulse off it.
+#[must_use]
+pub fn follower<'m>(
+    m: Scope<'m>,
+    block: &Block<'m>,
+    bits: u32,
+    step: Signal<'m>,
+    taken: [Signal<'m>; 2],
+) -> Signal<'m> {
+    let m = m.scope("follower");
+    let [whole, share] = ["whole", "share"].map(|name| block.held(m, name, bits));
+    let rest = m.reg("rest", bits);
+    let wide = bits + 2;
+    let zero = m.lit(wide, 0);
+    let [first, second] = taken.map(|taken| taken.mux(share.extend(wide), zero));
+    let sum = m.name("sum", rest.q.extend(wide).wrapping_add(first).wrapping_add(second));
+    let (borrow, less) = sum.borrowing_sub(whole.extend(wide));
+    let pulse = m.name("pulse", step & !borrow);
+    let next = borrow.mux(sum, less).slice(0, bits);
+    rest.when(block.load, block.word("rest", bits)).when(step, next).else_hold();
+    pulse
+}

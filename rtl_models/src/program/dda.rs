@@ -1,0 +1,153 @@
+//! The machine of the digital differential analyser (数字积分法): a pair of integrators for lines and arcs.
+//!
+//! ```text
+//!   host ──► next block, normalised in the buffer ──► block
+//!            jvx ──► + ──► jrx   carry ──► first axis ──┬──► ex ──┐
+//!             ▲ ±unit on a pulse of the other (arc)     │         ├──► end of the block
+//!            jvy ──► + ──► jry   carry ──► second axis ─┴──► ey ──┘      x, y, z
+//!   rate ──► phase ──► step
+//! ```
+//!
+//! A line loads J_VX = abs(dx), J_VY = abs(dy), which stay; an arc J_VX = abs(y), J_VY = abs(x), which pulses of the
+//! other axis change. An exhausted axis stops adding. Where one axis is exhausted and the integrand of the other is 0, the
+//! other steps at once: beside an axis an arc would come to a stand there otherwise. Normalised, the integrands of the
+//! *next* block shift left in the buffer while the present one runs, until one has its highest bit set, on an arc its
+//! second highest.
+
+use stepwave_kernel::dsl::{Module, Register, Scope, Signal};
+use stepwave_kernel::{Netlist, Width};
+use stepwave_nc::{Crossing, Curve, PulseBlock};
+
+use super::frame::Frame;
+use super::{Family, HardwareBlock, Size, planar};
+use crate::choices::{Choice, Choices};
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::hardware::names::{JR, JV};
+use crate::model::ChoiceDoc;
+use crate::parts::{Buffer, Iteration, integrator, shifted_left, up_down_counter};
+
+pub(super) const FAMILY: Family = Family {
+    name: "dda",
+    title: "Digital differential analyser",
+    arcs: true,
+    crossing: Crossing::RoundedRadius,
+    direct: false,
+    choices: &[
+        ChoiceDoc::WIDTH,
+        ChoiceDoc { choice: Choice::Preset, values: "half (default) | zero | full | N" },
+        ChoiceDoc { choice: Choice::Normalize, values: "left-shift normalisation (default: none)" },
+        ChoiceDoc::ON_OVERFLOW,
+    ],
+    plan,
+    netlist,
+    words,
+    error_bound: |_| None,
+};
+
+fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
+    let mut registers = planar::registers(&FAMILY, size, choices);
+    // Normalised, the integrands of an arc keep a bit free.
+    let n = planar::bits(size, choices) + u32::from(choices.normalize && choices.width.is_none());
+    for axis in [0, 1] {
+        registers.register(JV[axis], n).register(JR[axis], n);
+    }
+    registers.shown("unit");
+    let mut hardware = planar::hardware(registers, size, n)?;
+    let widths = [JV[0], JV[1], JR[0], JR[1]].map(|name| hardware.bits(name));
+    if widths.iter().any(|&bits| bits != widths[0]) {
+        return Err(ModelError::Widths(format!(
+            "{}: jvx, jvy, jrx and jry share one scale and must be equally wide: give one --width",
+            FAMILY.name
+        )));
+    }
+    hardware.scale = &["jv", "jr"];
+    hardware.stall_clocks = 0;
+    Ok(hardware)
+}
+
+/// The words of the integrands in the buffer, normalised there.
+struct Normalized<'m> {
+    integrands: [Signal<'m>; 2],
+    unit: Signal<'m>,
+    /// 1 bit: it is still shifting.
+    shifting: Signal<'m>,
+}
+
+fn normalized<'m>(m: Scope<'m>, buffer: &Buffer<'m>, bits: u32, normalize: bool) -> Normalized<'m> {
+    let m = m.scope("normalizer");
+    let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
+    let next = ["jvx", "jvy"].map(|name| (m.reg(&format!("next_{name}"), bits), buffer.word(name, bits)));
+    let unit = m.reg("next_unit", bits);
+    let (shifting, shift) = if normalize {
+        let busy = m.reg("normalizing", 1);
+        let arc = m.reg("next_is_arc", 1);
+        arc.when(buffer.write, buffer.word("arc", 1)).else_hold();
+        let any = next[0].0.q | next[1].0.q;
+        let top = any.msb() | arc.q & any.bit(bits.saturating_sub(2));
+        busy.when(buffer.write, yes).when(top, no).else_hold();
+        (busy.q, busy.q & !top)
+    } else {
+        (no, no)
+    };
+    let close = |register: Register<'m>, word: Signal<'m>| {
+        register.when(buffer.write, word).when(shift, shifted_left(m, register.q)).else_hold();
+        register.q
+    };
+    let integrands = next.map(|(register, word)| close(register, word));
+    Normalized { integrands, unit: close(unit, m.lit(bits, 1)), shifting }
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("dda_machine", hardware.on_overflow);
+    let m = module.top();
+    let bits = hardware.bits(JV[0]);
+    let buffer = Buffer::new(m);
+    let next = normalized(m, &buffer, bits, hardware.normalize);
+    let frame = Frame::new(m, hardware, buffer, next.shifting);
+    let block = frame.block;
+    let unit = m.reg("unit", bits);
+    unit.when(block.load, next.unit).else_hold();
+    let scopes = ["integrator_x", "integrator_y"].map(|name| m.scope(name));
+    let jv = [0, 1].map(|axis| scopes[axis].reg(JV[axis], bits));
+
+    // Both integrators add with the old integrands; an exhausted axis freezes its remainder.
+    let open = frame.open();
+    let pulses = [0, 1].map(|axis| {
+        let add = frame.step & open[axis];
+        let iteration = Iteration { add, complete: add };
+        let carry = integrator(scopes[axis], &block, hardware, axis, jv[axis].q, iteration);
+        let stands = !open[1 - axis] & jv[axis].q.is_zero();
+        scopes[axis].name("taken", carry | open[axis] & stands)
+    });
+
+    // A pulse of one axis corrects the integrand of the other.
+    let grows = frame.grows();
+    for axis in [0, 1] {
+        let (other, pulse) = (1 - axis, frame.step & frame.arc & pulses[1 - axis]);
+        let load = [(block.load, next.integrands[axis])];
+        up_down_counter(jv[axis], &load, pulse & grows[other], pulse & !grows[other], unit.q);
+    }
+
+    frame.close(hardware, pulses);
+    Ok(module.finish()?)
+}
+
+fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+    let bits = hardware.bits(JV[0]);
+    planar::blocks(&FAMILY, block, |at| {
+        let arc = !matches!(block.curve, Curve::Line(_));
+        let [x, y] = if arc { [at.start[1], at.start[0]] } else { at.pulses };
+        let mut words = vec![("jvx", x), ("jvy", y)];
+        words.extend([("jrx", hardware.preset(0, "jrx")), ("jry", hardware.preset(1, "jry"))]);
+        let mut shift = 0;
+        if hardware.normalize {
+            words.push(("arc", i128::from(arc)));
+            let needed = Width::needed_unsigned(x.max(y).unsigned_abs());
+            shift = bits.saturating_sub(needed + u32::from(arc));
+        }
+        // 2^(n - Q) iterations make a radian, or a whole line.
+        let iterations = 2f64.powi(bits.saturating_sub(shift).cast_signed());
+        (words, if arc { at.angle * iterations } else { iterations })
+    })
+}

@@ -1,0 +1,87 @@
+//! The machine of the digital pulse multiplier (数字脉冲乘法器): one counter, a coefficient for each of three axes.
+//!
+//! ```text
+//!   host ──► next block ──► block
+//!   rate ──► phase ──► step ──► counter q ──► stages ──┬─ & mx ─► OR ──► x
+//!                                  │                   ├─ & my ─► OR ──► y
+//!                                  └──► carry ──► end  └─ & mz ─► OR ──► z
+//! ```
+//!
+//! A pulse multiplier draws lines: the control gives it the chords of an arc.
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Crossing, PulseBlock};
+
+use super::{Family, HardwareBlock, Size, planar};
+use crate::choices::{Choices, EndPoint, Radix};
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::hardware::names::{COEFFICIENT, SIGN};
+use crate::model::ChoiceDoc;
+use crate::parts::{Buffer, RateMultiplier, Units, axis_counter, pulse_source};
+use crate::registers::Registers;
+
+pub(super) const FAMILY: Family = Family {
+    name: "dpm",
+    title: "Digital pulse multiplier",
+    arcs: false,
+    crossing: Crossing::RoundedRadius,
+    direct: false,
+    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ON_OVERFLOW],
+    plan,
+    netlist,
+    words,
+    error_bound: |_| None,
+};
+
+fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
+    let n = planar::bits(size, choices);
+    let mut registers = Registers::new(FAMILY.name, choices);
+    registers.register("q", n);
+    for name in &COEFFICIENT[..3] {
+        registers.register(*name, n);
+    }
+    registers.positions(size.positions.iter().map(|reach| reach.to_vec()));
+    let mut hardware = registers.hardware(3, EndPoint::Iterations)?;
+    let counter = hardware.bits("q");
+    if COEFFICIENT[..3].iter().any(|name| hardware.bits(name) != counter) {
+        return Err(ModelError::Widths(format!(
+            "{}: q, mx, my and mz share one scale and must be equally wide: give one --width",
+            FAMILY.name
+        )));
+    }
+    hardware.scale = &["m"];
+    hardware.stall_clocks = 0;
+    Ok(hardware)
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("dpm_machine", hardware.on_overflow);
+    let m = module.top();
+    let bits = hardware.bits("q");
+    let buffer = Buffer::new(m);
+    let block = buffer.block(m.lit(1, 0));
+    let step = m.name("step", pulse_source(m, &block, buffer.full()) & block.busy);
+    let units = Units { radix: Radix::Binary, bits, count: 1 };
+    let counter = RateMultiplier::new(m.scope("counter"), &block, "q", units, step);
+    for (axis, letter) in hardware.letters().iter().enumerate() {
+        let scope = m.scope(&format!("axis_{letter}"));
+        let coefficient = block.held(scope, COEFFICIENT[axis], bits);
+        let negative = block.held(scope, SIGN[axis], 1);
+        let pulse = scope.name("pulse", counter.gated(scope, coefficient));
+        axis_counter(scope, &block, letter, hardware.bits(letter), pulse, negative);
+    }
+    block.close(block.load, step, counter.carry);
+    Ok(module.finish()?)
+}
+
+fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+    let way = |axis: usize| i128::from(block.to[axis]) - i128::from(block.from[axis]);
+    let words = (0..3).flat_map(|axis| {
+        let way = way(axis);
+        [(COEFFICIENT[axis], way.abs()), (SIGN[axis], i128::from(way < 0))]
+    });
+    let steps = 2f64.powi(hardware.bits("q").cast_signed());
+    vec![HardwareBlock { words: words.collect(), steps, length: block.curve.length() }]
+}

@@ -1,0 +1,92 @@
+//! What every machine that runs whole programs has around its interpolator.
+
+use stepwave_kernel::dsl::{Module, Register, Scope, Signal};
+use stepwave_kernel::netlist::Format;
+
+use crate::hardware::Hardware;
+use crate::parts::{
+    Block, Buffer, DownCounter, Kind, Motion, distributor, follower, pulse_source, quadrant_register, up_down_counter,
+};
+
+/// Block buffer, pulse source, mode and quadrant of a machine that interpolates in a plane.
+///
+/// - `mode`, 1 bit: LINE or ARC. `quad`, 2 bits: the quadrant of an arc's sector, or the one that a line runs into, Q1 = 0;
+///   `ccw`, 1 bit.
+/// - `ex`, `ey`: pulses of the first and second axis of the plane that are left.
+/// - `plane`, and the axes of the machine behind the pulse distributor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame<'m> {
+    pub(super) m: Scope<'m>,
+    pub(super) block: Block<'m>,
+    /// 1 bit: the interpolator takes a step at this edge.
+    pub(super) step: Signal<'m>,
+    /// 1 bit: the block is an arc.
+    pub(super) arc: Signal<'m>,
+    /// 1 bit: the first coordinate grows along the arc and the second shrinks; 0 on a line.
+    pub(super) x_grows: Signal<'m>,
+    negative: [Signal<'m>; 2],
+    end: [DownCounter<'m>; 2],
+}
+
+impl<'m> Frame<'m> {
+    /// The registers. The block waits in its buffer while `wait` (1 bit) is 1.
+    pub(super) fn new(m: Scope<'m>, hardware: &Hardware, buffer: Buffer<'m>, wait: Signal<'m>) -> Frame<'m> {
+        let block = buffer.block(wait);
+        let step = pulse_source(m, &block, buffer.full() & !wait);
+        let modes = vec![(0, "LINE".to_owned()), (1, "ARC".to_owned())];
+        let mode = m.reg("mode", 1).shown(Format::States(modes));
+        mode.when(block.load, block.word("mode", 1)).else_hold();
+        let arc = mode.q;
+        let quad = quadrant_register(m);
+        quad.when(block.load, block.word("quad", 2)).else_hold();
+        let kind = Kind::decode(m.scope("quadrant"), quad.q, block.held(m, "ccw", 1));
+        // A line into Q2 or Q3 has negative x, one into Q3 or Q4 negative y.
+        let (low, high) = (quad.q.bit(0), quad.q.bit(1));
+        let negative = [arc.mux(kind.x_negative, low ^ high), arc.mux(kind.y_negative, high)];
+        let end = ["ex", "ey"].map(|name| DownCounter::new(m, &block, name, hardware.bits(name)));
+        Frame { m, block, step: m.name("step", step & block.busy), arc, x_grows: kind.x_grows & arc, negative, end }
+    }
+
+    /// 1 bit each: the axis has pulses left.
+    pub(super) fn open(&self) -> [Signal<'m>; 2] {
+        self.end.map(|counter| counter.running())
+    }
+
+    /// The axes that the judgement takes (1 bit each), but an exhausted axis hands its step to the other.
+    pub(super) fn redirected(&self, [x, y]: [Signal<'m>; 2]) -> [Signal<'m>; 2] {
+        let [x_open, y_open] = self.open();
+        [x_open & (x | !y_open), y_open & (y | !x_open)]
+    }
+
+    /// 1 bit each: the coordinate grows along an arc.
+    pub(super) fn grows(&self) -> [Signal<'m>; 2] {
+        [self.x_grows, self.arc & !self.x_grows]
+    }
+
+    /// Closes a pair of registers that hold the ways of a line, and count the coordinates of an arc: those of the axes
+    /// taken (1 bit each) change by one.
+    pub(super) fn coordinates(&self, registers: [(Register<'m>, &str); 2], taken: [Signal<'m>; 2]) {
+        for (((register, name), taken), grows) in registers.into_iter().zip(taken).zip(self.grows()) {
+            let count = self.step & self.arc & taken;
+            let load = [(self.block.load, self.block.word(name, register.q.bits()))];
+            up_down_counter(register, &load, count & grows, count & !grows, self.m.lit(1, 1));
+        }
+    }
+
+    /// Closes feed, end counters and block: a step gives the axes taken (1 bit each) a pulse.
+    pub(super) fn close(self, hardware: &Hardware, taken: [Signal<'m>; 2]) {
+        let Frame { m, block, step, negative, end: [ex, ey], .. } = self;
+        let third = follower(m, &block, hardware.bits("whole"), step, taken);
+        let third_negative = block.held(m, "sw", 1);
+        let [first, second] = [0, 1].map(|axis| Motion { pulse: step & taken[axis], negative: negative[axis] });
+        distributor(m, &block, hardware, [first, second, Motion { pulse: third, negative: third_negative }]);
+        let last = ex.count(step & taken[0]) & ey.count(step & taken[1]);
+        block.close(block.load, step, last);
+    }
+}
+
+/// A module with a buffer that is ready as soon as it is full.
+pub(super) fn plain<'m>(module: &'m Module, hardware: &Hardware) -> Frame<'m> {
+    let m = module.top();
+    Frame::new(m, hardware, Buffer::new(m), m.lit(1, 0))
+}

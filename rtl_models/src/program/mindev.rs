@@ -1,0 +1,103 @@
+//! The machine of minimum deviation (最小偏差法): one accumulator F for lines and arcs.
+//!
+//! ```text
+//!   host ──► next block ──► block
+//!            xi, yi ──┬─ gains of x², y² (arc) ─► F1, F2, F3 ─► least |F| ─┐
+//!                     └─ 2S, 2(S - L) (line) ──────────────────────────────┴─► F ─► axes taken ──► x, y, z
+//!   rate ──► phase ──► step                                                          └──► ex, ey ──► end of the block
+//! ```
+//!
+//! `xi`, `yi` hold the ways of a line, or count the coordinates of an arc. F is D = 2S - L of a line, or x² + y² - R².
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Crossing, Curve, PulseBlock};
+
+use super::{Family, HardwareBlock, Size, planar};
+use crate::choices::Choices;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::model::ChoiceDoc;
+use crate::parts::{DeviationAccumulator, magnitude, negated, square_gain};
+
+pub(super) const FAMILY: Family = Family {
+    name: "mindev",
+    title: "Minimum deviation",
+    arcs: true,
+    crossing: Crossing::RoundedRadius,
+    direct: true,
+    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ON_OVERFLOW],
+    plan,
+    netlist,
+    words,
+    error_bound: |block| match &block.curve {
+        // Beside an end point off the circle, forced steps lead away from it.
+        Curve::Arc(arc) if !arc.ends_on_circle() => Some(1.5),
+        Curve::Helix(helix) if !helix.arc().ends_on_circle() => Some(1.5),
+        _ => Some(0.5),
+    },
+};
+
+fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
+    let mut registers = planar::registers(&FAMILY, size, choices);
+    let n = planar::bits(size, choices);
+    registers.register("f", n + 2).register("xi", n).register("yi", n);
+    planar::hardware(registers, size, n)
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("mindev_machine", hardware.on_overflow);
+    let frame = super::frame::plain(&module, hardware);
+    let m = frame.m;
+    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let [xi, yi] = ["xi", "yi"].map(|name| m.reg(name, hardware.bits(name)));
+    let bits = xi.q.bits().max(yi.q.bits());
+    let [x, y] = [xi, yi].map(|register| register.q.extend(bits));
+    let wide = f.value().bits().max(bits + 2) + 2;
+
+    // Judge an arc: F behind each of the three steps, and the least of their magnitudes.
+    let [x_grows, y_grows] = frame.grows();
+    let [gain_x, gain_y] = [(x, x_grows), (y, y_grows)].map(|(c, grows)| {
+        let gain = square_gain(m, c, grows).extend(wide).as_signed();
+        grows.mux(gain, negated(m, gain))
+    });
+    let now = f.value().extend(wide);
+    let f1 = m.name("f1", now.wrapping_add(gain_x));
+    let f2 = m.name("f2", now.wrapping_add(gain_y));
+    let f3 = m.name("f3", f1.wrapping_add(gain_y));
+    let [m1, m2, m3] = [f1, f2, f3].map(|f| magnitude(m, f));
+    let (beaten, by_y) = (m1.less_than(m3) | m2.less_than(m3), !m1.less_than(m2));
+
+    // Judge a line: the long axis always, the other where D >= 0.
+    let x_is_longest = m.name("x_is_longest", !x.less_than(y));
+    let diagonal = f.not_negative();
+    let judged = [
+        frame.arc.mux(!beaten | !by_y, x_is_longest | diagonal),
+        frame.arc.mux(!beaten | by_y, !x_is_longest | diagonal),
+    ];
+    let [take_x, take_y] = frame.redirected(judged);
+    let taken = [m.name("take_x", take_x), m.name("take_y", take_y)];
+
+    // Compute.
+    let zero = m.lit_signed(wide, 0);
+    let of_arc = taken[0].mux(gain_x, zero).wrapping_add(taken[1].mux(gain_y, zero));
+    let [long, short] = [x_is_longest.mux(x, y), x_is_longest.mux(y, x)];
+    let [long, short] = [long, short].map(|way| way.extend(wide - 1).as_signed());
+    let of_line = diagonal.mux(short.wrapping_sub(long), short).concat(m.lit(1, 0)).as_signed();
+    f.close_adding(&frame.block, frame.step, m.name("operand", frame.arc.mux(of_arc, of_line)));
+    frame.coordinates([(xi, "xi"), (yi, "yi")], taken);
+
+    frame.close(hardware, taken);
+    Ok(module.finish()?)
+}
+
+fn words(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+    planar::blocks(&FAMILY, block, |at| {
+        let [x, y] = at.pulses;
+        let words = match block.curve {
+            Curve::Line(_) => vec![("f", 2 * x.min(y) - x.max(y)), ("xi", x), ("yi", y)],
+            _ => vec![("f", at.deviation), ("xi", at.start[0]), ("yi", at.start[1])],
+        };
+        (words, planar::longest_steps(at))
+    })
+}

@@ -1,0 +1,123 @@
+//! Machines that run whole NC programs: one netlist a family of methods, for lines and arcs in three planes.
+//!
+//! The host loads the next block into a buffer while the present one runs ([`Buffer`](crate::parts::Buffer)); a rate
+//! generator on the clock paces the interpolator ([`pulse_source`](crate::parts::pulse_source)); line and arc share its
+//! registers; a distributor hands the pulses of the plane's axes to x, y and z; a third axis follows those of the plane.
+//! Every step is one clock, and the clock behind the last step of a block loads the next, while the phase of the pulse
+//! source goes on: pulses keep their distance across blocks.
+
+mod cim;
+mod dda;
+mod dpm;
+mod frame;
+mod mindev;
+mod planar;
+mod ppc;
+
+use stepwave_kernel::Netlist;
+use stepwave_nc::{Crossing, Curve, PulseBlock};
+
+use crate::choices::Choices;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::machine::{Machine, Words};
+use crate::model::ChoiceDoc;
+
+/// What the registers of a machine must hold for all blocks of a program.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Size {
+    /// The longest way of an axis in a line, and the largest coordinate of an arc about its centre, in BLU.
+    pub magnitude: u64,
+    /// Least and greatest position of each axis, in BLU.
+    pub positions: [[i64; 2]; 3],
+}
+
+impl Size {
+    /// Takes one more block in.
+    pub fn add(&mut self, family: &Family, block: &PulseBlock) {
+        for (all, [low, high]) in self.positions.iter_mut().zip(block.reach()) {
+            *all = [all[0].min(low), all[1].max(high)];
+        }
+        let arc = match &block.curve {
+            Curve::Arc(arc) => Some(arc),
+            Curve::Helix(helix) => Some(helix.arc()),
+            Curve::Line(_) | Curve::Conic(_) => None,
+        };
+        let ways = (0..3).map(|axis| block.from[axis].abs_diff(block.to[axis]));
+        let sectors = arc.map(|arc| arc.sectors(family.crossing)).unwrap_or_default();
+        let magnitude = crate::plan::largest_coordinate(&sectors).max(ways.max().unwrap_or(0));
+        self.magnitude = self.magnitude.max(magnitude);
+    }
+}
+
+/// What a machine is loaded with once: a line, or a sector of an arc.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HardwareBlock {
+    /// The words, but the rate of the pulse source.
+    pub words: Words,
+    /// Steps that the interpolator takes, as its method has them: those of the pulse source in the block.
+    pub steps: f64,
+    /// The way of the tool, in BLU.
+    pub length: f64,
+}
+
+impl HardwareBlock {
+    fn has_pulses(&self) -> bool {
+        self.words.iter().any(|&(name, value)| name == "whole" && value > 0)
+    }
+}
+
+/// A family of methods whose machine runs whole programs.
+#[derive(Debug)]
+pub struct Family {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// One line.
+    pub title: &'static str,
+    /// It interpolates arcs; else the control gives it chords.
+    pub arcs: bool,
+    /// Where arcs are split.
+    pub crossing: Crossing,
+    /// A commanded feed sets the frequency of the pulse source, f_g = v / (60 δ), whatever the direction of the block;
+    /// else it is a feed rate number: f_g makes the block take the time that the feed wants.
+    pub direct: bool,
+    /// The choices that it takes.
+    pub choices: &'static [ChoiceDoc],
+    plan: fn(&Size, &Choices) -> Result<Hardware, ModelError>,
+    netlist: fn(&Hardware) -> Result<Netlist, ModelError>,
+    words: fn(&Hardware, &PulseBlock) -> Vec<HardwareBlock>,
+    /// Greatest distance from the curve that the method promises, in BLU, if it promises one.
+    pub error_bound: fn(&PulseBlock) -> Option<f64>,
+}
+
+/// Every family with a machine.
+pub const FAMILIES: [&Family; 5] = [&ppc::FAMILY, &dda::FAMILY, &dpm::FAMILY, &cim::FAMILY, &mindev::FAMILY];
+
+impl Family {
+    /// Fixes every choice for a program of this size.
+    ///
+    /// # Errors
+    /// The family does not take a choice, or a width is impossible.
+    pub fn plan(&self, size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
+        let taken = |choice: &crate::choices::Choice| self.choices.iter().any(|doc| doc.choice == *choice);
+        if let Some(choice) = choices.given().into_iter().find(|choice| !taken(choice)) {
+            let options: Vec<_> = self.choices.iter().map(|doc| doc.choice.option()).collect();
+            return Err(ModelError::NotTaken { model: self.name, choice, takes: options.join(", ") });
+        }
+        (self.plan)(size, choices)
+    }
+
+    /// The netlist of this hardware, elaborated.
+    ///
+    /// # Errors
+    /// The machine itself is wrong.
+    pub fn machine(&self, hardware: &Hardware) -> Result<Machine, ModelError> {
+        Machine::new((self.netlist)(hardware)?, hardware)
+    }
+
+    /// What the machine is loaded with for a block of the program, in order.
+    #[must_use]
+    pub fn words(&self, hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+        (self.words)(hardware, block)
+    }
+}

@@ -1,0 +1,155 @@
+//! What is loaded into every machine that interpolates in a plane.
+
+use stepwave_nc::{Arc, Curve, Direction, Plane, PulseBlock, Sector};
+
+use super::{Family, HardwareBlock, Size};
+use crate::choices::{Choices, EndPoint};
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::machine::Words;
+use crate::plan;
+use crate::registers::Registers;
+
+/// A line, or one sector of an arc, as its machine starts it.
+pub(super) struct Start {
+    /// Pulses of the first and the second axis of the plane.
+    pub(super) pulses: [i128; 2],
+    /// Magnitudes of the coordinates about the centre, in BLU; 0 on a line.
+    pub(super) start: [i128; 2],
+    /// x² + y² - R² there, in BLU²; 0 on a line.
+    pub(super) deviation: i128,
+    /// The first coordinate grows along the sector.
+    pub(super) x_grows: bool,
+    /// The angle of the sector in radians; 0 on a line.
+    pub(super) angle: f64,
+}
+
+/// Bits of a magnitude register.
+pub(super) fn bits(size: &Size, choices: &Choices) -> u32 {
+    plan::magnitude_bits(choices, size.magnitude)
+}
+
+/// The registers that stand first in the step table.
+pub(super) fn registers<'a>(family: &Family, _: &Size, choices: &'a Choices) -> Registers<'a> {
+    let mut registers = Registers::new(family.name, choices);
+    registers.shown("mode").shown("plane").shown("quad");
+    registers
+}
+
+/// Hardware with the registers of end point, third axis and positions.
+pub(super) fn hardware(mut registers: Registers<'_>, size: &Size, n: u32) -> Result<Hardware, ModelError> {
+    registers.end_counters(2, n);
+    registers.hidden("whole", n + 1);
+    registers.positions(size.positions.iter().map(|reach| reach.to_vec()));
+    let mut hardware = registers.hardware(3, EndPoint::PerAxis)?;
+    hardware.presets = vec![choices_preset(&registers); 3];
+    Ok(hardware)
+}
+
+fn choices_preset(registers: &Registers<'_>) -> crate::choices::Preset {
+    registers.preset().unwrap_or(crate::choices::Preset::Half)
+}
+
+/// The blocks of the machine for a block of the program: one for a line, one for each sector of an arc. `own` gives the
+/// words of the family, and the steps that the interpolator takes.
+pub(super) fn blocks(family: &Family, block: &PulseBlock, own: impl Fn(&Start) -> (Words, f64)) -> Vec<HardwareBlock> {
+    match &block.curve {
+        Curve::Line(line) => {
+            let delta: Vec<i128> = line.delta().into_iter().map(i128::from).collect();
+            let [dx, dy, third] = [0, 1, 2].map(|axis| delta.get(axis).copied().unwrap_or(0));
+            let start = Start { pulses: [dx.abs(), dy.abs()], start: [0; 2], deviation: 0, x_grows: false, angle: 0.0 };
+            let quad = match (dx < 0, dy < 0) {
+                (false, false) => 0,
+                (true, false) => 1,
+                (true, true) => 2,
+                (false, true) => 3,
+            };
+            let (words, steps) = own(&start);
+            let common = common(block, [("mode", 0), ("quad", quad), ("ccw", 0)], start.pulses, third);
+            vec![HardwareBlock { words: [words, common].concat(), steps, length: line.length() }]
+        }
+        Curve::Arc(arc) => sectors(family, block, arc, |_, _| 0, &own),
+        Curve::Helix(helix) => {
+            let all = helix.sectors();
+            let sign = helix.z_way().signum();
+            let third = |index: usize, _: &Sector| {
+                let behind = all.get(index).map_or(0, |sector| sector.z_steps);
+                let before = index.checked_sub(1).and_then(|index| all.get(index)).map_or(0, |sector| sector.z_steps);
+                i128::from(sign * (behind - before))
+            };
+            sectors(family, block, helix.arc(), third, &own)
+        }
+        Curve::Conic(_) => Vec::new(),
+    }
+}
+
+fn sectors(
+    family: &Family,
+    block: &PulseBlock,
+    arc: &Arc,
+    third: impl Fn(usize, &Sector) -> i128,
+    own: &impl Fn(&Start) -> (Words, f64),
+) -> Vec<HardwareBlock> {
+    let all = arc.sectors(family.crossing);
+    let ways: Vec<i128> = all.iter().enumerate().map(|(index, sector)| third(index, sector)).collect();
+    let begin = |(sector, third): (&Sector, i128)| {
+        let [x, y] = sector.start.map(i128::from);
+        let [start, end] = [sector.start, sector.end].map(|point| point.map(|c| c as f64));
+        let turn = start[0] * end[1] - start[1] * end[0];
+        let angle = turn.abs().atan2(start[0] * end[0] + start[1] * end[1]);
+        let at = Start {
+            pulses: sector.steps().map(i128::from),
+            start: [x.abs(), y.abs()],
+            deviation: x * x + y * y - arc.radius_squared(),
+            x_grows: sector.quadrant.growing_axis(arc.direction()) == 0,
+            angle,
+        };
+        let ccw = i128::from(arc.direction() == Direction::CounterClockwise);
+        let mode = [("mode", 1), ("quad", i128::from(sector.quadrant.index())), ("ccw", ccw)];
+        let (words, steps) = own(&at);
+        let length = f64::hypot(arc.radius() * angle, third as f64);
+        HardwareBlock { words: [words, common(block, mode, at.pulses, third)].concat(), steps, length }
+    };
+    all.iter().zip(ways).map(begin).filter(|block| block.has_pulses()).collect()
+}
+
+/// Words that every machine in a plane has.
+fn common(block: &PulseBlock, mode: [(&'static str, i128); 3], [ex, ey]: [i128; 2], third: i128) -> Words {
+    let plane = match block.plane {
+        Plane::Xy => 0,
+        Plane::Zx => 1,
+        Plane::Yz => 2,
+    };
+    let whole = ex + ey;
+    let own = [
+        ("plane", plane),
+        ("ex", ex),
+        ("ey", ey),
+        ("whole", whole),
+        ("share", third.abs()),
+        ("rest", whole / 2),
+        ("sw", i128::from(third < 0)),
+    ];
+    mode.into_iter().chain(own).collect()
+}
+
+/// Steps of a motion that always moves its faster axis: of a sector, ∫ max(|cos|, |sin|) R dφ.
+pub(super) fn longest_steps(at: &Start) -> f64 {
+    let [ex, ey] = at.pulses.map(|pulses| pulses as f64);
+    if at.angle == 0.0 {
+        return ex.max(ey);
+    }
+    // Where the sector passes 45° the axes change their parts: |x| + |y| at its ends and √2·R between tell how far.
+    let [x, y] = at.start.map(|c| c as f64);
+    let radius = f64::hypot(x, y);
+    let (end_x, end_y) = if at.x_grows { (x + ex, y - ey) } else { (x - ex, y + ey) };
+    let diagonal = radius / std::f64::consts::SQRT_2;
+    let passes = (x < y) != (end_x < end_y);
+    if !passes {
+        return ex.max(ey);
+    }
+    // The way of each axis to the 45° point, and from there.
+    let before = (x - diagonal).abs().max((y - diagonal).abs());
+    let behind = (end_x - diagonal).abs().max((end_y - diagonal).abs());
+    before + behind
+}

@@ -1,0 +1,78 @@
+//! The machine of point-by-point comparison (逐点比较法): one accumulator F for lines and arcs.
+//!
+//! ```text
+//!   host ──► next block ──► block                       ┌──► ex, ey ──► end of the block
+//!            xi, yi ──┬─ 2c±1 (arc) ─┐                  │
+//!                     └─ c (line) ───┴─ ± ──► F ──► judge ──► first or second axis of the plane ──► x, y, z
+//!   rate ──► phase ──► step ──────────────────▲─────────┘         └──► third axis follows
+//! ```
+//!
+//! `xi`, `yi` hold the ways of a line, or count the coordinates of an arc. A line takes F -= yi for a step of its first
+//! axis and F += xi for one of the second; an arc F -= 2c - 1 or F += 2c + 1. The loader splits arcs at the axes.
+
+use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::Module;
+use stepwave_nc::{Crossing, Curve, PulseBlock};
+
+use super::{Family, HardwareBlock, Size, planar};
+use crate::choices::Choices;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::model::ChoiceDoc;
+use crate::parts::{DeviationAccumulator, square_gain};
+
+pub(super) const FAMILY: Family = Family {
+    name: "ppc",
+    title: "Point-by-point comparison",
+    arcs: true,
+    crossing: Crossing::PathExtreme,
+    direct: true,
+    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ON_OVERFLOW],
+    plan,
+    netlist,
+    words,
+    error_bound: |_| Some(1.0),
+};
+
+fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
+    let mut registers = planar::registers(&FAMILY, size, choices);
+    let n = planar::bits(size, choices);
+    registers.register("f", n + 2).register("xi", n).register("yi", n);
+    planar::hardware(registers, size, n)
+}
+
+fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
+    let module = Module::with_overflow("ppc_machine", hardware.on_overflow);
+    let frame = super::frame::plain(&module, hardware);
+    let m = frame.m;
+    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let [xi, yi] = ["xi", "yi"].map(|name| m.reg(name, hardware.bits(name)));
+
+    // Judge: F >= 0 takes the first axis of a line, and the one that shrinks on an arc.
+    let take_x = f.not_negative() ^ frame.x_grows;
+    let taken = frame.redirected([take_x, !take_x]);
+    let take_x = m.name("take_x", taken[0]);
+
+    // Compute.
+    let wide = xi.q.bits().max(yi.q.bits());
+    let [x, y] = [xi, yi].map(|register| register.q.extend(wide));
+    let grows = m.name("grows", !(take_x ^ frame.x_grows));
+    let gain = square_gain(m, take_x.mux(x, y), grows);
+    let way = take_x.mux(y, x).extend(gain.bits());
+    f.close(&frame.block, frame.step, !grows, m.name("operand", frame.arc.mux(gain, way)));
+    frame.coordinates([(xi, "xi"), (yi, "yi")], taken);
+
+    frame.close(hardware, taken);
+    Ok(module.finish()?)
+}
+
+fn words(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+    let pulses = |[a, b]: [i128; 2]| (a + b) as f64;
+    planar::blocks(&FAMILY, block, |at| {
+        let mut words = vec![("f", at.deviation), ("xi", at.start[0]), ("yi", at.start[1])];
+        if let Curve::Line(_) = block.curve {
+            words = vec![("f", 0), ("xi", at.pulses[0]), ("yi", at.pulses[1])];
+        }
+        (words, pulses(at.pulses))
+    })
+}

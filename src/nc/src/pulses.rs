@@ -1,0 +1,239 @@
+//! From real numbers to pulses: what a machine is told of a move, in whole BLU.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::{
+    Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, Place, Plane, Point, Segment, ToolMove, Way,
+};
+
+/// A block as a machine gets it: one curve in whole BLU.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PulseBlock {
+    /// The move that it comes from.
+    pub of: ToolMove,
+    /// The plane that the machine interpolates in.
+    pub plane: Plane,
+    /// The curve, in the order of the plane's [`axes`](Plane::axes): a line or a helix of three axes, or an arc of two.
+    pub curve: Curve,
+    /// Where it starts, in BLU.
+    pub from: [i64; 3],
+    /// Where it ends, in BLU.
+    pub to: [i64; 3],
+}
+
+impl PulseBlock {
+    /// Where the block stands in its program.
+    #[must_use]
+    pub fn place(&self) -> Place {
+        self.of.place
+    }
+
+    /// How fast it is to be run.
+    #[must_use]
+    pub fn feed(&self) -> Feed {
+        self.of.feed
+    }
+
+    /// Why the tool moves.
+    #[must_use]
+    pub fn cause(&self) -> Cause {
+        self.of.cause
+    }
+
+    /// The distance of a position in x, y and z from the curve that is told to the machine, in BLU.
+    #[must_use]
+    pub fn deviation(&self, position: [i64; 3]) -> f64 {
+        self.curve.deviation(&self.plane.axes().map(|axis| position[axis]))
+    }
+
+    /// The positions of each axis of the machine between which the block runs, in BLU: of an arc the whole circle.
+    #[must_use]
+    pub fn reach(&self) -> [[i64; 2]; 3] {
+        let mut reach = [0, 1, 2].map(|axis| [self.from[axis].min(self.to[axis]), self.from[axis].max(self.to[axis])]);
+        let circle = match &self.curve {
+            Curve::Arc(arc) => Some((arc.center(), arc.radius())),
+            Curve::Helix(helix) => Some((helix.arc().center(), helix.arc().radius())),
+            Curve::Line(_) | Curve::Conic(_) => None,
+        };
+        if let Some((center, radius)) = circle {
+            #[allow(clippy::cast_possible_truncation)]
+            let radius = radius.ceil() as i64 + 1;
+            for (axis, center) in self.plane.axes().into_iter().zip(center) {
+                let [low, high] = reach[axis];
+                reach[axis] = [low.min(center - radius), high.max(center + radius)];
+            }
+        }
+        reach
+    }
+}
+
+/// Rounds moves to pulses, one behind the other: each starts where the one before it ends, so that no rounding adds up.
+#[derive(Debug, Clone)]
+pub struct Rounder {
+    at: [i64; 3],
+    /// Arcs become chords that are at most so many BLU off them.
+    chords: Option<f64>,
+}
+
+impl Rounder {
+    /// From the origin; with `chords` arcs become lines that are so many BLU off them at most.
+    #[must_use]
+    pub fn new(chords: Option<f64>) -> Rounder {
+        Rounder { at: [0; 3], chords }
+    }
+
+    /// The blocks of a move: none where it is shorter than a pulse.
+    ///
+    /// # Errors
+    /// A coordinate is beyond [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT).
+    pub fn blocks(&mut self, of: &ToolMove, out: &mut Vec<PulseBlock>) -> Result<(), GeometryError> {
+        let Way::Arc { plane, center, direction } = of.segment.way else {
+            return self.line(of, of.segment.to, out);
+        };
+        if let Some(tolerance) = self.chords {
+            for point in chords(&of.segment, plane, center, direction, tolerance) {
+                self.line(of, point, out)?;
+            }
+            return Ok(());
+        }
+        let (from, to) = (self.at, rounded(of.segment.to)?);
+        match arc(&of.segment, plane, center, direction, [from, to]) {
+            Some(curve) => {
+                out.push(PulseBlock { of: *of, plane, curve, from, to });
+                self.at = to;
+                Ok(())
+            }
+            None => self.line(of, of.segment.to, out),
+        }
+    }
+
+    fn line(&mut self, of: &ToolMove, to: Point, out: &mut Vec<PulseBlock>) -> Result<(), GeometryError> {
+        let (from, to) = (self.at, rounded(to)?);
+        if from == to {
+            return Ok(());
+        }
+        // The plane of the two longest ways: the third axis follows them.
+        let way = |axis: usize| from[axis].abs_diff(to[axis]);
+        let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
+        let plane = planes.into_iter().min_by_key(|plane| way(plane.axes()[2])).unwrap_or_default();
+        let along = |point: [i64; 3]| plane.axes().map(|axis| point[axis]).to_vec();
+        let curve = Curve::Line(Line::new(along(from), along(to))?);
+        out.push(PulseBlock { of: *of, plane, curve, from, to });
+        self.at = to;
+        Ok(())
+    }
+}
+
+/// The nearest whole point.
+fn rounded(point: Point) -> Result<[i64; 3], GeometryError> {
+    // Beyond the limit whatever is not finite or does not fit: the cast saturates.
+    #[allow(clippy::cast_possible_truncation)]
+    let whole = point.map(|c| if c.is_nan() { i64::MAX } else { c.round() as i64 });
+    crate::limit::check_coordinates(&whole)?;
+    Ok(whole)
+}
+
+/// The arc about the whole centre near the programmed one with which both ends are most nearly on one circle; `None` where
+/// pulses are too coarse for it.
+fn arc(segment: &Segment, plane: Plane, center: [f64; 2], direction: Direction, ends: [[i64; 3]; 2]) -> Option<Curve> {
+    let along = |point: [i64; 3]| plane.axes().map(|axis| point[axis]);
+    let [from, to] = ends.map(along);
+    let [start, end] = [[from[0], from[1]], [to[0], to[1]]];
+    let angle = swept(segment, plane, center, direction);
+    // Pulses do not tell a way of less than a BLU from none, nor a turn of almost a whole one from a whole one.
+    if start == end && angle < PI {
+        return None;
+    }
+    let center = through(segment, plane, center, direction, [start, end]);
+    #[allow(clippy::cast_possible_truncation)]
+    let middle = center.map(|c| c.round() as i64);
+    let mut best: Option<(f64, Arc)> = None;
+    for dx in -2..=2 {
+        for dy in -2..=2 {
+            let at = [middle[0].checked_add(dx)?, middle[1].checked_add(dy)?];
+            let Ok(arc) = Arc::new(start, end, at, direction) else { continue };
+            if (arc.sweep() - angle).abs() > PI {
+                continue;
+            }
+            let radius = |point: [i64; 2]| f64::hypot((point[0] - at[0]) as f64, (point[1] - at[1]) as f64);
+            let off = f64::hypot(at[0] as f64 - center[0], at[1] as f64 - center[1]);
+            let cost = (radius(start) - radius(end)).abs() + 0.5 * off;
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, arc));
+            }
+        }
+    }
+    let (_, arc) = best?;
+    if from[2] == to[2] {
+        return Some(Curve::Arc(arc));
+    }
+    let [cx, cy] = arc.center();
+    Helix::new(from, to, [cx, cy], direction).ok().map(Curve::Helix)
+}
+
+/// The centre of an arc of the programmed radius through both rounded ends: on the perpendicular bisector of their chord,
+/// on the side where the programmed one is.
+fn through(
+    segment: &Segment,
+    plane: Plane,
+    center: [f64; 2],
+    direction: Direction,
+    [start, end]: [[i64; 2]; 2],
+) -> [f64; 2] {
+    let [u, v, _] = plane.of(segment.from);
+    let radius = f64::hypot(u - center[0], v - center[1]);
+    let [start, end] = [start, end].map(|point| point.map(|c| c as f64));
+    let chord = [end[0] - start[0], end[1] - start[1]];
+    let length = f64::hypot(chord[0], chord[1]);
+    if length == 0.0 {
+        return center;
+    }
+    let height = (radius.powi(2) - (length / 2.0).powi(2)).max(0.0).sqrt();
+    // Less than half a turn has its centre on the left of the chord where it turns to the left.
+    let left = (direction == Direction::CounterClockwise) == (swept(segment, plane, center, direction) < PI);
+    let height = if left { height } else { -height };
+    let middle = [(start[0] + end[0]) / 2.0, (start[1] + end[1]) / 2.0];
+    [middle[0] - chord[1] / length * height, middle[1] + chord[0] / length * height]
+}
+
+/// The angle through which an arc turns, in radians: more than 0, up to 2π.
+#[must_use]
+pub fn swept(segment: &Segment, plane: Plane, center: [f64; 2], direction: Direction) -> f64 {
+    let [from, to] = [segment.from, segment.to].map(|point| {
+        let [u, v, _] = plane.of(point);
+        [u - center[0], v - center[1]]
+    });
+    if from == to {
+        return TAU;
+    }
+    let turn = (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
+    let turn = if direction == Direction::Clockwise { -turn } else { turn };
+    if turn <= 0.0 { turn + TAU } else { turn }
+}
+
+/// Ends of chords of an arc, in order; the middle of each is at most `tolerance` BLU off the arc.
+fn chords(segment: &Segment, plane: Plane, center: [f64; 2], direction: Direction, tolerance: f64) -> Vec<Point> {
+    let [u, v, from_third] = plane.of(segment.from);
+    let [end_u, end_v, to_third] = plane.of(segment.to);
+    let start = [u - center[0], v - center[1]];
+    let radius = f64::hypot(start[0], start[1]);
+    let end_radius = f64::hypot(end_u - center[0], end_v - center[1]);
+    let angle = swept(segment, plane, center, direction);
+    // The sagitta of a chord over an angle a is r (1 - cos(a/2)).
+    let most = 2.0 * (1.0 - (tolerance / radius.max(tolerance)).min(1.0)).acos();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let count = ((angle / most.max(1e-6)).ceil() as usize).clamp(1, 1 << 20);
+    let sign = if direction == Direction::Clockwise { -1.0 } else { 1.0 };
+    let inner = (1..count).map(|index| {
+        let part = index as f64 / count as f64;
+        let (sin, cos) = (sign * angle * part).sin_cos();
+        let scale = 1.0 + (end_radius / radius - 1.0) * part;
+        let [x, y] = [start[0] * cos - start[1] * sin, start[0] * sin + start[1] * cos];
+        let third = from_third + (to_third - from_third) * part;
+        plane.point([center[0] + x * scale, center[1] + y * scale, third])
+    });
+    inner.chain(std::iter::once(segment.to)).collect()
+}
+
+#[cfg(test)]
+mod tests;

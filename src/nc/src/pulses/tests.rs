@@ -1,0 +1,107 @@
+use super::*;
+use crate::Side;
+
+fn moved(from: Point, to: Point, way: Way) -> ToolMove {
+    let segment = Segment { from, to, way };
+    let place = Place { line: 1, number: None };
+    ToolMove { place, segment, feed: Feed::Rapid, cause: Cause::Programmed, programmed: segment, side: Side::On }
+}
+
+fn blocks(moves: &[ToolMove], chords: Option<f64>) -> Vec<PulseBlock> {
+    let (mut rounder, mut out) = (Rounder::new(chords), Vec::new());
+    moves.iter().for_each(|of| rounder.blocks(of, &mut out).unwrap_or_else(|error| panic!("{error}")));
+    out
+}
+
+fn circle(center: [f64; 2], direction: Direction) -> Way {
+    Way::Arc { plane: Plane::Xy, center, direction }
+}
+
+#[test]
+fn roundings_do_not_add_up() {
+    let moves: Vec<ToolMove> =
+        (0..10).map(|i| moved([f64::from(i) * 0.4, 0.0, 0.0], [f64::from(i + 1) * 0.4, 0.0, 0.0], Way::Line)).collect();
+    let blocks = blocks(&moves, None);
+    assert_eq!(blocks.last().map(|block| block.to), Some([4, 0, 0]));
+    assert!(blocks.windows(2).all(|pair| pair[0].to == pair[1].from));
+    assert_eq!(blocks.len(), 4); // the others are shorter than a pulse
+}
+
+#[test]
+fn a_line_lies_in_the_plane_of_its_two_longest_ways() {
+    let plane = |to: Point| blocks(&[moved([0.0; 3], to, Way::Line)], None)[0].plane;
+    assert_eq!(plane([9.0, 5.0, 1.0]), Plane::Xy);
+    assert_eq!(plane([9.0, 1.0, 5.0]), Plane::Zx);
+    assert_eq!(plane([1.0, 9.0, 5.0]), Plane::Yz);
+}
+
+#[test]
+fn an_arc_of_rounded_ends_gets_a_centre_about_which_they_are_on_one_circle_within_a_pulse() {
+    let (radius, center) = (1234.567, [10.3, -7.8]);
+    for degrees in (5..360).step_by(7) {
+        let at = |angle: f64| [center[0] + radius * angle.cos(), center[1] + radius * angle.sin(), 0.0];
+        let (from, to) = (at(0.3), at(0.3 + f64::from(degrees).to_radians()));
+        let moves = [moved([0.0; 3], from, Way::Line), moved(from, to, circle(center, Direction::CounterClockwise))];
+        let blocks = blocks(&moves, None);
+        let Curve::Arc(arc) = &blocks[1].curve else { panic!("no arc at {degrees}") };
+        let difference = f64::hypot(arc.end()[0] as f64, arc.end()[1] as f64) - arc.radius();
+        assert!(difference.abs() < 0.75, "{degrees}: {difference}");
+        assert!((arc.sweep() - f64::from(degrees).to_radians()).abs() < 0.01);
+        assert!((arc.radius() - radius).abs() < 2.0);
+    }
+}
+
+#[test]
+fn an_arc_shorter_than_a_pulse_is_no_full_circle() {
+    let to = [1000.0, 0.3, 0.0];
+    let moves = [
+        moved([0.0; 3], [1000.0, 0.0, 0.0], Way::Line),
+        moved([1000.0, 0.0, 0.0], to, circle([0.0, 0.0], Direction::CounterClockwise)),
+    ];
+    assert_eq!(blocks(&moves, None).len(), 1);
+}
+
+#[test]
+fn an_arc_that_ends_where_it_starts_is_a_full_circle() {
+    let at = [50.0, 0.0, 0.0];
+    let moves = [moved([0.0; 3], at, Way::Line), moved(at, at, circle([0.0, 0.0], Direction::Clockwise))];
+    let blocks = blocks(&moves, None);
+    assert!(matches!(&blocks[1].curve, Curve::Arc(arc) if arc.is_full_circle()));
+    assert_eq!(blocks[1].reach()[0], [-51, 51]);
+}
+
+#[test]
+fn chords_stay_within_their_tolerance() {
+    let (from, to) = ([1000.0, 0.0, 0.0], [-1000.0, 0.0, 0.0]);
+    let moves = [moved([0.0; 3], from, Way::Line), moved(from, to, circle([0.0, 0.0], Direction::CounterClockwise))];
+    for tolerance in [0.5, 5.0, 50.0] {
+        let blocks = blocks(&moves, Some(tolerance));
+        for block in &blocks[1..] {
+            let middle = [0, 1].map(|axis| (block.from[axis] + block.to[axis]) as f64 / 2.0);
+            let off = 1000.0 - f64::hypot(middle[0], middle[1]);
+            assert!(off < tolerance + 1.0, "{tolerance}: {off}"); // and a pulse for the rounding of the ends
+        }
+        assert_eq!(blocks.last().map(|block| block.to), Some([-1000, 0, 0]));
+    }
+    assert!(blocks(&moves, Some(0.5)).len() > blocks(&moves, Some(50.0)).len());
+}
+
+#[test]
+fn a_helix_keeps_its_third_axis_in_every_plane() {
+    for plane in [Plane::Xy, Plane::Zx, Plane::Yz] {
+        let [from, to] = [plane.point([100.0, 0.0, 0.0]), plane.point([0.0, 100.0, 30.0])];
+        let way = Way::Arc { plane, center: [0.0, 0.0], direction: Direction::CounterClockwise };
+        let blocks = blocks(&[moved([0.0; 3], from, Way::Line), moved(from, to, way)], None);
+        assert!(matches!(&blocks[1].curve, Curve::Helix(helix) if helix.z_way() == 30));
+        assert_eq!(blocks[1].to, to.map(|c| c as i64));
+    }
+}
+
+#[test]
+fn what_is_beyond_all_measure_is_refused() {
+    for to in [f64::NAN, f64::INFINITY, 1e300] {
+        let mut out = Vec::new();
+        assert!(Rounder::new(None).blocks(&moved([0.0; 3], [to, 0.0, 0.0], Way::Line), &mut out).is_err());
+        assert!(out.is_empty());
+    }
+}

@@ -1,0 +1,250 @@
+//! A machine that runs a whole program: the host keeps its block buffer full.
+
+use stepwave_kernel::bits::to_signed;
+use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
+use stepwave_kernel::{Net, OnOverflow};
+use stepwave_models::ModelError;
+
+use super::steps::StepColumns;
+use super::{CHUNK, Ending, Observer, ObserverError, Outcome, Testbench};
+
+/// What the host gives the machine next.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// The words of a block, on the inputs.
+    Block(Vec<(Net, u64)>),
+    /// Nothing for so many clocks, once the machine has come to a stand.
+    Wait(u64),
+    /// The program is at its end.
+    End,
+}
+
+/// The control behind a machine: it gives blocks, and looks on while they run.
+pub trait Host {
+    /// The next block; asked for while the one before runs.
+    ///
+    /// # Errors
+    /// Whatever keeps the control from it; the run ends.
+    fn next(&mut self) -> Result<Next, ObserverError>;
+
+    /// The machine has begun with the next of the blocks that it was given.
+    ///
+    /// # Errors
+    /// As [`next`](Self::next).
+    fn begun(&mut self, sample: &Sample<'_>) -> Result<(), ObserverError>;
+
+    /// The machine has taken a step of its block.
+    ///
+    /// # Errors
+    /// As [`next`](Self::next).
+    fn stepped(&mut self, sample: &Sample<'_>) -> Result<(), ObserverError>;
+}
+
+/// A sample of a machine that runs a program.
+#[derive(Clone, Copy)]
+pub struct Sample<'a> {
+    bench: &'a Testbench,
+    columns: &'a StepColumns,
+    rows: &'a Rows,
+    row: usize,
+}
+
+impl Sample<'_> {
+    /// Clocks since reset.
+    #[must_use]
+    pub fn clock(&self) -> u64 {
+        self.rows.first_clock() + self.row as u64
+    }
+
+    /// Pulses of x, y and z at the edge before: -1, 0 or +1.
+    #[must_use]
+    pub fn pulses(&self) -> [i64; 3] {
+        self.signed(&self.columns.pulses, 2)
+    }
+
+    /// Machine position of x, y and z, in BLU.
+    #[must_use]
+    pub fn position(&self) -> [i64; 3] {
+        self.signed(&self.columns.positions, 64)
+    }
+
+    /// Registers of the machine's table, in its order.
+    pub fn registers(&self) -> impl Iterator<Item = i128> {
+        let table = self.columns.table.iter().zip(&self.bench.machine().table);
+        table.map(|(&column, (_, port))| port.reading.number(port.width, self.rows.value(column, self.row)))
+    }
+
+    fn signed(&self, columns: &[usize], most: u32) -> [i64; 3] {
+        let machine = self.bench.machine();
+        let ports = if most == 2 { &machine.pulses } else { &machine.positions };
+        let mut values = [0; 3];
+        for ((value, &column), port) in values.iter_mut().zip(columns).zip(ports) {
+            *value = to_signed(port.width, self.rows.value(column, self.row));
+        }
+        values
+    }
+}
+
+/// The stop nets of a run, by their index.
+const CALL: usize = 0;
+const AT_END: usize = 1;
+
+struct Run<'a, 'o> {
+    bench: &'a Testbench,
+    engine: Box<dyn Engine>,
+    rows: Rows,
+    columns: StepColumns,
+    more: Net,
+    host: &'a mut dyn Host,
+    observers: &'a mut [&'o mut dyn Observer],
+    pulses: [u64; 3],
+    steps: u64,
+}
+
+impl Testbench {
+    /// Runs the blocks that a host gives, from reset. What an observer wants of steps the host is told.
+    ///
+    /// # Errors
+    /// The host or an observer fails, or the machine has no block buffer.
+    pub fn run_program(
+        &self,
+        engine: EngineKind,
+        host: &mut dyn Host,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<Outcome, ObserverError> {
+        let netlist = self.design().netlist();
+        let find = |name: &str| netlist.find(name).ok_or_else(|| ModelError::MissingPort(name.to_owned()));
+        let mut stops = vec![find("call")?.net, find("at_end")?.net];
+        if self.hardware().on_overflow == OnOverflow::Trap {
+            stops.extend(netlist.properties.iter().map(|property| property.never));
+        }
+        let watch = Watch { columns: self.columns().nets().to_vec(), stops };
+        let mut run = Run {
+            bench: self,
+            engine: engine.build(self.design(), &watch),
+            rows: Rows::new(watch.columns.len(), CHUNK),
+            columns: StepColumns::of(self),
+            more: find("more")?.net,
+            host,
+            observers,
+            pulses: [0; 3],
+            steps: 0,
+        };
+        let ending = run.whole()?;
+        run.drain()?;
+        let position = self.machine().positions.iter();
+        Ok(Outcome {
+            ending,
+            clocks: run.engine.clock(),
+            steps: run.steps,
+            pulses: run.pulses.to_vec(),
+            reached: position.map(|port| to_signed(port.width, run.engine.value(port.net))).collect(),
+        })
+    }
+}
+
+impl Run<'_, '_> {
+    fn whole(&mut self) -> Result<Ending, ObserverError> {
+        let machine = self.bench.machine();
+        let (load, more) = (machine.load.net, self.more);
+        let mut next = self.host.next()?;
+        self.engine.set_input(more, u64::from(matches!(next, Next::Block(_))));
+        self.engine.reset(&mut self.rows);
+        loop {
+            match next {
+                Next::Block(words) => {
+                    self.engine.set_input(more, 1);
+                    if let Some(ending) = self.until(CALL)? {
+                        return Ok(ending);
+                    }
+                    for (input, value) in words {
+                        self.engine.set_input(input, value);
+                    }
+                    self.engine.set_input(load, 1);
+                    self.clock()?;
+                    self.engine.set_input(load, 0);
+                    next = self.host.next()?;
+                    self.engine.set_input(more, u64::from(matches!(next, Next::Block(_))));
+                    self.clock()?;
+                }
+                Next::Wait(clocks) => {
+                    self.engine.set_input(more, 0);
+                    if let Some(ending) = self.until(AT_END)? {
+                        return Ok(ending);
+                    }
+                    for _ in 0..clocks {
+                        self.clock()?;
+                    }
+                    next = self.host.next()?;
+                }
+                Next::End => {
+                    self.engine.set_input(more, 0);
+                    return Ok(self.until(AT_END)?.unwrap_or(Ending::Done));
+                }
+            }
+        }
+    }
+
+    /// Runs until a stop net is 1; an ending if the machine traps before.
+    fn until(&mut self, wanted: usize) -> Result<Option<Ending>, ObserverError> {
+        loop {
+            match self.engine.run(u64::MAX, &mut self.rows) {
+                Stop::Net(net) if net > AT_END => return Ok(Some(Ending::Trapped)),
+                // The first of several that are 1 is told: a trap may hide behind another.
+                Stop::Net(net) => {
+                    if self.trapped() {
+                        return Ok(Some(Ending::Trapped));
+                    }
+                    if net == wanted {
+                        return Ok(None);
+                    }
+                    if self.rows.is_full() {
+                        self.drain()?;
+                    }
+                }
+                Stop::RowsFull | Stop::Clocks => self.drain()?,
+            }
+        }
+    }
+
+    fn trapped(&self) -> bool {
+        let properties = &self.bench.design().netlist().properties;
+        let traps = self.bench.hardware().on_overflow == OnOverflow::Trap;
+        traps && properties.iter().any(|property| self.engine.value(property.never) == 1)
+    }
+
+    /// One clock, whatever the machine says.
+    fn clock(&mut self) -> Result<(), ObserverError> {
+        if self.rows.is_full() {
+            self.drain()?;
+        }
+        self.engine.run(1, &mut self.rows);
+        Ok(())
+    }
+
+    /// Shows the rows to observers and host, and makes room.
+    fn drain(&mut self) -> Result<(), ObserverError> {
+        for observer in self.observers.iter_mut() {
+            observer.samples(&self.rows)?;
+        }
+        let (loaded, stepped) = (self.rows.column(self.columns.loaded), self.rows.column(self.columns.stepped));
+        for row in 0..self.rows.len() {
+            if loaded[row] | stepped[row] == 0 {
+                continue;
+            }
+            let sample = Sample { bench: self.bench, columns: &self.columns, rows: &self.rows, row };
+            if stepped[row] == 1 {
+                self.steps += 1;
+                for (count, pulse) in self.pulses.iter_mut().zip(sample.pulses()) {
+                    *count += pulse.unsigned_abs();
+                }
+                self.host.stepped(&sample)?;
+            }
+            if loaded[row] == 1 {
+                self.host.begun(&sample)?;
+            }
+        }
+        self.rows.clear();
+        Ok(())
+    }
+}

@@ -1,0 +1,247 @@
+//! The machines of whole programs against the recurrences of their methods, block by block.
+
+use proptest::prelude::*;
+use stepwave::testbench::{Ending, Host, Next, ObserverError, Outcome, Sample, Testbench};
+use stepwave_kernel::engine::EngineKind;
+use stepwave_models::program::{FAMILIES, Family, Size};
+use stepwave_models::{Choices, OnOverflow, Preset};
+use stepwave_nc::{Cause, Curve, Direction, Feed, Place, Plane, PulseBlock, Rounder, Segment, Side, ToolMove, Way};
+
+use crate::reference::{self, EndPoint, Form, cim_arc, cim_line, dpm_line, mindev_arc, mindev_line, ppc_arc, ppc_line};
+
+/// A move of the tool without compensation.
+fn tool_move(from: [f64; 3], to: [f64; 3], way: Way) -> ToolMove {
+    let segment = Segment { from, to, way };
+    let (place, cause) = (Place { line: 1, number: None }, Cause::Programmed);
+    ToolMove { place, segment, feed: Feed::Rapid, cause, programmed: segment, side: Side::On }
+}
+
+/// Gives the machine its blocks, each with this rate of the pulse source, and keeps what it does.
+struct Control<'a> {
+    bench: &'a Testbench,
+    blocks: std::vec::IntoIter<Vec<(&'static str, i128)>>,
+    rate: i128,
+    /// The path of each block of the machine.
+    paths: Vec<Vec<[i64; 3]>>,
+    /// Clocks of steps.
+    clocks: Vec<u64>,
+}
+
+impl Host for Control<'_> {
+    fn next(&mut self) -> Result<Next, ObserverError> {
+        let Some(mut words) = self.blocks.next() else { return Ok(Next::End) };
+        words.push(("rate", self.rate));
+        let encoded = self.bench.machine().encode(self.bench.hardware(), &[words])?;
+        Ok(Next::Block(encoded.into_iter().next().unwrap()))
+    }
+
+    fn begun(&mut self, _: &Sample<'_>) -> Result<(), ObserverError> {
+        self.paths.push(Vec::new());
+        Ok(())
+    }
+
+    fn stepped(&mut self, sample: &Sample<'_>) -> Result<(), ObserverError> {
+        self.clocks.push(sample.clock());
+        self.paths.last_mut().unwrap().push(sample.position());
+        Ok(())
+    }
+}
+
+/// What a machine did with some moves.
+struct Ran {
+    blocks: Vec<PulseBlock>,
+    /// The path of each block of the program.
+    paths: Vec<Vec<[i64; 3]>>,
+    clocks: Vec<u64>,
+    outcome: Outcome,
+    bits: u32,
+}
+
+fn family(name: &str) -> &'static Family {
+    FAMILIES.into_iter().find(|family| family.name == name).unwrap()
+}
+
+fn run(family: &Family, moves: &[ToolMove], choices: &Choices, engine: EngineKind) -> Ran {
+    let mut rounder = Rounder::new((!family.arcs).then_some(0.5));
+    let mut blocks = Vec::new();
+    moves.iter().for_each(|of| rounder.blocks(of, &mut blocks).unwrap());
+    let mut size = Size::default();
+    blocks.iter().for_each(|block| size.add(family, block));
+    let hardware = family.plan(&size, choices).unwrap();
+    let machine = family.machine(&hardware).unwrap();
+    let bench = Testbench::of_machine(hardware, machine);
+    let words: Vec<_> = blocks.iter().map(|block| family.words(bench.hardware(), block)).collect();
+    let all: Vec<_> = words.iter().flatten().map(|block| block.words.clone()).collect();
+    let (rate, blocks_of_machine) = (1 << 31, all.into_iter());
+    let mut host = Control { bench: &bench, blocks: blocks_of_machine, rate, paths: Vec::new(), clocks: Vec::new() };
+    let outcome = bench.run_program(engine, &mut host, &mut []).unwrap();
+    let mut paths = host.paths.into_iter();
+    let paths = words.iter().map(|words| words.iter().flat_map(|_| paths.next().unwrap_or_default()).collect());
+    let bits = ["xi", "a", "jvx", "q"].map(|name| bench.hardware().widths.get(name).map_or(0, |width| width.get()));
+    let bits = bits.into_iter().max().unwrap();
+    Ran { paths: paths.collect(), blocks, clocks: host.clocks, outcome, bits }
+}
+
+/// The path of a block by the recurrences of the method, without its start.
+fn reference(family: &str, block: &PulseBlock, bits: u32, normalize: bool) -> Vec<[i64; 2]> {
+    let [from, to] = [block.from, block.to].map(|[x, y, _]| [x, y]);
+    let half = [1 << (bits - 1); 2];
+    let table = match &block.curve {
+        Curve::Line(_) => match family {
+            "ppc" => ppc_line(from, to, Form::Magnitude, EndPoint::PerAxis),
+            "cim" => cim_line(from, to),
+            "mindev" => mindev_line(from, to),
+            "dda" => reference::dda_line(bits, &from, &to, &half, normalize, EndPoint::PerAxis),
+            _ => dpm_line(bits, &from, &to),
+        },
+        Curve::Arc(arc) => {
+            let (center, clockwise) = (arc.center(), arc.direction() == Direction::Clockwise);
+            match family {
+                "ppc" => ppc_arc(from, to, center, clockwise, EndPoint::PerAxis),
+                "cim" => cim_arc(from, to, center, clockwise, reference::Weights::Mid),
+                "mindev" => mindev_arc(from, to, center, clockwise, EndPoint::PerAxis),
+                _ => reference::dda_arc(bits, from, to, center, clockwise, half, normalize, EndPoint::PerAxis),
+            }
+        }
+        _ => panic!("neither line nor arc"),
+    };
+    table.path().into_iter().skip(1).collect()
+}
+
+/// Moves in the plane, each from where the one before ends: lines, and arcs about whole centres with both ends on them.
+fn moves() -> impl Strategy<Value = Vec<ToolMove>> {
+    let line = (-40i64..40, -40i64..40).prop_map(|(dx, dy)| (dx, dy, None));
+    let quarter = (1i64..30, 0usize..4, 1usize..5, any::<bool>());
+    // From a point on an axis through so many quadrants.
+    let arc = quarter.prop_map(|(radius, axis, quarters, clockwise)| (radius, 0, Some((axis, quarters, clockwise))));
+    // About the centre of a right triangle with sides 3, 4, 5.
+    prop::collection::vec(prop_oneof![line, arc], 1..7).prop_map(|list| {
+        let mut at = [0i64; 2];
+        let real = |point: [i64; 2]| [point[0] as f64, point[1] as f64, 0.0];
+        list.into_iter()
+            .map(|(dx, dy, arc)| {
+                let from = at;
+                let Some((axis, quarters, clockwise)) = arc else {
+                    at = [from[0] + dx, from[1] + dy];
+                    return tool_move(real(from), real(at), Way::Line);
+                };
+                let about = |axis: usize| [[dx, 0], [0, dx], [-dx, 0], [0, -dx]][axis % 4];
+                let start = about(axis);
+                let end = about(if clockwise { axis + 4 - quarters } else { axis + quarters });
+                let center = [from[0] - start[0], from[1] - start[1]];
+                at = [center[0] + end[0], center[1] + end[1]];
+                let direction = if clockwise { Direction::Clockwise } else { Direction::CounterClockwise };
+                let center = [center[0] as f64, center[1] as f64];
+                tool_move(real(from), real(at), Way::Arc { plane: Plane::Xy, center, direction })
+            })
+            .collect()
+    })
+}
+
+fn choices(normalize: bool) -> Choices {
+    Choices { normalize, on_overflow: Some(OnOverflow::Trap), ..Choices::default() }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) })]
+
+    #[test]
+    fn every_machine_steps_as_its_method_does(moves in moves(), normalize: bool) {
+        for family in FAMILIES {
+            let normalize = normalize && family.name == "dda";
+            let ran = run(family, &moves, &choices(normalize), EngineKind::Word);
+            prop_assert_eq!(ran.outcome.ending, Ending::Done, "{}", family.name);
+            prop_assert_eq!(ran.blocks.len(), ran.paths.len());
+            for (block, path) in ran.blocks.iter().zip(&ran.paths) {
+                let wanted = reference(family.name, block, ran.bits, normalize);
+                let path: Vec<[i64; 2]> = path.iter().map(|&[x, y, _]| [x, y]).collect();
+                prop_assert_eq!(&path, &wanted, "{} {:?}", family.name, block.curve);
+            }
+        }
+    }
+
+    #[test]
+    fn pulses_keep_their_distance_across_blocks_and_no_clock_is_lost(moves in moves()) {
+        for family in FAMILIES {
+            let ran = run(family, &moves, &choices(false), EngineKind::Word);
+            // Behind a block of one step the next may not be in the buffer yet.
+            if ran.paths.iter().all(|path| path.len() > 3) && ran.blocks.iter().all(|b| matches!(b.curve, Curve::Line(_))) {
+                prop_assert!(ran.clocks.windows(2).all(|pair| pair[1] - pair[0] == 2), "{}", family.name);
+            }
+        }
+    }
+
+    #[test]
+    fn all_engines_agree(moves in moves()) {
+        for family in FAMILIES {
+            let [word, compiled, gates] = [EngineKind::Word, EngineKind::Compiled, EngineKind::Gates]
+                .map(|engine| run(family, &moves, &choices(false), engine));
+            prop_assert_eq!(&word.clocks, &compiled.clocks);
+            prop_assert_eq!(&word.paths, &compiled.paths);
+            prop_assert_eq!(&word.clocks, &gates.clocks);
+            prop_assert_eq!(&word.paths, &gates.paths);
+        }
+    }
+
+    #[test]
+    fn the_other_planes_do_the_same_with_other_axes(moves in moves()) {
+        for family in FAMILIES {
+            let flat = run(family, &moves, &choices(false), EngineKind::Word);
+            for plane in [Plane::Zx, Plane::Yz] {
+                let turned: Vec<ToolMove> = moves.iter().map(|of| {
+                    let turn = |point: [f64; 3]| plane.point(point);
+                    let way = match of.segment.way {
+                        Way::Line => Way::Line,
+                        Way::Arc { center, direction, .. } => Way::Arc { plane, center, direction },
+                    };
+                    tool_move(turn(of.segment.from), turn(of.segment.to), way)
+                }).collect();
+                let ran = run(family, &turned, &choices(false), EngineKind::Word);
+                let back: Vec<Vec<[i64; 3]>> = ran.paths.iter()
+                    .map(|path| path.iter().map(|at| plane.axes().map(|axis| at[axis])).collect()).collect();
+                // A line along one axis lies in two planes, so that only its ends need be the same.
+                prop_assert_eq!(back.iter().map(|path| path.last().copied()).collect::<Vec<_>>(),
+                    flat.paths.iter().map(|path| path.last().copied()).collect::<Vec<_>>());
+                if moves.iter().all(|of| of.segment.way != Way::Line) {
+                    prop_assert_eq!(&back, &flat.paths, "{}", family.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_third_axis_follows_within_a_pulse(to in [-60i64..60, -60..60, -60..60], radius in 8i64..40, quarters in 1usize..5, climb in -8i64..8) {
+        let [x, y, z] = to.map(|c| c as f64);
+        let center = [x - radius as f64, y];
+        let about = [[radius, 0], [0, radius], [-radius, 0], [0, -radius]][quarters % 4];
+        let end = [center[0] + about[0] as f64, center[1] + about[1] as f64, z + climb as f64];
+        let direction = Direction::CounterClockwise;
+        let moves = [
+            tool_move([0.0; 3], [x, y, z], Way::Line),
+            tool_move([x, y, z], end, Way::Arc { plane: Plane::Xy, center, direction }),
+        ];
+        for family in FAMILIES {
+            let ran = run(family, &moves, &choices(false), EngineKind::Word);
+            prop_assert_eq!(ran.outcome.ending, Ending::Done);
+            let wanted = end.map(|c| c as i64);
+            prop_assert_eq!(ran.outcome.reached.clone(), wanted.to_vec(), "{}", family.name);
+            for (block, path) in ran.blocks.iter().zip(&ran.paths) {
+                let worst = path.iter().map(|&at| block.deviation(at)).fold(0.0, f64::max);
+                prop_assert!(worst < 3.0, "{}: {} off {:?}", family.name, worst, block.curve);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_integrator_that_would_stand_beside_an_axis_steps_at_once() {
+    // From (3, 14) to (15, 0) clockwise about the origin in 8 bits: with half presets the pair comes to a stand there.
+    let arc = Way::Arc { plane: Plane::Xy, center: [0.0, 0.0], direction: Direction::Clockwise };
+    let moves = [tool_move([0.0; 3], [3.0, 14.0, 0.0], Way::Line), tool_move([3.0, 14.0, 0.0], [15.0, 0.0, 0.0], arc)];
+    for preset in [Preset::Half, Preset::Zero, Preset::Full] {
+        let width = Some(stepwave_kernel::Width::new(8).unwrap());
+        let choices = Choices { preset: Some(preset), width, ..choices(false) };
+        let ran = run(family("dda"), &moves, &choices, EngineKind::Word);
+        assert_eq!(ran.outcome.reached, [15, 0, 0]);
+    }
+}

@@ -1,0 +1,3 @@
+//! Whole programs: machines of every family, and what comes before them.
+
+mod machines;
