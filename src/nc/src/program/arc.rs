@@ -3,10 +3,11 @@
 use super::error::ProgramErrorKind;
 use crate::Direction;
 
-/// How far two radii of an arc may lie apart, in BLU: the larger of 2 BLU and 0.1 % of the radius, the latter at most
-/// 0.5 mm; but never more than half of the radius.
+/// How far two radii of an arc may lie apart, in BLU: the largest of 2 BLU, 0.005 mm (programs are written to 0.001 mm
+/// or 0.0001 inch, however fine the BLU is) and 0.1 % of the radius, the last at most 0.5 mm; but never more than half
+/// of the radius.
 pub(super) fn tolerance(radius: f64, blu: f64) -> f64 {
-    (radius / 1000.0).min(0.5 / blu).max(2.0).min(radius / 2.0)
+    (radius / 1000.0).min(0.5 / blu).max(0.005 / blu).max(2.0).min(radius / 2.0)
 }
 
 /// Checks that an arc about a centre has a radius, and that its end is on its circle.

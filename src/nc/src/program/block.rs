@@ -74,8 +74,9 @@ pub(super) struct Block<'l> {
     pub(super) distance: Slot<'l, Distance>,
     pub(super) centers: Slot<'l, Distance>,
     pub(super) return_level: Slot<'l, ()>,
-    /// Nothing is G80.
-    pub(super) motion: Slot<'l, Option<Motion>>,
+    /// G80, which may stand beside a word of motion.
+    pub(super) cycles_off: Slot<'l, ()>,
+    pub(super) motion: Slot<'l, Motion>,
     pub(super) halt: Slot<'l, Halt>,
     letters: [Option<Word<'l>>; 26],
 }
@@ -138,11 +139,11 @@ impl<'l> Block<'l> {
     fn g(&mut self, word: Word<'l>) -> Result<(), Fault> {
         use Hand::{Left, Right};
         match tenths(word) {
-            Some(0) => put(&mut self.motion, Some(Motion::Rapid), word),
-            Some(10) => put(&mut self.motion, Some(Motion::Line), word),
-            Some(20) => put(&mut self.motion, Some(Motion::Arc(Direction::Clockwise)), word),
-            Some(30) => put(&mut self.motion, Some(Motion::Arc(Direction::CounterClockwise)), word),
-            Some(800) => put(&mut self.motion, None, word),
+            Some(0) => put(&mut self.motion, Motion::Rapid, word),
+            Some(10) => put(&mut self.motion, Motion::Line, word),
+            Some(20) => put(&mut self.motion, Motion::Arc(Direction::Clockwise), word),
+            Some(30) => put(&mut self.motion, Motion::Arc(Direction::CounterClockwise), word),
+            Some(800) => put(&mut self.cycles_off, (), word),
             Some(40) => put(&mut self.dwell, (), word),
             Some(170) => put(&mut self.plane, Plane::Xy, word),
             Some(180) => put(&mut self.plane, Plane::Zx, word),

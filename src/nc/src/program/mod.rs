@@ -33,18 +33,19 @@
 //! | G54 | the first coordinate system, and the only one: its zero is the zero of the program |
 //! | G61, G61.1 | every block is run exactly to its end |
 //! | G64 P Q | allows the path to be left by P, which is a permission and not a duty |
-//! | G80 | there are no canned cycles to be ended; no motion mode is in force after it |
+//! | G80 | there are no canned cycles to be ended; no motion mode is in force after it, unless G00 to G03 stand beside it |
 //! | G98, G99 | where canned cycles retract to |
 //!
 //! Words of a block are executed in the order of RS-274: feed mode, F, S, T, tool change, spindle, coolant, dwell, plane,
 //! units, compensation, distance modes, motion, stop. So an F word in a block with G20 or G21 is still in the units
-//! that were in force in front of the block. A coordinate without G word continues the motion that is in force. A line
+//! that were in force in front of the block. A coordinate without G word continues the motion that is in force, and
+//! a motion word without coordinate, centre or radius only changes what is in force. A line
 //! that ends where it starts is no move, but its words stay in force, and an arc that does so (and has I J K) is a full
 //! circle; ends within 0.001 BLU along every axis are the same point. A program may end without M02 or M30.
 //!
-//! An arc whose end is not on its circle, or whose R is less than half of its chord, is allowed within 2 BLU or 0.1 % of
-//! its radius, whichever is more, the latter at most 0.5 mm; but never by more than half of its radius. Such an R makes
-//! half a turn about the middle of the chord.
+//! An arc whose end is not on its circle, or whose R is less than half of its chord, is allowed within 2 BLU, 0.005 mm
+//! (what rounding to 0.001 mm or 0.0001 inch makes) or 0.1 % of its radius, whichever is most, the last at most 0.5 mm;
+//! but never by more than half of its radius. Such an R makes half a turn about the middle of the chord.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{BufRead, Read};
@@ -71,7 +72,7 @@ mod words;
 pub const PROGRAM_LIMIT: i64 = 1 << 40;
 
 /// How the tolerance of radii is told to people.
-const CENTER_TOLERANCE: &str = "the larger of 2 BLU and 0.1 % of the radius, the latter at most 0.5 mm";
+const CENTER_TOLERANCE: &str = "the largest of 2 BLU, 0.005 mm and 0.1 % of the radius, the last at most 0.5 mm";
 
 /// What a coordinate without decimal point means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

@@ -111,7 +111,11 @@ impl Modal {
         }
         self.distance = block.distance.map_or(self.distance, |(distance, _)| distance);
         self.centers = block.centers.map_or(self.centers, |(distance, _)| distance);
-        self.motion = block.motion.map_or(self.motion, |(motion, _)| motion);
+        self.motion = match (block.motion, block.cycles_off) {
+            (Some((motion, _)), _) => Some(motion),
+            (None, Some(_)) => None,
+            (None, None) => self.motion,
+        };
         if let Some(segment) = self.segment(block, reading)? {
             let feed = self.feed_of_move(block, feed)?;
             self.position = segment.to;

@@ -113,6 +113,14 @@ fn an_end_may_lie_off_the_circle_by_2_blu_or_a_thousandth_of_the_radius_up_to_ha
 }
 
 #[test]
+fn a_fine_blu_still_allows_what_rounding_to_micrometres_makes() {
+    let fine = Reading { blu: 0.0001, ..reading() };
+    // The radii differ by 0.0049 mm and by 0.0051 mm.
+    assert!(run_with("F1 G2 X2.0049 I1", fine.clone()).is_ok());
+    assert!(run_with("F1 G2 X2.0051 I1", fine).is_err());
+}
+
+#[test]
 fn what_is_no_arc_is_an_error_at_its_word() {
     for (text, column, message) in [
         ("G2 X1 Y1 F1", 1, "the arc has no centre: give I and J or a radius R"),

@@ -38,6 +38,9 @@ fn motion_stays_in_force_until_another_or_g80() {
     assert_eq!(rapid, [true, true, false, false, true]);
     assert_eq!(moves[3].segment.to, [200.0, 100.0, -100.0]);
     assert_eq!(fault("G0 X1\nG80\nX2").0, 3);
+    // A line of many programs: everything off, and a rapid move after it.
+    assert_eq!(ends("G00 G17 G40 G49 G80 G90\nX1\nG80 G0 X2"), [[100.0, 0.0, 0.0], [200.0, 0.0, 0.0]]);
+    assert_eq!(ends("F1 G2\nX1 I.5"), [[100.0, 0.0, 0.0]]);
 }
 
 #[test]
