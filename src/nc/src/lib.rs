@@ -30,6 +30,7 @@ mod gauge;
 mod helix;
 mod limit;
 mod line;
+mod program;
 mod pulses;
 mod quadrant;
 mod sector;
@@ -44,6 +45,10 @@ pub use gauge::{Gauge, Screen};
 pub use helix::{Helix, HelixSector};
 pub use limit::{AXES_MAX, AXES_MIN, AXIS_LETTERS, CONIC_LIMIT, COORDINATE_LIMIT, PARABOLA_LIMIT};
 pub use line::Line;
+pub use program::{
+    Auxiliary, Coolant, Event, Integers, PROGRAM_LIMIT, Program, ProgramError, ProgramErrorKind, Reading, ReadingError,
+    Spindle,
+};
 pub use pulses::{PulseBlock, Rounder, swept};
 pub use quadrant::{Direction, Quadrant};
 pub use sector::{Crossing, Sector};

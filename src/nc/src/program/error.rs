@@ -1,0 +1,294 @@
+//! What can be wrong with an NC program.
+
+use std::io;
+
+use super::words::{DIGITS_LIMIT, LINE_LIMIT};
+use super::{CENTER_TOLERANCE, PROGRAM_LIMIT};
+
+/// Why a program cannot be read, and where.
+#[derive(Debug, thiserror::Error)]
+#[error("line {line}, column {column}: {kind}")]
+pub struct ProgramError {
+    /// The line, from 1.
+    pub line: u64,
+    /// The column, from 1, in characters.
+    pub column: u64,
+    /// What is wrong.
+    #[source]
+    pub kind: ProgramErrorKind,
+}
+
+/// What is wrong with a program; every message names the word, the limit and the way out.
+///
+/// `word` is always as it was written, without blanks.
+#[derive(Debug, thiserror::Error)]
+pub enum ProgramErrorKind {
+    /// The program cannot be read from where it is kept.
+    #[error("the program cannot be read any further: {0}")]
+    Read(#[source] io::Error),
+    /// A line is too long.
+    #[error("the line is longer than {LINE_LIMIT} bytes: break it into blocks, or check that this is an NC program")]
+    Overlong,
+    /// A byte is not part of UTF-8.
+    #[error("the byte \\x{byte:02x} is not UTF-8 text: save the program as UTF-8 or ASCII")]
+    InvalidUtf8 {
+        /// The byte.
+        byte: u8,
+    },
+    /// A character has no meaning where it stands.
+    #[error("'{}' does not belong here, only words such as X12.5 and comments do: remove it", .character.escape_debug())]
+    UnexpectedCharacter {
+        /// The character.
+        character: char,
+    },
+    /// A comment has no end.
+    #[error("the comment that begins here is not closed in its line: put a ) behind it")]
+    OpenComment,
+    /// A comment begins in a comment.
+    #[error("a ( inside a comment would begin a second one, which RS-274 does not allow: remove it")]
+    NestedComment,
+    /// A per cent sign is not alone.
+    #[error("% marks the beginning and the end of a program and stands alone in its line: break the line there")]
+    PercentInBlock,
+    /// A letter has no number.
+    #[error("{letter} has no number: write one behind it, such as {letter}1")]
+    NumberExpected {
+        /// The letter.
+        letter: char,
+    },
+    /// A number has too many digits.
+    #[error("the number of {letter} has more than {DIGITS_LIMIT} digits: round it")]
+    TooManyDigits {
+        /// The letter.
+        letter: char,
+    },
+    /// A parameter is used.
+    #[error("parameters (#) are not supported: write the number itself")]
+    Parameter,
+    /// An expression is used.
+    #[error("expressions ([ ]) are not supported: write the number itself")]
+    Expression,
+    /// An O word is more than the number of the program.
+    #[error(
+        "{word} is not the number of the program, alone in front of its first block, and O words of flow control are \
+         not supported: write the blocks out in the order in which they run"
+    )]
+    FlowControl {
+        /// The word, or the letter where no number follows.
+        word: String,
+    },
+    /// A word is not among the supported ones.
+    #[error(
+        "{word} is not supported: rewrite the block with G00 to G03 in X, Y and Z, or remove the word if it does not matter here"
+    )]
+    Unsupported {
+        /// The word.
+        word: String,
+    },
+    /// A number has a fraction.
+    #[error("{word} is not a whole number: the number of {} counts, give it without a fraction", letter(.word))]
+    NotInteger {
+        /// The word.
+        word: String,
+    },
+    /// A number is negative.
+    #[error("{word} is negative and must be at least 0: remove the sign")]
+    Negative {
+        /// The word.
+        word: String,
+    },
+    /// An N word is not the first word.
+    #[error("{word} must be the first word of its block: move it to the front")]
+    NumberNotFirst {
+        /// The word.
+        word: String,
+    },
+    /// A letter is used twice.
+    #[error(
+        "{word} repeats the letter of {first}, and one block takes it once: keep one of them, or break the block in two"
+    )]
+    Repeated {
+        /// The word.
+        word: String,
+        /// The word in front of it.
+        first: String,
+    },
+    /// Two G or M words of one modal group stand in one block.
+    #[error("{word} is of the same modal group as {first}, and one block takes one of them: break the block in two")]
+    SameGroup {
+        /// The word.
+        word: String,
+        /// The word in front of it.
+        first: String,
+    },
+    /// Nothing in the block uses a word.
+    #[error("{word} has nothing that uses it in this block: it belongs to {owner}, give that too or remove the word")]
+    Unused {
+        /// The word.
+        word: String,
+        /// The words that it may belong to.
+        owner: &'static str,
+    },
+    /// A coordinate is given and no motion is in force.
+    #[error("{word} is given, but no G00, G01, G02 or G03 is in force: write the one that is meant into the block")]
+    NoMotion {
+        /// The word.
+        word: String,
+    },
+    /// A feed move has no feed.
+    #[error("the block moves at a feed, but no F word has been given: write one into this block or one in front of it")]
+    NoFeed,
+    /// A feed move has no F word under G93.
+    #[error("under G93 every block with G01, G02 or G03 needs its own F word: write one, or go back to G94")]
+    NoInverseTime,
+    /// A feed is 0 or negative.
+    #[error("{word} is no feed, which must be more than 0: correct the F word")]
+    FeedNotPositive {
+        /// The word.
+        word: String,
+    },
+    /// A length is too large.
+    #[error(
+        "{name} = {value} BLU is beyond the limit of ±{PROGRAM_LIMIT} BLU: correct the word or choose a larger BLU"
+    )]
+    BeyondLimit {
+        /// What it is, such as X or the centre in Z.
+        name: String,
+        /// The length, in BLU.
+        value: f64,
+    },
+    /// A feed, a time or a speed is too large.
+    #[error("{word} is beyond the limit of {PROGRAM_LIMIT}: correct the word")]
+    NumberBeyondLimit {
+        /// The word.
+        word: String,
+    },
+    /// A dwell has no time.
+    #[error("{word} needs the time in seconds as a P word of at least 0, such as P0.5: write one")]
+    NoDwellTime {
+        /// The word.
+        word: String,
+    },
+    /// Compensation is switched on without a tool.
+    #[error(
+        "{word} needs a D word that names the tool, such as {word} D1: write one, and give its radius with `--tool D=RADIUS`"
+    )]
+    NoTool {
+        /// The word.
+        word: String,
+    },
+    /// A tool is not in the table.
+    #[error(
+        "no radius is known for the tool of D{number}: give it with `--tool D=RADIUS`, such as `--tool {number}=4mm`"
+    )]
+    UnknownTool {
+        /// The D number.
+        number: u64,
+    },
+    /// The plane is changed under compensation.
+    #[error("{word} changes the plane while tool radius compensation is on: write G40 into a block in front of it")]
+    PlaneUnderCompensation {
+        /// The word.
+        word: String,
+    },
+    /// An arc has no centre.
+    #[error("the arc has no centre: give {} or a radius R", .words)]
+    NoCenter {
+        /// The two words of the plane.
+        words: &'static str,
+    },
+    /// An arc under G90.1 has one coordinate of its centre.
+    #[error("under G90.1 the centre needs both {words}: give the one that is missing, or go back to G91.1")]
+    HalfCenter {
+        /// The two words of the plane.
+        words: &'static str,
+    },
+    /// A centre word is not of the plane.
+    #[error(
+        "{word} is no centre word of the plane {plane}, which has {words}: choose the plane of the arc or correct the word"
+    )]
+    CenterOffPlane {
+        /// The word.
+        word: String,
+        /// The G word of the plane.
+        plane: &'static str,
+        /// The two words of the plane.
+        words: &'static str,
+    },
+    /// An arc has both a radius and a centre.
+    #[error("the arc has both {word} and a centre by I, J or K: keep one of them")]
+    RadiusAndCenter {
+        /// The R word.
+        word: String,
+    },
+    /// The radius of an arc is 0.
+    #[error("the arc has radius 0 and must have more: correct the centre or the R word")]
+    ZeroRadius,
+    /// An arc by its radius ends where it starts.
+    #[error(
+        "the arc ends where it starts, and {word} does not tell where its centre is: give a full circle by I, J or K"
+    )]
+    CircleByRadius {
+        /// The R word.
+        word: String,
+    },
+    /// The radius of an arc does not reach from its start to its end.
+    #[error(
+        "the radius {radius:.3} BLU is less than half of the chord, {half:.3} BLU, by more than {tolerance:.3} BLU: \
+         give a larger R or a nearer end point"
+    )]
+    RadiusTooSmall {
+        /// The radius given, in BLU.
+        radius: f64,
+        /// Half of the distance from start to end, in BLU.
+        half: f64,
+        /// The difference allowed, in BLU.
+        tolerance: f64,
+    },
+    /// The end of an arc is not on its circle.
+    #[error(
+        "the radius is {start:.3} BLU at the start point but {end:.3} BLU at the end point, and they may differ by at \
+         most {tolerance:.3} BLU ({CENTER_TOLERANCE}): correct the centre or the end point"
+    )]
+    EndOffCircle {
+        /// Distance of the start point from the centre, in BLU.
+        start: f64,
+        /// Distance of the end point from the centre, in BLU.
+        end: f64,
+        /// The difference allowed, in BLU.
+        tolerance: f64,
+    },
+    /// No block of the program moves.
+    #[error("the program ends and no block of it moved the tool: give it one with G00 to G03 and a coordinate")]
+    Empty,
+}
+
+/// Why a program cannot be read with a [`Reading`](super::Reading).
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ReadingError {
+    /// The BLU is not a length.
+    #[error("a BLU of {blu} mm is no length: give more than 0, such as 0.001")]
+    Blu {
+        /// The BLU given, in mm.
+        blu: f64,
+    },
+    /// A tool radius is not a length.
+    #[error("tool {number} has a radius of {radius} mm, but at least 0 is needed: give the other side by G41 or G42")]
+    ToolRadius {
+        /// The D number.
+        number: u64,
+        /// The radius given, in mm.
+        radius: f64,
+    },
+}
+
+/// What is wrong in a line, before the line is known.
+#[derive(Debug)]
+pub(super) struct Fault {
+    pub(super) column: u64,
+    pub(super) kind: ProgramErrorKind,
+}
+
+fn letter(word: &str) -> &str {
+    word.get(..1).unwrap_or(word)
+}

@@ -1,0 +1,304 @@
+//! NC programs: text in the language RS-274/NGC, read block by block into moves.
+//!
+//! A program starts at (0, 0, 0) with G17 G21 G40 G90 G91.1 G94 in force and no motion mode. Blanks and tabs count
+//! nowhere, not even inside a number, and upper and lower case are the same. What is not known is an error, never
+//! skipped.
+//!
+//! | words | meaning |
+//! |---|---|
+//! | G00, G01, G02, G03 | rapid move, line, arc with the clock, arc against it; in force until the next of them |
+//! | G04 P | dwell, in seconds |
+//! | G17, G18, G19 | plane: xy, zx, yz |
+//! | G20, G21 | inch (25.4 mm), mm |
+//! | G40, G41 D, G42 D | tool radius compensation: off, left, right by the radius of tool D; D0 is radius 0 |
+//! | G41.1 D, G42.1 D | the same with the tool's diameter as D |
+//! | G90, G91 | coordinates are absolute, or increments |
+//! | G90.1, G91.1 | centres (I J K) are absolute, or relative to the start of the arc |
+//! | G93, G94 | F is the inverse of the block's time in minutes, or a feed in units per minute; a change clears F |
+//! | F, S, T, N | feed, spindle speed, tool, number of the block (the first word of it) |
+//! | X Y Z, I J K, R | end point, centre of an arc, radius of an arc (negative: more than half a turn) |
+//! | M00, M01 | stop, optional stop |
+//! | M02, M30 | end; what follows in the file is not read |
+//! | M03 to M09 | spindle with the clock, against it, off; tool change; mist, flood, coolant off |
+//! | `(…)`, `;…` | comments, the second to the end of the line |
+//! | `%` | alone in its line: in front of the first block it is passed, behind it ends the program |
+//! | `/` | first in a line: the block could be switched off; here it is run |
+//! | `O1234` | number of the program, alone in front of the first block; passed |
+//!
+//! These words are accepted because they do not change the path of this machine:
+//!
+//! | words | reason |
+//! |---|---|
+//! | G49 | there are no tool length offsets (G43 is an error) to be taken back |
+//! | G54 | the first coordinate system, and the only one: its zero is the zero of the program |
+//! | G61, G61.1 | every block is run exactly to its end |
+//! | G64 P Q | allows the path to be left by P, which is a permission and not a duty |
+//! | G80 | there are no canned cycles to be ended; no motion mode is in force after it, unless G00 to G03 stand beside it |
+//! | G98, G99 | where canned cycles retract to |
+//!
+//! Words of a block are executed in the order of RS-274: feed mode, F, S, T, tool change, spindle, coolant, dwell, plane,
+//! units, compensation, distance modes, motion, stop. So an F word in a block with G20 or G21 is still in the units
+//! that were in force in front of the block. A coordinate without G word continues the motion that is in force, and
+//! a motion word without coordinate, centre or radius only changes what is in force. A line
+//! that ends where it starts is no move, but its words stay in force, and an arc that does so (and has I J K) is a full
+//! circle; ends within 0.001 BLU along every axis are the same point. A program may end without M02 or M30.
+//!
+//! An arc whose end is not on its circle, or whose R is less than half of its chord, is allowed within 2 BLU, 0.005 mm
+//! (what rounding to 0.001 mm or 0.0001 inch makes) or 0.1 % of its radius, whichever is most, the last at most 0.5 mm;
+//! but never by more than half of its radius. Such an R makes half a turn about the middle of the chord.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::io::{BufRead, Read};
+
+use crate::{Move, Place};
+
+use block::Block;
+use error::Fault;
+use modal::Modal;
+use words::{LINE_LIMIT, Words};
+
+pub use error::{ProgramError, ProgramErrorKind, ReadingError};
+
+mod arc;
+mod block;
+mod error;
+mod modal;
+#[cfg(test)]
+mod tests;
+mod words;
+
+/// The largest magnitude of a coordinate, a centre or a radius in a program, in BLU, and of every other number that is
+/// not a code.
+pub const PROGRAM_LIMIT: i64 = 1 << 40;
+
+/// How the tolerance of radii is told to people.
+const CENTER_TOLERANCE: &str = "the largest of 2 BLU, 0.005 mm and 0.1 % of the radius, the last at most 0.5 mm";
+
+/// What a coordinate without decimal point means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Integers {
+    /// Millimetres or inches, like every other number: the rule of RS-274.
+    #[default]
+    Units,
+    /// BLU, whatever the unit in force is: the rule of textbooks. Holds for X Y Z I J K R; F is never in pulses.
+    Pulses,
+}
+
+/// How a program is to be read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// The BLU in mm, more than 0.
+    pub blu: f64,
+    /// What a coordinate without decimal point means.
+    pub integers: Integers,
+    /// The radius of the tool of every D number, in mm, at least 0. Tool tables of RS-274 machines hold the diameter,
+    /// twice as much.
+    pub tools: BTreeMap<u64, f64>,
+}
+
+/// What the spindle does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Spindle {
+    /// M03.
+    Clockwise,
+    /// M04.
+    CounterClockwise,
+    /// M05.
+    Off,
+}
+
+/// What the coolant does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Coolant {
+    /// M07.
+    Mist,
+    /// M08.
+    Flood,
+    /// M09.
+    Off,
+}
+
+/// What a block switches beside the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Auxiliary {
+    /// S: the speed of the spindle, in turns per minute.
+    Speed(f64),
+    /// T: the tool that is made ready.
+    Tool(u64),
+    /// M06.
+    ToolChange,
+    /// M03 to M05.
+    Spindle(Spindle),
+    /// M07 to M09.
+    Coolant(Coolant),
+}
+
+/// What a program does next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Event {
+    /// The tool moves.
+    Move(Move),
+    /// G04: nothing moves.
+    Dwell {
+        /// The block.
+        place: Place,
+        /// For how long.
+        seconds: f64,
+    },
+    /// Something beside the motion is switched.
+    Auxiliary {
+        /// The block.
+        place: Place,
+        /// What.
+        function: Auxiliary,
+    },
+    /// M00 and M01: the operator starts the machine again.
+    Stop {
+        /// The block.
+        place: Place,
+        /// M01: only if the operator has chosen so.
+        optional: bool,
+    },
+    /// The program ends; always the last event, and there is always one.
+    End {
+        /// The block with M02 or M30; where there is none, the last line.
+        place: Place,
+    },
+}
+
+/// An NC program as a stream of events. It holds one line at a time.
+///
+/// After an error nothing more is read.
+///
+/// ```
+/// use stepwave_nc::{Event, Integers, Program, Reading};
+///
+/// let reading = Reading { blu: 0.001, integers: Integers::Units, tools: Default::default() };
+/// let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?;
+/// let Some(Ok(Event::Move(first))) = program.next() else { panic!() };
+/// assert_eq!(first.segment.to, [1500.0, 0.0, 0.0]);
+/// let Some(Err(error)) = program.next() else { panic!() };
+/// assert_eq!(
+///     error.to_string(),
+///     "line 2, column 5: expressions ([ ]) are not supported: write the number itself"
+/// );
+/// # Ok::<(), stepwave_nc::ReadingError>(())
+/// ```
+#[derive(Debug)]
+pub struct Program<R> {
+    text: R,
+    reading: Reading,
+    modal: Modal,
+    line: Vec<u8>,
+    lines: u64,
+    /// What the last line made and was not yet asked for.
+    events: VecDeque<Event>,
+    /// Whether no block was yet, so that an O word may be the program's number, and whether a % was.
+    head: bool,
+    opened: bool,
+    moved: bool,
+    ended: bool,
+}
+
+impl<R: BufRead> Program<R> {
+    /// A program that is read from `text`.
+    ///
+    /// # Errors
+    ///
+    /// If the BLU or the radius of a tool is no length.
+    pub fn new(text: R, reading: Reading) -> Result<Program<R>, ReadingError> {
+        let blu = reading.blu;
+        if !(blu.is_finite() && blu > 0.0) {
+            return Err(ReadingError::Blu { blu });
+        }
+        if let Some((&number, &radius)) =
+            reading.tools.iter().find(|&(_, &radius)| !(radius.is_finite() && radius >= 0.0))
+        {
+            return Err(ReadingError::ToolRadius { number, radius });
+        }
+        Ok(Program {
+            text,
+            reading,
+            modal: Modal::default(),
+            line: Vec::new(),
+            lines: 0,
+            events: VecDeque::new(),
+            head: true,
+            opened: false,
+            moved: false,
+            ended: false,
+        })
+    }
+
+    /// Reads the next line without its end; false where there is none.
+    fn fill(&mut self) -> Result<bool, Fault> {
+        let fault = |kind| Fault { column: 1, kind };
+        self.line.clear();
+        let limit = LINE_LIMIT as u64 + 1;
+        let count = self.text.by_ref().take(limit).read_until(b'\n', &mut self.line);
+        if !matches!(count, Ok(0)) {
+            self.lines += 1;
+        }
+        let count = count.map_err(|error| fault(ProgramErrorKind::Read(error)))?;
+        if self.line.pop_if(|last| *last == b'\n').is_some() {
+            self.line.pop_if(|last| *last == b'\r');
+        } else if count > LINE_LIMIT {
+            return Err(fault(ProgramErrorKind::Overlong));
+        }
+        Ok(count > 0)
+    }
+
+    /// Reads the next line and queues what it makes.
+    fn advance(&mut self) -> Result<(), Fault> {
+        if !self.fill()? {
+            return self.end(Place { line: self.lines.max(1), number: None });
+        }
+        let mark = if self.lines == 1 { "\u{feff}".as_bytes() } else { &[] };
+        let line = words::text(self.line.strip_prefix(mark).unwrap_or(&self.line))?;
+        let mut words = Words::new(line);
+        if words.sign('%') {
+            if let Some(column) = words.left()? {
+                return Err(Fault { column, kind: ProgramErrorKind::PercentInBlock });
+            }
+            if self.head && !self.opened {
+                self.opened = true;
+                return Ok(());
+            }
+            return self.end(Place { line: self.lines, number: None });
+        }
+        words.sign('/');
+        if words.left()?.is_none() {
+            return Ok(());
+        }
+        let block = Block::read(words, self.head)?;
+        self.head = false;
+        let place = Place { line: self.lines, number: block.number };
+        let ends = self.modal.run(&block, place, &self.reading, &mut self.events)?;
+        self.moved |= self.events.iter().any(|event| matches!(event, Event::Move(_)));
+        if ends { self.end(place) } else { Ok(()) }
+    }
+
+    fn end(&mut self, place: Place) -> Result<(), Fault> {
+        self.ended = true;
+        if !self.moved {
+            return Err(Fault { column: 1, kind: ProgramErrorKind::Empty });
+        }
+        self.events.push_back(Event::End { place });
+        Ok(())
+    }
+}
+
+impl<R: BufRead> Iterator for Program<R> {
+    type Item = Result<Event, ProgramError>;
+
+    fn next(&mut self) -> Option<Result<Event, ProgramError>> {
+        while self.events.is_empty() && !self.ended {
+            if let Err(Fault { column, kind }) = self.advance() {
+                self.ended = true;
+                self.events.clear();
+                return Some(Err(ProgramError { line: self.lines.max(1), column, kind }));
+            }
+        }
+        self.events.pop_front().map(Ok)
+    }
+}

@@ -1,0 +1,302 @@
+//! What is in force in a program, and what a block makes of it.
+
+use std::collections::VecDeque;
+
+use super::arc;
+use super::block::{Block, Compensation, Distance, FeedMode, Halt, Hand, Motion};
+use super::error::{Fault, ProgramErrorKind};
+use super::words::Word;
+use super::{Auxiliary, Event, Integers, PROGRAM_LIMIT, Reading};
+use crate::{Direction, Feed, Move, Place, Plane, Point, Segment, Side, Way};
+
+/// The words that stay in force, and where the tool is.
+#[derive(Debug)]
+pub(super) struct Modal {
+    position: Point,
+    plane: Plane,
+    /// Millimetres in a unit.
+    unit: f64,
+    distance: Distance,
+    centers: Distance,
+    feed_mode: FeedMode,
+    /// In mm/min; none under G93.
+    feed: Option<f64>,
+    side: Side,
+    motion: Option<Motion>,
+}
+
+impl Default for Modal {
+    /// G17 G21 G40 G90 G91.1 G94 at the origin.
+    fn default() -> Modal {
+        Modal {
+            position: [0.0; 3],
+            plane: Plane::Xy,
+            unit: 1.0,
+            distance: Distance::Absolute,
+            centers: Distance::Incremental,
+            feed_mode: FeedMode::PerMinute,
+            feed: None,
+            side: Side::On,
+            motion: None,
+        }
+    }
+}
+
+/// The letters of axes and of the centre, axis by axis.
+const AXES: [char; 3] = ['X', 'Y', 'Z'];
+const CENTERS: [char; 3] = ['I', 'J', 'K'];
+
+/// Ends of a way that lie no further apart along the axes are one point: rounding of increments and inches has parted
+/// them. In BLU.
+const SAME_POINT: f64 = 1e-3;
+
+/// What the words of a plane are called.
+fn center_words(plane: Plane) -> (&'static str, &'static str) {
+    match plane {
+        Plane::Xy => ("G17", "I and J"),
+        Plane::Zx => ("G18", "I and K"),
+        Plane::Yz => ("G19", "J and K"),
+    }
+}
+
+fn within(value: f64, column: u64, name: impl FnOnce() -> String) -> Result<f64, Fault> {
+    if value.abs() <= PROGRAM_LIMIT as f64 {
+        Ok(value)
+    } else {
+        Err(Fault { column, kind: ProgramErrorKind::BeyondLimit { name: name(), value } })
+    }
+}
+
+impl Modal {
+    /// Runs a block in the order of RS-274, and tells whether the program ends with it.
+    pub(super) fn run(
+        &mut self,
+        block: &Block<'_>,
+        place: Place,
+        reading: &Reading,
+        events: &mut VecDeque<Event>,
+    ) -> Result<bool, Fault> {
+        let feed = self.feed(block)?;
+        let mut auxiliary = |function| events.push_back(Event::Auxiliary { place, function });
+        if let Some(word) = block.word('S') {
+            auxiliary(Auxiliary::Speed(not_negative(word)?));
+        }
+        if let Some(word) = block.word('T') {
+            auxiliary(Auxiliary::Tool(word.count()?));
+        }
+        if block.tool_change.is_some() {
+            auxiliary(Auxiliary::ToolChange);
+        }
+        if let Some((spindle, _)) = block.spindle {
+            auxiliary(Auxiliary::Spindle(spindle));
+        }
+        if let Some((coolant, _)) = block.coolant {
+            auxiliary(Auxiliary::Coolant(coolant));
+        }
+        if let Some(((), word)) = block.dwell {
+            let Some(time) = block.word('P') else {
+                return Err(word.fault(|word| ProgramErrorKind::NoDwellTime { word }));
+            };
+            events.push_back(Event::Dwell { place, seconds: not_negative(time)? });
+        }
+        if let Some((plane, word)) = block.plane {
+            if plane != self.plane && self.side != Side::On {
+                return Err(word.fault(|word| ProgramErrorKind::PlaneUnderCompensation { word }));
+            }
+            self.plane = plane;
+        }
+        self.unit = block.unit.map_or(self.unit, |(unit, _)| unit);
+        if let Some((compensation, word)) = block.compensation {
+            self.side = self.side(compensation, word, block.word('D'), reading)?;
+        }
+        self.distance = block.distance.map_or(self.distance, |(distance, _)| distance);
+        self.centers = block.centers.map_or(self.centers, |(distance, _)| distance);
+        self.motion = match (block.motion, block.cycles_off) {
+            (Some((motion, _)), _) => Some(motion),
+            (None, Some(_)) => None,
+            (None, None) => self.motion,
+        };
+        if let Some(segment) = self.segment(block, reading)? {
+            let feed = self.feed_of_move(block, feed)?;
+            self.position = segment.to;
+            if segment.from != segment.to || matches!(segment.way, Way::Arc { .. }) {
+                events.push_back(Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side }));
+            }
+        }
+        match block.halt {
+            None => {}
+            Some((Halt::Stop, _)) => events.push_back(Event::Stop { place, optional: false }),
+            Some((Halt::OptionalStop, _)) => events.push_back(Event::Stop { place, optional: true }),
+            Some((Halt::End, _)) => return Ok(true),
+        }
+        Ok(false)
+    }
+
+    /// Takes the feed mode and the F word, and returns the block's own F number.
+    fn feed(&mut self, block: &Block<'_>) -> Result<Option<f64>, Fault> {
+        if let Some((mode, _)) = block.feed_mode
+            && mode != self.feed_mode
+        {
+            self.feed_mode = mode;
+            self.feed = None;
+        }
+        let Some(word) = block.word('F') else {
+            return Ok(None);
+        };
+        let number = word.limited()?;
+        if number <= 0.0 {
+            return Err(word.fault(|word| ProgramErrorKind::FeedNotPositive { word }));
+        }
+        if self.feed_mode == FeedMode::PerMinute {
+            self.feed = Some(number * self.unit);
+        }
+        Ok(Some(number))
+    }
+
+    /// The feed of a block that moves, whose own F number is known.
+    fn feed_of_move(&self, block: &Block<'_>, number: Option<f64>) -> Result<Feed, Fault> {
+        let (feed, missing) = match (self.motion, self.feed_mode) {
+            (Some(Motion::Rapid), _) => return Ok(Feed::Rapid),
+            (_, FeedMode::PerMinute) => (self.feed.map(Feed::PerMinute), ProgramErrorKind::NoFeed),
+            (_, FeedMode::InverseTime) => (number.map(Feed::Inverse), ProgramErrorKind::NoInverseTime),
+        };
+        let column = || block.motion.map(|(_, word)| word).or(block.any("XYZIJKR")).map_or(1, |word| word.column);
+        feed.ok_or_else(|| Fault { column: column(), kind: missing })
+    }
+
+    fn side(
+        &self,
+        compensation: Compensation,
+        word: Word<'_>,
+        tool: Option<Word<'_>>,
+        reading: &Reading,
+    ) -> Result<Side, Fault> {
+        let (hand, by_table) = match compensation {
+            Compensation::Off => return Ok(Side::On),
+            Compensation::Tool(hand) => (hand, true),
+            Compensation::Diameter(hand) => (hand, false),
+        };
+        let Some(tool) = tool else {
+            return Err(word.fault(|word| ProgramErrorKind::NoTool { word }));
+        };
+        let radius = if by_table {
+            let number = tool.count()?;
+            let radius = reading.tools.get(&number).copied().or((number == 0).then_some(0.0));
+            radius.ok_or_else(|| tool.fault(|_| ProgramErrorKind::UnknownTool { number }))? / reading.blu
+        } else {
+            not_negative(tool)? * self.unit / 2.0 / reading.blu
+        };
+        let radius = within(radius, tool.column, || format!("the tool radius of {}", tool.name()))?;
+        Ok(match hand {
+            Hand::Left => Side::Left(radius),
+            Hand::Right => Side::Right(radius),
+        })
+    }
+
+    /// A length word in BLU.
+    fn length(&self, word: Word<'_>, reading: &Reading) -> Result<f64, Fault> {
+        let value = match reading.integers {
+            Integers::Pulses if word.integer => word.value,
+            _ => word.value * self.unit / reading.blu,
+        };
+        within(value, word.column, || word.letter.to_string())
+    }
+
+    /// The way of the block, of whatever length; nothing where it has no word that moves.
+    fn segment(&self, block: &Block<'_>, reading: &Reading) -> Result<Option<Segment>, Fault> {
+        let Some(first) = block.any("XYZIJKR") else {
+            return Ok(None);
+        };
+        let Some(motion) = self.motion else {
+            return Err(first.fault(|word| ProgramErrorKind::NoMotion { word }));
+        };
+        let from = self.position;
+        let mut to = from;
+        for (coordinate, letter) in to.iter_mut().zip(AXES) {
+            if let Some(word) = block.word(letter) {
+                let length = self.length(word, reading)?;
+                let start = if self.distance == Distance::Absolute { 0.0 } else { *coordinate };
+                *coordinate = within(start + length, word.column, || letter.to_string())?;
+            }
+        }
+        let mut still = [0, 1, 2].map(|axis| (to[axis] - from[axis]).abs() <= SAME_POINT);
+        match motion {
+            Motion::Arc(_) => {
+                let [first, second, _] = self.plane.axes();
+                [still[first], still[second]] = [still[first] && still[second]; 2];
+            }
+            Motion::Rapid | Motion::Line => still = [still == [true; 3]; 3],
+        }
+        for axis in [0, 1, 2] {
+            if still[axis] {
+                to[axis] = from[axis];
+            }
+        }
+        let way = match (motion, block.any("IJKR")) {
+            (Motion::Arc(direction), _) => self.arc(block, from, to, direction, reading)?,
+            (_, None) => Way::Line,
+            (_, Some(word)) => return Err(word.fault(|word| ProgramErrorKind::Unused { word, owner: "G02 or G03" })),
+        };
+        Ok(Some(Segment { from, to, way }))
+    }
+
+    fn arc(
+        &self,
+        block: &Block<'_>,
+        from: Point,
+        to: Point,
+        direction: Direction,
+        reading: &Reading,
+    ) -> Result<Way, Fault> {
+        let plane = self.plane;
+        let (name, words) = center_words(plane);
+        let [first, second, third] = plane.axes();
+        let [start_first, start_second, _] = plane.of(from);
+        let [end_first, end_second, _] = plane.of(to);
+        let (start, end) = ([start_first, start_second], [end_first, end_second]);
+        if let Some(word) = block.word(CENTERS[third]) {
+            return Err(word.fault(|word| ProgramErrorKind::CenterOffPlane { word, plane: name, words }));
+        }
+        // Where the arc as a whole is wrong: the first word that says so.
+        let column = block.any("RIJK").or(block.motion.map(|(_, word)| word)).or(block.any("XYZ"));
+        let column = column.map_or(1, |word| word.column);
+        let fault = |kind| Fault { column, kind };
+        let given = [first, second].map(|axis| block.word(CENTERS[axis]));
+        let center = match (block.word('R'), given) {
+            (Some(word), [None, None]) => {
+                let radius = self.length(word, reading)?;
+                if radius == 0.0 {
+                    return Err(fault(ProgramErrorKind::ZeroRadius));
+                }
+                if start == end {
+                    return Err(word.fault(|word| ProgramErrorKind::CircleByRadius { word }));
+                }
+                arc::center(start, end, radius, direction, reading.blu).map_err(fault)?
+            }
+            (Some(word), _) => return Err(word.fault(|word| ProgramErrorKind::RadiusAndCenter { word })),
+            (None, [None, None]) => return Err(fault(ProgramErrorKind::NoCenter { words })),
+            (None, given) => {
+                let mut center = start;
+                for (coordinate, word) in center.iter_mut().zip(given) {
+                    let length = word.map(|word| self.length(word, reading)).transpose()?;
+                    *coordinate = match (self.centers, length) {
+                        (Distance::Incremental, length) => *coordinate + length.unwrap_or(0.0),
+                        (Distance::Absolute, Some(length)) => length,
+                        (Distance::Absolute, None) => return Err(fault(ProgramErrorKind::HalfCenter { words })),
+                    };
+                }
+                arc::check(start, end, center, reading.blu).map_err(fault)?;
+                center
+            }
+        };
+        for (value, axis) in center.into_iter().zip([first, second]) {
+            within(value, column, || format!("the centre in {}", AXES[axis]))?;
+        }
+        Ok(Way::Arc { plane, center, direction })
+    }
+}
+
+fn not_negative(word: Word<'_>) -> Result<f64, Fault> {
+    let value = word.limited()?;
+    if value < 0.0 { Err(word.fault(|word| ProgramErrorKind::Negative { word })) } else { Ok(value) }
+}
