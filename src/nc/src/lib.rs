@@ -21,6 +21,7 @@
 //! ```
 
 mod arc;
+mod compensation;
 mod conic;
 mod contour;
 mod curve;
@@ -37,6 +38,7 @@ mod sector;
 mod turn;
 
 pub use arc::Arc;
+pub use compensation::{CompensationError, CompensationErrorKind, Compensator, Corner, Scheme, WAITING_LIMIT};
 pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
 pub use contour::{Cause, Feed, Move, Place, Plane, Point, Segment, Side, ToolMove, Way};
 pub use curve::{Curve, OUTLINE_LIMIT};
