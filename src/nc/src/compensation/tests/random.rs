@@ -6,7 +6,10 @@ use proptest::test_runner::RngSeed;
 use super::corners::{LONG, Piece, assert_clear, corner};
 use super::*;
 
-const SEED: RngSeed = RngSeed::Fixed(0x57e9);
+fn config() -> ProptestConfig {
+    let rng_seed = RngSeed::Fixed(0x57e9);
+    ProptestConfig { failure_persistence: None, rng_seed, ..ProptestConfig::with_cases(2000) }
+}
 
 fn piece() -> impl Strategy<Value = Piece> {
     let bend = prop_oneof![Just(0.0), Just(1.0), Just(-1.0)];
@@ -28,11 +31,12 @@ fn any_block() -> impl Strategy<Value = (Vector, f64, Option<Direction>, Side, f
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: SEED, ..ProptestConfig::with_cases(2000) })]
+    #![proptest_config(config())]
 
     #[test]
     fn a_random_corner_keeps_the_tool_off_both_blocks(
-        leaving in piece(), entering in piece(), turn in -1.5..2.1_f64, left: bool, radius in 0.01..1.0_f64, circular: bool,
+        leaving in piece(), entering in piece(), turn in -1.5..2.1_f64,
+        left: bool, radius in 0.01..1.0_f64, circular: bool,
     ) {
         // A positive turn is outside. With both arcs it stays below half a turn, so that the far ends keep apart.
         let (turn, side) = if left { (-turn, Side::Left(radius)) } else { (turn, Side::Right(radius)) };
