@@ -168,6 +168,13 @@ fn a_program_that_cannot_be_read_is_an_error_at_the_line_that_was_to_come() {
 }
 
 #[test]
+fn a_second_per_cent_sign_ends_a_program_even_if_nothing_stands_between() {
+    let (line, column, message) = fault("%\n%\nG0 X1");
+    assert_eq!((line, column), (2, 1));
+    assert!(message.starts_with("the program ends and no block of it moved"), "{message}");
+}
+
+#[test]
 fn an_o_word_behind_the_head_and_a_plane_that_stays_are_told_apart() {
     assert_eq!(fault("G0 X1\nO1234").1, 1);
     assert_eq!(fault("O1\nO2").0, 2);
