@@ -7,11 +7,13 @@ use stepwave::nc::Opens;
 
 use crate::commands::diff::DiffArgs;
 
+mod program;
 mod proof;
 mod sweep;
 mod values;
 mod widths;
 
+pub(crate) use program::ProgramArgs;
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use values::{ClockArgs, HardwareArgs, Point, SimulationArgs};
@@ -33,6 +35,8 @@ pub(crate) enum Command {
     List(ListArgs),
     /// Build a model's netlist, simulate it clock by clock, write waves, step table, report, picture
     Run(Box<RunArgs>),
+    /// A whole NC program through one machine: compensation, block buffer, feed; one wave, one step table, one report
+    Program(Box<ProgramArgs>),
     /// Many geometries and hardware choices, a row each: clocks, path error, overflow; CSV, Parquet and heat maps
     Sweep(Box<SweepArgs>),
     /// Every method on one curve: steps, clocks, greatest error, widest register
@@ -115,6 +119,10 @@ pub(crate) struct RunArgs {
     pub(crate) trace: TraceArgs,
     #[command(flatten)]
     pub(crate) outputs: OutputArgs,
+    /// Keep states of the run in this file; where it exists, begin at the last state before --trace-from instead of at
+    /// clock 0
+    #[arg(long, value_name = "FILE", help_heading = "Wave")]
+    pub(crate) checkpoints: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -222,10 +230,6 @@ pub(crate) struct TraceArgs {
     /// Begin the wave at the first clock on which this 1-bit signal is 1
     #[arg(long, requires = "wave", value_name = "SIGNAL")]
     pub(crate) trace_on: Option<String>,
-    /// Keep states of the run in this file; where it exists, begin at the last state before --trace-from instead of at
-    /// clock 0
-    #[arg(long, value_name = "FILE")]
-    pub(crate) checkpoints: Option<PathBuf>,
     /// Do not dump the clock (saves about 15 bytes a cycle)
     #[arg(long, requires = "wave")]
     pub(crate) no_clk: bool,

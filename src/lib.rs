@@ -37,6 +37,7 @@ pub use stepwave_kernel as kernel;
 pub use stepwave_models as models;
 pub use stepwave_nc as nc;
 
+pub mod program;
 pub mod report;
 pub mod study;
 pub mod testbench;

@@ -207,7 +207,7 @@ fn check_widths(hardware: &Hardware, units: Units) -> Result<(), ModelError> {
 }
 
 /// Greatest deviation of an axis from its uniform rate, in pulses, whatever its coefficient of `n` bits.
-fn rate_bound(radix: Radix, n: u32) -> f64 {
+pub(crate) fn rate_bound(radix: Radix, n: u32) -> f64 {
     match radix {
         Radix::Binary => (3.0 * f64::from(n) + 7.0) / 18.0 + (-0.5_f64).powf(f64::from(n)) / 9.0,
         Radix::Decimal => {

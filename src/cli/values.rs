@@ -85,7 +85,7 @@ fn parse_clock(text: &str) -> Result<f64, String> {
 }
 
 /// One BLU in millimetres.
-fn parse_blu(text: &str) -> Result<f64, String> {
+pub(super) fn parse_blu(text: &str) -> Result<f64, String> {
     const UNITS: [(&str, f64); 4] = [("mm", 1.0), ("um", 1e-3), ("µm", 1e-3), ("in", 25.4)];
     let way_out = || format!("'{text}' is no length: give one such as 0.001mm, 1um or 0.0001in");
     let (unit, scale) = UNITS.iter().find(|(unit, _)| text.ends_with(unit)).ok_or_else(way_out)?;
@@ -95,7 +95,9 @@ fn parse_blu(text: &str) -> Result<f64, String> {
 }
 
 /// A choice among named values.
-fn one_of<T: Clone + Send + Sync + 'static>(values: &[(&'static str, T)]) -> impl TypedValueParser<Value = T> + use<T> {
+pub(super) fn one_of<T: Clone + Send + Sync + 'static>(
+    values: &[(&'static str, T)],
+) -> impl TypedValueParser<Value = T> + use<T> {
     let values = values.to_vec();
     let names: Vec<&'static str> = values.iter().map(|(name, _)| *name).collect();
     PossibleValuesParser::new(names).map(move |given| {

@@ -121,7 +121,7 @@ fn simulate(case: &Case, engine: EngineKind) -> Result<Files, Failure> {
     let cli = Cli::try_parse_from(words).map_err(|error| in_words(Failure::usage(&error)))?;
     let Command::Run(args) = cli.command else { return Err(wrong("is no run".to_owned())) };
     let args: &RunArgs = &args;
-    let others = [&args.trace.fst, &args.trace.checkpoints, &args.outputs.json, &args.outputs.plot];
+    let others = [&args.trace.fst, &args.checkpoints, &args.outputs.json, &args.outputs.plot];
     if others.iter().any(|path| path.is_some()) {
         let rest = "leave out --fst, --checkpoints, --json and --plot";
         return Err(wrong(format!("a wave and a step table are recorded; {rest}")));

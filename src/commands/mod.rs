@@ -7,6 +7,7 @@ mod geometry;
 mod golden;
 mod list;
 mod pages;
+mod program;
 mod progress;
 mod prove;
 mod run;
@@ -26,6 +27,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
     match &cli.command {
         Command::List(args) => list::run(args),
         Command::Run(args) => run::run(args),
+        Command::Program(args) => program::program(args),
         Command::Sweep(args) => sweep::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Widths(args) => widths::run(args),

@@ -97,7 +97,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         states.finish()?;
     }
     if let Some(waves) = waves {
-        waves.finish(&report, outputs)?;
+        waves.finish(&report.overflows, report.outcome.clocks, outputs)?;
     }
     if let Some(csv) = csv {
         csv.finish()?;

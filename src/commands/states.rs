@@ -21,7 +21,7 @@ pub(super) enum States<'a> {
 impl<'a> States<'a> {
     /// What the options ask for; nothing where the file holds no state before the window.
     pub(super) fn of(args: &'a RunArgs, bench: &Testbench) -> Result<Option<States<'a>>, Failure> {
-        let Some(path) = &args.trace.checkpoints else { return Ok(None) };
+        let Some(path) = &args.checkpoints else { return Ok(None) };
         if args.outputs.steps.is_some() || args.outputs.plot.is_some() {
             let need = "the step table and the picture need every step, from the first";
             return Err(Failure::Trouble(format!("--checkpoints: {need}: leave out --steps and --plot")));

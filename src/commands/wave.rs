@@ -9,8 +9,7 @@ use stepwave::kernel::trace::gtkw::{View, side_files};
 use stepwave::kernel::trace::probe::{Probe, Selection};
 use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::kernel::trace::vcd::{Background, VcdBody, VcdHeader};
-use stepwave::report::Report;
-use stepwave::testbench::{Observer, Testbench, Trigger, WaveBody, WaveWriter, Window};
+use stepwave::testbench::{Observer, OverflowEvent, Testbench, Trigger, WaveBody, WaveWriter, Window};
 
 use crate::cli::TraceArgs;
 use crate::failure::Failure;
@@ -97,20 +96,25 @@ impl<'a> Waves<'a> {
     ///
     /// # Errors
     /// A wave is empty, or an output cannot be written.
-    pub(super) fn finish(mut self, report: &Report<'_>, outputs: &mut Outputs) -> Result<(), Failure> {
+    pub(super) fn finish(
+        mut self,
+        overflows: &[OverflowEvent],
+        clocks: u64,
+        outputs: &mut Outputs,
+    ) -> Result<(), Failure> {
         let (vcd, fst) = (self.vcd.take(), self.fst.take());
         let vcd_stem = vcd.as_ref().and_then(|wave| wave.path.file_stem());
         // The files beside two waves of one stem would bear the same names.
         let twins = vcd_stem.is_some() && vcd_stem == fst.as_ref().and_then(|wave| wave.path.file_stem());
         if let Some(Wave { path, writer }) = vcd {
-            let (written, background) = finish(writer, report)?;
+            let (written, background) = finish(writer, clocks)?;
             background.finish()?;
-            self.beside(path, path.file_stem(), written, report, outputs)?;
+            self.beside(path, path.file_stem(), written, overflows, outputs)?;
         }
         if let Some(Wave { path, writer }) = fst {
-            let (written, _) = finish(writer, report)?;
+            let (written, _) = finish(writer, clocks)?;
             let stem = if twins { path.file_name() } else { path.file_stem() };
-            self.beside(path, stem, written, report, outputs)?;
+            self.beside(path, stem, written, overflows, outputs)?;
         }
         Ok(())
     }
@@ -121,15 +125,14 @@ impl<'a> Waves<'a> {
         path: &Path,
         stem: Option<&OsStr>,
         (first_clock, last_clock): (u64, u64),
-        report: &Report<'_>,
+        overflows: &[OverflowEvent],
         outputs: &mut Outputs,
     ) -> Result<(), Failure> {
         if output::is_stream(path) {
             return Ok(());
         }
         let text = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-        let marks: Vec<(u64, String)> = report
-            .overflows
+        let marks: Vec<(u64, String)> = overflows
             .iter()
             .filter(|event| (first_clock..=last_clock).contains(&event.clock()))
             .take(1)
@@ -152,11 +155,10 @@ impl<'a> Waves<'a> {
 }
 
 /// Ends a wave; tells its first and last clock.
-fn finish<B: WaveBody>(writer: WaveWriter<B>, report: &Report<'_>) -> Result<((u64, u64), B::Output), Failure> {
+fn finish<B: WaveBody>(writer: WaveWriter<B>, clocks: u64) -> Result<((u64, u64), B::Output), Failure> {
     let Some(written) = writer.written else {
         return Err(Failure::Trouble(format!(
-            "the wave would be empty: no clock from 0 to {} of this run falls into its window",
-            report.outcome.clocks
+            "the wave would be empty: no clock from 0 to {clocks} of this run falls into its window"
         )));
     };
     Ok((written, writer.finish()?))

@@ -12,7 +12,7 @@ use crate::testbench::{Ending, OverflowEvent, OverflowTally};
 const SCHEMA: u32 = 1;
 
 /// A number as JSON; one beyond 64 bits as text.
-fn number(value: i128) -> Value {
+pub(super) fn number(value: i128) -> Value {
     if let Ok(value) = i64::try_from(value) {
         return json!(value);
     }
@@ -57,7 +57,7 @@ fn geometry(curve: &Curve) -> Value {
     }
 }
 
-fn event(event: &OverflowEvent) -> Value {
+pub(super) fn event(event: &OverflowEvent) -> Value {
     match event {
         OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } => {
             let (exact, needed) = event.exact().unwrap_or_default();
@@ -81,7 +81,7 @@ fn event(event: &OverflowEvent) -> Value {
     }
 }
 
-fn tally(tally: &OverflowTally) -> Value {
+pub(super) fn tally(tally: &OverflowTally) -> Value {
     json!({
         "component": tally.first.component(),
         "count": tally.count,

@@ -3,8 +3,10 @@
 mod command;
 pub mod heat;
 mod json;
+mod part;
 pub mod plot;
 mod png;
+mod program;
 mod summary;
 mod table;
 
@@ -16,6 +18,8 @@ use stepwave_nc::Curve;
 use crate::testbench::{Ending, Outcome, OverflowEvent, OverflowTally, PulseTrain, RegisterRange, WorstError};
 
 pub use command::{geometry_options, run_command};
+pub use part::Part;
+pub use program::{ProgramHead, ProgramJson, ProgramTable, ProgramTail, TABLE_MOVES};
 pub use summary::{choices, geometry, title};
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
 

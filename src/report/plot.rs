@@ -216,7 +216,7 @@ pub(super) struct View {
 
 impl View {
     /// Shows two ranges and a margin, with one scale for both, and more if a greater size is needed.
-    fn equal(ranges: [Pair; 2], least: Pair) -> View {
+    pub(super) fn equal(ranges: [Pair; 2], least: Pair) -> View {
         let extent = ranges.map(|[low, high]| high - low);
         let padded = extent.map(|side| side + 2.0 * (0.04 * extent[0].max(extent[1])).max(0.7));
         let scale = SCALE_MOST.min(PANEL_MOST[0] / padded[0]).min(PANEL_MOST[1] / padded[1]);
@@ -250,7 +250,7 @@ impl View {
 pub(super) struct Page(pub(super) String);
 
 impl Page {
-    fn path(&mut self, view: &View, style: &str, points: &[Pair]) {
+    pub(super) fn path(&mut self, view: &View, style: &str, points: &[Pair]) {
         let places = points.iter().map(|&point| view.at(point));
         let mut data: Vec<String> = places.map(|[x, y]| format!("{x:.2} {y:.2}")).collect();
         data.dedup();
@@ -332,7 +332,7 @@ fn union(a: Pair, b: Pair) -> Pair {
 }
 
 /// The ranges in x and in y, extended to a point.
-fn reaching([x, y]: [Pair; 2], point: Pair) -> [Pair; 2] {
+pub(super) fn reaching([x, y]: [Pair; 2], point: Pair) -> [Pair; 2] {
     [union(x, [point[0]; 2]), union(y, [point[1]; 2])]
 }
 

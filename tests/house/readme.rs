@@ -1,4 +1,4 @@
-//! Every `stepwave run` in the README is run, and what the README shows of it is compared.
+//! Every `stepwave run` and `stepwave program` in the README is run, and what the README shows of it is compared.
 
 use std::process::Command;
 
@@ -22,14 +22,20 @@ fn the_commands_of_the_readme_print_what_it_shows() {
     let readme = include_str!("../../README.md");
     let blocks = blocks(readme);
     let dir = tempfile::tempdir().unwrap();
+    std::fs::create_dir(dir.path().join("examples")).unwrap();
+    std::fs::write(dir.path().join("examples/part.ngc"), include_str!("../../examples/part.ngc")).unwrap();
     let mut compared = 0;
     for pair in blocks.windows(2) {
         let [(language, command), (shown_language, shown)] = pair else { unreachable!() };
-        let Some((_, arguments)) = command.split_once(" run ").filter(|_| language == "sh") else { continue };
+        if language != "sh" {
+            continue;
+        }
         // `cargo run --release -- run …` and `stepwave run …` are the same program.
-        let arguments = arguments.strip_prefix("--release -- run ").unwrap_or(arguments);
+        let words = command.trim().strip_prefix("cargo run --release -- ").or(command.strip_prefix("stepwave "));
+        let Some(arguments) = words.filter(|words| words.starts_with("run ") || words.starts_with("program ")) else {
+            continue;
+        };
         let output = Command::new(env!("CARGO_BIN_EXE_stepwave"))
-            .arg("run")
             .args(arguments.split_whitespace())
             .current_dir(&dir)
             .output()

@@ -1,3 +1,4 @@
 //! Whole programs: machines of every family, and what comes before them.
 
+mod command;
 mod machines;

@@ -20,7 +20,7 @@ use stepwave_nc::{Crossing, Curve, PulseBlock};
 
 use super::frame::Frame;
 use super::{Family, HardwareBlock, Size, planar};
-use crate::choices::{Choice, Choices};
+use crate::choices::{Choice, Choices, Preset};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::hardware::names::{JR, JV};
@@ -42,7 +42,11 @@ pub(super) const FAMILY: Family = Family {
     plan,
     netlist,
     words,
-    error_bound: |_| None,
+    error_bound: |hardware, block| {
+        // Each axis of a line is rounded to the nearest, or cut; an arc has no promise.
+        let off = if hardware.presets.first() == Some(&Preset::Half) { 0.5 } else { 1.0 };
+        matches!(block.curve, Curve::Line(_)).then(|| planar::bound(block, f64::hypot(off, off)))
+    },
 };
 
 fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {

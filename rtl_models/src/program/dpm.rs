@@ -32,7 +32,11 @@ pub(super) const FAMILY: Family = Family {
     plan,
     netlist,
     words,
-    error_bound: |_| None,
+    error_bound: |hardware, block| {
+        let moving = (0..3).filter(|&axis| block.from[axis] != block.to[axis]);
+        let off = crate::dpm_line::rate_bound(Radix::Binary, hardware.bits("q"));
+        Some(moving.fold(0.0, |sum, _| f64::hypot(sum, off)))
+    },
 };
 
 fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {

@@ -30,11 +30,14 @@ pub(super) const FAMILY: Family = Family {
     plan,
     netlist,
     words,
-    error_bound: |block| match &block.curve {
-        // Beside an end point off the circle, forced steps lead away from it.
-        Curve::Arc(arc) if !arc.ends_on_circle() => Some(1.5),
-        Curve::Helix(helix) if !helix.arc().ends_on_circle() => Some(1.5),
-        _ => Some(0.5),
+    error_bound: |_, block| {
+        let on_circle = match &block.curve {
+            Curve::Arc(arc) => arc.ends_on_circle(),
+            Curve::Helix(helix) => helix.arc().ends_on_circle(),
+            Curve::Line(_) | Curve::Conic(_) => true,
+        };
+        // Forced steps lead to an end point beside the circle, which is up to a BLU off it.
+        Some(planar::bound(block, if on_circle { 0.5 } else { 1.5 }))
     },
 };
 

@@ -87,7 +87,7 @@ pub struct Family {
     netlist: fn(&Hardware) -> Result<Netlist, ModelError>,
     words: fn(&Hardware, &PulseBlock) -> Vec<HardwareBlock>,
     /// Greatest distance from the curve that the method promises, in BLU, if it promises one.
-    pub error_bound: fn(&PulseBlock) -> Option<f64>,
+    pub error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
 }
 
 /// Every family with a machine.
@@ -113,6 +113,20 @@ impl Family {
     /// The machine itself is wrong.
     pub fn machine(&self, hardware: &Hardware) -> Result<Machine, ModelError> {
         Machine::new((self.netlist)(hardware)?, hardware)
+    }
+
+    /// Pulses of the third axis and of the plane in the steepest sector of a helix, where the third axis cannot follow
+    /// because it has more than half of them; 0 where it can.
+    #[must_use]
+    pub fn too_steep(&self, block: &PulseBlock) -> [u64; 2] {
+        let Curve::Helix(_) = block.curve else { return [0; 2] };
+        let sectors = planar::blocks(self, block, |_| (Words::new(), 0.0));
+        let word = |sector: &HardwareBlock, wanted: &str| {
+            let found = sector.words.iter().find(|(name, _)| *name == wanted).map_or(0, |(_, value)| *value);
+            u64::try_from(found).unwrap_or(u64::MAX)
+        };
+        let pairs = sectors.iter().map(|sector| [word(sector, "share"), word(sector, "whole")]);
+        pairs.filter(|[share, whole]| share.saturating_mul(2) > *whole).max().unwrap_or_default()
     }
 
     /// What the machine is loaded with for a block of the program, in order.

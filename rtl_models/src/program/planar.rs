@@ -133,6 +133,12 @@ fn common(block: &PulseBlock, mode: [(&'static str, i128); 3], [ex, ey]: [i128; 
     mode.into_iter().chain(own).collect()
 }
 
+/// Greatest distance from a curve in BLU, where it is `plane` in the plane and a third axis follows within a pulse.
+pub(super) fn bound(block: &PulseBlock, plane: f64) -> f64 {
+    let third = block.plane.axes()[2];
+    if block.from[third] == block.to[third] { plane } else { plane + 1.0 }
+}
+
 /// Steps of a motion that always moves its faster axis: of a sector, ∫ max(|cos|, |sin|) R dφ.
 pub(super) fn longest_steps(at: &Start) -> f64 {
     let [ex, ey] = at.pulses.map(|pulses| pulses as f64);

@@ -31,7 +31,7 @@ pub(super) const FAMILY: Family = Family {
     plan,
     netlist,
     words,
-    error_bound: |_| Some(1.0),
+    error_bound: |_, block| Some(planar::bound(block, 1.0)),
 };
 
 fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {

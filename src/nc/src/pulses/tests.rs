@@ -45,7 +45,7 @@ fn an_arc_of_rounded_ends_gets_a_centre_about_which_they_are_on_one_circle_withi
         let blocks = blocks(&moves, None);
         let Curve::Arc(arc) = &blocks[1].curve else { panic!("no arc at {degrees}") };
         let difference = f64::hypot(arc.end()[0] as f64, arc.end()[1] as f64) - arc.radius();
-        assert!(difference.abs() < 0.75, "{degrees}: {difference}");
+        assert!(difference.abs() < 1.0, "{degrees}: {difference}");
         assert!((arc.sweep() - f64::from(degrees).to_radians()).abs() < 0.01);
         assert!((arc.radius() - radius).abs() < 2.0);
     }
@@ -92,8 +92,9 @@ fn a_helix_keeps_its_third_axis_in_every_plane() {
         let [from, to] = [plane.point([100.0, 0.0, 0.0]), plane.point([0.0, 100.0, 30.0])];
         let way = Way::Arc { plane, center: [0.0, 0.0], direction: Direction::CounterClockwise };
         let blocks = blocks(&[moved([0.0; 3], from, Way::Line), moved(from, to, way)], None);
-        assert!(matches!(&blocks[1].curve, Curve::Helix(helix) if helix.z_way() == 30));
-        assert_eq!(blocks[1].to, to.map(|c| c as i64));
+        let climb: i64 = blocks[1..].iter().map(|block| block.to[plane.axes()[2]] - block.from[plane.axes()[2]]).sum();
+        assert_eq!((climb, blocks.last().map(|block| block.to.map(|c| c as f64))), (30, Some(to)));
+        assert!(blocks[1..].iter().all(|block| matches!(&block.curve, Curve::Helix(_))));
     }
 }
 

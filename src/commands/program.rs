@@ -1,0 +1,161 @@
+//! `stepwave program`.
+
+use std::fs::File;
+use std::io::{BufReader, Write};
+use std::path::Path;
+
+use stepwave::kernel::trace::timescale::ClockTime;
+use stepwave::nc::{Reading, ToolMove};
+use stepwave::program::{Control, MoveReport, Onlooker, Pace, Preparation, Stream, Survey};
+use stepwave::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail};
+use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Sample, Testbench};
+
+use super::progress::Counter;
+use super::wave::{Sinks, Waves};
+use crate::cli::ProgramArgs;
+use crate::failure::Failure;
+use crate::output::{self, Outputs, Sink};
+
+/// Runs a whole program and writes what was asked for.
+pub(crate) fn program(args: &ProgramArgs) -> Result<(), Failure> {
+    let mut outputs = Outputs::default();
+    let (text, failures) = simulate(args, &mut outputs)?;
+    let quiet = outputs.uses_stdout();
+    outputs.commit()?;
+    if !quiet {
+        output::print(&text)?;
+    }
+    if failures.is_empty() { Ok(()) } else { Err(Failure::Check(failures)) }
+}
+
+fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<String>), Failure> {
+    let family = args.method;
+    let file = args.file.display().to_string();
+    let told = |error: &dyn std::fmt::Display| Failure::Trouble(format!("{file}: {error}"));
+    let preparation = Preparation {
+        reading: Reading {
+            blu: args.simulation.blu,
+            integers: args.integers,
+            tools: args.tool.iter().map(|tool| (tool.number, tool.radius)).collect(),
+        },
+        scheme: args.compensation,
+        corner: args.corner,
+        chords: args.chords,
+    };
+    let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
+    let hardware = family.plan(&survey.size, &args.hardware.choices())?;
+    let machine = family.machine(&hardware)?;
+    let bench = Testbench::of_machine(hardware, machine);
+    let time = ClockTime::from_hz(args.clock.clock_hz)?;
+    let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.simulation.blu, rapid: args.rapid };
+    let head = ProgramHead { file: &file, family, hardware: bench.hardware(), engine: args.simulation.engine, pace };
+
+    // All are opened before the first is written: where one is refused, nothing stands on standard output.
+    let sinks = Sinks::open(&args.trace, outputs)?;
+    let mut sink = |path: &Option<std::path::PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
+    let (steps, json, plot) = (sink(&args.steps)?, sink(&args.json)?, sink(&args.plot)?);
+    let mut waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &head.title())).transpose()?;
+    let mut steps = steps.map(|sink| StepTable::new(&bench, sink)).transpose()?;
+    let mut json = json.map(|sink| ProgramJson::new(head, sink)).transpose()?;
+    let mut picture = plot.map(|sink| (Part::new(&head.headline()), sink));
+    let mut table = ProgramTable::new(head);
+    let mut progress = Progress { bar: Counter::new(survey.moves, "moves"), moves: 0 };
+
+    let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
+    let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut ranges];
+    observers.extend(waves.iter_mut().flat_map(Waves::observers));
+    let mut onlookers: Vec<&mut dyn Onlooker> = vec![&mut table, &mut progress];
+    onlookers.extend(steps.as_mut().map(|table| table as &mut dyn Onlooker));
+    onlookers.extend(json.as_mut().map(|json| json as &mut dyn Onlooker));
+    onlookers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Onlooker));
+    let stream = Stream::new(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
+    let mut control = Control::new(stream, family, &bench, pace, onlookers);
+    let outcome = bench.run_program(args.simulation.engine, &mut control, &mut observers)?;
+    let line = control.line();
+    control.finish()?;
+    let totals = std::mem::take(&mut control.totals);
+    drop((control, observers));
+    progress.bar.finish();
+
+    let (ranges, overflows, tallies) = (ranges.finish(), overflow.events(), overflow.tallies());
+    let tail = ProgramTail {
+        outcome: &outcome,
+        line,
+        totals: &totals,
+        ranges: &ranges,
+        overflows: &overflows,
+        tallies: &tallies,
+    };
+    let failures = tail.failures(bench.hardware());
+    if let Some(waves) = waves {
+        waves.finish(&overflows, outcome.clocks, outputs)?;
+    }
+    if let Some(StepTable { mut out, .. }) = steps {
+        out.flush()?;
+    }
+    if let Some(json) = json {
+        json.finish(&tail, &failures)?;
+    }
+    if let Some((picture, mut sink)) = picture {
+        sink.write_all(picture.svg().as_bytes())?;
+        sink.flush()?;
+    }
+    Ok((table.text(&tail), failures))
+}
+
+/// Opens the program; it is read twice.
+fn open(path: &Path) -> Result<BufReader<File>, Failure> {
+    let trouble = |error: &dyn std::fmt::Display| Failure::Trouble(format!("cannot read {}: {error}", path.display()));
+    let found = path.metadata().map_err(|error| trouble(&error))?;
+    if !found.is_file() {
+        return Err(trouble(&"a program is read twice, which needs a file: save it in one"));
+    }
+    Ok(BufReader::new(File::open(path).map_err(|error| trouble(&error))?))
+}
+
+/// Counts moves for the progress bar.
+struct Progress {
+    bar: Counter,
+    moves: u64,
+}
+
+impl Onlooker for Progress {
+    fn moved(&mut self, _: &MoveReport) -> Result<(), ObserverError> {
+        self.moves += 1;
+        self.bar.set(self.moves);
+        Ok(())
+    }
+}
+
+/// The step table of a program: as that of a run, with the block in front.
+struct StepTable {
+    out: Sink,
+}
+
+impl StepTable {
+    fn new(bench: &Testbench, mut out: Sink) -> Result<StepTable, Failure> {
+        let letters = bench.hardware().letters();
+        let registers = bench.machine().table.iter().map(|(name, _)| name.clone());
+        let pulses = letters.iter().map(|axis| format!("d{axis}"));
+        let names = ["block", "step", "clock"].map(str::to_owned).into_iter().chain(registers).chain(pulses);
+        let names: Vec<String> = names.chain(letters.iter().map(|axis| (*axis).to_owned())).collect();
+        writeln!(out, "{}", names.join(","))?;
+        Ok(StepTable { out })
+    }
+}
+
+impl Onlooker for StepTable {
+    fn row(&mut self, of: &ToolMove, number: u64, sample: &Sample<'_>) -> Result<(), ObserverError> {
+        let block = of.place.number.unwrap_or(of.place.line);
+        write!(self.out, "{block},{number},{}", sample.clock())?;
+        for value in sample.registers() {
+            write!(self.out, ",{value}")?;
+        }
+        let pulses = if number == 0 { [0; 3] } else { sample.pulses() };
+        for value in pulses.into_iter().chain(sample.position()) {
+            write!(self.out, ",{value}")?;
+        }
+        writeln!(self.out)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,101 @@
+//! Feeds: from F to the rate of the pulse source, and how evenly the tool moves.
+
+use stepwave_models::parts::RATE_BITS;
+use stepwave_models::program::{Family, HardwareBlock};
+use stepwave_nc::{Cause, Feed, PulseBlock};
+
+/// The clock and the scale of a machine.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Pace {
+    /// Clock in Hz.
+    pub clock_hz: f64,
+    /// One BLU in millimetres.
+    pub blu_mm: f64,
+    /// Rapid feed in mm/min; `None` for as fast as the pulse source runs.
+    pub rapid: Option<f64>,
+}
+
+/// What the pulse source is told for one block of the machine.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Rate {
+    /// Word of the rate register.
+    pub(super) word: u64,
+    /// It was asked for more than a pulse every second clock, or for less than its least rate.
+    pub(super) limited: bool,
+}
+
+/// The commanded speed of a block, in BLU per second; `None` where it is as fast as the machine runs. `before` is that of
+/// the block before, which a move inserted by compensation keeps.
+#[must_use]
+pub(super) fn commanded(pace: Pace, block: &PulseBlock, length: f64, before: Option<f64>) -> Option<f64> {
+    let per_second = |feed: f64| feed / (60.0 * pace.blu_mm);
+    match block.feed() {
+        Feed::Rapid => pace.rapid.map(per_second),
+        Feed::PerMinute(feed) => Some(per_second(feed)),
+        Feed::Inverse(_) if block.cause() == Cause::Inserted => before,
+        Feed::Inverse(number) => Some(length * number / 60.0),
+    }
+}
+
+/// The rate of the pulse source for a block of the machine at this speed, in BLU per second.
+///
+/// f_g = v where the family takes F as it is (60·δ·f_g is the feed along an axis), but with G93 and for feed rate numbers
+/// f_g = v · steps / length, so that the block takes the time that is wanted.
+#[must_use]
+pub(super) fn rate(pace: Pace, family: &Family, block: &PulseBlock, part: &HardwareBlock, speed: Option<f64>) -> Rate {
+    let most = 1u64 << (RATE_BITS - 1);
+    let Some(speed) = speed else { return Rate { word: most, limited: false } };
+    let timed = !family.direct || matches!(block.feed(), Feed::Inverse(_));
+    let hertz = if timed { speed * part.steps / part.length } else { speed };
+    let word = (hertz / pace.clock_hz * 2f64.powi(RATE_BITS.cast_signed())).round();
+    // 0 for what is no number.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let wanted = word as u64;
+    Rate { word: wanted.clamp(1, most), limited: wanted > most || wanted == 0 }
+}
+
+/// The frequency that a rate gives, in Hz.
+#[must_use]
+pub(super) fn frequency(pace: Pace, word: u64) -> f64 {
+    word as f64 / 2f64.powi(RATE_BITS.cast_signed()) * pace.clock_hz
+}
+
+/// Pulses over which a speed is measured.
+const WINDOW: u64 = 32;
+
+/// How evenly the tool moves: its speed over 32 pulses each, from the first place to the last and the clocks between.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Ripple {
+    pulses: u64,
+    from: [i64; 3],
+    clock: u64,
+    windows: u64,
+    least: f64,
+    greatest: f64,
+    sum: f64,
+}
+
+impl Ripple {
+    pub(super) fn new(from: [i64; 3], clock: u64) -> Ripple {
+        Ripple { pulses: 0, from, clock, windows: 0, least: f64::INFINITY, greatest: 0.0, sum: 0.0 }
+    }
+
+    pub(super) fn pulses(&mut self, count: u64, position: [i64; 3], clock: u64) {
+        self.pulses += count;
+        if self.pulses < WINDOW {
+            return;
+        }
+        let square: f64 = (0..3).map(|axis| ((position[axis] - self.from[axis]) as f64).powi(2)).sum();
+        let speed = square.sqrt() / (clock - self.clock).max(1) as f64;
+        self.windows += 1;
+        (self.least, self.greatest) = (self.least.min(speed), self.greatest.max(speed));
+        self.sum += speed;
+        (self.pulses, self.from, self.clock) = (0, position, clock);
+    }
+
+    /// The greatest less the least speed, over the mean; `None` of less than two times 32 pulses.
+    #[must_use]
+    pub fn value(&self) -> Option<f64> {
+        (self.windows >= 2).then(|| (self.greatest - self.least) / (self.sum / self.windows as f64))
+    }
+}

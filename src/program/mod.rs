@@ -1,0 +1,64 @@
+//! Whole NC programs through one machine: text → blocks → compensation → pulses → netlist.
+//!
+//! A program is read twice: a [`Survey`] finds what is wrong with it and how wide the registers must be, before anything
+//! is written; then a [`Control`] feeds the machine, one block ahead of it. Neither holds more than a few blocks, so that
+//! memory does not grow with the program.
+
+mod control;
+mod deviation;
+mod feed;
+mod stream;
+mod survey;
+mod tally;
+
+use stepwave_models::ModelError;
+use stepwave_nc::{CompensationError, GeometryError, ProgramError, ReadingError};
+
+pub use control::{Control, Onlooker, Place3};
+pub use feed::{Pace, Ripple};
+pub use stream::{Item, Preparation, Stream};
+pub use survey::Survey;
+pub use tally::{Greatest, MoveReport, Totals};
+
+/// Why a program cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum ProgramFailure {
+    /// Its text is wrong.
+    #[error(transparent)]
+    Text(#[from] ProgramError),
+    /// What it is to be read with is wrong.
+    #[error(transparent)]
+    Reading(#[from] ReadingError),
+    /// Its contour cannot be compensated.
+    #[error(transparent)]
+    Compensation(#[from] CompensationError),
+    /// A block is too large.
+    #[error("line {line}: {error}")]
+    Geometry {
+        /// The line of the program.
+        line: u64,
+        /// What is wrong.
+        error: GeometryError,
+    },
+    /// A third axis cannot follow.
+    #[error(
+        "line {line}: the helix needs {share} pulses of its third axis to {whole} in its plane, but the machine of {family} \
+         gives it at most half as many: make it less steep, or break it into lines"
+    )]
+    Steep {
+        /// The family of the machine.
+        family: &'static str,
+        /// The line of the program.
+        line: u64,
+        /// Pulses of the third axis.
+        share: u64,
+        /// Pulses in the plane.
+        whole: u64,
+    },
+    /// Nothing moves.
+    #[error("no block of the program moves an axis by as much as one BLU: choose a smaller --blu")]
+    NoPulses,
+    /// The machine does not take what it is given.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}

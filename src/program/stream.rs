@@ -1,0 +1,118 @@
+//! From the text of a program to the blocks of a machine: read, compensated, rounded; one line at a time.
+
+use std::collections::VecDeque;
+use std::io::BufRead;
+
+use stepwave_models::program::Family;
+use stepwave_nc::{Compensator, Corner, Event, Place, Program, PulseBlock, Reading, Rounder, Scheme, ToolMove};
+
+use super::ProgramFailure;
+
+/// How a program becomes blocks.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Preparation {
+    /// How it is read.
+    pub reading: Reading,
+    /// How corners are compensated.
+    pub scheme: Scheme,
+    /// How an outside corner is gone round.
+    pub corner: Corner,
+    /// How far a chord may be off its arc, in BLU, where the machine draws lines only.
+    pub chords: f64,
+}
+
+/// What the machine does next.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Item {
+    /// It moves; one or more blocks of one move.
+    Move(ToolMove, Vec<PulseBlock>),
+    /// It stands for so many seconds.
+    Dwell(Place, f64),
+    /// It stands until the operator starts it again: M00 or M01, which a simulation goes on behind at once.
+    Stop(Place),
+}
+
+/// The blocks of a program, in order.
+pub struct Stream<R> {
+    program: Program<R>,
+    compensator: Compensator,
+    rounder: Rounder,
+    moves: Vec<ToolMove>,
+    items: VecDeque<Item>,
+    ended: bool,
+}
+
+impl<R: BufRead> Stream<R> {
+    /// The blocks of the program in `text` for a machine of this family.
+    ///
+    /// # Errors
+    /// The BLU or a tool is no length.
+    pub fn new(text: R, family: &Family, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
+        let chords = (!family.arcs).then_some(preparation.chords);
+        Ok(Stream {
+            program: Program::new(text, preparation.reading.clone())?,
+            compensator: Compensator::new(preparation.scheme, preparation.corner),
+            rounder: Rounder::new(chords),
+            moves: Vec::new(),
+            items: VecDeque::new(),
+            ended: false,
+        })
+    }
+
+    /// Reads on until something is to be done.
+    fn advance(&mut self) -> Result<(), ProgramFailure> {
+        let event = match self.program.next() {
+            Some(event) => event?,
+            None => {
+                self.ended = true;
+                return Ok(());
+            }
+        };
+        match event {
+            Event::Move(block) => self.compensator.push(block, &mut self.moves)?,
+            Event::Dwell { place, seconds } => {
+                self.settle()?;
+                self.items.push_back(Item::Dwell(place, seconds));
+            }
+            Event::Stop { place, .. } => {
+                self.settle()?;
+                self.items.push_back(Item::Stop(place));
+            }
+            Event::Auxiliary { .. } => {}
+            Event::End { .. } => self.settle()?,
+        }
+        self.round()
+    }
+
+    /// Lets go of the block that compensation holds back.
+    fn settle(&mut self) -> Result<(), ProgramFailure> {
+        self.compensator.flush(&mut self.moves)?;
+        self.round()
+    }
+
+    fn round(&mut self) -> Result<(), ProgramFailure> {
+        for of in self.moves.drain(..) {
+            let mut blocks = Vec::new();
+            let line = of.place.line;
+            self.rounder.blocks(&of, &mut blocks).map_err(|error| ProgramFailure::Geometry { line, error })?;
+            if !blocks.is_empty() {
+                self.items.push_back(Item::Move(of, blocks));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<R: BufRead> Iterator for Stream<R> {
+    type Item = Result<Item, ProgramFailure>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while self.items.is_empty() && !self.ended {
+            if let Err(failure) = self.advance() {
+                self.ended = true;
+                return Some(Err(failure));
+            }
+        }
+        self.items.pop_front().map(Ok)
+    }
+}

@@ -1,0 +1,40 @@
+//! A first look at a whole program: is it right, and how wide must the machine be?
+
+use std::io::BufRead;
+
+use stepwave_models::program::{Family, Size};
+
+use super::ProgramFailure;
+use super::stream::{Item, Preparation, Stream};
+
+/// What a program needs.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Survey {
+    /// What the registers must hold.
+    pub size: Size,
+    /// Moves of the tool.
+    pub moves: u64,
+}
+
+impl Survey {
+    /// Reads the program once from its beginning to its end.
+    ///
+    /// # Errors
+    /// The program is wrong, or nothing in it moves the machine.
+    pub fn of<R: BufRead>(text: R, family: &Family, preparation: &Preparation) -> Result<Survey, ProgramFailure> {
+        let mut survey = Survey::default();
+        for item in Stream::new(text, family, preparation)? {
+            let Item::Move(of, blocks) = item? else { continue };
+            survey.moves += 1;
+            for block in &blocks {
+                let [share, whole] = family.too_steep(block);
+                if share > 0 {
+                    let line = of.place.line;
+                    return Err(ProgramFailure::Steep { family: family.name, line, share, whole });
+                }
+                survey.size.add(family, block);
+            }
+        }
+        if survey.moves == 0 { Err(ProgramFailure::NoPulses) } else { Ok(survey) }
+    }
+}

@@ -1,0 +1,207 @@
+//! What a machine made of one move of the tool, and of all of them.
+
+use stepwave_nc::{Cause, Feed, PulseBlock, ToolMove, Way};
+
+use super::deviation::{off_programmed, off_segment};
+use super::feed::Ripple;
+
+/// What a machine made of one move.
+#[derive(Clone, Debug)]
+pub struct MoveReport {
+    /// The move.
+    pub of: ToolMove,
+    /// Clock behind which it began.
+    pub begun: u64,
+    /// Clocks from there to the end of its last step.
+    pub clocks: u64,
+    /// Steps of the interpolator.
+    pub steps: u64,
+    /// Pulses of each axis.
+    pub pulses: [u64; 3],
+    /// End point wanted, in BLU.
+    pub wanted: [i64; 3],
+    /// End point reached, in BLU.
+    pub reached: [i64; 3],
+    /// Length of the way in whole BLU.
+    pub length: f64,
+    /// Commanded feed in BLU per second; `None` where the machine runs as fast as it can.
+    pub commanded: Option<f64>,
+    /// Frequency of the pulse source in Hz.
+    pub source_hz: f64,
+    /// The pulse source was asked for more than it can give.
+    pub limited: bool,
+    /// Greatest distance from the curve that the machine was told, in BLU.
+    pub error: f64,
+    /// What its method promises of it.
+    pub bound: Option<f64>,
+    /// Greatest distance of the tool's centre from the compensated contour, in BLU.
+    pub off_compensated: f64,
+    /// Greatest distance of the tool's edge from the programmed contour, in BLU.
+    pub off_programmed: Option<f64>,
+    /// How evenly it went.
+    pub ripple: Ripple,
+}
+
+impl MoveReport {
+    /// Before its first step.
+    #[must_use]
+    pub(super) fn new(of: ToolMove, begun: u64, from: [i64; 3]) -> MoveReport {
+        MoveReport {
+            of,
+            begun,
+            clocks: 0,
+            steps: 0,
+            pulses: [0; 3],
+            wanted: from,
+            reached: from,
+            length: 0.0,
+            commanded: None,
+            source_hz: 0.0,
+            limited: false,
+            error: 0.0,
+            bound: None,
+            off_compensated: 0.0,
+            off_programmed: None,
+            ripple: Ripple::new(from, begun),
+        }
+    }
+
+    /// A step that ended at a place.
+    pub(super) fn step(&mut self, block: &PulseBlock, clock: u64, pulses: [i64; 3], position: [i64; 3]) {
+        self.steps += 1;
+        self.clocks = clock - self.begun;
+        self.reached = position;
+        let count: u64 = pulses.iter().map(|pulse| pulse.unsigned_abs()).sum();
+        if count == 0 {
+            return;
+        }
+        for (all, pulse) in self.pulses.iter_mut().zip(pulses) {
+            *all += pulse.unsigned_abs();
+        }
+        self.ripple.pulses(count, position, clock);
+        self.error = self.error.max(block.deviation(position));
+        // Within 2^52, as every position of a block is.
+        let at = position.map(|c| c as f64);
+        self.off_compensated = self.off_compensated.max(off_segment(&self.of.segment, at));
+        self.off_programmed = match (self.off_programmed, off_programmed(&self.of, at)) {
+            (Some(most), Some(off)) => Some(most.max(off)),
+            (most, off) => off.or(most),
+        };
+    }
+
+    /// It ended where it should.
+    #[must_use]
+    pub fn end_exact(&self) -> bool {
+        self.reached == self.wanted
+    }
+
+    /// The method kept what it promises.
+    #[must_use]
+    pub fn within_bound(&self) -> bool {
+        self.bound.is_none_or(|bound| self.error <= bound + 1e-9)
+    }
+
+    /// Mean speed in BLU per second.
+    #[must_use]
+    pub fn reached_feed(&self, clock_hz: f64) -> f64 {
+        self.length * clock_hz / self.clocks.max(1) as f64
+    }
+
+    /// `line`, `arc`, and why where it was not programmed.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match (self.of.cause, self.of.segment.way, self.of.feed) {
+            (Cause::StartUp, ..) => "start-up",
+            (Cause::Cancel, ..) => "cancel",
+            (Cause::Inserted, Way::Line, _) => "inserted line",
+            (Cause::Inserted, Way::Arc { .. }, _) => "inserted arc",
+            (Cause::Programmed, _, Feed::Rapid) => "rapid",
+            (Cause::Programmed, Way::Line, _) => "line",
+            (Cause::Programmed, Way::Arc { .. }, _) => "arc",
+        }
+    }
+}
+
+/// The greatest of a number, and the line of the program where it was.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Greatest {
+    /// The number.
+    pub value: f64,
+    /// The line, from 1; 0 before anything was seen.
+    pub line: u64,
+}
+
+impl Greatest {
+    fn take(&mut self, value: f64, line: u64) {
+        if self.line == 0 || value > self.value {
+            *self = Greatest { value, line };
+        }
+    }
+}
+
+/// All moves of a program.
+#[derive(Clone, Debug, Default)]
+pub struct Totals {
+    /// Moves.
+    pub moves: u64,
+    /// Clocks while a block ran.
+    pub clocks: u64,
+    /// Steps of the interpolator.
+    pub steps: u64,
+    /// Pulses of each axis.
+    pub pulses: [u64; 3],
+    /// Moves that did not end at their end point.
+    pub missed: u64,
+    /// Moves whose path error was beyond what the method promises.
+    pub beyond: u64,
+    /// Greatest distance from the curve that the machine was told, in BLU.
+    pub error: Greatest,
+    /// Greatest distance from the compensated contour, in BLU.
+    pub off_compensated: Greatest,
+    /// Greatest distance from the programmed contour, in BLU.
+    pub off_programmed: Greatest,
+    /// Moves that asked the pulse source for more than it can give.
+    pub limited: u64,
+    /// Sentences about what is wrong; the first few.
+    pub failures: Vec<String>,
+}
+
+/// Sentences that are kept.
+const FAILURES: usize = 8;
+
+impl Totals {
+    pub(super) fn add(&mut self, report: &MoveReport) {
+        let line = report.of.place.line;
+        self.moves += 1;
+        self.clocks += report.clocks;
+        self.steps += report.steps;
+        for (all, pulses) in self.pulses.iter_mut().zip(report.pulses) {
+            *all += pulses;
+        }
+        self.error.take(report.error, line);
+        self.off_compensated.take(report.off_compensated, line);
+        if let Some(off) = report.off_programmed {
+            self.off_programmed.take(off, line);
+        }
+        self.limited += u64::from(report.limited);
+        let mut fail = |what: String| {
+            if self.failures.len() < FAILURES {
+                self.failures.push(what);
+            }
+        };
+        if !report.end_exact() {
+            self.missed += 1;
+            let ([x, y, z], [a, b, c]) = (report.wanted, report.reached);
+            fail(format!(
+                "line {line}: the end point ({x}, {y}, {z}) was missed: the machine stands at ({a}, {b}, {c})"
+            ));
+        }
+        if let (false, Some(bound)) = (report.within_bound(), report.bound) {
+            self.beyond += 1;
+            let error = report.error;
+            fail(format!(
+                "line {line}: the path is {error:.3} BLU off its curve, where the method promises {bound} BLU"
+            ));
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The picture of a program as SVG: the programmed contour, and the pulses of the tool's centre beside it.
+//!
+//! The memory is bounded whatever the length of the program: a long path is thinned.
+
+use std::collections::VecDeque;
+
+use stepwave_nc::{Cause, Direction, Side, ToolMove, Way, swept};
+
+use super::plot::{FONT, HEAD, Page, Pair, TITLE_FONT, View, cut, escaped, reaching, text_width};
+use crate::program::{MoveReport, Onlooker};
+use crate::testbench::{ObserverError, Sample};
+
+/// Points of the path that are kept; when they are full, every second one goes.
+const PATH_LIMIT: usize = 1 << 13;
+/// Segments of the contour that are kept; of a longer program the first ones.
+const CONTOUR_LIMIT: usize = 4096;
+
+// Okabe and Ito's colours; the contour pale and broad, so that it shows under the way of the tool.
+const PROGRAMMED: &str = r##"stroke="#eebf99" stroke-width="5""##;
+const CUT: &str = r##"stroke="#0072b2" stroke-width="1.2""##;
+const RAPID: &str = r##"stroke="#009e73" stroke-width="1" stroke-dasharray="6 4""##;
+const TOOL: &str = r##"stroke="#999" stroke-width="0.8""##;
+
+/// Collects the path of a program as seen along one axis.
+pub struct Part {
+    title: String,
+    /// The axes shown to the right and upwards.
+    axes: [usize; 2],
+    contour: Vec<Vec<Pair>>,
+    tools: VecDeque<(Pair, f64)>,
+    /// Pieces of the path: rapid or not, and its points.
+    path: Vec<(bool, Vec<Pair>)>,
+    points: usize,
+    stride: u64,
+    seen: u64,
+    last: Option<Pair>,
+    ranges: [Pair; 2],
+}
+
+impl Part {
+    /// A picture in x and y.
+    #[must_use]
+    pub fn new(title: &str) -> Part {
+        Part {
+            title: title.to_owned(),
+            axes: [0, 1],
+            contour: Vec::new(),
+            tools: VecDeque::new(),
+            path: Vec::new(),
+            points: 0,
+            stride: 1,
+            seen: 0,
+            last: None,
+            ranges: [[0.0, 0.0]; 2],
+        }
+    }
+
+    fn shown<T: Copy>(&self, point: [T; 3]) -> [T; 2] {
+        self.axes.map(|axis| point[axis])
+    }
+
+    /// The programmed segment of a move, as points.
+    fn outline(&self, of: &ToolMove) -> Vec<Pair> {
+        let segment = &of.programmed;
+        let Way::Arc { plane, center, direction } = segment.way else {
+            return vec![self.shown(segment.from), self.shown(segment.to)];
+        };
+        let angle = swept(segment, plane, center, direction);
+        let angle = if direction == Direction::Clockwise { -angle } else { angle };
+        let [u, v, from] = plane.of(segment.from);
+        let [_, _, to] = plane.of(segment.to);
+        let (dx, dy) = (u - center[0], v - center[1]);
+        let points = 90;
+        let point = |index: i32| {
+            let part = f64::from(index) / f64::from(points);
+            let (sin, cos) = (angle * part).sin_cos();
+            let along = [center[0] + dx * cos - dy * sin, center[1] + dx * sin + dy * cos, from + (to - from) * part];
+            self.shown(plane.point(along))
+        };
+        (0..=points).map(point).collect()
+    }
+
+    fn thin(&mut self) {
+        self.stride *= 2;
+        for (_, points) in &mut self.path {
+            let last = points.last().copied();
+            *points = points.iter().step_by(2).copied().collect();
+            points.extend(last.filter(|last| points.last() != Some(last)));
+        }
+        self.points = self.path.iter().map(|(_, points)| points.len()).sum();
+        if self.points > PATH_LIMIT / 2 * 3 {
+            // Nothing but short pieces: the oldest go.
+            self.path.drain(..self.path.len() / 2);
+            self.points = self.path.iter().map(|(_, points)| points.len()).sum();
+        }
+    }
+
+    /// The picture so far, a complete SVG document.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        let mut view = View::equal(self.ranges, [420.0, 200.0]);
+        let headline = cut(&self.title, 100);
+        let mut page = Page(format!(
+            "<title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+            escaped(&self.title)
+        ));
+        let left = 70.0;
+        page.text([left, 26.0], &format!(r#"font-size="{TITLE_FONT}" font-weight="bold""#), &headline);
+        let mut x = left;
+        for (style, name) in [
+            (PROGRAMMED, "programmed contour"),
+            (CUT, "tool's centre, pulse by pulse"),
+            (RAPID, "rapid"),
+            (TOOL, "tool at the end of a block"),
+        ] {
+            page.symbol(&format!(r#"<path d="M-12 0H12" {style}/>"#), [x + 12.0, 44.0]);
+            page.text([x + 30.0, 48.0], "", name);
+            x += 46.0 + text_width(name, FONT);
+        }
+        view.origin = [left, 62.0];
+        let names = self.axes.map(|axis| ["x (BLU)", "y (BLU)", "z (BLU)"][axis]);
+        page.axes(&view, names, true, 1.0);
+        let scale = view.size[0] / (view.ranges[0][1] - view.ranges[0][0]);
+        for &(at, radius) in &self.tools {
+            page.symbol(&format!(r#"<circle r="{:.2}" {TOOL}/>"#, radius * scale), view.at(at));
+        }
+        self.contour.iter().for_each(|points| page.path(&view, PROGRAMMED, points));
+        for (rapid, points) in &self.path {
+            page.path(&view, if *rapid { RAPID } else { CUT }, points);
+        }
+        let wide = (left + view.size[0] + 26.0).max(x).ceil();
+        let high = (62.0 + view.size[1] + 46.0).ceil();
+        let size = format!(r#"width="{wide}" height="{high}" viewBox="0 0 {wide} {high}" font-size="{FONT}""#);
+        format!("<svg {HEAD} {size}>\n{}</svg>\n", page.0)
+    }
+}
+
+impl Onlooker for Part {
+    fn row(&mut self, of: &ToolMove, number: u64, sample: &Sample<'_>) -> Result<(), ObserverError> {
+        let at = self.shown(sample.position()).map(|c| c as f64);
+        self.ranges = reaching(self.ranges, at);
+        if number == 0 {
+            let rapid = of.feed == stepwave_nc::Feed::Rapid;
+            if self.path.last().is_none_or(|(before, _)| *before != rapid) {
+                self.path.push((rapid, self.last.into_iter().collect()));
+            }
+        }
+        self.last = Some(at);
+        self.seen += 1;
+        if self.seen.is_multiple_of(self.stride)
+            && let Some((_, points)) = self.path.last_mut()
+            && points.last() != Some(&at)
+        {
+            points.push(at);
+            self.points += 1;
+            if self.points >= PATH_LIMIT {
+                self.thin();
+            }
+        }
+        Ok(())
+    }
+
+    fn moved(&mut self, report: &MoveReport) -> Result<(), ObserverError> {
+        let end = self.shown(report.reached).map(|c| c as f64);
+        if let Some((_, points)) = self.path.last_mut()
+            && points.last() != Some(&end)
+        {
+            points.push(end);
+            self.points += 1;
+        }
+        if self.contour.len() >= CONTOUR_LIMIT {
+            return Ok(());
+        }
+        if report.of.cause == Cause::Programmed && report.of.feed != stepwave_nc::Feed::Rapid {
+            let outline = self.outline(&report.of);
+            self.ranges = outline.iter().fold(self.ranges, |ranges, &point| reaching(ranges, point));
+            self.contour.push(outline);
+        }
+        if let Side::Left(radius) | Side::Right(radius) = report.of.side {
+            self.tools.push_back((end, radius));
+            self.ranges = reaching(reaching(self.ranges, end.map(|c| c - radius)), end.map(|c| c + radius));
+        }
+        Ok(())
+    }
+}
