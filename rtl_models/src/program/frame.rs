@@ -10,7 +10,7 @@ use crate::parts::{
 
 /// Block buffer, pulse source, mode and quadrant of a machine that interpolates in a plane.
 ///
-/// - `mode`, 1 bit: LINE or ARC. `quad`, 2 bits: the quadrant of an arc's sector, or the one that a line runs into, Q1 = 0;
+/// - `mode`, 2 bits: 1 is LINE, 2 is ARC. `quad`, 2 bits: the quadrant of an arc's sector, or the one that a line runs into, Q1 = 0;
 ///   `ccw`, 1 bit.
 /// - `ex`, `ey`: pulses of the first and second axis of the plane that are left.
 /// - `plane`, and the axes of the machine behind the pulse distributor.
@@ -33,10 +33,11 @@ impl<'m> Frame<'m> {
     pub(super) fn new(m: Scope<'m>, hardware: &Hardware, buffer: Buffer<'m>, wait: Signal<'m>) -> Frame<'m> {
         let block = buffer.block(wait);
         let step = pulse_source(m, &block, buffer.full() & !wait);
-        let modes = vec![(0, "LINE".to_owned()), (1, "ARC".to_owned())];
-        let mode = m.reg("mode", 1).shown(Format::States(modes));
-        mode.when(block.load, block.word("mode", 1)).else_hold();
-        let arc = mode.q;
+        // One bit each, as viewers show no text for a single bit.
+        let modes = [(0, "NONE"), (1, "LINE"), (2, "ARC")].map(|(value, name)| (value, name.to_owned()));
+        let mode = m.reg("mode", 2).shown(Format::States(modes.to_vec()));
+        mode.when(block.load, block.word("mode", 2)).else_hold();
+        let arc = mode.q.bit(1);
         let quad = quadrant_register(m);
         quad.when(block.load, block.word("quad", 2)).else_hold();
         let kind = Kind::decode(m.scope("quadrant"), quad.q, block.held(m, "ccw", 1));

@@ -65,7 +65,7 @@ pub(super) fn blocks(family: &Family, block: &PulseBlock, own: impl Fn(&Start) -
                 (false, true) => 3,
             };
             let (words, steps) = own(&start);
-            let common = common(block, [("mode", 0), ("quad", quad), ("ccw", 0)], start.pulses, third);
+            let common = common(block, [("mode", 1), ("quad", quad), ("ccw", 0)], start.pulses, third);
             vec![HardwareBlock { words: [words, common].concat(), steps, length: line.length() }]
         }
         Curve::Arc(arc) => sectors(family, block, arc, |_, _| 0, &own),
@@ -105,7 +105,7 @@ fn sectors(
             angle,
         };
         let ccw = i128::from(arc.direction() == Direction::CounterClockwise);
-        let mode = [("mode", 1), ("quad", i128::from(sector.quadrant.index())), ("ccw", ccw)];
+        let mode = [("mode", 2), ("quad", i128::from(sector.quadrant.index())), ("ccw", ccw)];
         let (words, steps) = own(&at);
         let length = f64::hypot(arc.radius() * angle, third as f64);
         HardwareBlock { words: [words, common(block, mode, at.pulses, third)].concat(), steps, length }

@@ -142,8 +142,8 @@ fn rounded(point: Point) -> Result<[i64; 3], GeometryError> {
     Ok(whole)
 }
 
-/// The arc about the whole centre near the programmed one with which both ends are most nearly on one circle; `None` where
-/// pulses are too coarse for it.
+/// The arc about the whole centre whose circle both ends and the arc between them are nearest to; `None` where pulses are
+/// too coarse for it.
 fn arc(segment: &Segment, plane: Plane, center: [f64; 2], direction: Direction, ends: [[i64; 3]; 2]) -> Option<Curve> {
     let along = |point: [i64; 3]| plane.axes().map(|axis| point[axis]);
     let [from, to] = ends.map(along);
@@ -153,20 +153,21 @@ fn arc(segment: &Segment, plane: Plane, center: [f64; 2], direction: Direction, 
     if start == end && angle < PI {
         return None;
     }
-    let center = through(segment, plane, center, direction, [start, end]);
-    #[allow(clippy::cast_possible_truncation)]
-    let middle = center.map(|c| c.round() as i64);
+    let between = [1, 2, 3].map(|part| plane.of(on_arc(segment, plane, center, direction, [part, 4])));
     let mut best: Option<(f64, Arc)> = None;
-    for dx in -2..=2 {
-        for dy in -2..=2 {
+    // Of a short arc the ends say where the centre is, of a longer one the programmed centre does.
+    for near in [center, through(segment, plane, center, direction, [start, end])] {
+        #[allow(clippy::cast_possible_truncation)]
+        let middle = near.map(|c| c.round() as i64);
+        for (dx, dy) in (-2..=2).flat_map(|dx| (-2..=2).map(move |dy| (dx, dy))) {
             let at = [middle[0].checked_add(dx)?, middle[1].checked_add(dy)?];
             let Ok(arc) = Arc::new(start, end, at, direction) else { continue };
             if (arc.sweep() - angle).abs() > PI {
                 continue;
             }
-            let radius = |point: [i64; 2]| f64::hypot((point[0] - at[0]) as f64, (point[1] - at[1]) as f64);
-            let off = f64::hypot(at[0] as f64 - center[0], at[1] as f64 - center[1]);
-            let cost = (radius(start) - radius(end)).abs() + 0.5 * off;
+            let radius = |u: f64, v: f64| f64::hypot(u - at[0] as f64, v - at[1] as f64);
+            let off = between.map(|[u, v, _]| (radius(u, v) - arc.radius()).abs()).into_iter().fold(0.0, f64::max);
+            let cost = (radius(end[0] as f64, end[1] as f64) - arc.radius()).abs() + off;
             if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, arc));
             }
