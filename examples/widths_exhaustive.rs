@@ -4,6 +4,8 @@
 //! All lines from the origin and all arcs inside a quadrant are run up to K = 8, all conics up to 6 and all helices up to 4;
 //! of more bits the same samples are compared, and the line says so.
 
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program for a terminal")]
+
 use std::process::ExitCode;
 use std::time::Instant;
 

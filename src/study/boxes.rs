@@ -187,7 +187,7 @@ fn lines(model: &Model, Grid(ranges): &Grid) -> Result<(Vec<Curve>, bool), Proof
         (0..count).map(point).collect()
     } else {
         // By the golden section, so that no pattern of the grid is met.
-        let stride = count / 1000 * 618 | 1;
+        let stride = (count / 1000 * 618) | 1;
         corners.chain((0..MOST as u128 / 50).map(|place| point(place * stride % count))).collect()
     };
     Ok((points.into_iter().filter_map(line).collect(), all))
