@@ -37,7 +37,7 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     stepwave sweep dda-line --to-grid 0..63x0..63 --width 6..8 --preset zero,half --csv lines.csv\n  \
     stepwave sweep ppc-arc --radius 1..100 --ccw --parquet circles.parquet\n  \
     stepwave sweep dda-arc --from 50,0 --to-grid -51..51x-51..51 --ccw --csv arcs.csv\n  \
-    stepwave sweep dda-line --to-grid 1..127x1..127 --heat error_mean --plot error.svg\n  \
+    stepwave sweep dda-line --to-grid 1..127x1..127 --heat error_mean --plot mean.png\n  \
     stepwave sweep dda-line --to-grid 0..4095x0..4095 --samples 5000 --seed 7 --csv -\n\
     \n\
     Geometries. A grid gives a geometry for every point; of arcs, helices and conics those of its\n\
@@ -204,9 +204,10 @@ pub(crate) struct TableArgs {
     /// Column that --plot shows [default: error_max]
     #[arg(long, value_name = "COLUMN", requires = "plot")]
     pub(crate) heat: Option<String>,
-    /// Draw a heat map over the grid, as SVG; of several runs of a point the greatest number shows
+    /// Draw a heat map over the grid, as PNG if the name ends in .png, else as SVG; of several runs of a point the greatest
+    /// number shows; may be repeated
     #[arg(long, value_name = "FILE")]
-    pub(crate) plot: Option<PathBuf>,
+    pub(crate) plot: Vec<PathBuf>,
     /// Go on with what a killed sweep of the same words has left beside the final file; with nothing left, begin
     #[arg(long)]
     pub(crate) resume: bool,

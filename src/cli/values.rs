@@ -234,6 +234,9 @@ pub(crate) struct SimulationArgs {
         ("auto", EngineKind::Compiled), ("compiled", EngineKind::Compiled), ("word", EngineKind::Word),
         ("gates", EngineKind::Gates)]))]
     pub(crate) engine: EngineKind,
+    /// A run that is not done after so many clocks is given up; one that comes back to an earlier state always is
+    #[arg(long, value_name = "CLOCKS", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) max_clocks: Option<u64>,
 }
 
 /// Splits values for all from values for single registers; the last one given counts.

@@ -2,6 +2,8 @@
 
 use clap::Args;
 
+use stepwave::study::Extent;
+
 use super::HardwareArgs;
 
 #[derive(Debug, Args)]
@@ -12,13 +14,17 @@ use super::HardwareArgs;
     The command in the last column shows what happens one bit below.\n\n\
     Examples:\n  \
     stepwave widths ppc-line --box 8\n  \
+    stepwave widths dda-line --box 0..200x-50..50\n  \
+    stepwave widths cim-conic --box 4\n  \
     stepwave widths bresenham --box 6 --json")]
 pub(crate) struct WidthsArgs {
     /// The model; `stepwave list` shows them
     pub(crate) model: String,
-    /// Bits of the coordinates: every line from the origin, or every arc inside a quadrant with both ends on the circle
-    #[arg(long = "box", value_name = "BITS", value_parser = clap::value_parser!(u32).range(1..=16))]
-    pub(crate) bits: u32,
+    /// Bits of the coordinates, or a range for each axis (0..255x0..255): every line from the origin to such a point, or
+    /// every arc inside a quadrant with both ends on the circle; in bits also every helix over such an arc, and every
+    /// quarter of an ellipse with such semi-axes and every arc of a parabola or hyperbola from or to the vertex
+    #[arg(long = "box", value_name = "BITS|RANGExRANGE", allow_hyphen_values = true)]
+    pub(crate) extent: Extent,
     #[command(flatten)]
     pub(crate) hardware: HardwareArgs,
     /// As JSON

@@ -73,6 +73,7 @@ fn row(model: &Model, form: &str, curve: &Curve, choices: &Choices) -> Result<Op
         Ending::Done => "missed",
         Ending::Trapped => "overflow",
         Ending::Stalled { .. } => "came to a stand",
+        Ending::Endless { .. } | Ending::Limit => "endless",
     };
     // Positions are as wide as the way, whatever the method.
     let hardware = bench.hardware();

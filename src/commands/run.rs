@@ -47,6 +47,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let model = find(&args.model)?;
     let curve = curve(model.name, model.curve, &args.geometry)?;
     let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
+    let bench = bench.limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);
 

@@ -212,22 +212,43 @@ impl Heat {
         }
     }
 
-    fn svg(&self, sweep: &Sweep) -> (String, String) {
+    fn picture(&self, sweep: &Sweep) -> Picture {
         let (model, columns) = (sweep.model(), sweep.columns());
-        let name = &columns[self.column].name;
-        let unit = match name.split('_').next().unwrap_or_default() {
+        let what = columns[self.column].name.clone();
+        let unit = match what.split('_').next().unwrap_or_default() {
             "error" | "reached" | "from" | "to" | "center" | "size" => "BLU",
             "spacing" => "clocks",
             _ => "",
         };
-        let words = self.worst.as_ref().map_or_else(String::new, |row| study::words(model, columns, row));
-        let title = format!("{}: {name} of {} runs", model.name, self.runs);
-        let printed = self
+        let worst = self.worst.as_ref().map_or_else(String::new, |row| study::words(model, columns, row));
+        let title = format!("{}: {what} of {} runs", model.name, self.runs);
+        let line = self
             .map
             .worst()
-            .map_or_else(String::new, |(number, [x, y])| format!("greatest {name} {number} at ({x}, {y}): {words}\n"));
-        (self.map.svg(&title, name, unit, &words), printed)
+            .map_or_else(String::new, |(number, [x, y])| format!("greatest {what} {number} at ({x}, {y}): {worst}\n"));
+        Picture { title, what, unit, worst, line }
     }
+
+    /// The file.
+    fn bytes(&self, picture: &Picture, as_png: bool) -> Vec<u8> {
+        let Picture { title, what, unit, worst, .. } = picture;
+        if as_png {
+            self.map.png(title, what, unit, worst)
+        } else {
+            self.map.svg(title, what, unit, worst).into_bytes()
+        }
+    }
+}
+
+/// The words of a heat map.
+struct Picture {
+    title: String,
+    what: String,
+    unit: &'static str,
+    /// The command that repeats the worst run.
+    worst: String,
+    /// What is printed of it.
+    line: String,
 }
 
 /// Where the rows of a sweep go.
@@ -285,7 +306,7 @@ impl Tables {
 
 /// Does all runs and writes every output; gives the summary.
 fn write(sweep: &Sweep, args: &TableArgs, outputs: &mut Outputs) -> Result<String, Failure> {
-    let heat = args.plot.is_some().then(|| Heat::new(sweep, args.heat.as_deref().unwrap_or("error_max")));
+    let heat = (!args.plot.is_empty()).then(|| Heat::new(sweep, args.heat.as_deref().unwrap_or("error_max")));
     let heat = heat.transpose()?;
     if args.parquet.as_deref().is_some_and(is_stream) {
         return trouble("Parquet rows are gathered beside their file before they are written: name a file".to_owned());
@@ -295,14 +316,15 @@ fn write(sweep: &Sweep, args: &TableArgs, outputs: &mut Outputs) -> Result<Strin
     let mut claims = Outputs::default();
     let mut claim = |path: &Option<PathBuf>| path.as_deref().map(|path| claims.claim(path)).transpose();
     let csv = if streamed { None } else { claim(&args.csv)? };
-    let (parquet, _) = (claim(&args.parquet)?, claim(&args.plot)?);
+    let parquet = claim(&args.parquet)?;
+    args.plot.iter().try_for_each(|path| claims.claim(path).map(|_| ()))?;
     let stage = csv.as_ref().or(parquet.as_ref());
     if args.resume && stage.is_none() {
         return trouble("--resume goes on beside the final file: give --csv FILE or --parquet FILE".to_owned());
     }
     let mut stream = args.csv.as_deref().filter(|_| streamed).map(|path| outputs.open(path)).transpose()?;
-    let plot_to_stdout = args.plot.as_deref().filter(|path| *path == Path::new("-"));
-    let mut picture = plot_to_stdout.map(|path| outputs.open(path)).transpose()?;
+    let to_stdout = args.plot.iter().filter(|path| *path == Path::new("-"));
+    let mut to_stdout = to_stdout.map(|path| outputs.open(path)).collect::<Result<Vec<_>, _>>()?;
     let stage = stage.map(|target| Stage::open(target, sweep, args.resume)).transpose()?;
     if let Some(stream) = &mut stream {
         writeln!(stream, "{}", study::heading(sweep.columns()))?;
@@ -323,15 +345,18 @@ fn write(sweep: &Sweep, args: &TableArgs, outputs: &mut Outputs) -> Result<Strin
         stage.replay(|row| table.row(row))?;
         table.finish()?.flush()?;
     }
-    if let (Some(path), Some(heat)) = (&args.plot, heat) {
-        let (svg, line) = heat.svg(sweep);
-        let mut sink = match picture.take() {
-            Some(sink) => sink,
-            None => outputs.open(path)?,
-        };
-        sink.write_all(svg.as_bytes())?;
-        sink.flush()?;
-        text += &line;
+    if let Some(heat) = heat {
+        let picture = heat.picture(sweep);
+        for path in &args.plot {
+            let as_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+            let mut sink = match to_stdout.pop_if(|_| path == Path::new("-")) {
+                Some(sink) => sink,
+                None => outputs.open(path)?,
+            };
+            sink.write_all(&heat.bytes(&picture, as_png))?;
+            sink.flush()?;
+        }
+        text += &picture.line;
     }
     if let Some(mut stream) = stream {
         stream.flush()?;

@@ -14,7 +14,7 @@ use crate::output;
 /// Prints the table.
 pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
-    let found = widths(model, &args.hardware.choices(), args.bits)?;
+    let found = widths(model, &args.hardware.choices(), &args.extent)?;
     output::print(&if args.json { as_json(model, &found) } else { table(model, &found) })
 }
 
@@ -39,7 +39,7 @@ fn relative(bits: u32, k: u32) -> String {
 
 fn table(model: &Model, found: &Widths) -> String {
     let many = if found.all { "all" } else { "some" };
-    let mut text = format!("{}: {} geometries of {} bits, {many} of the box\n\n", model.name, found.simulated, found.k);
+    let mut text = format!("{}: {} geometries of {}, {many} of the box\n\n", model.name, found.simulated, found.extent);
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
@@ -80,6 +80,7 @@ fn as_json(model: &Model, found: &Widths) -> String {
     });
     let all = json!({
         "model": model.name,
+        "box": found.extent.to_string(),
         "bits": found.k,
         "geometries": found.simulated,
         "all": found.all,

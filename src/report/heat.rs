@@ -1,8 +1,10 @@
-//! A heat map as SVG: a number for every point of a grid as a colour, with a scale of the colours, and the point of the
-//! greatest number marked.
+//! A heat map as SVG or PNG: a number for every point of a grid as a colour, with a scale of the colours, and the point of
+//! the greatest number marked.
 //!
 //! The memory is bounded whatever the grid: of a large one several points share a cell, which shows the greatest of
 //! their numbers. The same numbers give the same bytes, in whatever order they come.
+
+mod picture;
 
 use super::plot::{CENTRED, FONT, HEAD, Page, TITLE_FONT, View, WORST, cut, escaped, text_width};
 use super::png::{base64, png};
@@ -32,8 +34,8 @@ const COLOURS: [[u8; 3]; 10] = [
 ];
 /// Of a cell without a point, and of one whose point has no number.
 const EMPTY: [[u8; 3]; 2] = [[255; 3], [190; 3]];
-/// Colours of numbers.
-const SHADES: usize = 254;
+/// Colours of numbers; a picture has room for some of letters and lines besides.
+const SHADES: usize = 250;
 
 /// What is known of a cell.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -127,29 +129,72 @@ impl HeatMap {
         self.worst
     }
 
+    /// The ranges of x and y that the cells cover, in BLU.
+    fn extent(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|axis| {
+            let first = self.ranges[axis].at(0) as f64 - self.step(axis) / 2.0;
+            [first, first + self.step(axis) * self.size[axis] as f64 * self.share[axis] as f64]
+        })
+    }
+
+    /// Pixels of the map over these ranges.
+    fn side(ranges: [[f64; 2]; 2]) -> [f64; 2] {
+        let extent = ranges.map(|[low, high]| high - low);
+        extent.map(|side| (MAP_MOST * side / extent[0].max(extent[1])).max(MAP_LEAST))
+    }
+
+    /// The sentence that tells the greatest number and its point.
+    fn greatest(what: &str, unit: &str, number: f64, [x, y]: [i64; 2]) -> String {
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let at = format!("({x}, {y})").replace('-', "\u{2212}");
+        format!("greatest {what} {}{unit} at {at}:", self::number(number))
+    }
+
+    /// The numbers beside the scale of the colours, each with its place from 0 to 1.
+    fn scale(&self) -> Vec<(f64, String)> {
+        let [least, greatest] = self.worst.map_or([0.0; 2], |(greatest, _)| [self.least, greatest]);
+        let ticks = if least < greatest { 5 } else { 1 };
+        let parts = (0..ticks).map(|place| f64::from(place) / 4.0);
+        parts.map(|part| (part, number(least + (greatest - least) * part))).collect()
+    }
+
+    /// The colours of cells; behind them there is room for others.
+    fn colours() -> Vec<[u8; 3]> {
+        let shades = (0..SHADES).map(|place| shade(place as f64 / (SHADES - 1) as f64));
+        EMPTY.into_iter().chain(shades).collect()
+    }
+
+    /// The colour of each cell, the greatest y first and each as large as `zoom`: a row as it stands in a picture.
+    fn rows(&self, zoom: [usize; 2]) -> impl Iterator<Item = Vec<u8>> {
+        let greatest = self.worst.map_or(0.0, |(greatest, _)| greatest);
+        let span = if greatest > self.least { greatest - self.least } else { 1.0 };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 2 to 251")]
+        let index = move |cell: &Cell| match cell {
+            Cell::Empty => 0,
+            Cell::Without => 1,
+            Cell::Number(number) => 2 + ((number - self.least) / span * (SHADES - 1) as f64).round() as u8,
+        };
+        self.cells.chunks(self.size[0].max(1)).rev().flat_map(move |row| {
+            let line: Vec<u8> = row.iter().flat_map(|cell| std::iter::repeat_n(index(cell), zoom[0])).collect();
+            std::iter::repeat_n(line, zoom[1])
+        })
+    }
+
     /// The page, a complete SVG document: `what` the colours mean and in which unit, and words that name the marked
     /// point.
     #[must_use]
     pub fn svg(&self, title: &str, what: &str, unit: &str, worst: &str) -> String {
-        let half = |axis: usize| self.step(axis) / 2.0;
-        let end = |axis: usize, index: u64| self.ranges[axis].at(index) as f64;
-        let ranges = [0, 1].map(|axis| {
-            let first = end(axis, 0) - half(axis);
-            [first, first + self.step(axis) * self.size[axis] as f64 * self.share[axis] as f64]
-        });
-        let extent = ranges.map(|[low, high]| high - low);
-        let size = extent.map(|side| (MAP_MOST * side / extent[0].max(extent[1])).max(MAP_LEAST));
+        let ranges = self.extent();
+        let size = HeatMap::side(ranges);
         let headline = cut(title, 100);
         let left = 34.0 + ranges[1].map(|end| text_width(&format!("{end:.0}"), FONT)).into_iter().fold(30.0, f64::max);
         let view = View { origin: [left, 76.0], size, ranges };
         let mut page =
             Page(format!("<title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n", escaped(title)));
         page.text([left, 26.0], &format!(r#"font-size="{TITLE_FONT}" font-weight="bold""#), &headline);
-        if let Some((greatest, [x, y])) = self.worst {
+        if let Some((greatest, point)) = self.worst {
             page.symbol(WORST, [left + 9.0, 44.0]);
-            let at = format!("({x}, {y})").replace('-', "\u{2212}");
-            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-            page.text([left + 24.0, 48.0], "", &format!("greatest {what} {}{unit} at {at}:", number(greatest)));
+            page.text([left + 24.0, 48.0], "", &HeatMap::greatest(what, unit, greatest, point));
             page.text([left + 24.0, 63.0], r#"font-family="monospace""#, worst);
         }
         page.axes(&view, [&format!("{} (BLU)", self.names[0]), &format!("{} (BLU)", self.names[1])], false, 1.0);
@@ -175,24 +220,10 @@ impl HeatMap {
 
     /// The cells as a picture, the greatest y on top.
     fn draw(&self, page: &mut Page, view: &View) {
-        let greatest = self.worst.map_or(0.0, |(greatest, _)| greatest);
-        let span = if greatest > self.least { greatest - self.least } else { 1.0 };
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 2 to 255")]
-        let index = |cell: &Cell| match cell {
-            Cell::Empty => 0,
-            Cell::Without => 1,
-            Cell::Number(number) => 2 + ((number - self.least) / span * (SHADES - 1) as f64).round() as u8,
-        };
-        let shades = (0..SHADES).map(|place| shade(place as f64 / (SHADES - 1) as f64));
-        let colours: Vec<[u8; 3]> = EMPTY.into_iter().chain(shades).collect();
         let zoom = self.size.map(|side| SHARP.div_ceil(side.max(1)));
-        let mut pixels = Vec::with_capacity(self.cells.len() * zoom[0] * zoom[1]);
-        for row in self.cells.chunks(self.size[0].max(1)).rev() {
-            let line: Vec<u8> = row.iter().flat_map(|cell| std::iter::repeat_n(index(cell), zoom[0])).collect();
-            (0..zoom[1]).for_each(|_| pixels.extend(&line));
-        }
+        let pixels: Vec<u8> = self.rows(zoom).flatten().collect();
         let [x, y] = view.origin;
-        let data = base64(&png(self.size[0] * zoom[0], &pixels, &colours));
+        let data = base64(&png(self.size[0] * zoom[0], &pixels, &HeatMap::colours()));
         page.0 += &format!(
             "<image x=\"{x:.2}\" y=\"{y:.2}\" width=\"{:.2}\" height=\"{:.2}\" preserveAspectRatio=\"none\" \
              href=\"data:image/png;base64,{data}\"/>\n",
@@ -218,15 +249,12 @@ impl HeatMap {
         };
         page.0 += &area(y, height, "url(#scale)");
         let mut right = x + BAR;
-        let ends = self.worst.map_or([0.0; 2], |(greatest, _)| [self.least, greatest]);
         let mut beside = |page: &mut Page, y: f64, text: &str| {
             page.text([x + BAR + 6.0, y + 4.0], "", text);
             right = right.max(x + BAR + 6.0 + text_width(text, FONT));
         };
-        let ticks = if ends[0] < ends[1] { 5 } else { 1 };
-        for place in 0..ticks {
-            let part = f64::from(place) / 4.0;
-            beside(page, y + height * (1.0 - part), &number(ends[0] + (ends[1] - ends[0]) * part));
+        for (part, text) in self.scale() {
+            beside(page, y + height * (1.0 - part), &text);
         }
         if self.cells.contains(&Cell::Without) {
             page.0 += &area(y + height + 14.0, 12.0, &colour(EMPTY[1]));

@@ -153,6 +153,8 @@ impl Report<'_> {
             Ending::Done => "done",
             Ending::Trapped => "trapped",
             Ending::Stalled { .. } => "stalled",
+            Ending::Endless { .. } => "endless",
+            Ending::Limit => "limit",
         };
         json!({
             "schema": SCHEMA,

@@ -88,7 +88,9 @@ impl Report<'_> {
         let cut = |why: &str| vec![format!("ranges and bits needed are those up to clock {clocks} alone, where {why}")];
         match self.outcome.ending {
             Ending::Trapped => return cut("the run was stopped"),
-            Ending::Stalled { .. } => return cut("the machine was given up"),
+            Ending::Stalled { .. } | Ending::Endless { .. } | Ending::Limit => {
+                return cut("the machine was given up");
+            }
             Ending::Done => {}
         }
         let mut warnings: Vec<String> = self.tallies.iter().map(|tally| self.went_on(tally)).collect();
@@ -142,6 +144,28 @@ impl Report<'_> {
                 failures.push(format!(
                     "the motion came to a stand at {position}: no pulse for {clocks} clocks, and none will come{way_out}"
                 ));
+            }
+            Ending::Endless { since } => {
+                let position = summary::point(&self.outcome.reached);
+                let clock = self.outcome.clocks;
+                let way_out = if self.hardware.on_overflow == OnOverflow::Trap {
+                    ""
+                } else {
+                    "; --on-overflow trap shows where it lost its way"
+                };
+                failures.push(format!(
+                    "the motion never ends: at clock {clock}, at {position}, every register is what it was at clock \
+                     {since}{way_out}"
+                ));
+                return failures;
+            }
+            Ending::Limit => {
+                failures.push(format!(
+                    "not done after {} clocks, at {}: give a greater --max-clocks",
+                    self.outcome.clocks,
+                    summary::point(&self.outcome.reached)
+                ));
+                return failures;
             }
             Ending::Done => {}
         }

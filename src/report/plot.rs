@@ -238,11 +238,18 @@ impl View {
     }
 
     /// The distance of the ticks of an axis: 1, 2 or 5 times a power of ten, and wide enough for the labels.
-    fn tick(&self, axis: usize, finest: f64) -> f64 {
+    pub(super) fn tick(&self, axis: usize, finest: f64) -> f64 {
         let room = if axis == 0 { label_width(self.ranges[0]) + 14.0 } else { 24.0 };
         let decades = std::iter::successors(Some(finest), |decade| Some(decade * 10.0));
         let mut ticks = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|factor| factor * decade));
         ticks.find(|tick| tick * self.scale(axis) >= room).unwrap_or(f64::MAX)
+    }
+
+    /// The multiples of a step within the range of an axis, 256 at most.
+    pub(super) fn multiples(&self, axis: usize, step: f64) -> impl Iterator<Item = f64> {
+        let [low, high] = self.ranges[axis];
+        let first = (low / step).ceil();
+        (0..=u8::MAX).map(move |n| (first + f64::from(n)) * step).take_while(move |value| *value <= high)
     }
 }
 
@@ -294,8 +301,7 @@ impl Page {
         let fine = (pulses && view.scale(0) >= 8.0).then_some((1.0, r##"stroke="#eee""##));
         for (axis, tick) in ticks.into_iter().enumerate() {
             for (step, style) in fine.into_iter().chain([(tick, GRID)]) {
-                let (first, high) = ((view.ranges[axis][0] / step).ceil(), view.ranges[axis][1]);
-                for value in (0..=u8::MAX).map(|n| (first + f64::from(n)) * step).take_while(|value| *value <= high) {
+                for value in view.multiples(axis, step) {
                     let [mut from, mut to] = [0, 1].map(|end| view.ranges.map(|range| range[end]));
                     (from[axis], to[axis]) = (value, value);
                     self.path(view, style, &[from, to]);

@@ -102,6 +102,9 @@ impl Report<'_> {
             Ending::Done => writeln!(text, "end point {} {exact}", point(self.curve.to())),
             Ending::Trapped => writeln!(text, "stopped by an overflow at {}", point(&outcome.reached)),
             Ending::Stalled { .. } => writeln!(text, "came to a stand at {}", point(&outcome.reached)),
+            Ending::Endless { .. } | Ending::Limit => {
+                writeln!(text, "was still under way at {}", point(&outcome.reached))
+            }
         };
         if let Some(worst) = &self.worst {
             let at = point(&worst.position);
@@ -123,7 +126,9 @@ impl Report<'_> {
     fn registers(&self) -> String {
         let chosen = || self.ranges.iter().filter(|range| self.hardware.widths.contains_key(&range.name));
         let spare = chosen().map(|range| format!("{} {}/{}", range.name, self.needed_bits(range), range.width.get()));
-        let stuck = chosen().flat_map(|range| {
+        // The bits of an operand say nothing of the motion.
+        let moving = chosen().filter(|range| !range.held);
+        let stuck = moving.flat_map(|range| {
             // That the bits above did not move is told by those needed, and a sign may well stay.
             let magnitude = range.needed() - u32::from(range.reading.is_signed());
             range.stuck_below(magnitude).into_iter().map(|bits| format!("{}{bits}", range.name))

@@ -21,7 +21,8 @@ fn word(ending: Option<Ending>) -> &'static str {
         Some(Ending::Done) => "done",
         Some(Ending::Trapped) => "trapped",
         Some(Ending::Stalled { .. }) => "stalled",
-        None => "limit",
+        Some(Ending::Endless { .. }) => "endless",
+        Some(Ending::Limit) | None => "limit",
     }
 }
 

@@ -28,6 +28,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod boxes;
 mod columns;
 mod error;
 mod machines;
@@ -45,6 +46,7 @@ mod table;
 mod variants;
 pub mod widths;
 
+pub use boxes::{Extent, Geometries};
 pub use columns::words;
 pub use error::StudyError;
 pub use merge::merge;

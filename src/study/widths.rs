@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use stepwave_kernel::bits::to_signed;
+use stepwave_kernel::engine::EngineKind;
 use stepwave_kernel::engine::lanes::{LaneProgram, LaneWatch, Observe};
 use stepwave_kernel::{Net, Width};
-use stepwave_models::{Choices, Claims, CurveKind, Model, ModelError, Region};
+use stepwave_models::{Choices, Claims, Model, ModelError};
 use stepwave_nc::Curve;
 
+use super::boxes::{Extent, Geometries};
 use super::proof::{Narrower, ProofError, Subject};
-use crate::testbench::{Ending, Testbench};
+use crate::testbench::{Ending, RangeWatch, Testbench};
 
 /// How the width of a register is known to be enough.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -43,6 +45,8 @@ pub struct RegisterWidth {
 /// Least widths over a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Widths {
+    /// The box.
+    pub extent: Extent,
     /// Bits of coordinates.
     pub k: u32,
     /// Geometries that were simulated.
@@ -55,8 +59,6 @@ pub struct Widths {
     pub registers: Vec<RegisterWidth>,
 }
 
-/// Geometries that are simulated at most.
-const MOST: usize = 1_000_000;
 /// Clocks after which a run is given up.
 const LIMIT: u64 = 1 << 24;
 
@@ -67,31 +69,15 @@ struct Seen {
     greatest: (i128, usize),
 }
 
-/// The region of geometries in which a model is studied.
-fn region(model: &Model) -> Result<Region, ProofError> {
-    match (model.claims, model.curve) {
-        (Some(claims), _) => Ok(claims.geometries),
-        (None, CurveKind::Line { .. }) => Ok(Region::Lines),
-        (None, CurveKind::Arc) => Ok(Region::QuadrantArcs),
-        (None, CurveKind::Conic | CurveKind::Helix) => Err(ProofError::NoClaims { model: model.name }),
-    }
-}
-
-/// The least widths of a model's registers over every line from the origin, or every arc inside a quadrant, with
-/// coordinates of `k` bits.
+/// The least widths of a model's registers over a box of geometries: every line from the origin, every arc inside a
+/// quadrant with both ends on the circle, every quarter of an ellipse and every arc of a parabola or hyperbola from or to
+/// its vertex, or every helix over such an arc.
 ///
 /// # Errors
 /// There is no such box for the model, or the hardware cannot be built.
-pub fn widths(model: &'static Model, choices: &Choices, k: u32) -> Result<Widths, ProofError> {
-    let region = region(model)?;
-    let wide = Choices { width: Width::new(u64::from(k)).ok(), ..choices.clone() };
-    let nothing = || ModelError::Widths(format!("there are no geometries of {k} bits"));
-    let hardware = model.plan(&region.largest(k).ok_or_else(nothing)?, &wide)?;
+pub fn widths(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Widths, ProofError> {
+    let Geometries { curves, all, k, hardware, choices: wide } = Geometries::of(model, choices, extent)?;
     let bench = Testbench::of_hardware(model, hardware)?;
-    let kinds = region.kinds();
-    let mut curves = region.curves(k, MOST);
-    let all = region.is_whole(k) && curves.len() < MOST;
-    curves.retain(|curve| kinds.iter().any(|kind| region.symbols(kind, curve).is_some()));
     let (seen, faults) = simulate(&bench, &curves)?;
 
     let netlist = bench.design().netlist();
@@ -112,10 +98,10 @@ pub fn widths(model: &'static Model, choices: &Choices, k: u32) -> Result<Widths
             needed,
         });
     }
-    if let Some(claims) = model.claims {
+    if let Some(claims) = model.claims.filter(|_| bench.hardware().axes == 2) {
         mark_proved(model, &claims, choices, &mut registers);
     }
-    Ok(Widths { k, simulated: curves.len(), all, faults, registers })
+    Ok(Widths { extent: extent.clone(), k, simulated: curves.len(), all, faults, registers })
 }
 
 /// Least and greatest value of every register with a width to choose, by name, and how many runs ended in a fault.
@@ -163,6 +149,37 @@ fn simulate(bench: &Testbench, curves: &[Curve]) -> Result<(BTreeMap<String, See
     Ok((seen, faults))
 }
 
+/// Least and greatest value of every register over single runs of these curves on one engine, one after another instead of
+/// in lanes: what [`widths`] is judged by. Runs that do not come to their end are left out.
+///
+/// # Errors
+/// A value does not fit in its register.
+pub fn ranges_alone(
+    model: &Model,
+    bench: &Testbench,
+    curves: &[Curve],
+    engine: EngineKind,
+) -> Result<BTreeMap<String, (i128, i128)>, ModelError> {
+    type Ranges = BTreeMap<String, (i128, i128)>;
+    let joined = |mut all: Ranges, one: Ranges| {
+        for (name, (least, greatest)) in one {
+            let own = all.entry(name).or_insert((least, greatest));
+            *own = (own.0.min(least), own.1.max(greatest));
+        }
+        Ok(all)
+    };
+    let alone = |curve: &Curve| {
+        let bench = bench.of(model, curve)?.limited(LIMIT);
+        let mut watch = RangeWatch::new(&bench);
+        let outcome = bench.run(engine, &mut [&mut watch]);
+        if outcome.is_ok_and(|outcome| outcome.ending != Ending::Done) {
+            return Ok(Ranges::new());
+        }
+        Ok(watch.finish().into_iter().map(|range| (range.name, (range.least, range.greatest))).collect())
+    };
+    curves.par_iter().map(alone).try_reduce(Ranges::new, joined)
+}
+
 /// The choices of a run of this curve that one bit less does not hold: it is refused, or traps.
 fn witness(model: &Model, wide: &Choices, name: &str, needed: u32, curve: &Curve) -> Option<(Curve, Choices)> {
     let below = Width::new(u64::from(needed.checked_sub(1)?)).ok()?;
@@ -172,7 +189,7 @@ fn witness(model: &Model, wide: &Choices, name: &str, needed: u32, curve: &Curve
         Err(ModelError::DoesNotFit { .. }) => true,
         Err(_) => false,
         Ok(bench) => {
-            let outcome = bench.run(stepwave_kernel::engine::EngineKind::Word, &mut []);
+            let outcome = bench.run(EngineKind::Word, &mut []);
             outcome.is_ok_and(|outcome| outcome.ending == Ending::Trapped)
         }
     };

@@ -73,6 +73,8 @@ impl Testbench {
         let outcome = match run {
             Err(error) if error.is::<Reached>() => None,
             Err(error) => return Err(error),
+            // Lanes go on to the limit where a single run knows that it is endless.
+            Ok(Outcome { ending: Ending::Endless { .. } | Ending::Limit, .. }) => None,
             Ok(outcome) => Some(outcome).filter(|outcome| {
                 outcome.clocks < limit || outcome.clocks == limit && !matches!(outcome.ending, Ending::Stalled { .. })
             }),

@@ -89,6 +89,13 @@ pub enum Ending {
         /// Clocks without a pulse.
         clocks: u64,
     },
+    /// It pulses, but came back to the very state of an earlier sample of its block: it will do so for ever.
+    Endless {
+        /// Clock of that sample.
+        since: u64,
+    },
+    /// As many clocks as were allowed were not enough.
+    Limit,
 }
 
 /// What a run came to.
@@ -113,6 +120,8 @@ pub struct Testbench {
     machine: Machine,
     blocks: Vec<Vec<(Net, u64)>>,
     columns: Columns,
+    /// Clocks after which a run is given up.
+    limit: u64,
 }
 
 impl Testbench {
@@ -133,7 +142,7 @@ impl Testbench {
     pub fn of_hardware(model: &Model, hardware: Hardware) -> Result<Testbench, ModelError> {
         let machine = model.machine(&hardware)?;
         let columns = Columns::of(&machine);
-        Ok(Testbench { hardware, machine, blocks: Vec::new(), columns })
+        Ok(Testbench { hardware, machine, blocks: Vec::new(), columns, limit: u64::MAX })
     }
 
     /// A machine that runs whole programs, for [`run_program`](Self::run_program).
@@ -150,6 +159,12 @@ impl Testbench {
     pub fn of(&self, model: &Model, curve: &Curve) -> Result<Testbench, ModelError> {
         let blocks = self.machine.encode(&self.hardware, &model.words(&self.hardware, curve))?;
         Ok(Testbench { blocks, ..self.clone() })
+    }
+
+    /// The same bench, whose runs are given up after so many clocks.
+    #[must_use]
+    pub fn limited(self, clocks: u64) -> Testbench {
+        Testbench { limit: clocks, ..self }
     }
 
     /// The hardware.
@@ -231,9 +246,17 @@ impl Testbench {
             observers,
             first_block: 0,
             goes_on: false,
+            anchor: None,
             states: None,
         }
     }
+}
+
+/// A sample that a run may come back to.
+struct Anchor {
+    clock: u64,
+    /// Values of the design's registers, in its order.
+    registers: Vec<u64>,
 }
 
 /// A run in progress.
@@ -249,6 +272,8 @@ struct Run<'a, 'o> {
     first_block: usize,
     /// That block is loaded and running.
     goes_on: bool,
+    /// A sample of the block that runs, not before half of its clocks.
+    anchor: Option<Anchor>,
     /// Takes states of the run.
     states: Option<&'a mut Checkpoints>,
 }
@@ -272,6 +297,7 @@ impl Run<'_, '_> {
     /// Loads a block: sets the inputs, and does the clock behind which the machine runs.
     fn load(&mut self, index: usize, words: &[(Net, u64)]) -> Result<(), ObserverError> {
         let machine = &self.bench.machine;
+        self.anchor = None;
         for &(input, value) in words {
             self.engine.set_input(input, value);
         }
@@ -304,7 +330,11 @@ impl Run<'_, '_> {
             return Ok(ending);
         }
         loop {
-            let stop = self.engine.run(u64::MAX, &mut self.rows);
+            let left = self.bench.limit.saturating_sub(self.engine.clock());
+            if left == 0 {
+                return Ok(Ending::Limit);
+            }
+            let stop = self.engine.run(left, &mut self.rows);
             match stop {
                 Stop::Net(0) => return Ok(Ending::Done),
                 Stop::Net(_) => return Ok(Ending::Trapped),
@@ -315,8 +345,29 @@ impl Run<'_, '_> {
             if quiet > stall || quiet >= CHUNK as u64 && at_rest() {
                 return Ok(Ending::Stalled { clocks: quiet });
             }
+            if let Some(since) = self.came_back() {
+                return Ok(Ending::Endless { since });
+            }
             self.keep_state(index);
         }
+    }
+
+    /// The clock of the anchor, if the machine is in the state that it had there and has pulsed since: inputs stay, so it
+    /// will do the same again. The anchor moves on whenever the clocks have doubled, so that no loop escapes it.
+    fn came_back(&mut self) -> Option<u64> {
+        let (engine, registers) = (&self.engine, self.bench.design().registers());
+        let clock = engine.clock();
+        if let Some(anchor) = &self.anchor {
+            let mut values = registers.iter().zip(&anchor.registers);
+            if self.steps.last_pulse > anchor.clock && values.all(|(&net, value)| engine.value(net) == *value) {
+                return Some(anchor.clock);
+            }
+            if clock / 2 < anchor.clock {
+                return None;
+            }
+        }
+        self.anchor = Some(Anchor { clock, registers: registers.iter().map(|&net| engine.value(net)).collect() });
+        None
     }
 
     /// Keeps the present state, if one is wanted. All samples up to it have been shown.
@@ -327,6 +378,9 @@ impl Run<'_, '_> {
         };
         let mut memory = Memory::new();
         self.steps.remember(&mut memory);
+        if let Some(Anchor { clock, registers }) = &self.anchor {
+            memory.insert("anchor".to_owned(), serde_json::json!([clock, registers]));
+        }
         for observer in self.observers.iter() {
             observer.remember(&mut memory);
         }
@@ -339,6 +393,8 @@ impl Run<'_, '_> {
         for observer in self.observers.iter_mut() {
             observer.recall(&state.memory);
         }
+        let anchor: Option<(u64, Vec<u64>)> = checkpoint::recalled(&state.memory, "anchor");
+        self.anchor = anchor.map(|(clock, registers)| Anchor { clock, registers });
         (self.first_block, self.goes_on) = (state.block, true);
     }
 

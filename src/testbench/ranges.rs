@@ -30,6 +30,8 @@ pub struct RegisterRange {
     pub toggled: u64,
     /// What the other bits were in every sample; 0 where a bit toggled.
     pub stuck: u64,
+    /// It takes a word where a block is loaded and keeps it up to the next: an operand.
+    pub held: bool,
     /// Ends of its range at which it stood and beyond which a strict cell may carry it, one unit from an overflow. The 0
     /// of an unsigned register is none, for counters are meant to come to it.
     pub limits: Vec<i128>,
@@ -124,6 +126,7 @@ impl RangeWatch {
                     greatest: 0,
                     toggled: 0,
                     stuck: 0,
+                    held: holds(netlist, named.net, bench.machine().load.net),
                     limits: Vec::new(),
                 });
             }
@@ -152,6 +155,18 @@ impl RangeWatch {
 /// What makes both readings sort alike: two's complement has its sign bit turned over.
 fn turned(range: &RegisterRange) -> u64 {
     if range.reading.is_signed() { range.width.sign_bit() } else { 0 }
+}
+
+/// A register changes where a block is loaded, and nowhere else.
+fn holds(netlist: &Netlist, register: Net, load: Net) -> bool {
+    let Op::Register { next: Some(mut next), .. } = netlist.cell(register).op else { return false };
+    // The arms of `when`; one whose condition is the constant 0 counts for nothing.
+    while let Op::Mux { select, low, .. } = netlist.cell(next).op
+        && (select == load || matches!(netlist.cell(select).op, Op::Const(0)))
+    {
+        next = low;
+    }
+    next == register
 }
 
 /// A strict cell makes a register less, greater.
@@ -212,6 +227,7 @@ mod tests {
             greatest: 0,
             toggled: 0b0001_0010,
             stuck: 0b0110_0001,
+            held: false,
             limits: Vec::new(),
         };
         assert_eq!(range.stuck_bits(), "011-00-1");

@@ -127,3 +127,59 @@ fn without_an_overflow_all_three_ways_are_the_same_run() {
         ["trap", "saturate", "wrap"].map(|way| Csv::of(&format!("ppc-line --to 6,4 --on-overflow {way}")));
     assert!(trap == saturate && trap == wrap && trap == Csv::of("ppc-line --to 6,4"));
 }
+
+/// With `total` a diagonal step counts two pulses: from an odd count the counter wraps around past 0, and the machine
+/// goes round and round.
+const ENDLESS: [&str; 2] = [
+    "run vector-arc --from 1,0 --to -2,0 --cw --end-point total --on-overflow wrap",
+    "run mindev-arc --from 1,0 --to -2,0 --cw --end-point total --on-overflow wrap",
+];
+
+#[test]
+fn a_motion_that_never_ends_is_given_up_where_it_comes_back_to_an_earlier_state() {
+    for words in ENDLESS {
+        let mut told = Vec::new();
+        for engine in engines() {
+            let folder = Folder::new();
+            let ran = folder.run(&format!("{words} --engine {engine} --json r.json --vcd w.vcd"));
+            assert!(ran.code == 1 && ran.err.contains("the motion never ends: at clock"), "{words}: {ran:?}");
+            assert!(ran.err.contains("--on-overflow trap") && ran.err.lines().count() == 1, "{words}: {ran:?}");
+            let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+            assert_eq!(report["ending"], "endless");
+            told.push((ran.err, folder.read("w.vcd")));
+        }
+        assert!(told.windows(2).all(|pair| pair[0] == pair[1]), "{words}");
+        // The two clocks that the sentence names show the same registers: so the wave says too.
+        let folder = Folder::new();
+        let numbers: Vec<u64> =
+            told[0].0.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse().ok()).collect();
+        let (end, since) = (numbers[0], numbers[numbers.len() - 1]);
+        folder.run(&format!("{words} --steps s.csv"));
+        let table = Csv::parse(&folder.read("s.csv"));
+        let clocks = table.column("clock");
+        let row = |clock: u64| clocks.iter().rposition(|&at| at <= i64::try_from(clock).unwrap()).unwrap();
+        for register in ["f", "xi", "yi", "e", "x", "y"] {
+            let values = table.column(register);
+            assert_eq!(values[row(end)], values[row(since)], "{words}: {register}");
+        }
+    }
+}
+
+#[test]
+fn a_run_beyond_its_clocks_is_given_up_there_and_one_within_them_is_not() {
+    let folder = Folder::new();
+    let ran = folder.run(&format!("{} --max-clocks 100 --json r.json", ENDLESS[0]));
+    assert_eq!(ran.code, 1);
+    assert!(
+        ran.err.starts_with("stepwave: not done after 100 clocks, at (") && ran.err.contains("greater --max-clocks")
+    );
+    let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+    assert_eq!((&report["ending"], &report["clocks"]), (&json!("limit"), &json!(100)));
+    // Ten steps of four clocks behind the load.
+    for (clocks, code) in [(41, 0), (40, 1)] {
+        let ran = folder.run(&format!("run ppc-line --to 6,4 --max-clocks {clocks}"));
+        assert_eq!(ran.code, code, "{ran:?}");
+    }
+    let ran = folder.run("run ppc-line --to 6,4 --max-clocks 0");
+    assert!(ran.code == 2 && ran.err.contains("--max-clocks"), "{ran:?}");
+}

@@ -312,7 +312,10 @@ fn geometries_come_from_a_file_as_well() {
 #[test]
 fn the_heat_map_names_the_worst_cell_with_the_words_that_repeat_it() {
     let folder = Folder::new();
-    let text = folder.good("sweep dda-line --to-grid 0..20x0..20 --width 5..6 --heat error_max --plot heat.svg");
+    let text = folder.good(
+        "sweep dda-line --to-grid 0..20x0..20 --width 5..6 --heat error_max --plot heat.svg \
+                            --plot heat.png",
+    );
     let line = text.lines().find(|line| line.starts_with("greatest error_max ")).unwrap();
     let (number, words) = line.split_once(": stepwave ").unwrap();
     let number: f64 = number.split_whitespace().nth(2).unwrap().parse().unwrap();
@@ -321,6 +324,9 @@ fn the_heat_map_names_the_worst_cell_with_the_words_that_repeat_it() {
     for part in [words, "to_x (BLU)", "to_y (BLU)", "error_max (BLU)", "data:image/png;base64,"] {
         assert!(svg.contains(part), "{part}");
     }
+    let png = fs::read(folder.path("heat.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.ends_with(b"IEND\xae\x42\x60\x82"));
+    assert_eq!(folder.files(), ["heat.png", "heat.svg"]);
 }
 
 #[test]
@@ -355,6 +361,8 @@ fn bad_words_are_refused_and_leave_no_file() {
         ("--csv nowhere/s.csv", &["cannot write nowhere/s.csv", "does not exist"]),
         ("--csv s.csv --parquet s.csv", &["two outputs would go to s.csv"]),
         ("--csv s.csv --plot nowhere/p.svg", &["cannot write nowhere/p.svg"]),
+        ("--plot p.png --plot p.png", &["two outputs would go to p.png"]),
+        ("--plot - --plot -", &["two outputs cannot both go to standard output"]),
         ("--parquet -", &["name a file"]),
         ("--shard 4/3", &["'4/3' is no part"]),
         ("--shard 0/3", &["'0/3' is no part"]),

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-use stepwave::study::widths::{Known, Widths, widths};
-use stepwave::testbench::{Ending, RangeWatch, Testbench};
-use stepwave_kernel::Width;
+use stepwave::study::widths::{Known, Widths, ranges_alone, widths};
+use stepwave::study::{Extent, Geometries};
+use stepwave::testbench::Testbench;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, CurveKind, Region, Weights, catalogue, find};
+use stepwave_models::{Choices, Model, Weights, catalogue, find};
+use stepwave_nc::{Curve, Shape};
 
 use crate::cli::Folder;
 
@@ -30,7 +30,7 @@ fn the_least_widths_of_the_methods_are_those_of_the_literature() {
         ("bresenham", Choices::default(), vec![("cntx", 1), ("e", 0)]),
     ] {
         let k = 5;
-        let found = widths(find(model).unwrap(), &choices, k).unwrap();
+        let found = widths(find(model).unwrap(), &choices, &Extent::Bits(k)).unwrap();
         assert!(found.all && found.faults == 0 && found.simulated > 1000, "{model}: {found:?}");
         let own = needed(&found, k);
         for (register, bits) in rows {
@@ -44,40 +44,76 @@ fn the_least_widths_of_the_methods_are_those_of_the_literature() {
     }
 }
 
+/// Wants what lanes see over a box to be what single runs see.
+fn assert_as_alone(model: &'static Model, extent: &Extent) {
+    let found = widths(model, &Choices::default(), extent).unwrap();
+    let own = Geometries::of(model, &Choices::default(), extent).unwrap();
+    assert_eq!((own.curves.len(), own.all), (found.simulated, found.all), "{}", model.name);
+    let bench = Testbench::of_hardware(model, own.hardware).unwrap();
+    let alone = ranges_alone(model, &bench, &own.curves, EngineKind::Word).unwrap();
+    assert!(!found.registers.is_empty());
+    for register in &found.registers {
+        assert_eq!(alone[&register.name], register.range, "{} {extent}: {}", model.name, register.name);
+    }
+}
+
 #[test]
-fn lanes_and_single_runs_see_the_same_ranges() {
-    let k = 3;
+fn lanes_and_single_runs_of_every_model_see_the_same_ranges() {
     for model in catalogue() {
-        let region = match model.curve {
-            CurveKind::Line { .. } => Region::Lines,
-            CurveKind::Arc => Region::QuadrantArcs,
-            _ => continue,
-        };
-        let found = widths(model, &Choices::default(), k).unwrap();
-        let wide = Choices { width: Width::new(u64::from(k)).ok(), ..Choices::default() };
-        let hardware = model.plan(&region.largest(k).unwrap(), &wide).unwrap();
-        let bench = Testbench::of_hardware(model, hardware).unwrap();
-        let kinds = region.kinds();
-        let mut curves = region.curves(k, usize::MAX);
-        curves.retain(|curve| kinds.iter().any(|kind| region.symbols(kind, curve).is_some()));
-        assert_eq!(curves.len(), found.simulated, "{}", model.name);
-        let ranges = curves.par_iter().map(|curve| {
-            let bench = bench.of(model, curve).unwrap();
-            let mut watch = RangeWatch::new(&bench);
-            let outcome = bench.run(EngineKind::Word, &mut [&mut watch]).unwrap();
-            let ranges = watch.finish().into_iter().map(|range| (range.name, (range.least, range.greatest)));
-            if outcome.ending == Ending::Done { ranges.collect() } else { BTreeMap::new() }
-        });
-        let all = ranges.reduce(BTreeMap::new, |mut all, one| {
-            for (name, (least, greatest)) in one {
-                let own = all.entry(name).or_insert((least, greatest));
-                *own = (own.0.min(least), own.1.max(greatest));
-            }
-            all
-        });
-        for register in &found.registers {
-            assert_eq!(all[&register.name], register.range, "{}: {}", model.name, register.name);
+        assert_as_alone(model, &Extent::Bits(3));
+        // Of four bits where a run takes few clocks.
+        if !matches!(model.name, "stepgen" | "dpm-line" | "dda-helix" | "dda-conic" | "dda-arc") {
+            assert_as_alone(model, &Extent::Bits(4));
         }
+    }
+    for (model, grid) in [("dda-line", "-3..9x0..5"), ("stepgen", "1..4x0..3x-2..2"), ("ppc-arc", "-5..5x-5..5")] {
+        assert_as_alone(find(model).unwrap(), &grid.parse().unwrap());
+    }
+}
+
+#[test]
+fn a_box_of_ranges_holds_its_own_points_alone() {
+    let of = |model: &str, extent: &str| widths(find(model).unwrap(), &Choices::default(), &extent.parse().unwrap());
+    let grid = of("ppc-line", "0..7x0..7").unwrap();
+    // 8 · 8 points, and the origin is none.
+    assert_eq!((grid.simulated, grid.all, grid.k), (63, true, 3));
+    assert_eq!(of("ppc-line", "-7..7x-7..7").unwrap().registers, of("ppc-line", "3").unwrap().registers);
+    // On circles about the origin with coordinates to 5 there are (0, 1) to (0, 5) with those of x, (1, 2), (1, 3), (1, 4),
+    // (1, 5), (2, 3), (2, 4), (2, 5), (3, 4), (3, 5), (4, 5) with those turned over, and (0, 5) with (3, 4): each pair
+    // both ways.
+    let arcs = of("ppc-arc", "0..5x0..5").unwrap();
+    assert_eq!(arcs.simulated, 2 * (5 + 10 + 4));
+    // The box of three bits has the same arcs, in another order.
+    let ranges = |extent: &str| -> Vec<_> {
+        let found = of("ppc-arc", extent).unwrap();
+        found.registers.into_iter().map(|register| (register.name, register.needed, register.range)).collect()
+    };
+    assert_eq!(ranges("-7..7x-7..7"), ranges("3"));
+    let large = of("bresenham", "0..2000x0..2000").unwrap();
+    assert!(!large.all && large.registers.iter().all(|register| register.known != Known::Exhaustive));
+}
+
+#[test]
+fn boxes_of_conics_and_helices_hold_what_is_counted_by_hand() {
+    let of =
+        |model: &str, k| Geometries::of(find(model).unwrap(), &Choices::default(), &Extent::Bits(k)).unwrap().curves;
+    let count = |curves: &[Curve], is: fn(&Shape) -> bool| {
+        curves.iter().filter(|curve| matches!(curve, Curve::Conic(conic) if is(&conic.shape()))).count()
+    };
+    let conics = of("ppc-conic", 2);
+    // Nine pairs of semi-axes, four quarters, both ways.
+    assert_eq!(count(&conics, |shape| matches!(shape, Shape::Ellipse { .. })), 9 * 4 * 2);
+    // y² = cx up to 3: (1, 1) of c = 1, (2, 2) of c = 2, (3, 3) of c = 3, each with four openings, two sides, both ways.
+    assert_eq!(count(&conics, |shape| matches!(shape, Shape::Parabola { .. })), 3 * 4 * 2 * 2);
+    // Two bits have no hyperbola: (x/a)² - (y/b)² = 1 first has (5, 4) of a = b = 3, and (5, 4k/3) of such b.
+    assert_eq!(count(&conics, |shape| matches!(shape, Shape::Hyperbola { .. })), 0);
+    let conics = of("ppc-conic", 3);
+    assert!(count(&conics, |shape| matches!(shape, Shape::Hyperbola { semi_axes: [3, 3], .. })) == 4 * 2 * 2);
+    // The quarters of radius 1, four of them both ways, with z from -1 to 1.
+    assert_eq!(of("dda-helix", 1).len(), 4 * 2 * 3);
+    for model in ["ppc-conic", "cim-conic", "dda-conic", "dda-helix"] {
+        let found = widths(find(model).unwrap(), &Choices::default(), &Extent::Bits(3)).unwrap();
+        assert!(found.all && found.registers.iter().all(|register| register.known == Known::Exhaustive), "{model}");
     }
 }
 
@@ -95,8 +131,15 @@ fn the_table_names_a_run_that_one_bit_less_does_not_hold() {
     assert_eq!((&json["all"], &json["registers"][0]["known"]), (&true.into(), &"exhaustive".into()));
     for (words, hint) in [
         ("widths ppc-line", "--box"),
-        ("widths ppc-line --box 0", "1..=16"),
-        ("widths dda-helix --box 4", "no box of geometries"),
+        ("widths ppc-line --box 0", "1 to 16 bits"),
+        ("widths ppc-line --box 9..0x0..9", "give 0..9"),
+        ("widths ppc-line --box 0..9", "0..255x0..255"),
+        ("widths ppc-line --box 0..9x0..9x0..9", "give --box 0..9x0..9"),
+        ("widths ppc-arc --box 0..9x0..9x0..9", "give --box 0..9x0..9"),
+        ("widths ppc-arc --box 1..2x5..6", "the box holds nothing"),
+        ("widths ppc-arc --box 0..9999x0..9999", "0..2047x0..2047"),
+        ("widths ppc-line --box 0..65536x0..9", "within ±65535"),
+        ("widths dda-helix --box 0..4x0..4", "give --box 4"),
         ("widths ppc-line --box 4 --preset half", "does not take --preset"),
     ] {
         let ran = folder.run(words);

@@ -86,7 +86,7 @@ fn fault(curve: &Curve, outcome: &LaneOutcome) -> Option<Fault> {
         Some(Ending::Trapped) => Some(Fault::Overflow),
         Some(Ending::Done) if outcome.overflows > 0 => Some(Fault::Overflow),
         Some(Ending::Done) => (outcome.reached != curve.to()).then_some(Fault::Missed),
-        Some(Ending::Stalled { .. }) => Some(Fault::Endless),
-        None => None,
+        Some(Ending::Stalled { .. } | Ending::Endless { .. }) => Some(Fault::Endless),
+        Some(Ending::Limit) | None => None,
     }
 }

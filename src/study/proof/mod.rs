@@ -28,6 +28,9 @@ pub enum ProofError {
         /// The model.
         model: &'static str,
     },
+    /// There is no such box of geometries for the model.
+    #[error("{0}")]
+    Box(String),
     /// The hardware cannot be built.
     #[error(transparent)]
     Model(#[from] ModelError),
