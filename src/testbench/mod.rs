@@ -149,7 +149,7 @@ impl Testbench {
     #[must_use]
     pub fn of_machine(hardware: Hardware, machine: Machine) -> Testbench {
         let columns = Columns::of(&machine);
-        Testbench { hardware, machine, blocks: Vec::new(), columns }
+        Testbench { hardware, machine, blocks: Vec::new(), columns, limit: u64::MAX }
     }
 
     /// The same hardware with the blocks of another geometry.
