@@ -31,6 +31,8 @@ pub mod parts;
 pub mod ppc_arc;
 pub mod ppc_conic;
 pub mod ppc_line;
+pub mod sampled_arc;
+pub mod sampled_line;
 pub mod stepgen;
 pub mod vector_arc;
 pub mod vector_line;
@@ -44,14 +46,20 @@ mod machine;
 mod model;
 mod plan;
 mod registers;
+mod sampling;
 mod words;
 
-pub use choices::{Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Named, Preset, Radix, StepTiming, Weights};
+pub use choices::{
+    Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Millionths, Named, Preset, Radix, StepTiming, System,
+    Weights,
+};
 pub use claims::{Claims, Kind, Region};
 pub use error::ModelError;
 pub use hardware::{AXES, Hardware, Pace};
 pub use machine::{Machine, Port, Words};
+
 pub use model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+pub use sampling::Sampling;
 pub use stepwave_kernel::OnOverflow;
 
 /// Every model.
@@ -73,6 +81,8 @@ pub fn catalogue() -> &'static [Model] {
         mindev_arc::MODEL,
         vector_line::MODEL,
         vector_arc::MODEL,
+        sampled_line::MODEL,
+        sampled_arc::MODEL,
         stepgen::MODEL,
         bresenham::MODEL,
     ];
