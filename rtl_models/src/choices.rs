@@ -203,7 +203,6 @@ pub struct Millionths(pub u64);
 impl Millionths {
     /// As a number of units.
     #[must_use]
-    // Below 2^53 for every length that is taken.
     pub fn units(self) -> f64 {
         self.0 as f64 / 1e6
     }
@@ -212,7 +211,7 @@ impl Millionths {
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     pub fn nearest(units: f64) -> Option<Millionths> {
-        (units >= 0.0 && units < 1e9).then(|| Millionths((units * 1e6).round() as u64))
+        (0.0..1e9).contains(&units).then(|| Millionths((units * 1e6).round() as u64))
     }
 }
 

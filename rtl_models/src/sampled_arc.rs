@@ -1,4 +1,60 @@
-//! `sampled-arc`: data sampling (数据采样法), arc.
+//! `sampled-arc`: data sampling (数据采样法), arc: a coarse stage once a period, and a fine DDA between.
+//!
+//! ```text
+//!   coarse, one state after another                     fine, a burst of 2^k clocks
+//!   ┌────────────┐
+//!   │ multiplier │◄─┐                                   jvx_next ──► jvx ──► + ──► jrx ──┐
+//!   │ divider    │◄─┼── state ──► px, py ──► round ────┤ (buffer)            ▲───────────┘
+//!   │ root       │◄─┘     remx, remy   less tx, ty      jvy_next ──► jvy      │ carry ──► dx ──► x
+//!   └────────────┘               └─► side of the end
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | f | as it needs | way of a period, in 2^-q BLU |
+//! | px, py | n+1+q | coarse point that is calculated, about the centre, in 2^-q BLU, signed |
+//! | remx, remy | n+q | 0: what is below 2^-q of both (`7360`) |
+//! | xe, ye | n+1 | end point about the centre, signed |
+//! | cx, cy | n+2+q | coarse point that the burst draws to, signed |
+//! | jvx, jvy | k | whole pulses of the period; `jvx_next`, `jvy_next` those of the next |
+//! | jrx, jry | k | remainder J_R: the preset |
+//! | e | k+1 | clocks of the burst left |
+//!
+//! n bits hold 1.25·R and some BLU, q is `--fraction`, and 2^k is greater than the way of any period. The signs of px and
+//! py are all that tells quadrants apart; nothing is reloaded at the axes.
+//!
+//! - `7m` (T = 8 ms): of the smaller coordinate u and the larger v, where both grow away from each other,
+//!   tan α = (u + ½f·cos 45°)/(v - ½f·sin 45°), and u moves by f·cos α = f/√(1 + tan² α). The larger becomes √(R² - u²):
+//!   that is Δv from Δv(v - ½Δv) = Δu(u + ½Δu), which keeps the point on the circle. Towards the axis, where |u| shrinks,
+//!   both signs in tan α turn over. Beyond 45° x and y change places.
+//! - `7360` (T = 10.24 ms, the extended DDA): λ = f/R with n+q bits of fraction, once for the block. Clockwise
+//!   Δx = λ(y - ½λx) and Δy = -λ(x + ½λy), counter-clockwise with -λ, added to {px, remx} and {py, remy}. The radius
+//!   grows by the factor √(1 + λ⁴/4) a period.
+//!
+//! The fine stage takes the points rounded to the nearest pulse; the fraction stays in the point. The last period is the
+//! one that passes the radius to the end point: before it xe·y - ye·x, which the multiplier gives in every period, has
+//! the sign of a point in front of the end, and behind it no longer. It takes what is left, so that the end is exact. An
+//! arc that starts behind the radius of its end, or on it, goes once around.
+//!
+//! The chord of a period leaves the arc by f²/(8R): steps for which that is more than `--tolerance`, or which are longer
+//! than R/2, are refused.
+//!
+//! The multiplier (shift and add), the divider and the root (both restoring) take a bit a clock. While a burst draws one
+//! period, they calculate the next; a period takes as many clocks as the longer of both. `stepped` marks the end of
+//! each burst: a row of the step table is a period.
+//!
+//! A quarter of the circle of 10 BLU with 4 BLU a period, from the golden file `waves/sampled-arc-7m.csv`; the wave
+//! stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/sampled-arc-7m.csv")]
+//! ```
+//!
+//! The same by the step factor, λ = 0.4, from `waves/sampled-arc-7360.csv`:
+//!
+//! ```text
+#![doc = include_str!("../../waves/sampled-arc-7360.csv")]
+//! ```
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::{Module, Register, Scope, Signal};

@@ -1,4 +1,47 @@
-//! `sampled-line`: data sampling (数据采样法), line of 2 axes.
+//! `sampled-line`: data sampling (数据采样法), line of 2 axes: a coarse stage once a period, and a fine DDA between.
+//!
+//! ```text
+//!   coarse, one state after another                     fine, a burst of 2^k clocks
+//!   ┌────────────┐
+//!   │ multiplier │◄─┐                                   jvx_next ──► jvx ──► + ──► jrx ──┐
+//!   │ divider    │◄─┼── state ──► far, near ──► round ─┤ (buffer)            ▲───────────┘
+//!   │ root       │◄─┘     remf, remn    less tx, ty     jvy_next ──► jvy      │ carry ──► dx ──► x
+//!   └────────────┘
+//! ```
+//!
+//! | register | width | load value |
+//! |---|---|---|
+//! | long, short | n | abs(d) of the long and the short axis |
+//! | f | as it needs | way of a period, in 2^-q BLU |
+//! | far, near | n+1+q | 0: coarse way of the long and the short axis, in 2^-q BLU |
+//! | remf, remn | n | 0: what is below 2^-q of both (`7360`), or of the short axis (`7m`, in parts of the long way) |
+//! | cx, cy | n+2+q | coarse point that the burst draws to, from the start, signed |
+//! | jvx, jvy | k | whole pulses of the period; `jvx_next`, `jvy_next` those of the next |
+//! | jrx, jry | k | remainder J_R: the preset |
+//! | e | k+1 | clocks of the burst left |
+//!
+//! n bits hold the length of the line, q is `--fraction`, and 2^k is greater than f and the pulse that rounding may add.
+//!
+//! Once a block the root of long² + short² gives the length. Then
+//!
+//! - `7m` (T = 8 ms): a period of the long axis is Δl = f·long/length, once for the block; that of the short one
+//!   Δs = (Δl·short + remn)/long, whose remainder stays in remn.
+//! - `7360` (T = 10.24 ms): λ = f/length with n+q bits of fraction, once for the block; {far, remf} grows by λ·long, and
+//!   {near, remn} by λ·short.
+//!
+//! So nothing is lost, and coarse points lie on the line but for what 2^-q cuts off. The fine stage takes the points
+//! rounded to the nearest pulse; the fraction stays in the point. The last period is the one in which the long axis would
+//! come to its end or beyond: it takes what is left, so that the end is exact.
+//!
+//! The multiplier (shift and add), the divider and the root (both restoring) take a bit a clock. While a burst draws one
+//! period, they calculate the next; a period takes as many clocks as the longer of both. `stepped` marks the end of
+//! each burst: a row of the step table is a period.
+//!
+//! The line (12, -5) with 4 BLU a period, from the golden file `waves/sampled-line-12-5.csv`; the wave stands beside it:
+//!
+//! ```text
+#![doc = include_str!("../../waves/sampled-line-12-5.csv")]
+//! ```
 
 use std::f64::consts::SQRT_2;
 
@@ -55,7 +98,7 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     Ok(Hardware { error_bound: Some(1.5 * SQRT_2), ..hardware })
 }
 
-/// States of the coarse stage; LAMBDA, SHARE and RATIO are those of one system.
+/// States of the coarse stage; SHARE is one of `7m` alone.
 mod at {
     pub(super) const SQUARE_FAR: u64 = 1;
     pub(super) const SQUARE_NEAR: u64 = 2;

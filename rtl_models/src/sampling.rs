@@ -126,7 +126,7 @@ impl Sampling {
         let hardware = registers.integrators(2, crate::choices::EndPoint::Iterations, 1)?;
         // Clocks of all units of a period, and of those in front of the first; and periods without a pulse.
         let coarse = u64::from(self.magnitude()) * 32 + 64;
-        let periods = whole((4.0 / self.step.units()).min(1e9)) as u64 + 4;
+        let periods = u64::try_from(whole((4.0 / self.step.units()).min(1e9))).unwrap_or(u64::MAX >> 32) + 4;
         let burst = hardware.stall_clocks;
         let stall_clocks = coarse.saturating_add(burst).saturating_mul(periods);
         Ok(Hardware { sampling: Some(self), stall_clocks, ..hardware })

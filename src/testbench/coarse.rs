@@ -68,6 +68,9 @@ impl<'a> CoarseWatch<'a> {
     }
 }
 
+/// What a watch writes down: rows, and period and coarse point of the worst error.
+type Gathered = (u64, Option<(u64, [i64; 2])>);
+
 impl Observer for CoarseWatch<'_> {
     fn wants_steps(&self) -> bool {
         false
@@ -79,7 +82,7 @@ impl Observer for CoarseWatch<'_> {
     }
 
     fn recall(&mut self, memory: &Memory) {
-        let gathered: Option<(u64, Option<(u64, [i64; 2])>)> = recalled(memory, "coarse");
+        let gathered: Option<Gathered> = recalled(memory, "coarse");
         if let Some((rows, worst)) = gathered.filter(|(rows, _)| *rows <= GREATEST) {
             self.rows = rows;
             if let Some((period, at)) = worst {
