@@ -62,12 +62,9 @@ fn step_generators() -> Vec<Choices> {
 }
 
 /// The choices that data sampling alone has.
-fn coarse_stages() -> [Choices; 2] {
-    let system = Some(System::StepFactor);
-    [
-        Choices { system, ..Choices::default() },
-        Choices { system, fraction: Some(24), step: Some(Millionths(500_000)), ..Choices::default() },
-    ]
+fn coarse_stages() -> [Choices; 1] {
+    let (system, step) = (Some(System::StepFactor), Some(Millionths(500_000)));
+    [Choices { system, fraction: Some(24), step, ..Choices::default() }]
 }
 
 /// One unit, two of three bits, two decades, each with a feed override and without.
