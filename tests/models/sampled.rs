@@ -8,7 +8,7 @@ use stepwave_models::{Choices, Millionths, ModelError, Preset, System, find};
 use stepwave_nc::Curve;
 
 use super::{Ran, arc, bench, lattice, line, run};
-use crate::reference::{self, sampled_arc, sampled_line};
+use crate::reference::{self, sampled_arc, sampled_line, step_factor_points};
 
 const SYSTEMS: [(System, reference::System); 2] =
     [(System::Direction, reference::System::Direction), (System::StepFactor, reference::System::StepFactor)];
@@ -171,12 +171,13 @@ fn every_engine_draws_the_same_lines_and_arcs() {
 fn the_fraction_bits_are_all_that_keeps_coarse_points_off_the_curve() {
     for fraction in 8..=14 {
         let unit = 1.0 / f64::from(1 << fraction);
-        for (model, curve, units) in [
+        for (model, curve, system, units) in [
             // The other axis is the root of what is left, rounded down.
-            ("sampled-arc", arc([600, 0], [600, 0], [0, 0], false), 1.5),
-            ("sampled-line", line(&[0, 0], &[997, -613]), 1.0),
+            ("sampled-arc", arc([600, 0], [600, 0], [0, 0], false), System::Direction, 1.5),
+            ("sampled-line", line(&[0, 0], &[997, -613]), System::Direction, 1.0),
+            ("sampled-line", line(&[0, 0], &[997, -613]), System::StepFactor, 1.0),
         ] {
-            let bench = bench(model, &curve, &choices(System::Direction, fraction, 9_300));
+            let bench = bench(model, &curve, &choices(system, fraction, 9_300));
             let mut coarse = CoarseWatch::new(&bench, &curve).unwrap();
             bench.run(EngineKind::Compiled, &mut [&mut coarse]).unwrap();
             let worst = coarse.worst.unwrap();
@@ -197,6 +198,26 @@ fn a_circle_by_the_step_factor_grows_as_its_formula_says_and_no_more() {
     for (period, [x, y]) in points[..points.len() - 1].iter().enumerate() {
         let wanted = radius * factor.powi(i32::try_from(period).unwrap());
         assert!((x.hypot(*y) - wanted).abs() < 1e-3, "period {period}: {} and {wanted}", x.hypot(*y));
+    }
+}
+
+#[test]
+fn nothing_is_lost_below_the_fraction_of_an_arc_by_the_step_factor() {
+    for (start, fraction, step) in [([0, 1000], 8, 50_000), ([-700, 100], 10, 33_000), ([3, -90], 12, 7_000)] {
+        let curve = arc(start, start, [0, 0], true);
+        let choices = choices(System::StepFactor, fraction, step);
+        let sampling = bench("sampled-arc", &curve, &choices).hardware().sampling.unwrap();
+        let ran = run("sampled-arc", &curve, &choices, EngineKind::Compiled);
+        let got: Vec<[i128; 2]> =
+            column(&ran, "cx").into_iter().zip(column(&ran, "cy")).map(|(x, y)| [x.into(), y.into()]).collect();
+        let periods = got.len() - 2;
+        let word = (i128::from(step) << fraction) / 1000;
+        let wanted = step_factor_points(start, word, fraction, sampling.whole + fraction, periods);
+        assert!(
+            periods > 50 && got[..=periods] == wanted[..],
+            "{start:?}: {:?}",
+            got.iter().zip(&wanted).find(|(a, b)| a != b)
+        );
     }
 }
 

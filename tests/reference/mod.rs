@@ -52,7 +52,7 @@ pub(crate) use eight_arcs::{mindev_arc, vector_arc};
 pub(crate) use eight_lines::{mindev_line, vector_line};
 pub(crate) use ppc::{ppc_arc, ppc_line};
 pub(crate) use ppc_conic::ppc_conic;
-pub(crate) use sampled::{System, sampled_arc, sampled_line};
+pub(crate) use sampled::{System, sampled_arc, sampled_line, step_factor_points};
 pub(crate) use stepgen::{StepOutput, Timing, stepgen, stepgen_clocks};
 
 /// The names of up to six axes, in the order of the columns.

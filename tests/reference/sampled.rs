@@ -88,3 +88,27 @@ pub(crate) fn sampled_arc(start: [i64; 2], end: [i64; 2], is_clockwise: bool, f:
         at = next;
     }
 }
+
+/// The points of an arc by the step factor in whole numbers, clockwise, `periods` of them behind the start, in 2^-`fraction`
+/// BLU: `word` is the way of a period in that unit, and `bits` are those of the fraction of λ. What is below the unit is
+/// kept for the next period.
+pub(crate) fn step_factor_points(
+    start: [i64; 2],
+    word: i128,
+    fraction: u32,
+    bits: u32,
+    periods: usize,
+) -> Vec<[i128; 2]> {
+    let [x, y] = start.map(i128::from);
+    let lambda = (word << bits) / ((x * x + y * y) << (2 * fraction)).isqrt();
+    let half = |coordinate: i128| coordinate.signum() * ((lambda * coordinate.abs()) >> (bits + 1));
+    let mut at = [x, y].map(|coordinate| coordinate << (fraction + bits));
+    let mut points = vec![at.map(|coordinate| coordinate >> bits)];
+    for _ in 0..periods {
+        let [x, y] = at.map(|coordinate| coordinate >> bits);
+        let middle = [x + half(y), y - half(x)];
+        at = [at[0] + lambda * middle[1], at[1] - lambda * middle[0]];
+        points.push(at.map(|coordinate| coordinate >> bits));
+    }
+    points
+}
