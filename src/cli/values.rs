@@ -237,7 +237,7 @@ pub(crate) struct HardwareArgs {
     /// Greatest distance of the chords of a coarse stage from an arc, in BLU
     #[arg(long, value_name = "BLU", value_parser = parse_millionths)]
     tolerance: Option<Millionths>,
-    /// Length of one BLU, for the feed
+    /// Length of one BLU, which gives --feed its way, and lengths of the report theirs
     #[arg(long, value_name = "LENGTH", default_value = "0.001mm", value_parser = parse_blu)]
     pub(crate) blu: f64,
     /// What a cell does that must not overflow
