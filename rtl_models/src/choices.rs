@@ -171,6 +171,60 @@ impl Named for OnOverflow {
         &[("trap", OnOverflow::Trap), ("saturate", OnOverflow::Saturate), ("wrap", OnOverflow::Wrap)];
 }
 
+/// How the coarse stage of data sampling calculates the way of a period.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum System {
+    /// By the direction in the middle of the period: tangent, cosine, square root.
+    #[default]
+    Direction,
+    /// The extended DDA: by the step factor λ.
+    StepFactor,
+}
+
+impl Named for System {
+    const ALL: &'static [(&'static str, System)] = &[("7m", System::Direction), ("7360", System::StepFactor)];
+}
+
+impl System {
+    /// The period T in seconds.
+    #[must_use]
+    pub fn period(self) -> f64 {
+        match self {
+            System::Direction => 0.008,
+            System::StepFactor => 0.010_24,
+        }
+    }
+}
+
+/// A length in millionths of a BLU, or whatever else is written with up to six decimals.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub struct Millionths(pub u64);
+
+impl Millionths {
+    /// As a number of units.
+    #[must_use]
+    pub fn units(self) -> f64 {
+        self.0 as f64 / 1e6
+    }
+
+    /// The nearest to a number of units from 0 on; `None` where it is beyond all measure.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn nearest(units: f64) -> Option<Millionths> {
+        (0.0..1e9).contains(&units).then(|| Millionths((units * 1e6).round() as u64))
+    }
+}
+
+impl fmt::Display for Millionths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (whole, rest) = (self.0 / 1_000_000, self.0 % 1_000_000);
+        if rest == 0 {
+            return write!(f, "{whole}");
+        }
+        write!(f, "{whole}.{}", format!("{rest:06}").trim_end_matches('0'))
+    }
+}
+
 /// Times of a step and direction output, in clocks.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct StepTiming {
@@ -221,6 +275,14 @@ pub enum Choice {
     PickOff,
     /// `--timing`
     Timing,
+    /// `--system`
+    System,
+    /// `--fraction`
+    Fraction,
+    /// `--step`
+    Step,
+    /// `--tolerance`
+    Tolerance,
     /// `--on-overflow`
     OnOverflow,
 }
@@ -244,6 +306,10 @@ impl Choice {
             Choice::Compare => "--compare",
             Choice::PickOff => "--pick-off",
             Choice::Timing => "--timing",
+            Choice::System => "--system",
+            Choice::Fraction => "--fraction",
+            Choice::Step => "--step",
+            Choice::Tolerance => "--tolerance",
             Choice::OnOverflow => "--on-overflow",
         }
     }
@@ -314,6 +380,14 @@ pub struct Choices {
     pub pick_off: Option<u64>,
     /// Times of step and direction outputs.
     pub timing: Option<StepTiming>,
+    /// How the coarse stage of data sampling calculates.
+    pub system: Option<System>,
+    /// Bits of the fraction of coarse points.
+    pub fraction: Option<u32>,
+    /// Way of a period in BLU.
+    pub step: Option<Millionths>,
+    /// Greatest chord error in BLU.
+    pub tolerance: Option<Millionths>,
     /// What a strict cell does on overflow.
     pub on_overflow: Option<OnOverflow>,
 }
@@ -337,6 +411,10 @@ impl Choices {
             (self.compare.is_some(), Choice::Compare),
             (self.pick_off.is_some(), Choice::PickOff),
             (self.timing.is_some(), Choice::Timing),
+            (self.system.is_some(), Choice::System),
+            (self.fraction.is_some(), Choice::Fraction),
+            (self.step.is_some(), Choice::Step),
+            (self.tolerance.is_some(), Choice::Tolerance),
             (self.on_overflow.is_some(), Choice::OnOverflow),
         ]
         .into_iter()
@@ -377,6 +455,10 @@ impl Choices {
         add(Choice::Compare, word(self.compare));
         add(Choice::PickOff, self.pick_off.map(|bit| bit.to_string()));
         add(Choice::Timing, self.timing.map(|timing| timing.to_string()));
+        add(Choice::System, word(self.system));
+        add(Choice::Fraction, self.fraction.map(|bits| bits.to_string()));
+        add(Choice::Step, self.step.map(|step| step.to_string()));
+        add(Choice::Tolerance, self.tolerance.map(|length| length.to_string()));
         add(Choice::OnOverflow, word(self.on_overflow));
         words
     }

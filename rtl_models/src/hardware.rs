@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use stepwave_kernel::{OnOverflow, Width};
 
 use crate::choices::{Adder, Beats, Compare, EndPoint, Form, Preset, Radix, StepTiming, Weights};
+use crate::sampling::Sampling;
 
 /// Letters of up to six axes.
 pub const AXES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
@@ -74,6 +75,8 @@ pub struct Hardware {
     pub pick_off: u64,
     /// Times of step and direction outputs, in clocks.
     pub timing: StepTiming,
+    /// The coarse stage of data sampling, if there is one.
+    pub sampling: Option<Sampling>,
     /// What a strict cell does on overflow.
     pub on_overflow: OnOverflow,
     /// Registers that a step table shows, in order.

@@ -32,6 +32,8 @@ pub mod ppc_arc;
 pub mod ppc_conic;
 pub mod ppc_line;
 pub mod program;
+pub mod sampled_arc;
+pub mod sampled_line;
 pub mod stepgen;
 pub mod vector_arc;
 pub mod vector_line;
@@ -45,14 +47,20 @@ mod machine;
 mod model;
 mod plan;
 mod registers;
+mod sampling;
 mod words;
 
-pub use choices::{Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Named, Preset, Radix, StepTiming, Weights};
+pub use choices::{
+    Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Millionths, Named, Preset, Radix, StepTiming, System,
+    Weights,
+};
 pub use claims::{Claims, Kind, Region};
 pub use error::ModelError;
 pub use hardware::{AXES, Hardware, Pace};
 pub use machine::{Machine, Port, Words};
+
 pub use model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+pub use sampling::Sampling;
 pub use stepwave_kernel::OnOverflow;
 
 /// Every model.
@@ -74,6 +82,8 @@ pub fn catalogue() -> &'static [Model] {
         mindev_arc::MODEL,
         vector_line::MODEL,
         vector_arc::MODEL,
+        sampled_line::MODEL,
+        sampled_arc::MODEL,
         stepgen::MODEL,
         bresenham::MODEL,
     ];

@@ -139,6 +139,7 @@ impl<'a> Registers<'a> {
             compare: choices.compare.unwrap_or_default(),
             pick_off: choices.pick_off.unwrap_or(0),
             timing: choices.timing.unwrap_or_default(),
+            sampling: None,
             on_overflow: choices.on_overflow.unwrap_or_default(),
             table: self.table.clone(),
             stall_clocks: 16,

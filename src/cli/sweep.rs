@@ -183,6 +183,15 @@ pub(crate) struct VariantArgs {
     /// Times of step and direction outputs; may be repeated
     #[arg(long, value_name = "NAME=CLOCKS,…", value_parser = parse_timing)]
     pub(crate) timing: Vec<StepTiming>,
+    /// Systems of data sampling: 7m,7360
+    #[arg(long, value_name = "LIST")]
+    pub(crate) system: Option<String>,
+    /// Bits of the fraction of coarse points
+    #[arg(long, value_name = "LIST")]
+    pub(crate) fraction: Option<String>,
+    /// Ways of a period of data sampling, in BLU
+    #[arg(long, value_name = "LIST")]
+    pub(crate) step: Option<String>,
     /// What cells do that must not overflow: trap,saturate,wrap
     #[arg(long, value_name = "LIST")]
     pub(crate) on_overflow: Option<String>,

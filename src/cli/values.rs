@@ -7,7 +7,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use stepwave::kernel::Width;
 use stepwave::kernel::engine::EngineKind;
 use stepwave::models::{
-    Adder, Beats, Choices, Compare, EndPoint, Form, Named, OnOverflow, Preset, Radix, StepTiming, Weights,
+    Adder, Beats, Choices, Compare, EndPoint, Form, Millionths, Named, OnOverflow, Preset, Radix, StepTiming, System,
+    Weights,
 };
 use stepwave::nc::Opens;
 
@@ -163,6 +164,21 @@ pub(super) fn parse_timing(text: &str) -> Result<StepTiming, String> {
     Ok(timing)
 }
 
+/// A length in BLU with up to six decimals.
+pub(super) fn parse_millionths(text: &str) -> Result<Millionths, String> {
+    let number = text.trim().parse().ok().filter(|number: &f64| *number > 0.0);
+    number
+        .and_then(Millionths::nearest)
+        .filter(|length| length.0 > 0)
+        .ok_or_else(|| format!("'{text}' is no length: give BLU from 0.000001 to 1e9, such as 80 or 102.4"))
+}
+
+/// A speed in mm/min.
+fn parse_feed(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| format!("'{text}' is no feed: give mm/min, such as 600"))
+}
+
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Hardware (each model takes some; `stepwave list` tells which)")]
 pub(crate) struct HardwareArgs {
@@ -208,6 +224,24 @@ pub(crate) struct HardwareArgs {
     /// Clocks of step length and space, direction set-up and hold: length=…,space=…,setup=…,hold=…
     #[arg(long, value_name = "NAME=CLOCKS,…", value_parser = parse_timing)]
     timing: Option<StepTiming>,
+    /// How the coarse stage of data sampling calculates, and its period: 7m in 8 ms, 7360 in 10.24 ms
+    #[arg(long, value_parser = named::<System>())]
+    system: Option<System>,
+    /// Bits of the fraction of coarse points
+    #[arg(long, value_name = "BITS")]
+    fraction: Option<u32>,
+    /// Way of a period of data sampling, in BLU
+    #[arg(long, value_name = "BLU", value_parser = parse_millionths, conflicts_with = "feed")]
+    step: Option<Millionths>,
+    /// Feed in mm/min, which with --system and --blu gives the way of a period
+    #[arg(long, value_name = "MM/MIN", value_parser = parse_feed)]
+    feed: Option<f64>,
+    /// Greatest distance of the chords of a coarse stage from an arc, in BLU
+    #[arg(long, value_name = "BLU", value_parser = parse_millionths)]
+    tolerance: Option<Millionths>,
+    /// Length of one BLU, which gives --feed its way, and lengths of the report theirs
+    #[arg(long, value_name = "LENGTH", default_value = "0.001mm", value_parser = parse_blu)]
+    pub(crate) blu: f64,
     /// What a cell does that must not overflow
     #[arg(long, value_parser = named::<OnOverflow>())]
     on_overflow: Option<OnOverflow>,
@@ -226,9 +260,6 @@ pub(crate) struct ClockArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Simulation")]
 pub(crate) struct SimulationArgs {
-    /// Length of one BLU, for the feed
-    #[arg(long, value_name = "LENGTH", default_value = "0.001mm", value_parser = parse_blu)]
-    pub(crate) blu: f64,
     /// What simulates the netlist
     #[arg(long, default_value = "auto", value_parser = one_of(&[
         ("auto", EngineKind::Compiled), ("compiled", EngineKind::Compiled), ("word", EngineKind::Word),
@@ -256,6 +287,11 @@ impl HardwareArgs {
     pub(crate) fn choices(&self) -> Choices {
         let (width, widths) = split(self.width.iter().flat_map(|arg| arg.0.iter().cloned()));
         let (preset, presets) = split(self.preset.iter().flat_map(|arg| arg.0.iter().cloned()));
+        // What is beyond all measure is refused by its length.
+        let of_feed = |feed: f64| {
+            let way = feed / 60.0 * self.system.unwrap_or_default().period() / self.blu;
+            Millionths::nearest(way).unwrap_or(Millionths(1 << 60))
+        };
         Choices {
             width,
             widths,
@@ -273,6 +309,10 @@ impl HardwareArgs {
             compare: self.compare,
             pick_off: self.pick_off,
             timing: self.timing,
+            system: self.system,
+            fraction: self.fraction,
+            step: self.step.or_else(|| self.feed.map(of_feed)),
+            tolerance: self.tolerance,
             on_overflow: self.on_overflow,
         }
     }

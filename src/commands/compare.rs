@@ -1,7 +1,7 @@
 //! `stepwave compare`: every method on one curve, side by side.
 
 use stepwave::kernel::engine::EngineKind;
-use stepwave::models::{Adder, Beats, Choice, Choices, CurveKind, Model, ModelError, Preset, Radix, catalogue};
+use stepwave::models::{Adder, Beats, Choice, Choices, CurveKind, Model, ModelError, Preset, Radix, System, catalogue};
 use stepwave::nc::Curve;
 use stepwave::testbench::{Ending, Observer, PathWatch, Testbench};
 
@@ -48,6 +48,10 @@ fn forms(model: &Model) -> Vec<(String, Choices)> {
         if takes(Choice::Normalize) {
             forms.push((" --preset half --normalize".to_owned(), Choices { normalize: true, ..half }));
         }
+    }
+    if takes(Choice::System) {
+        let system = Some(System::StepFactor);
+        forms.push((" --system 7360".to_owned(), Choices { system, ..Choices::default() }));
     }
     if takes(Choice::Radix) {
         forms.push((" --radix 10".to_owned(), Choices { radix: Some(Radix::Decimal), ..Choices::default() }));

@@ -34,7 +34,7 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
     let told = |error: &dyn std::fmt::Display| Failure::Trouble(format!("{file}: {error}"));
     let preparation = Preparation {
         reading: Reading {
-            blu: args.simulation.blu,
+            blu: args.hardware.blu,
             integers: args.integers,
             tools: args.tool.iter().map(|tool| (tool.number, tool.radius)).collect(),
         },
@@ -45,9 +45,9 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
     let hardware = family.plan(&survey.size, &args.hardware.choices())?;
     let machine = family.machine(&hardware)?;
-    let bench = Testbench::of_machine(hardware, machine);
+    let bench = Testbench::of_machine(hardware, machine).limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
-    let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.simulation.blu, rapid: args.rapid };
+    let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
     let head = ProgramHead { file: &file, family, hardware: bench.hardware(), engine: args.simulation.engine, pace };
 
     // All are opened before the first is written: where one is refused, nothing stands on standard output.

@@ -8,7 +8,7 @@ use stepwave::models::find;
 use stepwave::report::plot::Plot;
 use stepwave::report::{self, CsvTable, Report, TEXTBOOK_STEPS, TextbookTable};
 use stepwave::testbench::{
-    Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, Step, Testbench,
+    CoarseWatch, Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, Step, Testbench,
 };
 
 use super::geometry::curve;
@@ -62,10 +62,12 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let mut picture = plot.map(|sink| (Picture(Plot::new(&curve)), sink));
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
     let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.outputs.bits));
+    let mut coarse = CoarseWatch::new(&bench, &curve);
     let (mut spacing, mut progress) = (SpacingWatch::new(&bench, &curve), Progress::new());
 
     let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut ranges, &mut path, &mut spacing];
     observers.extend([&mut table as &mut dyn Observer, &mut progress]);
+    observers.extend(coarse.as_mut().map(|coarse| coarse as &mut dyn Observer));
     observers.extend(waves.iter_mut().flat_map(Waves::observers));
     observers.extend(csv.as_mut().map(|csv| csv as &mut dyn Observer));
     observers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Observer));
@@ -86,12 +88,13 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         outcome,
         ranges: ranges.finish(),
         worst: path.worst,
+        coarse: coarse.and_then(|coarse| coarse.worst),
         trains: spacing.finish(),
         overflows: overflow.events(),
         overflow_count: overflow.count,
         tallies: overflow.tallies(),
         clock_hz: args.clock.clock_hz,
-        blu_mm: args.simulation.blu,
+        blu_mm: args.hardware.blu,
     };
     let begun = states.as_ref().and_then(Begin::clock);
     if let Some(states) = states {

@@ -160,6 +160,9 @@ fn variants(args: &VariantArgs) -> Result<Variants, Failure> {
         (Choice::Cascade, &args.cascade),
         (Choice::Compare, &args.compare),
         (Choice::PickOff, &args.pick_off),
+        (Choice::System, &args.system),
+        (Choice::Fraction, &args.fraction),
+        (Choice::Step, &args.step),
         (Choice::OnOverflow, &args.on_overflow),
     ];
     let given = lists.into_iter().filter_map(|(choice, list)| Some(Dimension::parse(choice, list.as_deref()?)));

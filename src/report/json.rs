@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 use stepwave_kernel::bits::Reading;
 use stepwave_kernel::netlist::Arithmetic;
+use stepwave_models::Named;
 use stepwave_nc::{Curve, Shape};
 
 use super::{Report, summary};
@@ -173,6 +174,7 @@ impl Report<'_> {
                 "exact": self.end_exact(),
             },
             "path_error": path_error,
+            "sampling": self.sampling(),
             "pulse_spacing": spacing,
             "rate_deviation": rate_deviation,
             "overflow": {
@@ -185,6 +187,25 @@ impl Report<'_> {
             "warnings": self.warnings(),
             "failures": self.failures(),
         })
+    }
+
+    /// The coarse stage, and what its fraction costs.
+    fn sampling(&self) -> Option<Value> {
+        let (sampling, coarse) = (self.hardware.sampling.as_ref()?, self.coarse.as_ref()?);
+        let micrometres = |length: f64| length * self.blu_mm * 1e3;
+        Some(json!({
+            "system": sampling.system.word(),
+            "period_seconds": sampling.system.period(),
+            "fraction_bits": sampling.fraction,
+            "step": sampling.step.units(),
+            "feed_mm_per_min": sampling.step.units() * self.blu_mm * 60.0 / sampling.system.period(),
+            "chord_error": sampling.chord_error,
+            "chord_error_um": micrometres(sampling.chord_error),
+            "tolerance": sampling.tolerance.units(),
+            "coarse_error": coarse.error,
+            "coarse_error_um": micrometres(coarse.error),
+            "coarse_error_period": coarse.period,
+        }))
     }
 
     /// Mean speed along the curve: BLU per step, and mm/min at the clock and BLU chosen.

@@ -15,7 +15,9 @@ use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Hardware, Model, Preset};
 use stepwave_nc::Curve;
 
-use crate::testbench::{Ending, Outcome, OverflowEvent, OverflowTally, PulseTrain, RegisterRange, WorstError};
+use crate::testbench::{
+    CoarseError, Ending, Outcome, OverflowEvent, OverflowTally, PulseTrain, RegisterRange, WorstError,
+};
 
 pub use command::{geometry_options, run_command};
 pub use part::Part;
@@ -43,6 +45,8 @@ pub struct Report<'a> {
     pub ranges: Vec<RegisterRange>,
     /// Greatest path error.
     pub worst: Option<WorstError>,
+    /// How far coarse points lie off the curve, of a machine that has such.
+    pub coarse: Option<CoarseError>,
     /// The pulses of each axis.
     pub trains: Vec<PulseTrain>,
     /// The first overflows in full.

@@ -161,7 +161,11 @@ impl<'a, W: Write> ProgramJson<'a, W> {
                 "events": tail.overflows.iter().map(event).collect::<Vec<_>>(),
                 "components": tail.tallies.iter().map(tally).collect::<Vec<_>>(),
             },
-            "ending": if outcome.ending == Ending::Done { "done" } else { "trapped" },
+            "ending": match outcome.ending {
+                Ending::Done => "done",
+                Ending::Limit => "limit",
+                _ => "trapped",
+            },
         });
         write_fields(&mut self.out, &fields)?;
         writeln!(self.out, "  \"failures\": {}\n}}", json!(failures))?;
@@ -219,9 +223,14 @@ impl ProgramTail<'_> {
     /// Sentences that say what is wrong with the machine; none if all is good.
     #[must_use]
     pub fn failures(&self, hardware: &Hardware) -> Vec<String> {
-        match self.overflows.last().filter(|_| self.outcome.ending == Ending::Trapped) {
-            Some(event) => vec![format!("line {}: {event}{}", self.line, super::way_out(event, hardware))],
-            None => self.totals.failures.clone(),
+        let line = self.line;
+        match (self.outcome.ending, self.overflows.last()) {
+            (Ending::Trapped, Some(event)) => vec![format!("line {line}: {event}{}", super::way_out(event, hardware))],
+            (Ending::Limit, _) => {
+                let clocks = self.outcome.clocks;
+                vec![format!("line {line}: given up at clock {clocks}: give a greater --max-clocks, or leave it out")]
+            }
+            _ => self.totals.failures.clone(),
         }
     }
 }

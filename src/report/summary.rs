@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use stepwave_models::{Choice, Hardware, Model, Named};
+use stepwave_models::{Choice, Hardware, Model, Named, Sampling};
 use stepwave_nc::{Curve, Shape};
 
 use super::Report;
@@ -48,6 +48,7 @@ pub fn geometry(curve: &Curve) -> String {
 /// The choices that the model takes, as an option line would give them.
 #[must_use]
 pub fn choices(model: &Model, hardware: &Hardware) -> Vec<(&'static str, String)> {
+    let of_sampling = |text: &dyn Fn(&Sampling) -> String| hardware.sampling.as_ref().map(text).unwrap_or_default();
     let value = |choice: Choice| match choice {
         Choice::Width => {
             let widths = hardware.widths.iter().map(|(name, width)| format!("{name}={}", width.get()));
@@ -69,6 +70,10 @@ pub fn choices(model: &Model, hardware: &Hardware) -> Vec<(&'static str, String)
         Choice::Compare => hardware.compare.word().to_owned(),
         Choice::PickOff => hardware.pick_off.to_string(),
         Choice::Timing => hardware.timing.to_string(),
+        Choice::System => of_sampling(&|sampling| sampling.system.word().to_owned()),
+        Choice::Fraction => of_sampling(&|sampling| sampling.fraction.to_string()),
+        Choice::Step => of_sampling(&|sampling| sampling.step.to_string()),
+        Choice::Tolerance => of_sampling(&|sampling| sampling.tolerance.to_string()),
         Choice::OnOverflow => hardware.on_overflow.word().to_owned(),
     };
     model.choices.iter().map(|doc| (doc.choice.option().trim_start_matches("--"), value(doc.choice))).collect()
@@ -110,6 +115,7 @@ impl Report<'_> {
             let at = point(&worst.position);
             let _ = writeln!(text, "greatest path error {:.3} BLU at {at} after step {}", worst.error, worst.step);
         }
+        text += &self.coarse_stage();
         text += &self.pulse_trains();
         if self.overflow_count > 0 {
             let first = self.overflows.first().map(ToString::to_string).unwrap_or_default();
@@ -145,6 +151,31 @@ impl Report<'_> {
             if !list.is_empty() {
                 let _ = writeln!(text, "{what}: {}", list.join(", "));
             }
+        }
+        text
+    }
+
+    /// What the coarse stage of data sampling costs.
+    fn coarse_stage(&self) -> String {
+        let (Some(sampling), Some(coarse)) = (&self.hardware.sampling, &self.coarse) else { return String::new() };
+        let micrometres = |length: f64| format!("{length:.6} BLU ({:.6} µm)", length * self.blu_mm * 1e3);
+        let period = sampling.system.period();
+        let mut text = format!(
+            "coarse stage {}: {} BLU in {} ms, {:.3} mm/min\n",
+            sampling.system.word(),
+            sampling.step,
+            period * 1e3,
+            sampling.step.units() * self.blu_mm * 60.0 / period,
+        );
+        let _ = writeln!(
+            text,
+            "coarse points with {} bits of fraction: up to {} off the curve, period {}",
+            sampling.fraction,
+            micrometres(coarse.error),
+            coarse.period
+        );
+        if sampling.chord_error > 0.0 {
+            let _ = writeln!(text, "chord error f²/8R: {}", micrometres(sampling.chord_error));
         }
         text
     }

@@ -1,7 +1,7 @@
 //! The hardware choices of a sweep: some values of each, and the product of them all.
 
 use stepwave_kernel::Width;
-use stepwave_models::{Choice, Choices, Named, Preset, StepTiming};
+use stepwave_models::{Choice, Choices, Millionths, Named, Preset, StepTiming};
 
 use super::{Range, StudyError};
 
@@ -21,6 +21,8 @@ enum Setting {
     Override(Option<u64>),
     Cascade(Option<Width>),
     PickOff(u64),
+    Fraction(u32),
+    Step(Millionths),
     Timing(StepTiming),
     /// A value of a choice among words, by its index.
     Word(usize),
@@ -37,7 +39,7 @@ fn words<T: Named>() -> Vec<&'static str> {
 
 /// The words of a choice among words.
 fn words_of(choice: Choice) -> Vec<&'static str> {
-    use stepwave_models::{Adder, Beats, Compare, EndPoint, Form, OnOverflow, Radix, Weights};
+    use stepwave_models::{Adder, Beats, Compare, EndPoint, Form, OnOverflow, Radix, System, Weights};
     match choice {
         Choice::Normalize => vec!["no", "yes"],
         Choice::Radix => words::<Radix>(),
@@ -47,9 +49,11 @@ fn words_of(choice: Choice) -> Vec<&'static str> {
         Choice::Weights => words::<Weights>(),
         Choice::Beats => words::<Beats>(),
         Choice::Compare => words::<Compare>(),
+        Choice::System => words::<System>(),
         Choice::OnOverflow => words::<OnOverflow>(),
         Choice::Width | Choice::Preset | Choice::Override => Vec::new(),
         Choice::Cascade | Choice::PickOff | Choice::Timing => Vec::new(),
+        Choice::Fraction | Choice::Step | Choice::Tolerance => Vec::new(),
     }
 }
 
@@ -75,6 +79,8 @@ impl Setting {
             Setting::Override(percent) => choices.feed_override = *percent,
             Setting::Cascade(bits) => choices.cascade = *bits,
             Setting::PickOff(bit) => choices.pick_off = Some(*bit),
+            Setting::Fraction(bits) => choices.fraction = Some(*bits),
+            Setting::Step(way) => choices.step = Some(*way),
             Setting::Timing(timing) => choices.timing = Some(*timing),
             Setting::Word(index) => match choice {
                 Choice::Normalize => choices.normalize = *index == 1,
@@ -85,6 +91,7 @@ impl Setting {
                 Choice::Weights => choices.weights = nth(*index),
                 Choice::Beats => choices.beats = nth(*index),
                 Choice::Compare => choices.compare = nth(*index),
+                Choice::System => choices.system = nth(*index),
                 Choice::OnOverflow => choices.on_overflow = nth(*index),
                 _ => {}
             },
@@ -165,6 +172,23 @@ impl Dimension {
                     }));
                 }
                 all
+            }
+            Choice::Fraction => {
+                let mut all = Vec::new();
+                for word in parts() {
+                    let range = numbers(word, 1, 63, "bits such as 8..12")?;
+                    let bits = range.numbers().filter_map(|number| u32::try_from(number).ok());
+                    all.extend(bits.map(|bits| (bits.to_string(), Setting::Fraction(bits))));
+                }
+                all
+            }
+            Choice::Step => {
+                let way = |word: &str| {
+                    let way = word.parse().ok().and_then(Millionths::nearest).filter(|way| way.0 > 0);
+                    let way = way.ok_or_else(|| wrong(word, "ways in BLU such as 8,102.4"))?;
+                    Ok((way.to_string(), Setting::Step(way)))
+                };
+                parts().map(way).collect::<Result<_, StudyError>>()?
             }
             Choice::Timing => return Err(wrong(text, "times such as length=2,space=2,setup=4,hold=4")),
             choice => {

@@ -36,6 +36,8 @@ pub(super) struct Instruments {
     ideal: Ideal,
     /// Behind each step, else 0: |d| of a line, d of a circle.
     seen: Net,
+    /// Behind all that is judged: the same, or behind every clock where a step has many pulses.
+    judged: Net,
     /// d in this sample.
     deviation: Net,
     /// Bits of d, and of a sum over all steps.
@@ -72,12 +74,14 @@ impl Instruments {
             CurveKind::Arc => circle(m, bits, ways, loads),
             CurveKind::Conic | CurveKind::Helix => return None,
         };
+        let every = bench.hardware().sampling.is_some().then(|| seen.net());
         let seen = stepped.mux(seen, m.lit(bits, 0)).net();
         let deviation = deviation.net();
         let properties = bench.design().netlist().properties.iter();
         Some(Instruments {
             ideal,
             seen,
+            judged: every.unwrap_or(seen),
             deviation,
             // A full circle of radius 2^(reach - 2) takes 2^(reach + 1) steps, each less than 2 BLU or 2^17 units off.
             bits: [bits, (reach + 18).min(Width::MAX.get())],
@@ -96,12 +100,14 @@ impl Instruments {
 
     /// The numbers that [`read`](Self::read) wants.
     pub(super) fn observe(&self) -> Vec<Observe> {
-        let (net, bits) = (self.seen, self.bits[1]);
+        let (net, judged, bits) = (self.seen, self.judged, self.bits[1]);
         let path = match self.ideal {
-            Ideal::Line(_) => [Observe::Last(net), Observe::Max { net, signed: false }, Observe::Sum { net, bits: 32 }],
+            Ideal::Line(_) => {
+                [Observe::Last(net), Observe::Max { net: judged, signed: false }, Observe::Sum { net, bits: 32 }]
+            }
             Ideal::Circle { square, .. } => [
-                Observe::Min { net, signed: true },
-                Observe::Max { net, signed: true },
+                Observe::Min { net: judged, signed: true },
+                Observe::Max { net: judged, signed: true },
                 Observe::RootGaps { base: square, offset: net, bits },
             ],
         };

@@ -2,6 +2,7 @@
 //! until the machine says `done`, and hands every sample and every step to the observers.
 
 mod checkpoint;
+mod coarse;
 mod columns;
 mod instruments;
 mod lanes;
@@ -21,6 +22,7 @@ use stepwave_models::{Choices, Hardware, Machine, Model, ModelError};
 use stepwave_nc::Curve;
 
 pub use checkpoint::{CheckpointError, Checkpoints, Memory, State};
+pub use coarse::{CoarseError, CoarseWatch};
 pub use columns::Columns;
 pub use lanes::{LaneOutcome, Lanes};
 pub use measure::Measured;

@@ -21,7 +21,7 @@ pub struct WorstError {
     pub position: Vec<i64>,
 }
 
-/// Finds the greatest path error behind all steps.
+/// Finds the greatest path error behind all steps, and behind all pulses where a step has many.
 pub struct PathWatch<'a> {
     gauge: Gauge<'a>,
     columns: StepColumns,
@@ -30,6 +30,8 @@ pub struct PathWatch<'a> {
     rows: u64,
     /// Where the machine stood behind the last of them.
     position: Vec<i64>,
+    /// A step has many pulses, and each is judged.
+    every_pulse: bool,
     /// Sorts out blocks of samples in which no greater error is.
     screen: Option<Screen>,
     level: Level,
@@ -47,7 +49,8 @@ impl<'a> PathWatch<'a> {
         let widest = ports.iter().map(|port| port.width.get()).max().unwrap_or(64);
         let screen = gauge.screen(1 << (widest - 1)).filter(|_| ports.len() == 2);
         let (columns, level) = (StepColumns::of(bench), Level::new());
-        PathWatch { gauge, columns, ports, rows: 0, position, screen, level, worst: None }
+        let every_pulse = bench.hardware().sampling.is_some();
+        PathWatch { gauge, every_pulse, columns, ports, rows: 0, position, screen, level, worst: None }
     }
 
     /// No sample of the block lies farther off than the worst so far.
@@ -107,23 +110,26 @@ impl Observer for PathWatch<'_> {
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         if self.is_no_worse(rows) {
             self.rows += self.columns.count(rows);
-            if let Some(last) = (0..rows.len()).rev().find(|&row| self.columns.completes(rows, row, false)) {
+            let counts = |&row: &usize| self.every_pulse || self.columns.completes(rows, row, false);
+            if let Some(last) = (0..rows.len()).rev().find(counts) {
                 self.moved(rows, last);
             }
             return Ok(());
         }
         for row in 0..rows.len() {
             let first = self.rows == 0;
-            if !self.columns.completes(rows, row, first) {
+            let complete = self.columns.completes(rows, row, first);
+            if !complete && (first || !self.every_pulse) {
                 continue;
             }
-            self.rows += 1;
+            self.rows += u64::from(complete);
             if !self.moved(rows, row) && !first {
                 continue;
             }
             let error = self.gauge.deviation(&self.position);
             if self.worst.as_ref().is_none_or(|worst| error > worst.error) {
-                self.worst = Some(WorstError { error, step: self.rows - 1, position: self.position.clone() });
+                self.worst =
+                    Some(WorstError { error, step: self.rows - u64::from(complete), position: self.position.clone() });
             }
         }
         Ok(())

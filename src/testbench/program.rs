@@ -173,6 +173,9 @@ impl Run<'_, '_> {
                         return Ok(ending);
                     }
                     for _ in 0..clocks {
+                        if self.left() == 0 {
+                            return Ok(Ending::Limit);
+                        }
                         self.clock()?;
                     }
                     next = self.host.next()?;
@@ -188,7 +191,10 @@ impl Run<'_, '_> {
     /// Runs until a stop net is 1; an ending if the machine traps before.
     fn until(&mut self, wanted: usize) -> Result<Option<Ending>, ObserverError> {
         loop {
-            match self.engine.run(u64::MAX, &mut self.rows) {
+            if self.left() == 0 {
+                return Ok(Some(Ending::Limit));
+            }
+            match self.engine.run(self.left(), &mut self.rows) {
                 Stop::Net(net) if net > AT_END => return Ok(Some(Ending::Trapped)),
                 // The first of several that are 1 is told: a trap may hide behind another.
                 Stop::Net(net) => {
@@ -205,6 +211,11 @@ impl Run<'_, '_> {
                 Stop::RowsFull | Stop::Clocks => self.drain()?,
             }
         }
+    }
+
+    /// Clocks that the run may still take.
+    fn left(&self) -> u64 {
+        self.bench.limit.saturating_sub(self.engine.clock())
     }
 
     fn trapped(&self) -> bool {

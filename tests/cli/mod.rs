@@ -13,6 +13,7 @@ mod outputs;
 mod overflow;
 mod pages;
 mod ranges;
+mod sampled;
 mod sweep;
 mod tables;
 

@@ -34,6 +34,7 @@ fn json_to_standard_output_is_the_report_and_nothing_else() {
         "pulses",
         "rate_deviation",
         "registers",
+        "sampling",
         "schema",
         "steps",
         "warnings",

@@ -104,7 +104,6 @@ fn what_cannot_be_exported_leaves_no_file() {
     for (words, hint) in [
         ("export ppc-line --to 6,4", "--verilog"),
         ("export ppc-line --to 6,4 --verilog a.v --engine word", "unexpected argument '--engine'"),
-        ("export ppc-line --to 6,4 --verilog a.v --blu 1um", "unexpected argument '--blu'"),
         ("export ppc-line --verilog a.v", "the end point is missing"),
         ("export ppc-line --to 6,4 --preset half --verilog a.v", "--preset"),
         ("export ppc-line --to 6,4 --width 2 --verilog a.v", "--width"),

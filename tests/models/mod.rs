@@ -12,6 +12,7 @@ mod dpm;
 mod eight;
 mod modern;
 mod ppc;
+mod sampled;
 mod spacing;
 mod widths;
 

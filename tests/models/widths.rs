@@ -2,7 +2,8 @@
 
 use stepwave_kernel::Width;
 use stepwave_models::{
-    Adder, Beats, Choices, Compare, EndPoint, Form, Model, ModelError, OnOverflow, Radix, StepTiming, catalogue,
+    Adder, Beats, Choices, Compare, EndPoint, Form, Millionths, Model, ModelError, OnOverflow, Radix, StepTiming,
+    System, catalogue,
 };
 use stepwave_nc::{Conic, Curve, Direction, Helix};
 
@@ -40,7 +41,7 @@ fn forms(model: &Model) -> Vec<(Curve, Choices)> {
                 }
             }
         }
-        for choices in step_generators() {
+        for choices in step_generators().into_iter().chain(coarse_stages()) {
             if model.plan(&curve, &choices).is_ok() {
                 forms.push((curve.clone(), choices));
             }
@@ -58,6 +59,12 @@ fn step_generators() -> Vec<Choices> {
         Choices { pick_off: Some(32), timing: Some(timing), ..Choices::default() },
         Choices { pick_off: Some(4), on_overflow: Some(OnOverflow::Saturate), ..Choices::default() },
     ]
+}
+
+/// The choices that data sampling alone has.
+fn coarse_stages() -> [Choices; 1] {
+    let (system, step) = (Some(System::StepFactor), Some(Millionths(500_000)));
+    [Choices { system, fraction: Some(24), step, ..Choices::default() }]
 }
 
 /// One unit, two of three bits, two decades, each with a feed override and without.

@@ -16,6 +16,7 @@
 //!   and the sign of `f` tells whether the other does.
 //! - [`mindev_line`], [`mindev_arc`], [`vector_line`], [`vector_arc`]: eight-direction methods, a
 //!   step is X, Y or both.
+//! - [`sampled_line`], [`sampled_arc`]: data sampling, the points of the coarse stage in real numbers.
 //! - [`stepgen`], [`stepgen_clocks`], [`bresenham`]: what motion cards and firmware of today do.
 //!
 //! A call outside a method's domain (a register too narrow, an end point that the arc cannot reach)
@@ -34,6 +35,7 @@ mod eight_arcs;
 mod eight_lines;
 mod ppc;
 mod ppc_conic;
+mod sampled;
 mod stepgen;
 #[cfg(test)]
 mod tests;
@@ -50,6 +52,7 @@ pub(crate) use eight_arcs::{mindev_arc, vector_arc};
 pub(crate) use eight_lines::{mindev_line, vector_line};
 pub(crate) use ppc::{ppc_arc, ppc_line};
 pub(crate) use ppc_conic::ppc_conic;
+pub(crate) use sampled::{System, sampled_arc, sampled_line, step_factor_points};
 pub(crate) use stepgen::{StepOutput, Timing, stepgen, stepgen_clocks};
 
 /// The names of up to six axes, in the order of the columns.

@@ -13,3 +13,11 @@ pub fn negated<'m>(m: Scope<'m>, value: Signal<'m>) -> Signal<'m> {
 pub fn magnitude<'m>(m: Scope<'m>, value: Signal<'m>) -> Signal<'m> {
     value.msb().mux(negated(m, value), value).as_unsigned()
 }
+
+/// The unsigned number in two's complement of `bits` bits, which are enough for it, with the sign that `negative` (1 bit)
+/// gives it.
+#[must_use]
+pub fn with_sign<'m>(m: Scope<'m>, value: Signal<'m>, bits: u32, negative: Signal<'m>) -> Signal<'m> {
+    let value = value.as_unsigned().extend(bits).as_signed();
+    negative.mux(negated(m, value), value)
+}

@@ -20,5 +20,6 @@ mod normalizer;
 mod phase_accumulator;
 mod quadrant;
 mod rate_multiplier;
+mod serial;
 mod sign;
 mod step_output;

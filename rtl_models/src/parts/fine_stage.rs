@@ -1,0 +1,109 @@
+//! The fine stage of data sampling: DDA integrators that draw the way of a period while the next one is calculated.
+
+use stepwave_kernel::dsl::{Register, Scope, Signal};
+
+use super::{Block, Iteration, axis_counter, integrator, magnitude};
+use crate::hardware::Hardware;
+use crate::hardware::names::{JV, POSITION, SIGN};
+
+/// Two integrators whose integrands are double buffered. The coarse stage hands over a point of the curve, with
+/// a fraction, relative to the start or centre of the block; what whole pulses of it are still to be made goes into the
+/// buffer. When the burst before is over, the buffer is taken, and a burst of 2^n clocks makes just those pulses: J_R is
+/// the preset again behind it.
+///
+/// - `next_full`, `next_last`, 1 bit each: the buffer holds a period; it is the last one. `last`: of the burst.
+/// - `e`, n+1 bits: clocks of the burst left.
+/// - Per axis, the buffer `jvx_next`, `sx_next`, `cx_next`, and the burst's `jvx`, `sx`, `cx`: whole pulses, their sign,
+///   and the coarse point. `tx`: the whole pulses handed over so far, as a position.
+#[derive(Clone, Copy, Debug)]
+pub struct FineStage<'m> {
+    m: Scope<'m>,
+    full: Register<'m>,
+    next_last: Register<'m>,
+    last: Register<'m>,
+    e: Register<'m>,
+}
+
+impl<'m> FineStage<'m> {
+    /// The registers of its control, for integrators of `bits` bits.
+    #[must_use]
+    pub fn new(m: Scope<'m>, bits: u32) -> FineStage<'m> {
+        let [full, next_last, last] = ["next_full", "next_last", "last"].map(|name| m.reg(name, 1));
+        FineStage { m, full, next_last, last, e: m.reg("e", bits + 1) }
+    }
+
+    /// 1 bit: a period can be handed over.
+    #[must_use]
+    pub fn free(&self) -> Signal<'m> {
+        !self.full.q
+    }
+
+    /// Closes it and the block. At an edge with `hand` = 1 (1 bit), which must find it free, it takes the points of both
+    /// axes, two's complement with `fraction` bits of fraction, or, with `last` = 1, the `ends`, whole. Behind the burst
+    /// of the last point the block is done.
+    pub fn close(
+        self,
+        block: Block<'m>,
+        hardware: &Hardware,
+        [hand, last]: [Signal<'m>; 2],
+        points: [Signal<'m>; 2],
+        fraction: u32,
+        ends: [Signal<'m>; 2],
+    ) {
+        let m = self.m;
+        let [yes, no] = [m.lit(1, 1), m.lit(1, 0)];
+        let burst = m.name("burst", self.e.q.is_nonzero());
+        let take = m.name("take", self.full.q & !burst);
+        let one = m.lit(self.e.q.bits(), 1);
+        let over = burst & self.e.q.equals(one);
+        let clocks = m.lit(1, 1).concat(m.lit(self.e.q.bits() - 1, 0));
+        self.e
+            .when(block.load, m.lit(self.e.q.bits(), 0))
+            .when(take, clocks)
+            .when(burst, self.e.q.wrapping_sub(one))
+            .else_hold();
+        self.full.when(block.load, no).when(hand, yes).when(take, no).else_hold();
+        self.next_last.when(hand, last).else_hold();
+        self.last.when(block.load, no).when(take, self.next_last.q).else_hold();
+
+        for axis in 0..2 {
+            let letter = POSITION[axis];
+            let scope = m.scope(&format!("axis_{letter}"));
+            let (point, end) = (points[axis], ends[axis].extend(points[axis].bits() - fraction));
+            let whole_bits = end.bits();
+            // Rounded to the nearest pulse.
+            let half = m.lit(point.bits(), 1 << (fraction - 1)).as_signed();
+            let rounded = point.wrapping_add(half).slice(fraction, whole_bits).as_signed();
+            let target = scope.reg_signed(&format!("t{letter}"), whole_bits);
+            let goal = last.mux(end, rounded);
+            let fine = |whole: Signal<'m>| whole.concat(m.lit(fraction, 0)).as_signed();
+            let start = block.word_signed(&format!("t{letter}"), whole_bits);
+            target.when(block.load, start).when(hand, goal).else_hold();
+            let way = goal.wrapping_sub(target.q);
+
+            let bits = hardware.bits(JV[axis]);
+            let next = scope.reg(&format!("{}_next", JV[axis]), bits);
+            // An emptied buffer is 0.
+            let ahead = next.q.strict_add(magnitude(m, way), hand & !block.load);
+            next.when(block.load, m.lit(bits, 0)).when(hand, ahead).when(take, m.lit(bits, 0)).else_hold();
+            let jv = scope.reg(JV[axis], bits);
+            jv.when(block.load, m.lit(bits, 0)).when(take, next.q).else_hold();
+            let buffered = |name: &str, value: Signal<'m>| {
+                let buffer = scope.reg(name, value.bits());
+                buffer.when(hand, value).else_hold();
+                buffer.q
+            };
+            let next_sign = buffered(&format!("{}_next", SIGN[axis]), way.msb());
+            let sign = scope.reg(SIGN[axis], 1);
+            sign.when(take, next_sign).else_hold();
+            let next_point = scope.reg_signed(&format!("c{letter}_next"), point.bits());
+            next_point.when(hand, last.mux(fine(end), point)).else_hold();
+            let drawn = scope.reg_signed(&format!("c{letter}"), point.bits());
+            drawn.when(block.load, fine(start)).when(take, next_point.q).else_hold();
+
+            let pulse = integrator(scope, &block, hardware, axis, jv.q, Iteration { add: burst, complete: burst });
+            axis_counter(scope, &block, letter, hardware.bits(letter), pulse, sign.q);
+        }
+        block.close(block.load, over, self.last.q);
+    }
+}

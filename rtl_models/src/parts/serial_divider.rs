@@ -1,0 +1,66 @@
+//! The sequential divider: restoring, one bit of the quotient a clock.
+
+use stepwave_kernel::dsl::{Register, Scope, Signal};
+
+use super::{Timer, operand};
+
+/// Divides an unsigned number by another: the remainder takes in the dividend bit by bit, and the divisor is taken away
+/// where it fits. It takes as many clocks as the dividend has bits. Of a divisor 0 the quotient is all ones.
+///
+/// - `quotient`, n bits: begins as the dividend, whose bits leave at the top as those of the quotient come in.
+/// - `remainder`, `divisor`, d bits. `left`: clocks left.
+#[derive(Clone, Copy, Debug)]
+pub struct SerialDivider<'m> {
+    m: Scope<'m>,
+    quotient: Register<'m>,
+    remainder: Register<'m>,
+    divisor: Register<'m>,
+    left: Timer<'m>,
+}
+
+impl<'m> SerialDivider<'m> {
+    /// The registers in the scope `divider`, for a dividend of `n` and a divisor of `d` bits.
+    #[must_use]
+    pub fn new(m: Scope<'m>, n: u32, d: u32) -> SerialDivider<'m> {
+        let m = m.scope("divider");
+        let [remainder, divisor] = ["remainder", "divisor"].map(|name| m.reg(name, d));
+        SerialDivider { m, quotient: m.reg("quotient", n), remainder, divisor, left: Timer::new(m, "left", n.into()) }
+    }
+
+    /// 1 bit: it works; once it no longer does, quotient and remainder stand.
+    #[must_use]
+    pub fn running(&self) -> Signal<'m> {
+        self.left.running()
+    }
+
+    /// The quotient, n bits.
+    #[must_use]
+    pub fn quotient(&self) -> Signal<'m> {
+        self.quotient.q
+    }
+
+    /// The remainder, d bits.
+    #[must_use]
+    pub fn remainder(&self) -> Signal<'m> {
+        self.remainder.q
+    }
+
+    /// Closes it: at an edge where a condition (1 bit) is 1 it begins with that dividend and divisor.
+    pub fn close(self, operands: &[(Signal<'m>, Signal<'m>, Signal<'m>)]) {
+        let (n, d) = (self.quotient.q.bits(), self.divisor.q.bits());
+        let dividends: Vec<_> = operands.iter().map(|&(begin, dividend, _)| (begin, dividend)).collect();
+        let divisors: Vec<_> = operands.iter().map(|&(begin, _, divisor)| (begin, divisor)).collect();
+        let (begin, dividend) = operand(self.m, n, &dividends);
+        let (_, divisor) = operand(self.m, d, &divisors);
+        self.divisor.when(begin, divisor).else_hold();
+
+        let taken = self.remainder.q.concat(self.quotient.q.msb());
+        let (borrow, rest) = taken.borrowing_sub(self.divisor.q.extend(d + 1));
+        let restored = borrow.mux(taken, rest).slice(0, d);
+        let shifted = self.quotient.q.concat(!borrow).slice(0, n);
+        let running = self.running();
+        self.remainder.when(begin, self.m.lit(d, 0)).when(running, restored).else_hold();
+        self.quotient.when(begin, dividend).when(running, shifted).else_hold();
+        self.left.close(begin);
+    }
+}

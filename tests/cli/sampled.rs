@@ -1,0 +1,58 @@
+//! Data sampling as its users meet it: feeds, reports, refusals.
+
+use serde_json::Value;
+
+use super::{good, run_refused};
+
+fn report(words: &str) -> Value {
+    serde_json::from_str(&good(&format!("run {words} --json -"))).unwrap()
+}
+
+#[test]
+fn a_feed_gives_the_way_of_a_period_by_the_system_and_the_blu() {
+    // 600 mm/min · 8 ms = 0.08 mm; · 10.24 ms = 0.1024 mm.
+    for (words, step) in [
+        ("--feed 600", 80.0),
+        ("--feed 600 --system 7360", 102.4),
+        ("--feed 600 --blu 0.01mm", 8.0),
+        ("--step 80", 80.0),
+        ("--step 102.4 --system 7360", 102.4),
+    ] {
+        let sampling = &report(&format!("sampled-line --to 1000,-333 {words}"))["sampling"];
+        assert_eq!(sampling["step"], step, "{words}");
+        let feed = sampling["feed_mm_per_min"].as_f64().unwrap();
+        assert!((feed - 600.0).abs() < 1e-9, "{words}: {feed}");
+    }
+}
+
+#[test]
+fn the_report_says_what_the_fraction_and_the_chords_cost_in_micrometres() {
+    let words = "sampled-arc --from 0,10000 --to 10000,0 --cw --step 80 --blu 0.01mm";
+    let of = |bits: u32| report(&format!("{words} --fraction {bits}"));
+    let [coarse, fine] = [8, 16].map(|bits| of(bits)["sampling"]["coarse_error_um"].as_f64().unwrap());
+    // A unit of the fraction in µm, of a BLU of 10 µm.
+    assert!(coarse < 1.5 * 10.0 / 256.0 && coarse > 50.0 * fine, "{coarse} and {fine}");
+    let report = of(10);
+    assert_eq!(report["end_point"]["exact"], true);
+    // 80²/80000 BLU.
+    assert!((report["sampling"]["chord_error_um"].as_f64().unwrap() - 0.8).abs() < 1e-12);
+    let text = good(&format!("run {words} --fraction 10"));
+    assert!(text.contains("coarse stage 7m: 80 BLU in 8 ms, 6000.000 mm/min"), "{text}");
+    assert!(text.contains("chord error f²/8R: 0.080000 BLU (0.800000 µm)"), "{text}");
+    assert!(text.contains("coarse points with 10 bits of fraction: up to 0.00"), "{text}");
+}
+
+#[test]
+fn what_data_sampling_does_not_take_is_refused_with_the_way_out() {
+    let arc = "sampled-arc --from 10000,0 --to 0,10000 --ccw";
+    run_refused(&format!("{arc} --step 500"), &["3.125 BLU off", "--tolerance is 1", "give --step 282.842 or less"]);
+    run_refused(&format!("{arc} --feed 6000"), &["--step 800", "or a lower --feed"]);
+    run_refused(&format!("{arc} --feed 1e30"), &["give --step 282.842 or less"]);
+    run_refused(&format!("{arc} --step 5 --fraction 7"), &["--fraction 7", "8 to 30 bits"]);
+    run_refused(&format!("{arc} --step 5 --feed 5"), &["--step", "--feed"]);
+    run_refused("sampled-line --to 9,5 --step 0", &["'0' is no length"]);
+    run_refused("sampled-line --to 9,5 --step nan", &["'nan' is no length"]);
+    run_refused("sampled-line --to 9,5 --feed=-1", &["'-1' is no feed"]);
+    run_refused("sampled-line --to 9,5 --tolerance 1", &["sampled-line does not take --tolerance"]);
+    run_refused("dda-line --to 9,5 --feed 100", &["dda-line does not take --step"]);
+}
