@@ -9,7 +9,7 @@ use stepwave_kernel::{Net, Width};
 use stepwave_models::{Choices, Claims, CurveKind, Model, ModelError, Region};
 use stepwave_nc::Curve;
 
-use super::proof::{Narrower, ProofError, Subject};
+use super::proof::{Block, Narrower, ProofError, Subject, blocks};
 use crate::testbench::{Ending, Testbench};
 
 /// How the width of a register is known to be enough.
@@ -17,6 +17,8 @@ use crate::testbench::{Ending, Testbench};
 pub enum Known {
     /// Proved for every k, relative to k.
     Proved,
+    /// Proved at this width alone.
+    ProvedHere,
     /// Every geometry of the box was simulated.
     Exhaustive,
     /// Some were.
@@ -113,7 +115,7 @@ pub fn widths(model: &'static Model, choices: &Choices, k: u32) -> Result<Widths
         });
     }
     if let Some(claims) = model.claims {
-        mark_proved(model, &claims, choices, &mut registers);
+        mark_proved(model, &claims, choices, k, &mut registers);
     }
     Ok(Widths { k, simulated: curves.len(), all, faults, registers })
 }
@@ -179,12 +181,19 @@ fn witness(model: &Model, wide: &Choices, name: &str, needed: u32, curve: &Curve
     shown.then(|| (curve.clone(), choices))
 }
 
-/// Marks what a proof for every k shows: the widths needed here, as so many bits less than by default, are enough.
-fn mark_proved(model: &'static Model, claims: &Claims, choices: &Choices, registers: &mut [RegisterWidth]) {
+/// Marks what a proof for every k, or for this one, shows: the widths needed here, as so many bits less than by default, are enough.
+fn mark_proved(model: &'static Model, claims: &Claims, choices: &Choices, k: u32, registers: &mut [RegisterWidth]) {
     debug_assert_eq!(model.claims.map(|own| own.geometries), Some(claims.geometries));
     let less = |register: &RegisterWidth| register.given.saturating_sub(register.needed);
     let narrower: Narrower =
         registers.iter().filter(|register| less(register) > 0).map(|r| (r.name.clone(), less(r))).collect();
+    if !claims.counted.is_empty() {
+        let exact = |block: &Block| block.is_exact();
+        if blocks(model, claims, choices, &narrower, k).is_ok_and(|blocks| blocks.iter().all(exact)) {
+            registers.iter_mut().for_each(|register| register.known = Known::ProvedHere);
+        }
+        return;
+    }
     let Ok(subject) = Subject::new(model, choices, &narrower) else { return };
     let safe = |kind| subject.prove(&kind).is_ok_and(|(proof, _)| proof.is_safe());
     if subject.kinds().into_par_iter().all(safe) {
