@@ -38,12 +38,15 @@ pub struct Claims {
     pub modes: &'static [&'static str],
     /// Registers that are held bit by bit, at one width at a time.
     pub bitwise: &'static [&'static str],
+    /// Registers that are loaded with |dx|, |dy|, … while nothing else depends on these: a block takes its clocks
+    /// whatever they are, and is proved at one width at a time by following them. Empty where the proof is by steps.
+    pub counted: &'static [&'static str],
 }
 
 impl Claims {
     /// Over these geometries; whatever the end counters are, one of them counts at every step.
     pub(crate) const fn of(geometries: Region) -> Claims {
-        Claims { geometries, rank: steps_left, modes: &[], bitwise: &[] }
+        Claims { geometries, rank: steps_left, modes: &[], bitwise: &[], counted: &[] }
     }
 }
 

@@ -51,6 +51,7 @@ use stepwave_kernel::{Netlist, Width};
 use stepwave_nc::Curve;
 
 use crate::choices::{Choice, Choices, EndPoint, Radix};
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::names::{COEFFICIENT, POSITION, SIGN};
 use crate::hardware::{Hardware, Pace};
@@ -89,7 +90,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     source: "数字脉冲乘法器, the digital pulse multiplier of Chinese NC textbooks, known as binary rate multiplier; the \
              counts of a decade are a definition of this project",
-    claims: None,
+    claims: Some(Claims { rank: |_| None, counted: &["mx", "my"], ..Claims::of(Region::Lines) }),
     plan,
     netlist,
     words,

@@ -10,12 +10,13 @@ use super::values::{Narrower, parse_narrower};
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(
-    after_help = "Verdicts: PROVED for all k; COUNTEREXAMPLE, replayed by the simulator, with the command that shows\n\
+    after_help = "Verdicts: PROVED for all k, or at the k that are named; COUNTEREXAMPLE, replayed by the simulator, with the command that shows\n\
     it; NOT PROVED, with what could not be shown. Exit code 0 only where everything is proved.\n\n\
     Examples:\n  \
     stepwave prove ppc-line\n  \
     stepwave prove ppc-line --narrower f=1 --vcd trap.vcd\n  \
     stepwave prove dda-line --preset half --certificate line.cert\n  \
+    stepwave prove dpm-line --bits 12\n  \
     stepwave prove check line.cert"
 )]
 pub(crate) struct ProveArgs {
@@ -29,6 +30,9 @@ pub(crate) struct ProveArgs {
     /// Take registers by so many bits narrower than by default: f=1
     #[arg(long, value_name = "REGISTER=BITS,…", value_parser = parse_narrower)]
     pub(crate) narrower: Vec<Narrower>,
+    /// Bits of coordinates, for models that are proved at one width at a time (default: all from 1 to 16)
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=20))]
+    pub(crate) bits: Option<u32>,
     /// Let remainder registers start from any value, not only from --preset
     #[arg(long, conflicts_with = "preset")]
     pub(crate) any_preset: bool,

@@ -10,7 +10,9 @@ use rayon::prelude::*;
 use stepwave::kernel::prove::{Certificate, Proof};
 use stepwave::models::{Choices, Kind, Model, find};
 use stepwave::report::run_command;
-use stepwave::study::proof::{CertificateFile, Counterexample, Fault, Narrower, ProofError, Subject, search};
+use stepwave::study::proof::{
+    Block, CertificateFile, Counterexample, Fault, Narrower, ProofError, Subject, blocks, search,
+};
 
 use super::run::{Finished, simulate};
 use crate::cli::{Cli, Command, ProveArgs, ProveCommand};
@@ -33,6 +35,53 @@ fn list(numbers: RangeInclusive<u32>) -> String {
     numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(" and ")
 }
 
+/// Bits of coordinates at which a model is proved that is proved at one width at a time.
+const COUNTED: RangeInclusive<u32> = 1..=16;
+
+/// Every kind of geometry at each of these widths.
+fn followed(
+    model: &'static Model,
+    choices: &Choices,
+    narrower: &Narrower,
+    ks: Vec<u32>,
+) -> Result<Vec<Block>, Failure> {
+    let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
+    let each = ks.into_par_iter().map(|k| blocks(model, &claims, choices, narrower, k));
+    match each.collect::<Result<Vec<_>, _>>() {
+        Ok(all) => Ok(all.concat()),
+        Err(lost @ ProofError::Lost { .. }) => Err(Failure::Check(vec![format!("not proved: {lost}")])),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Tells of blocks that were followed, and fails where one of them does not end as it should.
+fn judge(model: &Model, blocks: &[Block], what: &str) -> Result<(), Failure> {
+    let about = model.claims.map_or("", |claims| claims.geometries.describe());
+    let mut ks: Vec<u32> = blocks.iter().map(|block| block.k).collect();
+    ks.dedup();
+    let k = match ks[..] {
+        [] => return Err(Failure::Check(vec![format!("{what} are none: nothing is proved")])),
+        [k] => format!("k = {k}"),
+        [first, .., last] if ks.iter().copied().eq(first..=last) => format!("k = {first} to {last}"),
+        _ => format!("k = {}", ks.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")),
+    };
+    let wrong: Vec<String> = blocks.iter().filter(|block| !block.is_exact()).map(Block::to_string).collect();
+    let mut text = format!("{}: {about}, at {k}\n", model.name);
+    for claim in Claim::ALL {
+        let proved = claim != Claim::Exact || wrong.is_empty();
+        let verdict = if proved { format!("PROVED at {k}") } else { "not proved".to_owned() };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{verdict}: {}", claim.name());
+    }
+    let clocks: u64 = blocks.iter().map(|block| block.clocks).sum();
+    let _ = writeln!(text, "{} blocks followed for {clocks} clocks with unknown coefficients", blocks.len());
+    output::print(&text)?;
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Check(vec![format!("not proved: {}: {}", Claim::Exact.name(), wrong.join("; "))]))
+}
+
 type Attempt = (Kind, Proof, Certificate);
 
 fn attempt(args: &ProveArgs) -> Result<(), Failure> {
@@ -40,11 +89,43 @@ fn attempt(args: &ProveArgs) -> Result<(), Failure> {
     let choices = args.hardware.choices();
     let narrower: Narrower = args.narrower.iter().flat_map(|list| list.0.iter().cloned()).collect();
     let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
+    let counted = !claims.counted.is_empty();
+    if args.bits.is_some() && !counted {
+        let model = model.name;
+        return Err(Failure::Trouble(format!("{model} is proved for all k at once: leave --bits out")));
+    }
+    if args.any_preset && counted {
+        return Err(Failure::Trouble(format!("{} has no remainder to preset: leave --any-preset out", model.name)));
+    }
+    let searched = args.bits.map_or(SEARCHED, |k| k..=k);
     let mut outputs = Outputs::default();
     let certificate = args.certificate.as_deref().map(|path| outputs.open(path)).transpose()?;
-    // What a simulation refutes needs no attempt. A word that does not fit refutes a narrower register; else it tells
-    // that a choice, such as a preset, needs more bits.
+    // A word that does not fit refutes a narrower register; else it tells that a choice, such as a preset, needs more bits.
     let refutes = |fault| fault != Fault::Refused || !narrower.is_empty();
+    if counted {
+        let ks = args.bits.map_or(COUNTED, |k| k..=k);
+        let found = followed(model, &choices, &narrower, ks.collect());
+        if !found.as_ref().is_ok_and(|blocks| blocks.iter().all(Block::is_exact))
+            && let Some(example) = search(model, &claims, &choices, &narrower, searched, refutes)
+        {
+            return refuted(args, model, &example);
+        }
+        let blocks = found?;
+        judge(model, &blocks, "the blocks that were followed")?;
+        if let Some(mut sink) = certificate {
+            let file = CertificateFile {
+                model: model.name.to_owned(),
+                options: choices.options(),
+                narrower: narrower.into_iter().collect(),
+                kinds: Vec::new(),
+                counted: blocks.iter().map(Block::to_string).collect(),
+            };
+            write!(sink, "{file}")?;
+            sink.flush()?;
+        }
+        return outputs.commit();
+    }
+    // What a simulation refutes needs no attempt.
     if let Some(example) = search(model, &claims, &choices, &narrower, SEARCHED, refutes) {
         return refuted(args, model, &example);
     }
@@ -69,7 +150,7 @@ fn attempt(args: &ProveArgs) -> Result<(), Failure> {
             let narrower = narrower.into_iter().collect();
             let any = args.any_preset.then(|| "--any-preset".to_owned());
             let options = choices.options().into_iter().chain(any).collect();
-            let file = CertificateFile { model: model.name.to_owned(), options, narrower, kinds };
+            let file = CertificateFile { model: model.name.to_owned(), options, narrower, kinds, counted: Vec::new() };
             write!(sink, "{file}")?;
             sink.flush()?;
         }
@@ -201,6 +282,19 @@ fn check(path: &Path) -> Result<(), Failure> {
         Command::Prove(args) => (args.hardware.choices(), args.any_preset),
         _ => (Choices::default(), false),
     };
+    if model.claims.is_some_and(|claims| !claims.counted.is_empty()) {
+        let mut ks: Vec<u32> = Vec::new();
+        for block in &file.counted {
+            let k = block.split(' ').next().and_then(|k| k.parse().ok()).filter(|k| (1..=20).contains(k));
+            ks.push(k.ok_or_else(|| Failure::Trouble(format!("{name} is no certificate: counted {block}")))?);
+        }
+        ks.dedup();
+        let blocks = followed(model, &choices, &file.narrower.iter().cloned().collect(), ks)?;
+        if blocks.iter().map(Block::to_string).ne(file.counted.iter().cloned()) {
+            return Err(Failure::Check(vec![format!("{name} does not say what its blocks come to")]));
+        }
+        return judge(model, &blocks, &format!("the blocks of {name}"));
+    }
     let subject = Subject::new(model, &choices, &file.narrower.iter().cloned().collect())?;
     let subject = if any_preset { subject.with_any_preset() } else { subject };
     let attempts: Vec<Attempt> = subject

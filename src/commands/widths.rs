@@ -21,6 +21,7 @@ pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
 fn known(register: &RegisterWidth) -> &'static str {
     match register.known {
         Known::Proved => "proved",
+        Known::ProvedHere => "proved at k",
         Known::Exhaustive => "exhaustive",
         Known::Sampled => "sampled",
     }

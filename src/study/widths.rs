@@ -11,7 +11,7 @@ use stepwave_models::{Choices, Claims, Model, ModelError};
 use stepwave_nc::Curve;
 
 use super::boxes::{Extent, Geometries};
-use super::proof::{Narrower, ProofError, Subject};
+use super::proof::{Block, Narrower, ProofError, Subject, blocks};
 use crate::testbench::{Ending, RangeWatch, Testbench};
 
 /// How the width of a register is known to be enough.
@@ -19,6 +19,8 @@ use crate::testbench::{Ending, RangeWatch, Testbench};
 pub enum Known {
     /// Proved for every k, relative to k.
     Proved,
+    /// Proved at this width alone.
+    ProvedHere,
     /// Every geometry of the box was simulated.
     Exhaustive,
     /// Some were.
@@ -99,7 +101,7 @@ pub fn widths(model: &'static Model, choices: &Choices, extent: &Extent) -> Resu
         });
     }
     if let Some(claims) = model.claims.filter(|_| bench.hardware().axes == 2) {
-        mark_proved(model, &claims, choices, &mut registers);
+        mark_proved(model, &claims, choices, k, &mut registers);
     }
     Ok(Widths { extent: extent.clone(), k, simulated: curves.len(), all, faults, registers })
 }
@@ -196,12 +198,20 @@ fn witness(model: &Model, wide: &Choices, name: &str, needed: u32, curve: &Curve
     shown.then(|| (curve.clone(), choices))
 }
 
-/// Marks what a proof for every k shows: the widths needed here, as so many bits less than by default, are enough.
-fn mark_proved(model: &'static Model, claims: &Claims, choices: &Choices, registers: &mut [RegisterWidth]) {
+/// Marks what a proof for every k, or for this one, shows: the widths needed here, as so many bits less than by default,
+/// are enough.
+fn mark_proved(model: &'static Model, claims: &Claims, choices: &Choices, k: u32, registers: &mut [RegisterWidth]) {
     debug_assert_eq!(model.claims.map(|own| own.geometries), Some(claims.geometries));
     let less = |register: &RegisterWidth| register.given.saturating_sub(register.needed);
     let narrower: Narrower =
         registers.iter().filter(|register| less(register) > 0).map(|r| (r.name.clone(), less(r))).collect();
+    if !claims.counted.is_empty() {
+        let exact = |block: &Block| block.is_exact();
+        if blocks(model, claims, choices, &narrower, k).is_ok_and(|blocks| blocks.iter().all(exact)) {
+            registers.iter_mut().for_each(|register| register.known = Known::ProvedHere);
+        }
+        return;
+    }
     let Ok(subject) = Subject::new(model, choices, &narrower) else { return };
     let safe = |kind| subject.prove(&kind).is_ok_and(|(proof, _)| proof.is_safe());
     if subject.kinds().into_par_iter().all(safe) {

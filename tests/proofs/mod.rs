@@ -2,6 +2,7 @@
 //! not learnt from.
 
 mod command;
+mod counted;
 mod invariants;
 mod widths;
 

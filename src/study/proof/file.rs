@@ -18,6 +18,8 @@ pub struct CertificateFile {
     pub narrower: Vec<(String, u32)>,
     /// A certificate for each kind of geometry, by its name.
     pub kinds: Vec<(String, Certificate)>,
+    /// Blocks that were followed clock by clock, each with its width and kind.
+    pub counted: Vec<String>,
 }
 
 /// Why a file is no file of certificates.
@@ -53,6 +55,9 @@ impl fmt::Display for CertificateFile {
         for (register, bits) in &self.narrower {
             writeln!(f, "narrower {bits} {register}")?;
         }
+        for block in &self.counted {
+            writeln!(f, "counted {block}")?;
+        }
         for (kind, certificate) in &self.kinds {
             write!(f, "kind {kind}\n{certificate}")?;
         }
@@ -66,12 +71,18 @@ impl std::str::FromStr for CertificateFile {
     fn from_str(text: &str) -> Result<CertificateFile, FileError> {
         let rest = text.strip_prefix(TITLE).ok_or(FileError::NoTitle)?;
         let mut parts = rest.split("\nkind ");
-        let mut file =
-            CertificateFile { model: String::new(), options: Vec::new(), narrower: Vec::new(), kinds: Vec::new() };
+        let mut file = CertificateFile {
+            model: String::new(),
+            options: Vec::new(),
+            narrower: Vec::new(),
+            kinds: Vec::new(),
+            counted: Vec::new(),
+        };
         for (index, line) in parts.next().unwrap_or_default().lines().enumerate().filter(|(_, line)| !line.is_empty()) {
             let wrong = || FileError::Head { line: index + 1, text: line.chars().take(60).collect() };
             match line.split_once(' ').ok_or_else(wrong)? {
                 ("model", name) => name.clone_into(&mut file.model),
+                ("counted", block) => file.counted.push(block.to_owned()),
                 ("option", option) => file.options.push(option.to_owned()),
                 ("narrower", pair) => {
                     let (bits, register) = pair.split_once(' ').ok_or_else(wrong)?;

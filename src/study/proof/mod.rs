@@ -1,6 +1,7 @@
 //! Proofs about models: the family of a model's netlists, recorded runs of each, and one attempt for each kind of
 //! geometry.
 
+mod counted;
 mod counter;
 mod file;
 mod runs;
@@ -8,11 +9,14 @@ mod runs;
 use std::collections::BTreeMap;
 
 use stepwave_kernel::formula::{self, Formula};
-use stepwave_kernel::prove::{self, Case, CaseError, Certificate, Family, FamilyError, Proof, Row, Strobes, Symbol};
+use stepwave_kernel::prove::{
+    self, Case, CaseError, Certificate, Family, FamilyError, Lost, Proof, Row, Strobes, Symbol,
+};
 use stepwave_kernel::{Design, Width};
 use stepwave_models::{AXES, Choices, Claims, Hardware, Kind, Machine, Model, ModelError};
 use stepwave_nc::Curve;
 
+pub use counted::{Block, blocks};
 pub use counter::{Counterexample, Fault, search};
 pub use file::{CertificateFile, FileError};
 pub use runs::{State, states};
@@ -57,6 +61,24 @@ pub enum ProofError {
         kind: String,
         /// The invariant.
         invariant: String,
+    },
+    /// A block cannot be followed to its end.
+    #[error("{model} at k = {k}, {kind}: {lost}")]
+    Lost {
+        /// The model.
+        model: &'static str,
+        /// Bits of coordinates.
+        k: u32,
+        /// Kind of geometry.
+        kind: String,
+        /// Why.
+        lost: Lost,
+    },
+    /// A counted register is not loaded with the way of its axis, bit by bit.
+    #[error("{register} is not loaded with |d| in binary, so that its bits are not followed: leave --radix 10 out")]
+    Counted {
+        /// The register.
+        register: String,
     },
     /// No curve of the kind was found.
     #[error("no geometry of the kind {kind} was found to learn from")]

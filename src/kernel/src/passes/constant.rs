@@ -4,7 +4,7 @@ use crate::bits::{self, Width};
 use crate::netlist::{Net, Op};
 
 /// The value of `op` in `width`, where `value` knows the value and width of every operand; `None` where one is unknown.
-pub(super) fn value(op: Op, width: Width, value: impl Fn(Net) -> Option<(u64, Width)>) -> Option<u64> {
+pub(crate) fn value(op: Op, width: Width, value: impl Fn(Net) -> Option<(u64, Width)>) -> Option<u64> {
     let one = |a: Net| value(a).map(|(a, _)| a);
     let two = |a: Net, b: Net| Some((one(a)?, one(b)?));
     let flag = |a: Net, b: Net, of: fn(Width, u64, u64) -> bool| {

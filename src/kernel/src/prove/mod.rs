@@ -17,6 +17,7 @@
 //! is believed: each must hold when the block stands loaded, and behind every step.
 
 mod certificate;
+mod counted;
 mod decisions;
 mod family;
 mod farkas;
@@ -31,6 +32,7 @@ mod system;
 mod variables;
 
 pub use certificate::{Certificate, CertificateError};
+pub use counted::{Followed, Lost, Sample, Sum, Word, follow};
 pub use family::{Family, FamilyError};
 pub use infer::fit;
 pub use proof::{Proof, Row, check, prove, violated};

@@ -342,3 +342,6 @@ impl<'p, 'o> Path<'p, 'o> {
         self.held[clock][net.index()] = Some(poly);
     }
 }
+
+#[cfg(test)]
+mod tests;

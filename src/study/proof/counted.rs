@@ -1,0 +1,137 @@
+//! Proofs at one width: a block whose clocks do not depend on its coefficients is followed with all their bits unknown.
+
+use std::fmt;
+
+use rayon::prelude::*;
+use stepwave_kernel::bits::Reading;
+use stepwave_kernel::prove::{Strobes, Sum, Word, follow};
+use stepwave_models::{AXES, Choices, Claims, Kind, Model};
+use stepwave_nc::Curve;
+
+use super::{Narrower, ProofError, choices_at, largest};
+
+/// Curves of a kind whose words are compared.
+const COMPARED: usize = 400;
+
+/// A block of one kind of geometry, followed to its end without an overflow.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Bits of coordinates.
+    pub k: u32,
+    /// The kind of geometry.
+    pub kind: String,
+    /// Clocks from the load to the end.
+    pub clocks: u64,
+    /// The place of each axis in the end, by the bits of its coefficient; `None` where it is no sum of them.
+    pub ends: Vec<Option<Sum>>,
+    /// Where it should be.
+    pub wanted: Vec<Sum>,
+    /// Each unknown bit by its register.
+    names: Vec<String>,
+}
+
+impl Block {
+    /// Every axis ends where it should, whatever its coefficient.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.ends.iter().eq(self.wanted.iter().map(|sum| Some(sum.clone())).collect::<Vec<_>>().iter())
+    }
+}
+
+/// Width, kind, clocks, and how often each bit of a coefficient was counted.
+impl fmt::Display for Block {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} clocks={}", self.k, self.kind, self.clocks)?;
+        for (letter, end) in AXES.iter().zip(&self.ends) {
+            write!(f, " {letter}=")?;
+            let Some(Sum { constant, factors }) = end else {
+                write!(f, "?")?;
+                continue;
+            };
+            write!(f, "{constant}")?;
+            for (name, factor) in self.names.iter().zip(factors).filter(|(_, factor)| **factor != 0) {
+                write!(f, "{factor:+}*{name}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Follows a block of each kind of geometry with coordinates of `k` bits.
+///
+/// # Errors
+/// The hardware cannot be built, a register may overflow, or the end depends on the coefficients.
+pub fn blocks(
+    model: &'static Model,
+    claims: &Claims,
+    choices: &Choices,
+    narrower: &Narrower,
+    k: u32,
+) -> Result<Vec<Block>, ProofError> {
+    let kinds = claims.geometries.kinds();
+    kinds.into_par_iter().map(|kind| block(model, claims, choices, narrower, k, &kind)).collect()
+}
+
+fn block(
+    model: &'static Model,
+    claims: &Claims,
+    choices: &Choices,
+    narrower: &Narrower,
+    k: u32,
+    kind: &Kind,
+) -> Result<Block, ProofError> {
+    let hardware = model.plan(&largest(claims, k)?, &choices_at(model, claims, choices, narrower, k)?)?;
+    let machine = model.machine(&hardware)?;
+    let all = claims.geometries.curves(k, usize::MAX);
+    let own = all.iter().filter(|curve| claims.geometries.symbols(kind, curve).is_some()).take(COMPARED);
+    let own: Vec<&Curve> = own.collect();
+    let first = own.first().ok_or_else(|| ProofError::NoCurves { kind: kind.name.clone() })?;
+    let wrong = |register: &str| ProofError::Counted { register: register.to_owned() };
+
+    // Counted registers hold the way of their axis, all others the same for every curve.
+    let words = |curve: &Curve| model.words(&hardware, curve).into_iter().next().unwrap_or_default();
+    let common = words(first);
+    for curve in &own {
+        for ((register, value), (_, usual)) in words(curve).into_iter().zip(&common) {
+            let axis = claims.counted.iter().position(|counted| *counted == register);
+            let expected = axis.map_or(*usual, |axis| i128::from(curve.to()[axis]).abs());
+            if value != expected {
+                return Err(wrong(register));
+            }
+        }
+    }
+    let encoded = machine.encode(&hardware, &model.words(&hardware, first))?.into_iter().next().unwrap_or_default();
+    let (mut given, mut names, mut bounds) = (Vec::new(), Vec::new(), vec![0..0; claims.counted.len()]);
+    for ((register, _), (net, bits)) in common.iter().zip(encoded) {
+        let Some(axis) = claims.counted.iter().position(|counted| counted == register) else {
+            given.push((net, Word::Known(bits)));
+            continue;
+        };
+        let port = machine.inputs.get(*register).filter(|port| port.reading == Reading::Unsigned);
+        let width = port.ok_or_else(|| wrong(register))?.width.get();
+        bounds[axis] = names.len()..names.len() + width as usize;
+        names.extend((0..width).map(|bit| format!("{register}.{bit}")));
+        given.push((net, Word::Unknown));
+    }
+    let strobes = Strobes {
+        load: machine.load.net,
+        preset_position: machine.preset_position.net,
+        loaded: machine.loaded.net,
+        stepped: machine.stepped.net,
+        done: machine.done.net,
+    };
+    let ends: Vec<_> = machine.positions.iter().map(|port| port.net).collect();
+    let limit = hardware.stall_clocks;
+    let followed = follow(&machine.design, strobes, &given, &ends, limit, |_, _| {})
+        .map_err(|lost| ProofError::Lost { model: model.name, k, kind: kind.name.clone(), lost })?;
+    let moves = |axis: usize| own.iter().find_map(|curve| Some(curve.to()[axis].signum()).filter(|sign| *sign != 0));
+    let wanted = bounds.iter().enumerate().map(|(axis, bounds)| {
+        let mut factors = vec![0; names.len()];
+        for (bit, place) in bounds.clone().enumerate() {
+            factors[place] = i128::from(moves(axis).unwrap_or(1)) << bit;
+        }
+        Sum { constant: 0, factors }
+    });
+    let wanted = wanted.collect();
+    Ok(Block { k, kind: kind.name.clone(), clocks: followed.clocks, ends: followed.ends, wanted, names })
+}

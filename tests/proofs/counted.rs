@@ -1,0 +1,161 @@
+//! Proofs at one width at a time, of machines whose clocks do not depend on their coefficients.
+
+use stepwave::study::proof::{Narrower, blocks};
+use stepwave_kernel::engine::{EngineKind, Rows, Watch};
+use stepwave_kernel::prove::{Lost, Strobes, Word, follow};
+use stepwave_kernel::{Net, Width};
+use stepwave_models::{Choices, Machine, find};
+
+use crate::cli::Folder;
+
+fn strobes(machine: &Machine) -> Strobes {
+    Strobes {
+        load: machine.load.net,
+        preset_position: machine.preset_position.net,
+        loaded: machine.loaded.net,
+        stepped: machine.stepped.net,
+        done: machine.done.net,
+    }
+}
+
+/// A pulse multiplier of coefficients of so many bits.
+fn machine(k: u32, choices: &Choices) -> Machine {
+    let model = find("dpm-line").unwrap();
+    let choices = Choices { width: Width::new(u64::from(k)).ok(), ..choices.clone() };
+    let largest = model.claims.unwrap().geometries.largest(k).unwrap();
+    model.machine(&model.plan(&largest, &choices).unwrap()).unwrap()
+}
+
+#[test]
+fn every_coefficient_is_counted_bit_by_bit_at_every_width() {
+    let model = find("dpm-line").unwrap();
+    for k in 1..=10 {
+        let found = blocks(model, &model.claims.unwrap(), &Choices::default(), &Narrower::new(), k).unwrap();
+        assert_eq!(found.len(), 4);
+        for block in found {
+            assert!(block.is_exact(), "{block}");
+            assert_eq!(block.clocks, (1 << k) + 1, "{block}");
+            let sign = |backward: &str| if backward.contains(&block.kind) { -1 } else { 1 };
+            let (x, y) = (sign("Q2 Q3"), sign("Q3 Q4"));
+            let end = |axis: usize, sign: i128| {
+                let sum = block.ends[axis].clone().unwrap();
+                let n = k as usize;
+                (0..2 * n).all(|place| sum.factors[place] == if place / n == axis { sign << (place % n) } else { 0 })
+            };
+            assert!(end(0, x) && end(1, y), "{block}");
+        }
+    }
+}
+
+/// Compares what is said of every net in every sample with an engine; gives how many values were known.
+fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) -> usize {
+    let (design, netlist) = (&machine.design, machine.design.netlist());
+    let inputs = machine.inputs.iter();
+    let words: Vec<(Net, Word)> = inputs
+        .map(|(register, port)| {
+            let given = known.iter().find(|(name, _)| name == register);
+            (port.net, given.map_or(Word::Unknown, |(_, bits)| Word::Known(*bits)))
+        })
+        .collect();
+    let watch = Watch { columns: netlist.nets().collect(), stops: Vec::new() };
+    let mut engine = EngineKind::Gates.build(design, &watch);
+    let mut place = 0;
+    for (net, word) in &words {
+        let bits = match word {
+            Word::Known(bits) => *bits,
+            Word::Unknown => {
+                let width = netlist.width(*net).get() as usize;
+                place += width;
+                let own = &unknowns[place - width..place];
+                own.iter().enumerate().fold(0, |word, (bit, is)| word | u64::from(*is) << bit)
+            }
+        };
+        engine.set_input(*net, bits);
+    }
+    for strobe in [machine.load.net, machine.preset_position.net] {
+        engine.set_input(strobe, 1);
+    }
+    let mut rows = Rows::new(watch.columns.len(), 1 << 14);
+    engine.reset(&mut rows);
+    for strobe in [machine.load.net, machine.preset_position.net] {
+        engine.set_input(strobe, 0);
+    }
+    engine.run(1 << 13, &mut rows);
+    let mut told = 0;
+    let judge = |clock: u64, sample: &stepwave_kernel::prove::Sample<'_>| {
+        let row = rows.row(usize::try_from(clock).unwrap());
+        for net in netlist.nets() {
+            if let Some(value) = sample.value(net, unknowns) {
+                assert_eq!(value, row[net.index()], "{} at clock {clock}", netlist.describe(net));
+                told += 1;
+            }
+        }
+    };
+    follow(design, strobes(machine), &words, &[], 1 << 13, judge).unwrap();
+    told
+}
+
+#[test]
+fn what_is_said_of_every_net_is_what_the_engine_has() {
+    let cascade = Choices { cascade: Width::new(2).ok(), ..Choices::default() };
+    let slow = Choices { feed_override: Some(70), ..Choices::default() };
+    for choices in [Choices::default(), cascade, slow] {
+        let machine = machine(4, &choices);
+        for signs in 0..4_u8 {
+            let unknowns: Vec<bool> =
+                (0..8).map(|bit| 0x9e37_79b9_u32.rotate_left(7 * u32::from(signs)) >> bit & 1 == 1).collect();
+            let known =
+                [("x", 0), ("y", 0), ("sx", u64::from(signs & 1)), ("sy", u64::from(signs >> 1)), ("percent", 0x70)];
+            let told = assert_followed(&machine, &known, &unknowns);
+            assert!(told > 500, "{told}");
+        }
+    }
+}
+
+#[test]
+fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_followed() {
+    let model = find("dpm-line").unwrap();
+    let narrower = Narrower::from([("x".to_owned(), 2)]);
+    let lost = blocks(model, &model.claims.unwrap(), &Choices::default(), &narrower, 5).unwrap_err().to_string();
+    assert!(lost.contains("dpm_line.axis_x.x may overflow at clock "), "{lost}");
+    // A comparison of coordinates is no sum of unknown bits.
+    let model = find("ppc-line").unwrap();
+    let largest = model.claims.unwrap().geometries.largest(3).unwrap();
+    let machine = model.machine(&model.plan(&largest, &Choices::default()).unwrap()).unwrap();
+    let words: Vec<(Net, Word)> = machine.inputs.values().map(|port| (port.net, Word::Unknown)).collect();
+    let lost = follow(&machine.design, strobes(&machine), &words, &[], 100, |_, _| {}).unwrap_err();
+    assert!(matches!(lost, Lost::Claim { .. } | Lost::End { .. }), "{lost}");
+}
+
+#[test]
+fn the_command_proves_and_checks_at_one_width_and_refutes_one_bit_less() {
+    let folder = Folder::new();
+    let told = folder.good("prove dpm-line --bits 7 --certificate seven.cert");
+    for claim in ["no register overflows", "the end point is reached exactly", "every block ends"] {
+        assert!(told.contains(&format!("PROVED at k = 7: {claim}\n")), "{told}");
+    }
+    assert_eq!(folder.good("prove check seven.cert"), told);
+    let certificate = folder.read("seven.cert");
+    assert!(certificate.contains("counted 7 Q1 clocks=129 x=0+1*mx.0+2*mx.1+4*mx.2"), "{certificate}");
+    std::fs::write(folder.path("wrong.cert"), certificate.replacen("+2*mx.1", "+3*mx.1", 1)).unwrap();
+    assert_eq!(folder.run("prove check wrong.cert").code, 1);
+    let none: Vec<&str> = certificate.lines().filter(|line| !line.starts_with("counted")).collect();
+    std::fs::write(folder.path("none.cert"), none.join("\n") + "\n").unwrap();
+    assert_eq!(folder.run("prove check none.cert").code, 1);
+    let ran = folder.run("prove dpm-line --bits 4 --narrower x=2 --vcd trap.vcd");
+    assert!(ran.code == 1 && ran.out.starts_with("COUNTEREXAMPLE at k = 4: stepwave run dpm-line"), "{ran:?}");
+    assert!(
+        ran.err.contains("overflow of dpm_line.axis_x.x at clock ") && !folder.read("trap.vcd").is_empty(),
+        "{ran:?}"
+    );
+    for (words, hint) in [
+        ("prove ppc-line --bits 5", "leave --bits out"),
+        ("prove dpm-line --bits 3 --any-preset", "leave --any-preset out"),
+        ("prove dpm-line --bits 4 --radix 10", "leave --radix 10 out"),
+        ("prove dpm-line --bits 21", "21"),
+    ] {
+        let ran = folder.run(words);
+        assert!(ran.code == 2 && ran.err.contains(hint), "{words}: {ran:?}");
+    }
+    assert!(folder.good("widths dpm-line --box 4").contains("proved at k"));
+}
