@@ -30,7 +30,10 @@ pub(crate) struct ProveArgs {
     /// Take registers by so many bits narrower than by default: f=1
     #[arg(long, value_name = "REGISTER=BITS,…", value_parser = parse_narrower)]
     pub(crate) narrower: Vec<Narrower>,
-    /// Bits of coordinates, for models that are proved at one width at a time (default: all from 1 to 16)
+    /// Ask an SMT solver too, which reads SMT-LIB 2 from its input, about every geometry of --bits (default 2): 'z3 -in'
+    #[arg(long, value_name = "COMMAND")]
+    pub(crate) solver: Option<String>,
+    /// Bits of coordinates, for --solver and for models that are proved at one width at a time (default: 1 to 16)
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=20))]
     pub(crate) bits: Option<u32>,
     /// Let remainder registers start from any value, not only from --preset

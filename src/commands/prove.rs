@@ -8,10 +8,10 @@ use std::path::Path;
 use clap::Parser;
 use rayon::prelude::*;
 use stepwave::kernel::prove::{Certificate, Proof};
-use stepwave::models::{Choices, Kind, Model, find};
+use stepwave::models::{Choices, Claims, Kind, Model, find};
 use stepwave::report::run_command;
 use stepwave::study::proof::{
-    Block, CertificateFile, Counterexample, Fault, Narrower, ProofError, Subject, blocks, search,
+    Answer, Block, CertificateFile, Counterexample, Fault, Narrower, ProofError, Subject, ask, blocks, question, search,
 };
 
 use super::run::{Finished, simulate};
@@ -90,10 +90,56 @@ fn attempt(args: &ProveArgs) -> Result<(), Failure> {
     let narrower: Narrower = args.narrower.iter().flat_map(|list| list.0.iter().cloned()).collect();
     let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
     let counted = !claims.counted.is_empty();
-    if args.bits.is_some() && !counted {
+    if args.bits.is_some() && !counted && args.solver.is_none() {
         let model = model.name;
         return Err(Failure::Trouble(format!("{model} is proved for all k at once: leave --bits out")));
     }
+    let second = args.solver.as_deref().map(|command| asked(args, command, model, &claims, &choices, &narrower));
+    let second = second.transpose()?;
+    let own = own_attempt(args, model, &claims, &choices, narrower, counted);
+    match (&own, second) {
+        (Ok(()), Some(Answer::Sat)) => Err(Failure::Check(vec![format!(
+            "{}: what is proved here the solver says is wrong: one of both errs, please report this",
+            model.name
+        )])),
+        _ => own,
+    }
+}
+
+/// Bits of coordinates that a solver is asked about unless the user says otherwise.
+const ASKED: u32 = 2;
+
+/// What a solver says of every geometry of some bits.
+fn asked(
+    args: &ProveArgs,
+    command: &str,
+    model: &'static Model,
+    claims: &Claims,
+    choices: &Choices,
+    narrower: &Narrower,
+) -> Result<Answer, Failure> {
+    let k = args.bits.unwrap_or(ASKED);
+    let question = question(model, claims, choices, narrower, k)?;
+    let answer = ask(command, &question.script)?;
+    let (word, what) = match answer {
+        Answer::Sat => ("sat", "a register overflows or an end point is missed"),
+        Answer::Unsat => ("unsat", "no register overflows, and every end point is reached"),
+    };
+    let (geometries, clocks) = (question.geometries, question.clocks);
+    output::print(&format!(
+        "{command} says {word} of {geometries} geometries of {k} bits within {clocks} clocks: {what}\n"
+    ))?;
+    Ok(answer)
+}
+
+fn own_attempt(
+    args: &ProveArgs,
+    model: &'static Model,
+    claims: &Claims,
+    choices: &Choices,
+    narrower: Narrower,
+    counted: bool,
+) -> Result<(), Failure> {
     if args.any_preset && counted {
         return Err(Failure::Trouble(format!("{} has no remainder to preset: leave --any-preset out", model.name)));
     }
@@ -104,9 +150,9 @@ fn attempt(args: &ProveArgs) -> Result<(), Failure> {
     let refutes = |fault| fault != Fault::Refused || !narrower.is_empty();
     if counted {
         let ks = args.bits.map_or(COUNTED, |k| k..=k);
-        let found = followed(model, &choices, &narrower, ks.collect());
+        let found = followed(model, choices, &narrower, ks.collect());
         if !found.as_ref().is_ok_and(|blocks| blocks.iter().all(Block::is_exact))
-            && let Some(example) = search(model, &claims, &choices, &narrower, searched, refutes)
+            && let Some(example) = search(model, claims, choices, &narrower, searched, refutes)
         {
             return refuted(args, model, &example);
         }
@@ -126,10 +172,10 @@ fn attempt(args: &ProveArgs) -> Result<(), Failure> {
         return outputs.commit();
     }
     // What a simulation refutes needs no attempt.
-    if let Some(example) = search(model, &claims, &choices, &narrower, SEARCHED, refutes) {
+    if let Some(example) = search(model, claims, choices, &narrower, SEARCHED, refutes) {
         return refuted(args, model, &example);
     }
-    let subject = Subject::new(model, &choices, &narrower)?;
+    let subject = Subject::new(model, choices, &narrower)?;
     let subject = if args.any_preset { subject.with_any_preset() } else { subject };
     let kinds = subject.kinds();
     let attempts: Vec<Attempt> = kinds

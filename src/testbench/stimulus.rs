@@ -1,7 +1,7 @@
 //! The loading of blocks as data, for a test bench in another language, and as hardware, for model checkers.
 
 use stepwave_kernel::engine::{EngineKind, Rows};
-use stepwave_kernel::export::{Stall, Step, Stimulus, driven};
+use stepwave_kernel::export::{Driven, Stall, Step, Stimulus, driven};
 use stepwave_kernel::{Design, Diagnostics, Net, OnOverflow};
 use stepwave_models::ModelError;
 
@@ -42,6 +42,12 @@ impl Testbench {
     /// # Errors
     /// No load word bears such a name.
     pub fn driven_by_any(&self, registers: &[String]) -> Result<(Design, Vec<Net>), ModelError> {
+        let (driven, words) = self.driven_open(registers)?;
+        Ok((driven.design, words))
+    }
+
+    /// As [`driven_by_any`](Self::driven_by_any), and tells where the nets of the machine went.
+    pub(crate) fn driven_open(&self, registers: &[String]) -> Result<(Driven, Vec<Net>), ModelError> {
         let port = |register: &String| match self.machine.inputs.get(register) {
             Some(port) => Ok(port.net),
             None => Err(ModelError::MissingPort(format!("{register}_in"))),
@@ -51,7 +57,7 @@ impl Testbench {
         stimulus.steps.truncate(2);
         let driven = driven(self.design(), &stimulus, &words)?;
         let words = words.into_iter().map(|word| driven.net(word)).collect();
-        Ok((driven.design, words))
+        Ok((driven, words))
     }
 
     /// The registers that a block is loaded into.

@@ -75,3 +75,39 @@ fn bad_input_is_refused_in_a_sentence() {
         assert!(ran.err.contains(hint) && ran.err.lines().count() == 1, "{words}: {ran:?}");
     }
 }
+
+/// A solver of this name in the folder, which says this and reads nothing.
+#[cfg(unix)]
+fn solver(folder: &Folder, says: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let path = folder.path("solver");
+    std::fs::write(&path, format!("#!/bin/sh\necho '{says}'\n")).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path.display().to_string()
+}
+
+#[test]
+#[cfg(unix)]
+fn a_solver_that_contradicts_a_proof_or_talks_nonsense_is_told() {
+    let folder = Folder::new();
+    let command = solver(&folder, "unsat");
+    let told = folder.good(&format!("prove ppc-line --solver {command}"));
+    assert!(told.contains("says unsat of 48 geometries of 2 bits"), "{told}");
+    assert!(told.contains("PROVED for all k"), "{told}");
+    let ran = folder.run(&format!("prove ppc-line --solver {}", solver(&folder, "sat")));
+    assert_eq!(ran.code, 1);
+    assert!(ran.err.contains("the solver says is wrong"), "{ran:?}");
+    let ran = folder.run(&format!("prove ppc-line --solver {}", solver(&folder, "what?")));
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("said 'what?', neither sat nor unsat"), "{ran:?}");
+    let ran = folder.run("prove ppc-line --solver there/is/no/such/solver");
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("cannot be run"), "{ran:?}");
+    // One that talks without end and never listens.
+    let ran = folder.run("prove ppc-line --solver yes");
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("said 'y'"), "{ran:?}");
+    let ran = folder.run(&format!("prove dda-line --bits 16 --solver {}", solver(&folder, "unsat")));
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("more than 4096 geometries"), "{ran:?}");
+}

@@ -5,6 +5,7 @@ mod counted;
 mod counter;
 mod file;
 mod runs;
+mod solver;
 
 use std::collections::BTreeMap;
 
@@ -20,6 +21,7 @@ pub use counted::{Block, blocks};
 pub use counter::{Counterexample, Fault, search};
 pub use file::{CertificateFile, FileError};
 pub use runs::{State, states};
+pub use solver::{Answer, Question, SolverError, ask, question};
 
 /// Why nothing can be attempted.
 #[derive(Debug, thiserror::Error)]

@@ -26,7 +26,7 @@ mod words;
 
 pub use btor2::btor2;
 pub use driven::{Driven, driven};
-pub use smt2::smt2;
+pub use smt2::{smt2, smt2_asking};
 pub use testbench::{Stall, Step, Stimulus, testbench};
 pub use verilog::verilog;
 

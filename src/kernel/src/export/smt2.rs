@@ -21,6 +21,18 @@ use crate::netlist::{Net, Netlist, Op};
 /// the same text.
 #[must_use]
 pub fn smt2(design: &Design, checking: &Checking<'_>, depth: u64) -> String {
+    smt2_asking(design, checking, depth, |violated, _| format!("(assert {violated})\n(check-sat)\n"))
+}
+
+/// As [`smt2`], with another question in its place: `ask` gets the term for a violated property, and a function that tells
+/// the name of a net at a clock, or of one that is held (no clock).
+#[must_use]
+pub fn smt2_asking(
+    design: &Design,
+    checking: &Checking<'_>,
+    depth: u64,
+    ask: impl FnOnce(&str, &dyn Fn(Net, Option<u64>) -> String) -> String,
+) -> String {
     let script = Script::new(design, checking);
     let mut text = comment(checking.comment, "; ");
     _ = writeln!(
@@ -40,7 +52,8 @@ pub fn smt2(design: &Design, checking: &Checking<'_>, depth: u64) -> String {
     }
     let violated = (0..=depth).map(|clock| call("violated", script.flags.iter().map(|&net| script.at(net, clock))));
     let violated = joined("or", "false", violated.collect());
-    text + &format!("\n; The question.\n(assert {violated})\n(check-sat)\n")
+    let name = |net: Net, clock: Option<u64>| clock.map_or_else(|| script.name(net), |clock| script.at(net, clock));
+    text + "\n; The question.\n" + &ask(&violated, &name)
 }
 
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.
