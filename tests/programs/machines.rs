@@ -5,7 +5,9 @@ use stepwave::testbench::{Ending, Host, Next, ObserverError, Outcome, Sample, Te
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::program::{FAMILIES, Family, Size};
 use stepwave_models::{Choices, Hardware, OnOverflow, Preset};
-use stepwave_nc::{Cause, Curve, Direction, Feed, Place, Plane, PulseBlock, Rounder, Segment, Side, ToolMove, Way};
+use stepwave_nc::{
+    Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, Side, ToolMove, Way,
+};
 
 use crate::reference::{self, EndPoint, Form, cim_arc, cim_line, dpm_line, mindev_arc, mindev_line, ppc_arc, ppc_line};
 
@@ -66,11 +68,15 @@ fn run(family: &Family, moves: &[ToolMove], choices: &Choices, engine: EngineKin
     let mut rounder = Rounder::new((!family.arcs).then_some(0.5));
     let mut blocks = Vec::new();
     moves.iter().for_each(|of| rounder.blocks(of, &mut blocks).unwrap());
+    run_blocks(family, blocks, choices, engine)
+}
+
+fn run_blocks(family: &Family, blocks: Vec<PulseBlock>, choices: &Choices, engine: EngineKind) -> Ran {
     let mut size = Size::default();
     blocks.iter().for_each(|block| size.add(family, block));
     let hardware = family.plan(&size, choices).unwrap();
     let machine = family.machine(&hardware).unwrap();
-    let bench = Testbench::of_machine(hardware, machine);
+    let bench = Testbench::of_machine(hardware, machine).limited(1 << 20);
     let words: Vec<_> = blocks.iter().map(|block| family.words(bench.hardware(), block)).collect();
     let all: Vec<_> = words.iter().flatten().map(|block| block.words.clone()).collect();
     let (rate, blocks_of_machine) = (1 << 31, all.into_iter());
@@ -240,12 +246,18 @@ proptest! {
 #[test]
 fn an_integrator_that_would_stand_beside_an_axis_steps_at_once() {
     // From (3, 14) to (15, 0) clockwise about the origin in 8 bits: with half presets the pair comes to a stand there.
-    let arc = Way::Arc { plane: Plane::Xy, center: [0.0, 0.0], direction: Direction::Clockwise };
-    let moves = [tool_move([0.0; 3], [3.0, 14.0, 0.0], Way::Line), tool_move([3.0, 14.0, 0.0], [15.0, 0.0, 0.0], arc)];
+    let arc = Arc::new([3, 14], [15, 0], [0, 0], Direction::Clockwise).unwrap();
+    let line = Line::new(vec![0, 0, 0], vec![3, 14, 0]).unwrap();
+    let block = |curve: Curve, from, to| {
+        let of = tool_move([0.0; 3], [0.0; 3], Way::Line);
+        PulseBlock { of, plane: Plane::Xy, curve, from, to }
+    };
+    let blocks =
+        [block(Curve::Line(line), [0; 3], [3, 14, 0]), block(Curve::Arc(arc), [3, 14, 0], [15, 0, 0])].to_vec();
     for preset in [Preset::Half, Preset::Zero, Preset::Full] {
         let width = Some(stepwave_kernel::Width::new(8).unwrap());
         let choices = Choices { preset: Some(preset), width, ..choices(false) };
-        let ran = run(family("dda"), &moves, &choices, EngineKind::Word);
-        assert_eq!(ran.outcome.reached, [15, 0, 0]);
+        let ran = run_blocks(family("dda"), blocks.clone(), &choices, EngineKind::Word);
+        assert_eq!((ran.outcome.ending, ran.outcome.reached), (Ending::Done, vec![15, 0, 0]), "{preset}");
     }
 }
