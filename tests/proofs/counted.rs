@@ -118,6 +118,21 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
     let narrower = Narrower::from([("x".to_owned(), 2)]);
     let lost = blocks(model, &model.claims.unwrap(), &Choices::default(), &narrower, 5).unwrap_err().to_string();
     assert!(lost.contains("dpm_line.axis_x.x may overflow at clock "), "{lost}");
+    // Loaded at clock 1, x of 5 bits can have come to 15 at clock 16, and to -16 at clock 17: a pulse more does not fit.
+    let largest = model.claims.unwrap().geometries.largest(5).unwrap();
+    let widths = [("x".to_owned(), Width::new(5).unwrap())].into();
+    let choices = Choices { width: Width::new(5).ok(), widths, ..Choices::default() };
+    let machine = model.machine(&model.plan(&largest, &choices).unwrap()).unwrap();
+    for (negative, clock) in [(0, 16), (1, 17)] {
+        let word = |name: &str| match name {
+            "mx" | "my" => Word::Unknown,
+            "sx" => Word::Known(negative),
+            _ => Word::Known(0),
+        };
+        let words: Vec<(Net, Word)> = machine.inputs.iter().map(|(name, port)| (port.net, word(name))).collect();
+        let lost = follow(&machine.design, strobes(&machine), &words, &[], 100, |_, _| {}).unwrap_err().to_string();
+        assert!(lost.contains(&format!("dpm_line.axis_x.x may overflow at clock {clock}")), "{lost}");
+    }
     // A comparison of coordinates is no sum of unknown bits.
     let model = find("ppc-line").unwrap();
     let largest = model.claims.unwrap().geometries.largest(3).unwrap();
