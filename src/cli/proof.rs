@@ -11,7 +11,8 @@ use super::values::{Narrower, parse_narrower};
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(
     after_help = "Verdicts: PROVED for all k, or at the k that are named; COUNTEREXAMPLE, replayed by the simulator, with the command that shows\n\
-    it; NOT PROVED, with what could not be shown. Exit code 0 only where everything is proved.\n\n\
+    it; NOT INDUCTIVE, with a step from a state that the invariants allow and that may be unreachable; UNKNOWN, with what\n\
+    was tried. Exit code 0 only where everything is proved.\n\n\
     Examples:\n  \
     stepwave prove ppc-line\n  \
     stepwave prove ppc-line --narrower f=1 --vcd trap.vcd\n  \
@@ -42,7 +43,7 @@ pub(crate) struct ProveArgs {
     /// Write the proof for `stepwave prove check`
     #[arg(long, value_name = "FILE")]
     pub(crate) certificate: Option<PathBuf>,
-    /// Write the wave of a counterexample as VCD
+    /// Write the wave of a counterexample, or of a step that keeps the proof from being one, as VCD
     #[arg(long, value_name = "FILE")]
     pub(crate) vcd: Option<PathBuf>,
     /// Tell the invariants that were proved, and the paths on which something could not be shown

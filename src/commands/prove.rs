@@ -1,21 +1,25 @@
 //! `stepwave prove`: proofs over all geometries and widths, and counterexamples.
 
+mod check;
+mod replay;
+mod verdict;
+
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::ops::RangeInclusive;
-use std::path::Path;
 
-use clap::Parser;
 use rayon::prelude::*;
-use stepwave::kernel::prove::{Certificate, Proof};
-use stepwave::models::{Choices, Claims, Kind, Model, find};
-use stepwave::report::run_command;
+use stepwave::models::{Choices, Claims, Model, find};
 use stepwave::study::proof::{
-    Answer, Block, CertificateFile, Counterexample, Fault, Narrower, ProofError, Subject, ask, blocks, question, search,
+    Answer, Block, CertificateFile, DOUBTED, Fault, Narrower, ProofError, Subject, ask, blocks, choices_at, question,
+    search,
 };
 
-use super::run::{Finished, simulate};
-use crate::cli::{Cli, Command, ProveArgs, ProveCommand};
+use check::check;
+use replay::{doubted, refuted};
+use verdict::{Attempt, Claim, told, unproved};
+
+use crate::cli::{ProveArgs, ProveCommand};
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
 
@@ -81,8 +85,6 @@ fn judge(model: &Model, blocks: &[Block], what: &str) -> Result<(), Failure> {
     }
     Err(Failure::Check(vec![format!("not proved: {}: {}", Claim::Exact.name(), wrong.join("; "))]))
 }
-
-type Attempt = (Kind, Proof, Certificate);
 
 fn attempt(args: &ProveArgs) -> Result<(), Failure> {
     let model = find(args.model.as_deref().unwrap_or_default())?;
@@ -203,161 +205,28 @@ fn own_attempt(
         outputs.commit()?;
         return output::print(&text);
     }
-    output::print(&text)?;
     let names: Vec<&str> = open.iter().map(|claim| claim.name()).collect();
-    Err(Failure::Check(vec![format!(
+    let mut failure = format!(
         "not proved: {}; no counterexample among the geometries of up to {} bits that were tried",
         names.join(", "),
         SEARCHED.end()
-    )]))
-}
-
-/// What is claimed of every model.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Claim {
-    NoOverflow,
-    Exact,
-    Ends,
-}
-
-impl Claim {
-    const ALL: [Claim; 3] = [Claim::NoOverflow, Claim::Exact, Claim::Ends];
-
-    fn name(self) -> &'static str {
-        match self {
-            Claim::NoOverflow => "no register overflows",
-            Claim::Exact => "the end point is reached exactly",
-            Claim::Ends => "every block ends",
-        }
-    }
-
-    /// Why a proof does not show it; `None` where it does.
-    fn open(self, proof: &Proof) -> Option<String> {
-        if !proof.holds() {
-            let why = proof.not_inductive.iter().map(|invariant| format!("a step does not keep {invariant}"));
-            return Some(why.chain(proof.astray.clone()).collect::<Vec<_>>().join("; "));
-        }
-        match self {
-            Claim::NoOverflow => proof.violated.first().map(|(_, path)| path.clone()),
-            Claim::Exact => proof.missed.first().map(|(goal, path)| format!("{goal}: {path}")),
-            Claim::Ends => proof.endless.clone(),
-        }
-    }
-}
-
-fn unproved(attempts: &[Attempt]) -> Vec<Claim> {
-    Claim::ALL.into_iter().filter(|claim| attempts.iter().any(|(_, proof, _)| claim.open(proof).is_some())).collect()
-}
-
-fn told(model: &Model, subject: &Subject, attempts: &[Attempt], details: bool) -> String {
-    let (least, greatest) = subject.ks();
-    let (paths, shown) = attempts
-        .iter()
-        .fold((0, 0), |(paths, shown), (_, proof, _)| (paths + proof.paths, shown + proof.contradictions));
-    // Writing to a string cannot fail.
-    let mut text = format!("{}: {}, for every k from {least} to {greatest}\n", model.name, subject.about());
-    for claim in Claim::ALL {
-        let open: Vec<(&str, String)> =
-            attempts.iter().filter_map(|(kind, proof, _)| Some((kind.name.as_str(), claim.open(proof)?))).collect();
-        match open.first() {
-            None => {
-                let _ = writeln!(text, "PROVED for all k: {}", claim.name());
-            }
-            Some((kind, why)) => {
-                let many = if open.len() == attempts.len() {
-                    "for none".to_owned()
-                } else {
-                    format!("not for {}", open.len())
-                };
-                let _ = writeln!(text, "not proved: {} ({many} of {} kinds of geometry)", claim.name(), attempts.len());
-                if details {
-                    let _ = writeln!(text, "  {kind}: {why}");
-                }
-            }
-        }
-    }
-    let _ = writeln!(
-        text,
-        "{} kinds of geometry, {paths} paths, {shown} contradictions, each checked in exact arithmetic",
-        attempts.len()
     );
-    if details {
-        for (kind, proof, _) in attempts {
-            let _ = writeln!(text, "\n{}", kind.name);
-            for invariant in &proof.invariants {
-                let _ = writeln!(text, "  {invariant}");
-            }
-        }
-    }
-    text
-}
-
-/// Runs a counterexample as its command does, with its wave if one is wanted, and tells it.
-fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample) -> Result<(), Failure> {
-    let Counterexample { k, curve, choices, .. } = example;
-    let mut command = run_command(model, curve, choices);
-    if let Some(path) = &args.vcd {
-        command += &format!(" --vcd {}", path.display());
-    }
-    let Ok(Cli { command: Command::Run(run) }) = Cli::try_parse_from(command.split(' ')) else {
-        return Err(Failure::Trouble(format!("the counterexample cannot be replayed: {command}")));
-    };
-    let mut outputs = Outputs::default();
-    let shown = match simulate(&run, &mut outputs) {
-        Ok(Finished { failures, .. }) => failures.join("; "),
-        Err(refused) => refused.to_string().trim_start_matches("stepwave: ").to_owned(),
-    };
-    if shown.is_empty() {
-        return Err(Failure::Trouble(format!("the lanes and a single run differ: {command}")));
-    }
-    outputs.commit()?;
-    output::print(&format!("COUNTEREXAMPLE at k = {k}: {command}\n"))?;
-    Err(Failure::Check(vec![format!("refuted at k = {k}: {shown}")]))
-}
-
-fn check(path: &Path) -> Result<(), Failure> {
-    let name = path.display();
-    let text =
-        std::fs::read_to_string(path).map_err(|error| Failure::Trouble(format!("cannot read {name}: {error}")))?;
-    let file: CertificateFile =
-        text.parse().map_err(|error| Failure::Trouble(format!("{name} is no certificate: {error}")))?;
-    let model = find(&file.model)?;
-    let words = ["stepwave", "prove", model.name].map(str::to_owned).into_iter().chain(file.options.iter().cloned());
-    let parsed = Cli::try_parse_from(words).map_err(|error| Failure::usage(&error))?;
-    let (choices, any_preset) = match &parsed.command {
-        Command::Prove(args) => (args.hardware.choices(), args.any_preset),
-        _ => (Choices::default(), false),
-    };
-    if model.claims.is_some_and(|claims| !claims.counted.is_empty()) {
-        let mut ks: Vec<u32> = Vec::new();
-        for block in &file.counted {
-            let k = block.split(' ').next().and_then(|k| k.parse().ok()).filter(|k| (1..=20).contains(k));
-            ks.push(k.ok_or_else(|| Failure::Trouble(format!("{name} is no certificate: counted {block}")))?);
-        }
-        ks.dedup();
-        let blocks = followed(model, &choices, &file.narrower.iter().cloned().collect(), ks)?;
-        if blocks.iter().map(Block::to_string).ne(file.counted.iter().cloned()) {
-            return Err(Failure::Check(vec![format!("{name} does not say what its blocks come to")]));
-        }
-        return judge(model, &blocks, &format!("the blocks of {name}"));
-    }
-    let subject = Subject::new(model, &choices, &file.narrower.iter().cloned().collect())?;
-    let subject = if any_preset { subject.with_any_preset() } else { subject };
-    let attempts: Vec<Attempt> = subject
-        .kinds()
-        .into_par_iter()
-        .map(|kind| {
-            let own = file.kinds.iter().find(|(other, _)| *other == kind.name);
-            let certificate = own.map(|(_, certificate)| certificate.clone()).unwrap_or_default();
-            Ok((kind.clone(), subject.check(&kind, &certificate)?, certificate))
-        })
-        .collect::<Result<_, ProofError>>()?;
-    output::print(&told(model, &subject, &attempts, false))?;
-    let open = unproved(&attempts);
-    let names: Vec<&str> = open.iter().map(|claim| claim.name()).collect();
-    if open.is_empty() {
-        Ok(())
+    let doubtful: Vec<_> = attempts.iter().filter(|(_, proof, _)| Claim::is_doubtful(proof)).collect();
+    let doubtful: Vec<_> = doubtful.into_iter().map(|(kind, _, certificate)| (kind, certificate)).collect();
+    let looked = subject.doubt(&doubtful)?;
+    if let Some(doubt) = &looked.found {
+        let own = choices_at(model, &claims, &choices, &narrower, doubt.k)?;
+        text += &doubted(args, model, doubt, &own)?;
+        failure += "; a step from a state that may be unreachable shows why";
+    } else if doubtful.is_empty() {
+        text += "UNKNOWN: whether every block ends; no number is stated that every step makes less\n";
     } else {
-        Err(Failure::Check(vec![format!("{name} does not prove: {}", names.join(", "))]))
+        let [first, last] = DOUBTED;
+        text += &format!(
+            "UNKNOWN: no step from {} states at k = {first} and {last} that the invariants allow shows why\n",
+            looked.tried
+        );
     }
+    output::print(&text)?;
+    Err(Failure::Check(vec![failure]))
 }

@@ -100,6 +100,15 @@ pub enum Ending {
     Limit,
 }
 
+/// A state in which a machine is put by hand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Values of the design's registers, in its order.
+    pub registers: Vec<u64>,
+    /// Values of the design's inputs, in its order.
+    pub inputs: Vec<u64>,
+}
+
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
@@ -230,6 +239,30 @@ impl Testbench {
         let mut run = self.begin(engine, observers);
         run.restore(state);
         run.all_blocks()
+    }
+
+    /// Shows a machine over some clocks from any state, whether a run comes to it or not. The state is sample 0; nothing is
+    /// loaded, and nothing ends it before.
+    ///
+    /// # Errors
+    /// An observer fails.
+    ///
+    /// # Panics
+    /// If the state has not as many values as the design has registers and inputs.
+    pub fn show(&self, start: &Start, clocks: u64, observers: &mut [&mut dyn Observer]) -> Result<(), ObserverError> {
+        let watch = Watch { columns: self.columns.nets().to_vec(), stops: Vec::new() };
+        let mut engine = EngineKind::Word.build(self.design(), &watch);
+        let mut rows = Rows::new(watch.columns.len(), CHUNK);
+        engine.restore(0, &start.registers, &start.inputs);
+        rows.push(0, |column| engine.value(watch.columns[column]));
+        loop {
+            engine.run(clocks.saturating_sub(engine.clock()), &mut rows);
+            observers.iter_mut().try_for_each(|observer| observer.samples(&rows))?;
+            rows.clear();
+            if engine.clock() >= clocks {
+                return Ok(());
+            }
+        }
     }
 
     fn begin<'a, 'o>(&'a self, engine: EngineKind, observers: &'a mut [&'o mut dyn Observer]) -> Run<'a, 'o> {

@@ -3,6 +3,7 @@
 
 mod command;
 mod counted;
+mod doubts;
 mod invariants;
 mod widths;
 

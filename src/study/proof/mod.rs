@@ -3,6 +3,7 @@
 
 mod counted;
 mod counter;
+mod doubt;
 mod file;
 mod runs;
 mod solver;
@@ -13,13 +14,15 @@ use stepwave_kernel::formula::{self, Formula};
 use stepwave_kernel::prove::{
     self, Case, CaseError, Certificate, Family, FamilyError, Lost, Proof, Row, Strobes, Symbol,
 };
-use stepwave_kernel::{Design, Width};
+use stepwave_kernel::{Design, Net, Width};
 use stepwave_models::{AXES, Choices, Claims, Hardware, Kind, Machine, Model, ModelError};
 use stepwave_nc::Curve;
 
 pub use counted::{Block, blocks};
 pub use counter::{Counterexample, Fault, search};
+pub use doubt::{DOUBTED, Doubt, Doubted};
 pub use file::{CertificateFile, FileError};
+use runs::number;
 pub use runs::{State, states};
 pub use solver::{Answer, Question, SolverError, ask, question};
 
@@ -89,6 +92,9 @@ pub enum ProofError {
         kind: String,
     },
 }
+
+/// Words of the loader, and what the symbols of the geometry are.
+type Loaded = (Vec<(Net, u64)>, Vec<i128>);
 
 /// Bits by which registers are narrower than by default, by name.
 pub type Narrower = BTreeMap<String, u32>;
@@ -291,19 +297,8 @@ impl Subject {
         let presets = self.presets();
         let mut rows = Vec::new();
         for (place, (member, curve, symbols)) in curves.iter().enumerate() {
-            let (k, hardware, machine) = &self.members[*member];
-            let blocks = machine.encode(hardware, &self.model.words(hardware, curve))?;
-            // Several blocks are several loads; the first alone is that of the kind.
-            let Some(mut words) = blocks.into_iter().next() else { continue };
-            let mut symbols = symbols.clone();
-            for (number, register) in presets.iter().enumerate() {
-                let port = machine.inputs[register];
-                // Any values, spread over the register.
-                let value = (place as u64 * 7919 + number as u64 * 104_729) & port.width.mask();
-                words.retain(|(net, _)| *net != port.net);
-                words.push((port.net, value));
-                symbols.push(i128::from(value));
-            }
+            let Some((words, symbols)) = self.loaded(place, *member, curve, symbols)? else { continue };
+            let (k, _, machine) = &self.members[*member];
             rows.extend(states(machine, &words).iter().map(|state| row(*k, &symbols, machine, state)));
         }
         let any = |register: &String| Symbol {
@@ -328,6 +323,31 @@ impl Subject {
             bitwise: self.claims.bitwise.iter().map(|register| (*register).to_owned()).collect(),
         };
         Ok((case, rows))
+    }
+
+    /// The words of the loader for a curve, and its symbols with the presets that were chosen for it by its `place` among
+    /// others; `None` where there is nothing to load.
+    fn loaded(
+        &self,
+        place: usize,
+        member: usize,
+        curve: &Curve,
+        symbols: &[i128],
+    ) -> Result<Option<Loaded>, ProofError> {
+        let (_, hardware, machine) = &self.members[member];
+        let blocks = machine.encode(hardware, &self.model.words(hardware, curve))?;
+        // Several blocks are several loads; the first alone is that of the kind.
+        let Some(mut words) = blocks.into_iter().next() else { return Ok(None) };
+        let mut symbols = symbols.to_vec();
+        for (number, register) in self.presets().iter().enumerate() {
+            let port = machine.inputs[register];
+            // Any values, spread over the register.
+            let value = (place as u64 * 7919 + number as u64 * 104_729) & port.width.mask();
+            words.retain(|(net, _)| *net != port.net);
+            words.push((port.net, value));
+            symbols.push(i128::from(value));
+        }
+        Ok(Some((words, symbols)))
     }
 
     /// Curves of a kind to learn from: place of the member, curve, symbols.

@@ -12,10 +12,7 @@ impl State {
     /// The number that a net means, by the reading of its name.
     #[must_use]
     pub fn number(&self, machine: &Machine, net: Net) -> i128 {
-        let netlist = machine.design.netlist();
-        let width = netlist.width(net);
-        let bits = self.0.get(net.index()).copied().unwrap_or(0);
-        netlist.name_of(net).map_or(i128::from(bits), |named| named.format.reading().number(width, bits))
+        number(machine, net, self.0.get(net.index()).copied().unwrap_or(0))
     }
 
     /// The number of this name, as formulas between steps use it: the leaf name of a net.
@@ -23,6 +20,13 @@ impl State {
     pub fn value(&self, machine: &Machine, name: &str) -> Option<i128> {
         machine.design.netlist().find(name).map(|named| self.number(machine, named.net))
     }
+}
+
+/// The number that these bits of a net mean, by the reading of its name.
+pub(super) fn number(machine: &Machine, net: Net, bits: u64) -> i128 {
+    let netlist = machine.design.netlist();
+    let width = netlist.width(net);
+    netlist.name_of(net).map_or(i128::from(bits), |named| named.format.reading().number(width, bits))
 }
 
 /// Rows of one run at most: a block that comes to a stand may go on completing steps.

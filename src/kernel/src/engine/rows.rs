@@ -192,7 +192,7 @@ impl Rows {
 
     /// Records the sample of `clock`, if there is room and something to record: `value` gives that of each column.
     #[inline]
-    pub(super) fn push(&mut self, clock: u64, value: impl Fn(usize) -> u64) {
+    pub fn push(&mut self, clock: u64, value: impl Fn(usize) -> u64) {
         if self.len == self.capacity || self.columns == 0 {
             return;
         }

@@ -19,6 +19,7 @@
 mod certificate;
 mod counted;
 mod decisions;
+mod doubt;
 mod family;
 mod farkas;
 mod infer;
@@ -33,6 +34,7 @@ mod variables;
 
 pub use certificate::{Certificate, CertificateError};
 pub use counted::{Followed, Lost, Sample, Sum, Word, follow};
+pub use doubt::Doubts;
 pub use family::{Family, FamilyError};
 pub use infer::fit;
 pub use proof::{Proof, Row, check, prove, violated};

@@ -45,6 +45,9 @@ pub struct Proof {
 }
 
 impl Proof {
+    /// What `endless` says where the case states no rank.
+    pub const NO_RANK: &str = "no rank is stated";
+
     /// The invariants are inductive, so that claims and goals that are not named as open are proved.
     #[must_use]
     pub fn holds(&self) -> bool {
@@ -191,7 +194,7 @@ fn drop_broken(system: &System<'_>, invariants: &mut [Invariants], findings: &Fi
     authored
 }
 
-fn in_words(system: &System<'_>, any: &[Poly]) -> String {
+pub(super) fn in_words(system: &System<'_>, any: &[Poly]) -> String {
     let name = |var| system.variables.name(var);
     any.iter().map(|poly| format!("{} >= 0", poly.display(name))).collect::<Vec<_>>().join(" or ")
 }
@@ -207,7 +210,7 @@ fn proof(system: &System<'_>, findings: &Findings, certificate: &Certificate, no
         invariants.extend(own.clauses.iter().map(|any| format!("{mode}{}", in_words(system, any))));
     }
     let missed = findings.missed.iter().map(|(number, path)| (system.goals[*number].0.clone(), path.clone()));
-    let no_rank = || system.rank.is_none().then(|| "no rank is stated".to_owned());
+    let no_rank = || system.rank.is_none().then(|| Proof::NO_RANK.to_owned());
     Proof {
         invariants,
         not_inductive,

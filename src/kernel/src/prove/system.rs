@@ -246,7 +246,7 @@ fn is_signed(family: &Family, register: Net) -> bool {
 }
 
 /// Least and greatest number in a register.
-fn range(family: &Family, register: Net) -> (Poly, Poly) {
+pub(super) fn range(family: &Family, register: Net) -> (Poly, Poly) {
     debug_assert!(matches!(family.netlist().cell(register).op, Op::Register { .. }));
     let width = family.width(register);
     if is_signed(family, register) {

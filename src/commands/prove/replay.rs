@@ -1,0 +1,85 @@
+//! Counterexamples and doubtful steps: shown by the simulator before they are told.
+
+use std::fmt::Write as _;
+
+use clap::Parser;
+use stepwave::kernel::trace::timescale::ClockTime;
+use stepwave::models::{Choices, Model};
+use stepwave::nc::Curve;
+use stepwave::report::{self, run_command};
+use stepwave::study::proof::{Counterexample, Doubt};
+use stepwave::testbench::{Observer, OverflowWatch, Testbench};
+
+use super::super::run::{Finished, simulate};
+use super::super::wave::{Sinks, Waves};
+use crate::cli::{Cli, Command, ProveArgs, RunArgs};
+use crate::failure::Failure;
+use crate::output::{self, Outputs};
+
+/// The run of a geometry, with its wave if one is wanted, and the command that repeats it.
+fn replayed(
+    args: &ProveArgs,
+    model: &Model,
+    curve: &Curve,
+    choices: &Choices,
+) -> Result<(String, Box<RunArgs>), Failure> {
+    let mut command = run_command(model, curve, choices);
+    if let Some(path) = &args.vcd {
+        command += &format!(" --vcd {}", path.display());
+    }
+    match Cli::try_parse_from(command.split(' ')) {
+        Ok(Cli { command: Command::Run(run) }) => Ok((command, run)),
+        _ => Err(Failure::Trouble(format!("what was found cannot be replayed: {command}"))),
+    }
+}
+
+/// Runs a counterexample as its command does, with its wave if one is wanted, and tells it.
+pub(super) fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample) -> Result<(), Failure> {
+    let Counterexample { k, curve, choices, .. } = example;
+    let (command, run) = replayed(args, model, curve, choices)?;
+    let mut outputs = Outputs::default();
+    let shown = match simulate(&run, &mut outputs) {
+        Ok(Finished { failures, .. }) => failures.join("; "),
+        Err(refused) => refused.to_string().trim_start_matches("stepwave: ").to_owned(),
+    };
+    if shown.is_empty() {
+        return Err(Failure::Trouble(format!("the lanes and a single run differ: {command}")));
+    }
+    outputs.commit()?;
+    output::print(&format!("COUNTEREXAMPLE at k = {k}: {command}\n"))?;
+    Err(Failure::Check(vec![format!("refuted at k = {k}: {shown}")]))
+}
+
+/// Shows a step that keeps a proof from being one, with its wave if one is wanted, and tells it.
+pub(super) fn doubted(args: &ProveArgs, model: &Model, doubt: &Doubt, choices: &Choices) -> Result<String, Failure> {
+    let Doubt { k, kind, curve, start, clocks, wrong, state } = doubt;
+    let (_, run) = replayed(args, model, curve, choices)?;
+    let bench = Testbench::new(model, curve, choices)?;
+    let title = format!("{}, from a state that may be unreachable", report::title(model, bench.hardware(), curve));
+    let mut outputs = Outputs::default();
+    let time = ClockTime::from_hz(run.clock.clock_hz)?;
+    let sinks = Sinks::open(&run.trace, &mut outputs)?;
+    let mut waves = sinks.map(|sinks| Waves::new(&bench, &run.trace, sinks, time, &title)).transpose()?;
+    let mut overflow = OverflowWatch::new(&bench);
+    let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow];
+    observers.extend(waves.iter_mut().flat_map(Waves::observers));
+    bench.show(start, *clocks, &mut observers)?;
+    if let Some(waves) = waves {
+        waves.finish(&overflow.events(), *clocks, &mut outputs)?;
+    }
+    outputs.commit()?;
+    let mut text = format!("NOT INDUCTIVE at k = {k}, {kind}: {wrong}\n");
+    let held: Vec<String> = state.iter().map(|(register, number)| format!("{register} = {number}")).collect();
+    // Writing to a string cannot fail.
+    let _ =
+        writeln!(text, "  clock 0, a state that the invariants allow and that may be unreachable: {}", held.join(", "));
+    let _ = writeln!(
+        text,
+        "  clock {clocks}, the end of the step; the inputs are those of {}",
+        run_command(model, curve, choices)
+    );
+    if let Some(event) = overflow.events().first() {
+        let _ = writeln!(text, "  {event}");
+    }
+    Ok(text)
+}

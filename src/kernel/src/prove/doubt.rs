@@ -1,0 +1,164 @@
+//! What stands in the way of a proof: states that the invariants allow, and what a step from one of them must not do.
+//! No run need come to such a state; but as long as the invariants allow it, nothing can be concluded from them.
+
+use super::certificate::Certificate;
+use super::family::Family;
+use super::obligations::Invariants;
+use super::poly::{Poly, Var};
+use super::proof::in_words;
+use super::system::{Case, CaseError, Strobes, System, range};
+use crate::netlist::Net;
+
+/// The invariants of an attempt, by which states and steps are judged.
+#[derive(Clone, Debug)]
+pub struct Doubts<'f> {
+    system: System<'f>,
+    invariants: Vec<Invariants>,
+    relevant: Vec<Var>,
+}
+
+/// What every variable stands for.
+type Values = Vec<i128>;
+
+impl<'f> Doubts<'f> {
+    /// The invariants that an attempt came to, and those of the author, kept or not.
+    ///
+    /// # Errors
+    /// The case does not fit the netlist.
+    pub fn new(
+        family: &'f Family,
+        strobes: Strobes,
+        case: &Case,
+        certificate: &Certificate,
+    ) -> Result<Doubts<'f>, CaseError> {
+        let system = System::new(family, strobes, case)?;
+        let mut invariants = certificate.invariants.clone();
+        for own in &mut invariants {
+            let lost: Vec<_> = system.authored.iter().filter(|(_, any)| !own.clauses.contains(any)).collect();
+            own.clauses.extend(lost.into_iter().map(|(_, any)| any.clone()));
+        }
+        let mut relevant: Vec<Var> = system.relevant().into_iter().collect();
+        relevant.sort_unstable();
+        Ok(Doubts { system, invariants, relevant })
+    }
+
+    /// Shows states between two steps that the invariants allow for a geometry of k-bit coordinates, until `visit` says
+    /// that it has seen enough: what each register means, in the order of the design. Of more than `most` combinations
+    /// of what is free, so many are tried, spread over all. Registers on which nothing depends are as in `usual`.
+    ///
+    /// Gives how many states were shown.
+    pub fn states(
+        &self,
+        k: u32,
+        symbols: &[i128],
+        usual: &[i128],
+        most: u64,
+        mut visit: impl FnMut(&[i128]) -> bool,
+    ) -> u64 {
+        let mut shown = 0;
+        for own in &self.invariants {
+            let mut values = self.system.row(self.system.family.scale_at(k), symbols, usual);
+            for ((_, var), value) in self.system.modes.iter().zip(&own.modes) {
+                values[var.index()] = *value;
+            }
+            let free = self.free(own, &values);
+            let count = free.iter().fold(1_u128, |count, (_, least, greatest)| {
+                count.saturating_mul((greatest - least + 1).max(0).unsigned_abs())
+            });
+            let tried = count.min(most.into());
+            // By the golden section, so that no pattern of the numbers is met.
+            let stride = if tried == count { 1 } else { (count / 1000).saturating_mul(618) | 1 };
+            for place in 0..tried {
+                let mut place = place.wrapping_mul(stride) % count;
+                for (var, least, greatest) in &free {
+                    let span = (greatest - least + 1).unsigned_abs();
+                    values[var.index()] = least + i128::try_from(place % span).unwrap_or(0);
+                    place /= span;
+                }
+                if self.complete(own, &mut values) {
+                    shown += 1;
+                    if visit(&self.registers(&values)) {
+                        return shown;
+                    }
+                }
+            }
+        }
+        shown
+    }
+
+    /// Something depends on this register.
+    #[must_use]
+    pub fn matters(&self, register: Net) -> bool {
+        let bitwise = self.system.bitwise.iter().any(|(net, _)| *net == register);
+        bitwise || self.system.registers.iter().any(|(net, var)| *net == register && self.relevant.contains(var))
+    }
+
+    /// What is wrong with a step that begins and ends in these states and overflows nowhere, in words; `None` where it is
+    /// as it should be.
+    #[must_use]
+    pub fn judge(&self, k: u32, symbols: &[i128], before: &[i128], after: &[i128], done: bool) -> Option<String> {
+        let row = |registers| self.system.row(self.system.family.scale_at(k), symbols, registers);
+        let (before, after) = (row(before), row(after));
+        if done {
+            let missed = self.system.goals.iter().find(|(_, any)| !is_any(any, &after));
+            return missed.map(|(name, _)| format!("the block ends, but {name} does not hold"));
+        }
+        let broken = self.system.authored.iter().find(|(_, any)| !is_any(any, &after));
+        if let Some((name, any)) = broken {
+            return Some(format!("{name} does not hold any more: {}", in_words(&self.system, any)));
+        }
+        let rank = self.system.rank.as_ref()?;
+        let (before, after) = (rank.value(|var| before[var.index()])?, rank.value(|var| after[var.index()])?);
+        (after >= before).then(|| format!("the steps that are left do not become less: {before}, then {after}"))
+    }
+
+    /// Variables that the invariants do not determine, with their least and greatest values.
+    fn free(&self, own: &Invariants, values: &[i128]) -> Vec<(Var, i128, i128)> {
+        let is_fixed = |var: Var| {
+            own.equalities.iter().any(|(other, _)| *other == var) || self.system.modes.iter().any(|(_, m)| *m == var)
+        };
+        let value = |poly: &Poly| poly.value(|var| values[var.index()]).unwrap_or(0);
+        let of_register = |(net, var): &(Net, Var)| {
+            let (least, greatest) = range(self.system.family, *net);
+            (*var, value(&least), value(&greatest))
+        };
+        let registers = self.system.registers.iter().filter(|(_, var)| self.relevant.contains(var)).map(of_register);
+        let bits = self.system.bitwise.iter().flat_map(|(_, bits)| bits.iter().map(|bit| (*bit, 0, 1)));
+        registers.chain(bits).filter(|(var, ..)| !is_fixed(*var)).collect()
+    }
+
+    /// Works out what the invariants determine; whether they all hold then, and every register holds its number.
+    fn complete(&self, own: &Invariants, values: &mut Values) -> bool {
+        for (var, poly) in &own.equalities {
+            let Some(value) = poly.value(|other| values[other.index()]) else { return false };
+            values[var.index()] = value;
+        }
+        let fits = |(net, var): &(Net, Var)| {
+            let (least, greatest) = range(self.system.family, *net);
+            is_any(&[Poly::from(*var).minus(&least)], values) && is_any(&[greatest.minus(&Poly::from(*var))], values)
+        };
+        let is_bit = |bit: &Var| (0..=1).contains(&values[bit.index()]);
+        own.clauses.iter().all(|any| is_any(any, values))
+            && self.system.bitwise.iter().all(|(_, bits)| bits.iter().all(is_bit))
+            && self.system.registers.iter().all(fits)
+    }
+
+    /// What each register means, in the order of the design.
+    fn registers(&self, values: &[i128]) -> Vec<i128> {
+        let held = |register: &Net| {
+            let whole = self.system.registers.iter().find(|(net, _)| net == register);
+            let bits = self.system.bitwise.iter().find(|(net, _)| net == register);
+            match (whole, bits) {
+                (Some((_, var)), _) => values[var.index()],
+                (None, Some((_, bits))) => bits.iter().rev().fold(0, |number, bit| 2 * number + values[bit.index()]),
+                (None, None) => 0,
+            }
+        };
+        self.system.family.design().registers().iter().map(held).collect()
+    }
+}
+
+/// One of these is 0 or more.
+fn is_any(any: &[Poly], values: &[i128]) -> bool {
+    any.iter().any(|poly| poly.value(|var| values[var.index()]).is_some_and(|number| number >= 0))
+}

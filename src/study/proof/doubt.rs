@@ -1,0 +1,188 @@
+//! Steps that keep a proof from being one: from a state that the invariants allow, the machine itself overflows, misses its
+//! end, or comes to a state that they do not allow. Whether any run comes to such a state is not known.
+
+use rayon::prelude::*;
+use stepwave_kernel::Net;
+use stepwave_kernel::engine::{EngineKind, Rows, Watch};
+use stepwave_kernel::prove::{Certificate, Doubts};
+use stepwave_models::{Kind, Machine};
+use stepwave_nc::Curve;
+
+use super::{ProofError, Subject, number, row, states};
+use crate::testbench::Start;
+
+/// A step that keeps a proof from being one.
+#[derive(Clone, Debug)]
+pub struct Doubt {
+    /// Bits of coordinates.
+    pub k: u32,
+    /// The kind of geometry.
+    pub kind: String,
+    /// The geometry whose words stand on the inputs.
+    pub curve: Curve,
+    /// Where the step begins.
+    pub start: Start,
+    /// Clocks that show it.
+    pub clocks: u64,
+    /// What is wrong with it.
+    pub wrong: String,
+    /// What each register on which something depends means in the beginning.
+    pub state: Vec<(String, i128)>,
+}
+
+/// What was looked for, and what was found.
+#[derive(Clone, Debug, Default)]
+pub struct Doubted {
+    /// The first such step.
+    pub found: Option<Doubt>,
+    /// States that were tried.
+    pub tried: u64,
+}
+
+/// Bits of coordinates whose states are tried.
+pub const DOUBTED: [u32; 2] = [3, 4];
+/// States of each kind of geometry that are tried at most, at each of these.
+const MOST: u64 = 200_000;
+/// Clocks of a step at most.
+const LONGEST_STEP: u64 = 8;
+
+impl Subject {
+    /// Looks for a step from a state that these invariants allow, after which they prove nothing. Kinds in their order,
+    /// small geometries first.
+    ///
+    /// # Errors
+    /// See [`ProofError`].
+    pub fn doubt(&self, attempts: &[(&Kind, &Certificate)]) -> Result<Doubted, ProofError> {
+        let each = attempts.par_iter().map(|(kind, certificate)| self.doubt_kind(kind, certificate));
+        let each: Vec<Doubted> = each.collect::<Result<_, _>>()?;
+        let tried = each.iter().map(|doubted| doubted.tried).sum();
+        Ok(Doubted { found: each.into_iter().find_map(|doubted| doubted.found), tried })
+    }
+
+    fn doubt_kind(&self, kind: &Kind, certificate: &Certificate) -> Result<Doubted, ProofError> {
+        let (case, _) = self.case(kind)?;
+        let doubts = Doubts::new(&self.family, self.strobes, &case, certificate)?;
+        let mut doubted = Doubted::default();
+        for k in DOUBTED {
+            let curves: Vec<_> =
+                self.curves(kind).into_iter().filter(|(member, ..)| self.members[*member].0 == k).collect();
+            for (place, (member, curve, symbols)) in curves.iter().enumerate() {
+                let Some((words, symbols)) = self.loaded(place, *member, curve, symbols)? else { continue };
+                let (.., machine) = &self.members[*member];
+                let Some(usual) = states(machine, &words).first().map(|state| row(k, &symbols, machine, state)) else {
+                    continue;
+                };
+                let mut stepper = Stepper::new(machine, &words);
+                let most = (MOST / curves.len() as u64).max(1);
+                let mut found = None;
+                doubted.tried += doubts.states(k, &symbols, &usual.registers, most, |registers| {
+                    found = stepper.step(registers).and_then(|step| {
+                        let judged = || doubts.judge(k, &symbols, registers, &step.after, step.done);
+                        Some((registers.to_vec(), step.clocks, step.wrong.or_else(judged)?))
+                    });
+                    found.is_some()
+                });
+                let Some((registers, clocks, wrong)) = found else { continue };
+                doubted.found = Some(Doubt {
+                    k,
+                    kind: kind.name.clone(),
+                    curve: curve.clone(),
+                    start: stepper.start(&registers),
+                    clocks,
+                    wrong,
+                    state: stepper.names(&registers, |register| doubts.matters(register)),
+                });
+                return Ok(doubted);
+            }
+        }
+        Ok(doubted)
+    }
+}
+
+/// What came of one step.
+struct Stepped {
+    clocks: u64,
+    /// What each register means behind it.
+    after: Vec<i128>,
+    /// The block has ended with it.
+    done: bool,
+    /// What is wrong whatever the state behind it is.
+    wrong: Option<String>,
+}
+
+/// Runs steps of a machine from any states, its inputs those of a block that runs.
+struct Stepper<'m> {
+    machine: &'m Machine,
+    engine: Box<dyn stepwave_kernel::engine::Engine>,
+    rows: Rows,
+    inputs: Vec<u64>,
+}
+
+impl<'m> Stepper<'m> {
+    fn new(machine: &'m Machine, words: &[(Net, u64)]) -> Stepper<'m> {
+        let word = |input: &Net| words.iter().find(|(net, _)| net == input).map_or(0, |(_, value)| *value);
+        let strobes = [machine.load.net, machine.preset_position.net];
+        let inputs = machine.design.inputs().iter();
+        Stepper {
+            machine,
+            engine: EngineKind::Word.build(&machine.design, &Watch::default()),
+            rows: Rows::new(0, 0),
+            inputs: inputs.map(|input| if strobes.contains(input) { 0 } else { word(input) }).collect(),
+        }
+    }
+
+    fn start(&self, registers: &[i128]) -> Start {
+        let netlist = self.machine.design.netlist();
+        let held = self.machine.design.registers().iter().zip(registers);
+        Start {
+            // Only the bits of the register count.
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "two's complement")]
+            registers: held.map(|(net, number)| *number as u64 & netlist.width(*net).mask()).collect(),
+            inputs: self.inputs.clone(),
+        }
+    }
+
+    fn names(&self, registers: &[i128], matters: impl Fn(Net) -> bool) -> Vec<(String, i128)> {
+        let netlist = self.machine.design.netlist();
+        let held = self.machine.design.registers().iter().zip(registers).filter(|(register, _)| matters(**register));
+        held.filter_map(|(net, number)| Some((netlist.name_of(*net)?.name.clone(), *number))).collect()
+    }
+
+    /// The component that overflows in the present sample.
+    fn overflow(&self) -> Option<String> {
+        let mut properties = self.machine.design.netlist().properties.iter();
+        let violated = properties.find(|property| self.engine.value(property.never) == 1);
+        violated.map(|property| format!("{} overflows", property.name))
+    }
+
+    /// One step; `None` where the state is not one between two steps.
+    fn step(&mut self, registers: &[i128]) -> Option<Stepped> {
+        let start = self.start(registers);
+        self.engine.restore(0, &start.registers, &start.inputs);
+        let wrong =
+            |clocks, wrong: String| Some(Stepped { clocks, after: Vec::new(), done: false, wrong: Some(wrong) });
+        if self.engine.value(self.machine.done.net) == 1 {
+            return None;
+        }
+        if let Some(overflow) = self.overflow() {
+            return wrong(1, overflow);
+        }
+        for clocks in 1..=LONGEST_STEP {
+            self.engine.run(1, &mut self.rows);
+            let stepped = self.engine.value(self.machine.stepped.net) == 1;
+            let done = self.engine.value(self.machine.done.net) == 1;
+            if (!stepped || done)
+                && let Some(overflow) = self.overflow()
+            {
+                return wrong(clocks, overflow);
+            }
+            if stepped {
+                let engine = &self.engine;
+                let after = |net: &Net| number(self.machine, *net, engine.value(*net));
+                let after = self.machine.design.registers().iter().map(after).collect();
+                return Some(Stepped { clocks, after, done, wrong: None });
+            }
+        }
+        wrong(LONGEST_STEP, "no step is completed".to_owned())
+    }
+}
