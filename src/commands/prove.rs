@@ -11,8 +11,8 @@ use std::ops::RangeInclusive;
 use rayon::prelude::*;
 use stepwave::models::{Choices, Claims, Model, find};
 use stepwave::study::proof::{
-    Answer, Block, CertificateFile, DOUBTED, Fault, Narrower, ProofError, Subject, ask, blocks, choices_at, question,
-    search,
+    Answer, Block, CertificateFile, DOUBTED, Fault, Narrower, ProofError, Subject, Way, ask, blocks, choices_at,
+    question, search,
 };
 
 use check::check;
@@ -48,12 +48,13 @@ fn followed(
     choices: &Choices,
     narrower: &Narrower,
     ks: Vec<u32>,
+    way: Way,
 ) -> Result<Vec<Block>, Failure> {
     let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-    let each = ks.into_par_iter().map(|k| blocks(model, &claims, choices, narrower, k));
+    let each = ks.into_par_iter().map(|k| blocks(model, &claims, choices, narrower, k, way));
     match each.collect::<Result<Vec<_>, _>>() {
         Ok(all) => Ok(all.concat()),
-        Err(lost @ ProofError::Lost { .. }) => Err(Failure::Check(vec![format!("not proved: {lost}")])),
+        Err(lost @ ProofError::Lost { .. }) => Err(Failure::Check(vec![format!("UNKNOWN, no counterexample and no proof: {lost}")])),
         Err(error) => Err(error.into()),
     }
 }
@@ -151,14 +152,19 @@ fn own_attempt(
     // A word that does not fit refutes a narrower register; else it tells that a choice, such as a preset, needs more bits.
     let refutes = |fault| fault != Fault::Refused || !narrower.is_empty();
     if counted {
-        let ks = args.bits.map_or(COUNTED, |k| k..=k);
-        let found = followed(model, choices, &narrower, ks.collect());
+        let ks: Vec<u32> = args.bits.map_or(COUNTED, |k| k..=k).collect();
+        let found = followed(model, choices, &narrower, ks.clone(), Way::Follow);
         if !found.as_ref().is_ok_and(|blocks| blocks.iter().all(Block::is_exact))
             && let Some(example) = search(model, claims, choices, &narrower, searched, refutes)
         {
             return refuted(args, model, &example);
         }
         let blocks = found?;
+        // They are not believed: what counts is what the second way comes to.
+        if followed(model, choices, &narrower, ks, Way::Recount)? != blocks {
+            let model = model.name;
+            return Err(Failure::Check(vec![format!("not proved: {model} pulse by pulse comes to something else")]));
+        }
         judge(model, &blocks, "the blocks that were followed")?;
         if let Some(mut sink) = certificate {
             let file = CertificateFile {

@@ -11,7 +11,7 @@ use stepwave_models::{Choices, Claims, Model, ModelError};
 use stepwave_nc::Curve;
 
 use super::boxes::{Extent, Geometries};
-use super::proof::{Block, Narrower, ProofError, Subject, blocks};
+use super::proof::{Block, Narrower, ProofError, Subject, Way, blocks};
 use crate::testbench::{Ending, RangeWatch, Testbench};
 
 /// How the width of a register is known to be enough.
@@ -207,7 +207,7 @@ fn mark_proved(model: &'static Model, claims: &Claims, choices: &Choices, k: u32
         registers.iter().filter(|register| less(register) > 0).map(|r| (r.name.clone(), less(r))).collect();
     if !claims.counted.is_empty() {
         let exact = |block: &Block| block.is_exact();
-        if blocks(model, claims, choices, &narrower, k).is_ok_and(|blocks| blocks.iter().all(exact)) {
+        if blocks(model, claims, choices, &narrower, k, Way::Follow).is_ok_and(|blocks| blocks.iter().all(exact)) {
             registers.iter_mut().for_each(|register| register.known = Known::ProvedHere);
         }
         return;

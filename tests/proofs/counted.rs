@@ -1,9 +1,10 @@
 //! Proofs at one width at a time, of machines whose clocks do not depend on their coefficients.
 
-use stepwave::study::proof::{Narrower, blocks};
+use stepwave::study::proof::{Narrower, Way, blocks};
 use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::prove::{Lost, Strobes, Word, follow};
-use stepwave_kernel::{Net, Width};
+use stepwave_kernel::netlist::Op;
+use stepwave_kernel::prove::{AxisNets, Lost, Strobes, Word, follow, recount};
+use stepwave_kernel::{Net, Width, elaborate};
 use stepwave_models::{Choices, Machine, find};
 
 use crate::cli::Folder;
@@ -29,8 +30,8 @@ fn machine(k: u32, choices: &Choices) -> Machine {
 #[test]
 fn every_coefficient_is_counted_bit_by_bit_at_every_width() {
     let model = find("dpm-line").unwrap();
-    for k in 1..=10 {
-        let found = blocks(model, &model.claims.unwrap(), &Choices::default(), &Narrower::new(), k).unwrap();
+    for (k, way) in (1..=10).flat_map(|k| [(k, Way::Follow), (k, Way::Recount)]) {
+        let found = blocks(model, &model.claims.unwrap(), &Choices::default(), &Narrower::new(), k, way).unwrap();
         assert_eq!(found.len(), 4);
         for block in found {
             assert!(block.is_exact(), "{block}");
@@ -116,8 +117,13 @@ fn what_is_said_of_every_net_is_what_the_engine_has() {
 fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_followed() {
     let model = find("dpm-line").unwrap();
     let narrower = Narrower::from([("x".to_owned(), 2)]);
-    let lost = blocks(model, &model.claims.unwrap(), &Choices::default(), &narrower, 5).unwrap_err().to_string();
-    assert!(lost.contains("dpm_line.axis_x.x may overflow at clock "), "{lost}");
+    for way in [Way::Follow, Way::Recount] {
+        let lost = blocks(model, &model.claims.unwrap(), &Choices::default(), &narrower, 5, way).unwrap_err();
+        let lost = lost.to_string();
+        // A counter that is too narrow does not count every pulse as one.
+        let word = if way == Way::Follow { "dpm_line.axis_x.x may overflow at clock " } else { "dpm_line.axis_x.x" };
+        assert!(lost.contains(word), "{lost}");
+    }
     // Loaded at clock 1, x of 5 bits can have come to 15 at clock 16, and to -16 at clock 17: a pulse more does not fit.
     let largest = model.claims.unwrap().geometries.largest(5).unwrap();
     let widths = [("x".to_owned(), Width::new(5).unwrap())].into();
@@ -173,4 +179,83 @@ fn the_command_proves_and_checks_at_one_width_and_refutes_one_bit_less() {
         assert!(ran.code == 2 && ran.err.contains(hint), "{words}: {ran:?}");
     }
     assert!(folder.good("widths dpm-line --box 4").contains("proved at k"));
+}
+
+/// A block of this machine on the judge of engines: its clocks and the places of its axes, if it ends without an overflow.
+fn ran(machine: &Machine, words: &[(Net, u64)], limit: u64) -> Option<(u64, Vec<i128>)> {
+    let mut engine = EngineKind::Gates.build(&machine.design, &Watch::default());
+    words.iter().for_each(|(net, word)| engine.set_input(*net, *word));
+    let strobes = [machine.load.net, machine.preset_position.net];
+    strobes.iter().for_each(|strobe| engine.set_input(*strobe, 1));
+    let mut rows = Rows::new(0, 0);
+    engine.reset(&mut rows);
+    strobes.iter().for_each(|strobe| engine.set_input(*strobe, 0));
+    for clock in 0..=limit {
+        let mut claims = machine.design.netlist().properties.iter();
+        if claims.any(|claim| engine.value(claim.never) == 1) {
+            return None;
+        }
+        if clock > 0 && engine.value(machine.done.net) == 1 {
+            let place = |port: &stepwave_models::Port| port.reading.number(port.width, engine.value(port.net));
+            return Some((clock, machine.positions.iter().map(place).collect()));
+        }
+        engine.run(1, &mut rows);
+    }
+    None
+}
+
+/// The same machine with one cell of another kind, where there is such.
+fn changed(machine: &Machine, net: Net) -> Option<Machine> {
+    let mut netlist = machine.design.netlist().clone();
+    let cell = &mut netlist.cells[net.index()];
+    cell.op = match cell.op {
+        Op::And(a, b) => Op::Or(a, b),
+        Op::Or(a, b) => Op::And(a, b),
+        Op::Xor(a, b) => Op::Or(a, b),
+        Op::Add(a, b) => Op::Sub(a, b),
+        Op::Sub(a, b) => Op::Add(a, b),
+        Op::Mux { select, high, low } => Op::Mux { select, high: low, low: high },
+        Op::AddOverflow(a, b) | Op::Carry(a, b) => Op::LessSigned(a, b),
+        Op::Slice { of, low } if low > 0 => Op::Slice { of, low: low - 1 },
+        Op::Const(word) => Op::Const(word ^ 1),
+        _ => return None,
+    };
+    Some(Machine { design: elaborate(netlist).ok()?, ..machine.clone() })
+}
+
+#[test]
+fn what_is_counted_pulse_by_pulse_is_so_for_every_coefficient_of_machines_that_were_spoilt() {
+    let sound = machine(3, &Choices::default());
+    let (mut refused, mut other, mut same) = (0, 0, 0);
+    for machine in sound.design.netlist().nets().filter_map(|net| changed(&sound, net)) {
+        let word = |name: &str| match name {
+            "mx" | "my" => Word::Unknown,
+            "sx" => Word::Known(1),
+            _ => Word::Known(0),
+        };
+        let words: Vec<(Net, Word)> = machine.inputs.iter().map(|(name, port)| (port.net, word(name))).collect();
+        let axes = machine.pulses.iter().zip(&machine.positions);
+        let axes: Vec<AxisNets> =
+            axes.map(|(pulse, position)| AxisNets { pulse: pulse.net, position: position.net }).collect();
+        let Ok(found) = recount(&machine.design, strobes(&machine), &words, &axes, 64) else {
+            refused += 1;
+            continue;
+        };
+        let mut usual = true;
+        for coefficients in 0..64_u64 {
+            let unknowns: Vec<bool> = (0..6).map(|bit| coefficients >> bit & 1 == 1).collect();
+            let mut left = coefficients;
+            let mut put = |word: Word| match word {
+                Word::Known(word) => word,
+                Word::Unknown => (left & 7, left >>= 3).0,
+            };
+            let words: Vec<(Net, u64)> = words.iter().map(|(net, word)| (*net, put(*word))).collect();
+            let ends: Vec<i128> = found.ends.iter().map(|end| end.as_ref().unwrap().at(&unknowns)).collect();
+            let (x, y) = (-i128::from(coefficients & 7), i128::from(coefficients >> 3));
+            usual &= ends == [x, y];
+            assert_eq!(ran(&machine, &words, 64), Some((found.clocks, ends)), "{coefficients}");
+        }
+        if usual { same += 1 } else { other += 1 }
+    }
+    assert!(refused > 20 && other > 5 && same > 5, "{refused} refused, {other} of other ends, {same} of the same");
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Parser;
 use rayon::prelude::*;
 use stepwave::models::{Choices, find};
-use stepwave::study::proof::{Block, CertificateFile, ProofError, Subject};
+use stepwave::study::proof::{Block, CertificateFile, ProofError, Subject, Way};
 
 use super::verdict::{Attempt, told, unproved};
 use super::{followed, judge};
@@ -34,7 +34,7 @@ pub(super) fn check(path: &Path) -> Result<(), Failure> {
             ks.push(k.ok_or_else(|| Failure::Trouble(format!("{name} is no certificate: counted {block}")))?);
         }
         ks.dedup();
-        let blocks = followed(model, &choices, &file.narrower.iter().cloned().collect(), ks)?;
+        let blocks = followed(model, &choices, &file.narrower.iter().cloned().collect(), ks, Way::Recount)?;
         if blocks.iter().map(Block::to_string).ne(file.counted.iter().cloned()) {
             return Err(Failure::Check(vec![format!("{name} does not say what its blocks come to")]));
         }

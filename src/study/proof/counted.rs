@@ -4,7 +4,7 @@ use std::fmt;
 
 use rayon::prelude::*;
 use stepwave_kernel::bits::Reading;
-use stepwave_kernel::prove::{Strobes, Sum, Word, follow};
+use stepwave_kernel::prove::{AxisNets, Strobes, Sum, Word, follow, recount};
 use stepwave_models::{AXES, Choices, Claims, Kind, Model};
 use stepwave_nc::Curve;
 
@@ -57,7 +57,16 @@ impl fmt::Display for Block {
     }
 }
 
-/// Follows a block of each kind of geometry with coordinates of `k` bits.
+/// How a block is gone through. The two share nothing but the question.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Way {
+    /// By sums of unknown bits: [`follow`].
+    Follow,
+    /// Pulse by pulse, gate by gate: [`recount`].
+    Recount,
+}
+
+/// Goes through a block of each kind of geometry with coordinates of `k` bits.
 ///
 /// # Errors
 /// The hardware cannot be built, a register may overflow, or the end depends on the coefficients.
@@ -67,9 +76,10 @@ pub fn blocks(
     choices: &Choices,
     narrower: &Narrower,
     k: u32,
+    way: Way,
 ) -> Result<Vec<Block>, ProofError> {
     let kinds = claims.geometries.kinds();
-    kinds.into_par_iter().map(|kind| block(model, claims, choices, narrower, k, &kind)).collect()
+    kinds.into_par_iter().map(|kind| block(model, claims, choices, narrower, (k, &kind), way)).collect()
 }
 
 fn block(
@@ -77,8 +87,8 @@ fn block(
     claims: &Claims,
     choices: &Choices,
     narrower: &Narrower,
-    k: u32,
-    kind: &Kind,
+    (k, kind): (u32, &Kind),
+    way: Way,
 ) -> Result<Block, ProofError> {
     let hardware = model.plan(&largest(claims, k)?, &choices_at(model, claims, choices, narrower, k)?)?;
     let machine = model.machine(&hardware)?;
@@ -120,10 +130,14 @@ fn block(
         stepped: machine.stepped.net,
         done: machine.done.net,
     };
+    let (design, limit) = (&machine.design, hardware.stall_clocks);
     let ends: Vec<_> = machine.positions.iter().map(|port| port.net).collect();
-    let limit = hardware.stall_clocks;
-    let followed = follow(&machine.design, strobes, &given, &ends, limit, |_, _| {})
-        .map_err(|lost| ProofError::Lost { model: model.name, k, kind: kind.name.clone(), lost })?;
+    let axes = machine.pulses.iter().zip(&ends).map(|(pulse, end)| AxisNets { pulse: pulse.net, position: *end });
+    let followed = match way {
+        Way::Follow => follow(design, strobes, &given, &ends, limit, |_, _| {}),
+        Way::Recount => recount(design, strobes, &given, &axes.collect::<Vec<_>>(), limit),
+    };
+    let followed = followed.map_err(|lost| ProofError::Lost { model: model.name, k, kind: kind.name.clone(), lost })?;
     let moves = |axis: usize| own.iter().find_map(|curve| Some(curve.to()[axis].signum()).filter(|sign| *sign != 0));
     let wanted = bounds.iter().enumerate().map(|(axis, bounds)| {
         let mut factors = vec![0; names.len()];

@@ -18,7 +18,7 @@ use stepwave_kernel::{Design, Net, Width};
 use stepwave_models::{AXES, Choices, Claims, Hardware, Kind, Machine, Model, ModelError};
 use stepwave_nc::Curve;
 
-pub use counted::{Block, blocks};
+pub use counted::{Block, Way, blocks};
 pub use counter::{Counterexample, Fault, search};
 pub use doubt::{DOUBTED, Doubt, Doubted};
 pub use file::{CertificateFile, FileError};

@@ -57,6 +57,21 @@ pub enum Lost {
         /// Clocks since the load.
         clock: u64,
     },
+    /// The place of an axis behind the load is not known.
+    #[error("the load does not preset the positions")]
+    Start,
+    /// No one bit says whether there is a pulse.
+    #[error("whether there is a pulse at clock {clock} depends on more than one bit of what was loaded")]
+    Pulse {
+        /// Clocks since the load.
+        clock: u64,
+    },
+    /// A position does not count its pulses.
+    #[error("{position} does not count every pulse of its axis as one")]
+    Counter {
+        /// The register.
+        position: String,
+    },
     /// It goes on.
     #[error("the block does not end within {clocks} clocks")]
     Endless {

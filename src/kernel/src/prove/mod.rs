@@ -26,7 +26,11 @@ mod infer;
 mod obligations;
 mod path;
 mod poly;
+mod possible;
 mod proof;
+#[cfg(test)]
+mod random;
+mod recount;
 mod refute;
 mod simplex;
 mod system;
@@ -38,4 +42,5 @@ pub use doubt::Doubts;
 pub use family::{Family, FamilyError};
 pub use infer::fit;
 pub use proof::{Proof, Row, check, prove, violated};
+pub use recount::{AxisNets, recount};
 pub use system::{Case, CaseError, Strobes, Symbol};
