@@ -14,7 +14,7 @@ use patronus::btor2;
 use patronus::expr::{Context, ExprRef};
 use patronus::mc::{ModelCheckResult, bmc};
 use patronus::sim::{InitKind, Interpreter, Simulator};
-use patronus::smt::{Solver, CVC5};
+use patronus::smt::{CVC5, Solver};
 use patronus::system::TransitionSystem;
 
 type Outcome<T> = Result<T, Box<dyn Error>>;

@@ -312,6 +312,21 @@ mod tests {
     }
 
     #[test]
+    fn cells_are_as_wide_and_as_high_as_the_steps_of_the_grid() {
+        let mut map = HeatMap::new(["to_x", "to_y"], ["0..9/3", "0..1"].map(|text| text.parse().unwrap()));
+        for x in 0..4_i32 {
+            (0..2).for_each(|y| map.point([i64::from(3 * x), i64::from(y)], Some(f64::from(x) + 4.0 * f64::from(y))));
+        }
+        let (width, pixels) = read_back(&map.png("t", "clocks", "", "w"));
+        // Columns of 155 pixels and rows of 52: the lowest shade stands in the left lower corner alone.
+        let row = |y: usize| pixels.chunks(width).nth(usize::try_from(TOP).unwrap() + y).unwrap();
+        let left = row(20).iter().position(|ink| *ink == 253).unwrap() + 1;
+        let shades = |y: usize| [0, 1, 2, 3].map(|x| row(y)[left + 155 * x + 150]);
+        assert!(shades(45).is_sorted() && shades(60).is_sorted(), "{:?} {:?}", shades(45), shades(60));
+        assert!(shades(60)[0] == 2 && shades(45)[0] > shades(60)[3] && shades(100) == shades(60));
+    }
+
+    #[test]
     fn a_large_or_flat_grid_gives_a_picture_of_bounded_size() {
         for ranges in [["0..999999", "-500000..500000"], ["0..1000000", "7"], ["-3", "4"]] {
             let mut map = HeatMap::new(["to_x", "to_y"], ranges.map(|text| text.parse().unwrap()));
