@@ -13,7 +13,7 @@ use stepwave_kernel::formula::{self, Formula};
 use stepwave_kernel::prove::{
     self, Case, CaseError, Certificate, Family, FamilyError, Lost, Proof, Row, Strobes, Symbol,
 };
-use stepwave_kernel::{Design, Width};
+use stepwave_kernel::{Design, Net, Width};
 use stepwave_models::{AXES, Choices, Claims, Hardware, Kind, Machine, Model, ModelError};
 use stepwave_nc::Curve;
 
@@ -159,9 +159,13 @@ fn largest(claims: &Claims, k: u32) -> Result<Curve, ModelError> {
     claims.geometries.largest(k).ok_or_else(|| ModelError::Widths(format!("there are no geometries of {k} bits")))
 }
 
-fn row(k: u32, symbols: &[i128], machine: &Machine, state: &State) -> Row {
-    let registers = machine.design.registers().iter().map(|register| state.number(machine, *register));
-    Row { k, symbols: symbols.to_vec(), registers: registers.collect() }
+/// The rows of one run.
+fn rows(k: u32, symbols: &[i128], machine: &Machine, words: &[(Net, u64)]) -> Vec<Row> {
+    let row = |(steps, state): (i128, &State)| {
+        let registers = machine.design.registers().iter().map(|register| state.number(machine, *register));
+        Row { k, symbols: symbols.to_vec(), registers: registers.collect(), steps }
+    };
+    (0..).zip(&states(machine, words)).map(row).collect()
 }
 
 impl Subject {
@@ -198,6 +202,7 @@ impl Subject {
             stepped: machine.stepped.net,
             done: machine.done.net,
         };
+        let claims = claims.of_hardware(&members[0].1);
         Ok(Subject { model, claims, family, strobes, any_preset: false, members })
     }
 
@@ -277,7 +282,7 @@ impl Subject {
             let Some((_, hardware, machine)) = self.members.iter().find(|(other, ..)| *other == k) else { continue };
             let blocks = machine.encode(hardware, &self.model.words(hardware, curve))?;
             let words = blocks.into_iter().next().unwrap_or_default();
-            rows.extend(states(machine, &words).iter().map(|state| row(k, &symbols, machine, state)));
+            rows.extend(self::rows(k, &symbols, machine, &words));
         }
         match prove::violated(&self.family, self.strobes, &case, certificate, &rows)? {
             Some(invariant) => Err(ProofError::Untrue { kind: kind.name.clone(), invariant }),
@@ -304,7 +309,7 @@ impl Subject {
                 words.push((port.net, value));
                 symbols.push(i128::from(value));
             }
-            rows.extend(states(machine, &words).iter().map(|state| row(*k, &symbols, machine, state)));
+            rows.extend(self::rows(*k, &symbols, machine, &words));
         }
         let any = |register: &String| Symbol {
             name: format!("preset {register}"),
@@ -316,6 +321,7 @@ impl Subject {
             words.retain(|(input, _)| *input != format!("{register}_in"));
             words.push((format!("{register}_in"), formula::name(&format!("preset {register}"))));
         }
+        let guesses = (self.claims.guesses)(&self.members[0].1);
         let case = Case {
             name: kind.name.clone(),
             symbols: kind.symbols.iter().cloned().chain(presets.iter().map(any)).collect(),
@@ -326,6 +332,8 @@ impl Subject {
             rank: (self.claims.rank)(&self.members[0].1),
             modes: self.claims.modes.iter().map(|mode| (*mode).to_owned()).collect(),
             bitwise: self.claims.bitwise.iter().map(|register| (*register).to_owned()).collect(),
+            steps: (!guesses.is_empty()).then(|| "steps".to_owned()),
+            guesses,
         };
         Ok((case, rows))
     }
