@@ -249,7 +249,8 @@ mod tests {
         // Every other row has v1 = v2; all have v3 = v2 + 1.
         let rows: Vec<Vec<i128>> = (0..2000).map(|i| vec![0, i / 2, i / 2 + i % 2, i / 2 + i % 2 + 1]).collect();
         let [a, b, more] = [1, 2, 3].map(Var);
-        let found = equalities(&rows, &[more, b], &[a], &[]);
+        // No products, among which more rows would be looked at.
+        let found = equalities(&rows, &[more, b], &[a], &[more, b]);
         let more = found.equalities.iter().find(|(var, _)| *var == more).map(|(_, poly)| poly.clone());
         assert_eq!(more, Some(Poly::from(b).plus_number(1)), "{found:?}");
     }
