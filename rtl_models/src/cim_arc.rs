@@ -26,7 +26,9 @@
 //! arc at the axes, at R rounded to the nearest integer but never behind the point already reached.
 //!
 //! With `mid` the path stays within 1 BLU of the circle. F with `pre` and `post` is within [-R, R] while both axes run, in
-//! n+1 bits; forced steps behind that take it to 1.39 R.
+//! n+1 bits; forced steps behind that take it to 1.39 R where a split is beside the circle. Inside a quadrant with both
+//! ends on the circle n+1 bits always do: `pre` weighs half of what x² + y² gains less the steps of both axes, `post` half
+//! of that and the steps.
 //!
 //! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/cim-arc-nr1.csv`; the wave stands beside it:
 //!
@@ -36,7 +38,7 @@
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::{Module, Scope};
-use stepwave_kernel::formula::{name, number};
+use stepwave_kernel::formula::{Formula, name};
 use stepwave_nc::{Crossing, Curve, Sector};
 
 use crate::choices::{Choices, EndPoint, Weights};
@@ -94,21 +96,34 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let kind = Kind::decode(m.scope("quadrant"), quad.q, ccw);
     let side = |negative, grows| Side { negative, change: Some(Change { grows, unit: m.lit(1, 1) }) };
     let sides = [side(kind.x_negative, kind.x_grows), side(kind.y_negative, !kind.x_grows)];
-    if hardware.weights == Weights::Mid {
-        invariants(m);
-    }
+    between_steps(m, hardware.weights);
     comparison_integral(m, block, hardware, sides);
     Ok(module.finish()?)
 }
 
-/// F is ±(x² + y² - R²), and stays between what a step of the base axis at -1 and a step of both at 0 leave, turned over
-/// where the base axis changes.
-fn invariants(m: Scope<'_>) {
-    let (f, y_is_base) = (|| name("f"), || name("base"));
-    let x_is_base = || number(1) - y_is_base();
-    for (axis, own, other, not) in [("x", "a", "b", y_is_base() - 1), ("y", "b", "a", x_is_base() - 1)] {
-        m.between_steps(&format!("f_from_below_{axis}"), [f() + 2 * name(other), not.clone()]);
-        m.between_steps(&format!("f_from_above_{axis}"), [2 * name(own) - f(), -f(), not]);
+/// F is ±(x² + y² - R²), or with `pre` and `post` half of that less or more the steps of both axes; it stays between
+/// what a step of the base axis at -1 and a step of both at 0 leave, turned over where the base axis changes.
+fn between_steps(m: Scope<'_>, rule: Weights) {
+    let (f, y_is_base, x_grows) = (|| name("f"), || name("base"), || name("x_grows"));
+    let x = ("x", "a", "b", ["ex", "ey"], y_is_base() - 1, [x_grows() - 1, -x_grows()]);
+    let y = ("y", "b", "a", ["ey", "ex"], -y_is_base(), [-x_grows(), x_grows() - 1]);
+    for (axis, own, other, [end, end_of_other], not, [grows, shrinks]) in [x, y] {
+        let state = |bound: &str, any: Vec<Formula>| {
+            m.between_steps(&format!("f_from_{bound}_{axis}"), any.into_iter().chain([not.clone()]));
+        };
+        if rule == Weights::Mid {
+            state("below", vec![f() + 2 * name(other)]);
+            state("above", vec![2 * name(own) - f(), -f()]);
+            continue;
+        }
+        state("of_a_tie", vec![name(other) - name(own) - 1, -f(), grows.clone()]);
+        // Where the growing axis with `pre`, the shrinking one with `post` is at its end, the steps taken bound F.
+        let (below, above) = (f() + name(other) + 1, name(own) - f());
+        let (free_below, free_above) = if rule == Weights::Pre { (grows, shrinks) } else { (shrinks, grows) };
+        state("below", vec![below.clone(), free_below]);
+        state("below_while_running", vec![below, -name(end)]);
+        state("above", vec![above.clone(), free_above]);
+        state("above_while_running", vec![above, -name(end_of_other)]);
     }
 }
 

@@ -20,6 +20,8 @@ pub enum Region {
     Lines,
     /// The same, those of either long axis by themselves.
     LinesByLength,
+    /// The same, those of either longer axis and those at 45 degrees by themselves.
+    LinesByLonger,
     /// The same, with half of the long way, rounded down.
     LinesHalved,
     /// Every arc about the origin inside one quadrant, with both ends on one circle: from (xs, ys) to (xt, yt),
@@ -32,8 +34,13 @@ pub enum Region {
 pub struct Claims {
     /// Which geometries are meant.
     pub geometries: Region,
+    /// The same in other kinds, where this hardware tells them apart.
+    pub told_apart: fn(&Hardware) -> Option<Region>,
     /// Never below 0 while a block runs, and less after every step: why it ends. `None` where that is not claimed.
     pub rank: fn(&Hardware) -> Option<Formula>,
+    /// What may hold between two steps of the geometry, the place and `steps`, the number of steps that the block has
+    /// taken; left out where a step does not keep it.
+    pub guesses: fn(&Hardware) -> Vec<Clause>,
     /// Registers that change what the others mean.
     pub modes: &'static [&'static str],
     /// Registers that are held bit by bit, at one width at a time.
@@ -46,7 +53,21 @@ pub struct Claims {
 impl Claims {
     /// Over these geometries; whatever the end counters are, one of them counts at every step.
     pub(crate) const fn of(geometries: Region) -> Claims {
-        Claims { geometries, rank: steps_left, modes: &[], bitwise: &[], counted: &[] }
+        Claims {
+            geometries,
+            told_apart: |_| None,
+            rank: steps_left,
+            guesses: |_| Vec::new(),
+            modes: &[],
+            bitwise: &[],
+            counted: &[],
+        }
+    }
+
+    /// What is claimed of this hardware.
+    #[must_use]
+    pub fn of_hardware(self, hardware: &Hardware) -> Claims {
+        Claims { geometries: (self.told_apart)(hardware).unwrap_or(self.geometries), ..self }
     }
 }
 
@@ -78,7 +99,7 @@ impl Region {
     #[must_use]
     pub fn describe(self) -> &'static str {
         match self {
-            Region::Lines | Region::LinesByLength | Region::LinesHalved => {
+            Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => {
                 "every line from the origin to coordinates of k bits"
             }
             Region::QuadrantArcs => {
@@ -91,9 +112,10 @@ impl Region {
     #[must_use]
     pub fn kinds(self) -> Vec<Kind> {
         match self {
-            Region::Lines => line::kinds(false, false),
-            Region::LinesByLength => line::kinds(true, false),
-            Region::LinesHalved => line::kinds(true, true),
+            Region::Lines => line::kinds(line::ANY, false),
+            Region::LinesByLength => line::kinds(line::LONG, false),
+            Region::LinesByLonger => line::kinds(line::LONGER, false),
+            Region::LinesHalved => line::kinds(line::LONG, true),
             Region::QuadrantArcs => arc::kinds(),
         }
     }
@@ -102,7 +124,7 @@ impl Region {
     #[must_use]
     pub fn symbols(self, kind: &Kind, curve: &Curve) -> Option<Vec<i128>> {
         let symbols = match self {
-            Region::Lines | Region::LinesByLength => line::symbols(&kind.name, curve, false),
+            Region::Lines | Region::LinesByLength | Region::LinesByLonger => line::symbols(&kind.name, curve, false),
             Region::LinesHalved => line::symbols(&kind.name, curve, true),
             Region::QuadrantArcs => arc::symbols(&kind.name, curve),
         }?;
@@ -118,7 +140,9 @@ impl Region {
     pub fn largest(self, k: u32) -> Option<Curve> {
         let most = (1_i64 << k.min(52)) - 1;
         match self {
-            Region::Lines | Region::LinesByLength | Region::LinesHalved => line::to([most, most]),
+            Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => {
+                line::to([most, most])
+            }
             Region::QuadrantArcs => arc::quarter(most),
         }
     }
@@ -127,7 +151,7 @@ impl Region {
     #[must_use]
     pub fn is_whole(self, k: u32) -> bool {
         match self {
-            Region::Lines | Region::LinesByLength | Region::LinesHalved => k <= line::WHOLE,
+            Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => k <= line::WHOLE,
             Region::QuadrantArcs => k <= arc::WHOLE,
         }
     }
@@ -136,7 +160,9 @@ impl Region {
     #[must_use]
     pub fn curves(self, k: u32, most: usize) -> Vec<Curve> {
         match self {
-            Region::Lines | Region::LinesByLength | Region::LinesHalved => line::curves(k, most),
+            Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => {
+                line::curves(k, most)
+            }
             Region::QuadrantArcs => arc::curves(k, most),
         }
     }

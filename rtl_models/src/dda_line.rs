@@ -50,6 +50,7 @@
 //! ```
 
 use stepwave_kernel::dsl::Module;
+use stepwave_kernel::formula::{Clause, Formula, name, number};
 use stepwave_kernel::{Netlist, Width};
 use stepwave_nc::{Curve, Line};
 
@@ -93,13 +94,36 @@ pub(crate) const MODEL: Model = Model {
     ],
     source: "数字积分法, the DDA linear interpolator of early NC systems, as in Chinese NC textbooks",
     claims: Some(Claims {
-        rank: |hardware| steps_left(hardware).filter(|_| hardware.end_point == EndPoint::Iterations),
+        told_apart: |hardware| (hardware.end_point == EndPoint::Longest).then_some(Region::LinesByLength),
+        rank,
+        guesses,
         ..Claims::of(Region::Lines)
     }),
     plan,
     netlist,
     words,
 };
+
+/// Iterations left of 2^n; where an axis stops by itself, what the remainders and the ends of both axes want of pulses.
+fn rank(hardware: &Hardware) -> Option<Formula> {
+    let modulus = || name("2^k");
+    match hardware.end_point {
+        EndPoint::Iterations => steps_left(hardware),
+        EndPoint::Total | EndPoint::Longest => Some(modulus() - name("steps")),
+        EndPoint::PerAxis => Some((name("ex") + name("ey") + 2) * modulus() - name("jrx") - name("jry")),
+    }
+}
+
+/// What 2^n iterations have to do with a way that is left.
+fn guesses(hardware: &Hardware) -> Vec<Clause> {
+    if !matches!(hardware.end_point, EndPoint::Total | EndPoint::Longest) {
+        return Vec::new();
+    }
+    let left = [0, 1].map(|i| name(JV[i]) - (number(1) - 2 * name(SIGN[i])) * name(POSITION[i]));
+    let early = || name("2^k") - 1 - name("steps");
+    let ended = left.clone().map(|left| Clause::either("all iterations end an axis", [-left, early()]));
+    [vec![Clause::either("an axis has not ended", left.map(|left| left - 1))], ended.to_vec()].concat()
+}
 
 fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let axes = curve.axes();
@@ -158,6 +182,10 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
 
     let counters: Option<Vec<_>> = (hardware.end_point == EndPoint::PerAxis)
         .then(|| axes.clone().map(|i| DownCounter::new(scopes[i], &block, END[i], bits(END[i]))).collect());
+    if counters.is_some() {
+        let left = axes.clone().map(|i| name(END[i])).fold(number(-1), |sum, end| sum + end);
+        m.between_steps("a_way_is_left", [left]);
+    }
     let iteration = Iteration::new(m, &block, hardware, normalized.run);
     let mut pulses = Vec::new();
     for i in axes {

@@ -28,7 +28,7 @@
 
 use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::{Module, Scope};
-use stepwave_kernel::formula::name;
+use stepwave_kernel::formula::{Formula, name, number};
 use stepwave_nc::{Curve, Line};
 
 use crate::choices::{Choice, Choices, EndPoint, Form};
@@ -65,13 +65,24 @@ pub(crate) const MODEL: Model = Model {
     ],
     source: "逐点比较法, the linear interpolator of early NC systems, as in Chinese NC textbooks",
     claims: Some(Claims {
-        rank: |hardware| steps_left(hardware).filter(|_| hardware.end_point != EndPoint::Longest),
+        told_apart: |hardware| (hardware.end_point == EndPoint::Longest).then_some(Region::LinesByLonger),
+        rank,
         ..Claims::of(Region::Lines)
     }),
     plan,
     netlist,
     words,
 };
+
+/// Steps left; where the counter counts one axis alone, a step of the other takes F, of |F| < 2^k, to where it steps.
+fn rank(hardware: &Hardware) -> Option<Formula> {
+    if hardware.end_point != EndPoint::Longest {
+        return steps_left(hardware);
+    }
+    let sign = |flag: &str| number(1) - 2 * name(flag);
+    let judged = if hardware.form == Form::Signed { sign("sx") * sign("sy") * name("f") } else { name("f") };
+    Some(name("e") * name("2^k") + sign("x_is_longest") * judged)
+}
 
 fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let delta = plan::line(curve).map(Line::delta).unwrap_or_default();
@@ -112,8 +123,10 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let counter = |name: &str| DownCounter::new(m, &block, name, hardware.bits(name));
 
-    if hardware.form == Form::Magnitude {
-        invariants(m);
+    match hardware.form {
+        Form::Magnitude => between_steps(m, "f", [name("xe"), name("ye")], &[]),
+        Form::Signed => signs_between_steps(m),
+        Form::Bare => {}
     }
 
     // Judge.
@@ -150,12 +163,26 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     Ok(module.finish()?)
 }
 
-/// F stays between what an X step at 0 and a Y step at -1 leave.
-fn invariants(m: Scope<'_>) {
-    let (f, xe, ye) = (|| name("f"), || name("xe"), || name("ye"));
-    m.between_steps("f_from_below", [f() + ye()]);
-    m.between_steps("f_from_above", [xe() - 1 - f(), -f()]);
-    m.between_steps("f_of_a_line_along_y", [f(), xe() - 1]);
+/// F stays between what a step of the first axis, which F >= 0 takes, at 0 and one of the second at -1 leave. `ways` are
+/// those of both axes; or one of `unless` is 0 or more.
+fn between_steps(m: Scope<'_>, what: &str, [first, second]: [Formula; 2], unless: &[Formula]) {
+    let f = || name("f");
+    let state = |bound: &str, any: &[Formula]| {
+        m.between_steps(&format!("{what}_{bound}"), any.iter().chain(unless).cloned());
+    };
+    state("from_below", &[f() + second]);
+    state("from_above", &[first.clone() - 1 - f(), -f()]);
+    state("of_a_line_along_one_axis", &[f(), first - 1]);
+}
+
+/// The same in each quadrant: F >= 0 takes Y in the second and the fourth.
+fn signs_between_steps(m: Scope<'_>) {
+    for (quadrant, [x, y]) in [("q1", [1, 1]), ("q2", [-1, 1]), ("q3", [-1, -1]), ("q4", [1, -1])] {
+        let [a, b] = [x * name("xe"), y * name("ye")];
+        // The way of a motion that is not negative may be 0.
+        let elsewhere = [(x, &a), (y, &b)].map(|(sign, way)| if sign > 0 { -way.clone() - 1 } else { -way.clone() });
+        between_steps(m, &format!("f_in_{quadrant}"), if x == y { [a, b] } else { [b, a] }, &elsewhere);
+    }
 }
 
 fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {

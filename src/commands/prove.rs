@@ -54,7 +54,9 @@ fn followed(
     let each = ks.into_par_iter().map(|k| blocks(model, &claims, choices, narrower, k, way));
     match each.collect::<Result<Vec<_>, _>>() {
         Ok(all) => Ok(all.concat()),
-        Err(lost @ ProofError::Lost { .. }) => Err(Failure::Check(vec![format!("UNKNOWN, no counterexample and no proof: {lost}")])),
+        Err(lost @ ProofError::Lost { .. }) => {
+            Err(Failure::Check(vec![format!("UNKNOWN, no counterexample and no proof: {lost}")]))
+        }
         Err(error) => Err(error.into()),
     }
 }

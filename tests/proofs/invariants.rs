@@ -2,7 +2,7 @@
 
 use stepwave::study::proof::{Subject, states};
 use stepwave_kernel::formula::Clause;
-use stepwave_models::{Beats, Choices, EndPoint, Model, Preset, Weights, catalogue};
+use stepwave_models::{Beats, Choices, EndPoint, Form, Model, Preset, Weights, catalogue};
 use stepwave_nc::Curve;
 
 use super::subject;
@@ -62,6 +62,8 @@ fn what_authors_claim_between_steps_holds_in_every_row_of_runs() {
                 Choices::default(),
                 Choices { beats: Some(Beats::One), end_point: Some(EndPoint::PerAxis), ..Choices::default() },
                 Choices { weights: Some(Weights::Pre), ..Choices::default() },
+                Choices { weights: Some(Weights::Post), ..Choices::default() },
+                Choices { form: Some(Form::Signed), end_point: Some(EndPoint::Longest), ..Choices::default() },
                 Choices { preset: Some(Preset::Half), ..Choices::default() },
             ] {
                 let Ok(hardware) = model.plan(&curve, &choices) else { continue };
@@ -78,8 +80,14 @@ fn what_authors_claim_between_steps_holds_in_every_row_of_runs() {
 
 #[test]
 fn what_was_proved_holds_in_runs_of_widths_that_nothing_was_learnt_from() {
-    for model in ["ppc-line", "ppc-arc", "dda-line", "cim-arc", "mindev-line"] {
-        let subject: Subject = subject(model, &Choices::default());
+    let signed = Choices { form: Some(Form::Signed), ..Choices::default() };
+    let post = Choices { weights: Some(Weights::Post), ..Choices::default() };
+    let total = Choices { end_point: Some(EndPoint::Total), ..Choices::default() };
+    let by_default =
+        ["ppc-line", "ppc-arc", "dda-line", "cim-arc", "mindev-line"].map(|model| (model, Choices::default()));
+    for (model, choices) in by_default.into_iter().chain([("ppc-line", signed), ("cim-arc", post), ("dda-line", total)])
+    {
+        let subject: Subject = subject(model, &choices);
         let mut looked_at = 0;
         for kind in subject.kinds() {
             let (proof, certificate) = subject.prove(&kind).unwrap();

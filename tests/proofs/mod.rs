@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use stepwave::study::proof::{Counterexample, Fault, Narrower, Subject, search};
 use stepwave_kernel::formula::{Clause, name};
 use stepwave_kernel::prove::{Certificate, Proof};
-use stepwave_models::{Beats, Choices, EndPoint, Kind, Preset, find};
+use stepwave_models::{Beats, Choices, EndPoint, Form, Kind, Preset, Weights, find};
 
 /// Attempts at every kind of geometry, each checked again from its certificate alone.
 fn proofs(subject: &Subject) -> Vec<(Kind, Proof)> {
@@ -52,18 +52,41 @@ fn lines_are_proved_for_every_width_in_four_beats_and_in_one() {
             assert_proved(model, &subject(model, &choices), true);
         }
         assert_proved("bresenham", &subject("bresenham", &Choices::default()), true);
-        let per_axis = Choices { end_point: Some(EndPoint::PerAxis), ..choices };
-        assert_proved("ppc-line", &subject("ppc-line", &per_axis), true);
+        for form in [Form::Magnitude, Form::Signed] {
+            for end_point in [EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest] {
+                let choices = Choices { form: Some(form), end_point: Some(end_point), ..choices.clone() };
+                assert_proved("ppc-line", &subject("ppc-line", &choices), true);
+            }
+        }
     }
 }
 
 #[test]
 fn arcs_inside_a_quadrant_are_proved_for_every_width_in_both_directions() {
     for choices in beats() {
-        for model in ["ppc-arc", "cim-arc"] {
-            assert_proved(model, &subject(model, &choices), true);
+        assert_proved("ppc-arc", &subject("ppc-arc", &choices), true);
+        for weights in [Weights::Mid, Weights::Pre, Weights::Post] {
+            let choices = Choices { weights: Some(weights), ..choices.clone() };
+            assert_proved("cim-arc", &subject("cim-arc", &choices), true);
         }
     }
+}
+
+/// What the weights of the pulses sum up to is half of what a polynomial gives.
+#[test]
+fn weights_on_one_side_of_a_pulse_need_one_bit_less_than_those_of_its_middle() {
+    for weights in [Weights::Pre, Weights::Post] {
+        let choices = Choices { weights: Some(weights), ..Choices::default() };
+        let narrow = |bits| BTreeMap::from([("f".to_owned(), bits)]);
+        let subject = |bits| Subject::new(find("cim-arc").unwrap(), &choices, &narrow(bits)).unwrap();
+        assert_proved("cim-arc", &subject(1), true);
+        let found = refuted("cim-arc", &choices, &narrow(2));
+        assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow), "{weights:?}");
+        let kind = subject(2).kinds().remove(0);
+        assert!(!subject(2).prove(&kind).unwrap().0.is_safe(), "{weights:?}");
+    }
+    let mid = Choices::default();
+    assert!(refuted("cim-arc", &mid, &narrower("f")).is_some() && refuted("cim-arc", &mid, &Narrower::new()).is_none());
 }
 
 #[test]
@@ -76,6 +99,31 @@ fn integrators_are_proved_for_every_width_and_every_preset() {
     }
     assert_proved("dda-line", &subject("dda-line", &Choices::default()).with_any_preset(), true);
     assert_proved("dda-arc", &subject("dda-arc", &Choices::default()).with_any_preset(), false);
+}
+
+#[test]
+fn lines_of_integrators_end_exactly_by_counters_of_pulses_too() {
+    let of = |end_point, preset| Choices { end_point: Some(end_point), preset: Some(preset), ..Choices::default() };
+    for end_point in [EndPoint::PerAxis, EndPoint::Total, EndPoint::Longest] {
+        for preset in [Preset::Zero, Preset::Full] {
+            assert_proved("dda-line", &subject("dda-line", &of(end_point, preset)), true);
+        }
+    }
+    for end_point in [EndPoint::PerAxis, EndPoint::Total] {
+        let any = subject("dda-line", &of(end_point, Preset::Zero)).with_any_preset();
+        assert_proved("dda-line", &any, true);
+    }
+    // The long axis may end early with a preset of its own, but the block always ends.
+    let any = subject("dda-line", &of(EndPoint::Longest, Preset::Zero)).with_any_preset();
+    for (kind, proof) in proofs(&any) {
+        assert!(proof.holds() && !proof.missed.is_empty() && proof.endless.is_none(), "{}: {proof:#?}", kind.name);
+    }
+    let presets = [("jrx", 3), ("jry", 0)].map(|(name, value)| (name.to_owned(), Preset::Value(value)));
+    let apart = Choices { presets: presets.into(), ..of(EndPoint::Longest, Preset::Zero) };
+    let found = refuted("dda-line", &apart, &Narrower::new()).unwrap();
+    assert_eq!((found.fault, found.curve.to()), (Fault::Missed, &[1, 1][..]));
+    // Of an arc the total of both axes tells no end.
+    assert!(refuted("dda-arc", &of(EndPoint::Total, Preset::Half), &Narrower::new()).is_some());
 }
 
 fn narrower(register: &str) -> Narrower {
@@ -101,9 +149,18 @@ fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
     let model = find("bresenham").unwrap();
     let found = search(model, &model.claims.unwrap(), &gt, &Narrower::new(), 1..=2, |_| true).unwrap();
     assert_eq!((found.fault, found.curve.to()), (Fault::Missed, &[0, 1][..]));
+    let signed = Choices { form: Some(Form::Signed), ..Choices::default() };
+    let longest = Choices { end_point: Some(EndPoint::Longest), ..signed.clone() };
+    for choices in [&signed, &longest] {
+        let found = refuted("ppc-line", choices, &narrower("f"));
+        assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow));
+    }
     // The proof itself refuses too.
-    for model in ["ppc-line", "mindev-line"] {
-        let subject = Subject::new(find(model).unwrap(), &Choices::default(), &narrower("f")).unwrap();
+    let default = Choices::default();
+    for (model, choices) in
+        [("ppc-line", &default), ("mindev-line", &default), ("ppc-line", &signed), ("ppc-line", &longest)]
+    {
+        let subject = Subject::new(find(model).unwrap(), choices, &narrower("f")).unwrap();
         for (kind, proof) in proofs(&subject) {
             assert!(proof.violated.iter().any(|(claim, _)| subject.claim(*claim).ends_with(".f")), "{}", kind.name);
         }
@@ -129,8 +186,20 @@ fn nothing_is_refuted_at_the_widths_that_are_proved() {
 
 #[test]
 fn an_end_point_that_is_one_off_is_not_proved() {
-    for (model, symbol) in [("ppc-line", "|dx|"), ("dda-line", "|dx|"), ("ppc-arc", "xt"), ("cim-arc", "xt")] {
-        let subject = subject(model, &Choices::default());
+    let default = Choices::default();
+    let signed = Choices { form: Some(Form::Signed), end_point: Some(EndPoint::Longest), ..Choices::default() };
+    let pre = Choices { weights: Some(Weights::Pre), ..Choices::default() };
+    let total = Choices { end_point: Some(EndPoint::Total), ..Choices::default() };
+    for (model, symbol, choices) in [
+        ("ppc-line", "|dx|", &default),
+        ("ppc-line", "|dx|", &signed),
+        ("dda-line", "|dx|", &default),
+        ("dda-line", "|dx|", &total),
+        ("ppc-arc", "xt", &default),
+        ("cim-arc", "xt", &default),
+        ("cim-arc", "xt", &pre),
+    ] {
+        let subject = subject(model, choices);
         let mut kind = subject.kinds().remove(0);
         kind.goals = vec![Clause::at_least_zero("x ends beyond", name("x") - name(symbol) - 1)];
         let (proof, certificate) = subject.prove(&kind).unwrap();
@@ -140,21 +209,32 @@ fn an_end_point_that_is_one_off_is_not_proved() {
     }
 }
 
+/// What is not proved of a model's first kind of arcs whose ends need not be on one circle.
+fn beside_its_circle(model: &str, choices: &Choices) -> Proof {
+    let subject = subject(model, choices);
+    let mut kind = subject.kinds().remove(0);
+    let before = kind.premises.len();
+    kind.premises.retain(|premise| premise.name != "both ends are on one circle");
+    assert_eq!(kind.premises.len(), before - 2);
+    subject.prove(&kind).unwrap().0
+}
+
 #[test]
 fn an_arc_that_ends_beside_its_circle_is_not_proved_with_one_counter() {
-    let subject = subject("ppc-arc", &Choices { end_point: Some(EndPoint::Total), ..Choices::default() });
-    for mut kind in subject.kinds().into_iter().take(1) {
-        let before = kind.premises.len();
-        kind.premises.retain(|premise| premise.name != "both ends are on one circle");
-        assert_eq!(kind.premises.len(), before - 2);
-        let (proof, _) = subject.prove(&kind).unwrap();
-        assert!(!proof.is_safe(), "{}: {proof:#?}", kind.name);
-    }
+    let total = Choices { end_point: Some(EndPoint::Total), ..Choices::default() };
+    let proof = beside_its_circle("ppc-arc", &total);
+    assert!(!proof.is_safe(), "{proof:#?}");
+}
+
+#[test]
+fn weights_on_one_side_of_a_pulse_are_not_bounded_beside_the_circle() {
+    let proof = beside_its_circle("cim-arc", &Choices { weights: Some(Weights::Pre), ..Choices::default() });
+    assert!(!proof.is_safe(), "{proof:#?}");
 }
 
 #[test]
 fn a_line_along_y_is_what_the_bare_form_cannot_do() {
-    let bare = Choices { form: Some(stepwave_models::Form::Bare), ..Choices::default() };
+    let bare = Choices { form: Some(Form::Bare), ..Choices::default() };
     let example = refuted("ppc-line", &bare, &Narrower::new()).unwrap();
     assert_eq!((example.fault, example.curve.to()), (Fault::Missed, &[0, 1][..]));
     assert!(proofs(&subject("ppc-line", &bare)).iter().all(|(_, proof)| !proof.missed.is_empty()));
@@ -198,4 +278,21 @@ fn a_certificate_that_was_changed_is_refused() {
     assert!(!changed(equal, &format!("{equal} + 1")).is_safe());
     assert!(!subject.check(&kind, &Certificate::default()).unwrap().holds());
     assert!(!changed("equal v", "equal v999 0\nequal v").holds());
+}
+
+#[test]
+fn a_deviation_that_is_twice_a_polynomial_is_not_taken_for_another() {
+    let pre = Choices { weights: Some(Weights::Pre), ..Choices::default() };
+    let subject = subject("cim-arc", &pre);
+    let kind = subject.kinds().remove(0);
+    let (proof, certificate) = subject.prove(&kind).unwrap();
+    assert!(proof.is_safe(), "{proof:#?}");
+    let text = certificate.to_string();
+    let twice: Vec<&str> = text.lines().filter(|line| line.starts_with("clause") && line.contains("2*")).collect();
+    // 2f from below and from above, with either base axis.
+    assert_eq!(twice.len(), 4, "{twice:?}");
+    for line in twice {
+        let changed: Certificate = text.replacen(line, &format!("{line} - 1"), 1).parse().unwrap();
+        assert!(!subject.check(&kind, &changed).unwrap().is_safe(), "{line}");
+    }
 }

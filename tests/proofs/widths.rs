@@ -36,8 +36,7 @@ fn the_least_widths_of_the_methods_are_those_of_the_literature() {
         for (register, bits) in rows {
             assert_eq!(own[register], bits, "{model}: {register}");
         }
-        let proved = found.registers.iter().all(|register| register.known == Known::Proved);
-        assert_eq!(proved, choices.weights.is_none(), "{model}");
+        assert!(found.registers.iter().all(|register| register.known == Known::Proved), "{model}: {found:?}");
         // Every deviation has a geometry that stops it one bit below.
         let f = found.registers.iter().find(|register| register.name == "f");
         assert!(f.is_none_or(|f| f.witness.is_some()), "{model}");

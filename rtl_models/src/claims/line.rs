@@ -11,14 +11,20 @@ const QUADRANTS: [(&str, [i128; 2]); 4] = [("Q1", [1, 1]), ("Q2", [-1, 1]), ("Q3
 /// Most bits of coordinates of which all lines are listed.
 pub(super) const WHOLE: u32 = 8;
 
-/// The lines of each quadrant; those of either long axis by themselves, if wanted, and with half of the long way, rounded
+/// All lines.
+pub(super) const ANY: &[&str] = &[""];
+/// Those of either long axis, which is x at 45 degrees.
+pub(super) const LONG: &[&str] = &[", x long", ", y long"];
+/// Those of either longer axis, and those at 45 degrees.
+pub(super) const LONGER: &[&str] = &[", x longer", ", y longer", ", 45 degrees"];
+
+/// The lines of each quadrant, those of each of the `lengths` by themselves; if wanted, with half of the long way, rounded
 /// down, as a number of its own.
-pub(super) fn kinds(by_length: bool, halved: bool) -> Vec<Kind> {
+pub(super) fn kinds(lengths: &[&str], halved: bool) -> Vec<Kind> {
     let (a, b) = (|| name("|dx|"), || name("|dy|"));
-    let lengths = if by_length { vec![", x long", ", y long"] } else { vec![""] };
     let mut kinds = Vec::new();
     for (quadrant, [x, y]) in QUADRANTS {
-        for length in &lengths {
+        for length in lengths {
             let mut premises = vec![Clause::at_least_zero("the line has a length", a() + b() - 1)];
             // Along an axis the sign is positive.
             if x < 0 {
@@ -37,14 +43,16 @@ pub(super) fn kinds(by_length: bool, halved: bool) -> Vec<Kind> {
             }
             match *length {
                 ", x long" => premises.push(Clause::at_least_zero("x is long", a() - b())),
-                ", y long" => premises.push(Clause::at_least_zero("y is long", b() - a() - 1)),
+                ", x longer" => premises.push(Clause::at_least_zero("x is longer", a() - b() - 1)),
+                ", y long" | ", y longer" => premises.push(Clause::at_least_zero("y is longer", b() - a() - 1)),
+                ", 45 degrees" => premises.extend(Clause::zero("both are as long", a() - b())),
                 _ => {}
             }
             let ends = [Clause::zero("x ends", name("x") - x * a()), Clause::zero("y ends", name("y") - y * b())];
             kinds.push(Kind {
                 name: format!("{quadrant}{length}"),
                 symbols,
-                constants: Vec::new(),
+                constants: [("sx", x), ("sy", y)].map(|(name, sign)| (name.to_owned(), i128::from(sign < 0))).to_vec(),
                 premises,
                 goals: ends.into_iter().flatten().collect(),
             });

@@ -4,11 +4,11 @@
 use rayon::prelude::*;
 use stepwave_kernel::Net;
 use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::prove::{Certificate, Doubts};
+use stepwave_kernel::prove::{Certificate, Doubts, Row};
 use stepwave_models::{Kind, Machine};
 use stepwave_nc::Curve;
 
-use super::{ProofError, Subject, number, row, states};
+use super::{ProofError, Subject, number, rows};
 use crate::testbench::Start;
 
 /// A step that keeps a proof from being one.
@@ -69,16 +69,15 @@ impl Subject {
             for (place, (member, curve, symbols)) in curves.iter().enumerate() {
                 let Some((words, symbols)) = self.loaded(place, *member, curve, symbols)? else { continue };
                 let (.., machine) = &self.members[*member];
-                let Some(usual) = states(machine, &words).first().map(|state| row(k, &symbols, machine, state)) else {
-                    continue;
-                };
+                let Some(usual) = rows(k, &symbols, machine, &words).into_iter().next() else { continue };
                 let mut stepper = Stepper::new(machine, &words);
                 let most = (MOST / curves.len() as u64).max(1);
                 let mut found = None;
-                doubted.tried += doubts.states(k, &symbols, &usual.registers, most, |registers| {
-                    found = stepper.step(registers).and_then(|step| {
-                        let judged = || doubts.judge(k, &symbols, registers, &step.after, step.done);
-                        Some((registers.to_vec(), step.clocks, step.wrong.or_else(judged)?))
+                doubted.tried += doubts.states(&usual, most, |before| {
+                    found = stepper.step(&before.registers).and_then(|Stepped { clocks, after, done, wrong }| {
+                        let after = Row { registers: after, steps: before.steps + 1, ..before.clone() };
+                        let judged = || doubts.judge(before, &after, done);
+                        Some((before.registers.clone(), clocks, wrong.or_else(judged)?))
                     });
                     found.is_some()
                 });

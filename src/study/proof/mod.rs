@@ -165,9 +165,13 @@ fn largest(claims: &Claims, k: u32) -> Result<Curve, ModelError> {
     claims.geometries.largest(k).ok_or_else(|| ModelError::Widths(format!("there are no geometries of {k} bits")))
 }
 
-fn row(k: u32, symbols: &[i128], machine: &Machine, state: &State) -> Row {
-    let registers = machine.design.registers().iter().map(|register| state.number(machine, *register));
-    Row { k, symbols: symbols.to_vec(), registers: registers.collect() }
+/// The rows of one run.
+fn rows(k: u32, symbols: &[i128], machine: &Machine, words: &[(Net, u64)]) -> Vec<Row> {
+    let row = |(steps, state): (i128, &State)| {
+        let registers = machine.design.registers().iter().map(|register| state.number(machine, *register));
+        Row { k, symbols: symbols.to_vec(), registers: registers.collect(), steps }
+    };
+    (0..).zip(&states(machine, words)).map(row).collect()
 }
 
 impl Subject {
@@ -204,6 +208,7 @@ impl Subject {
             stepped: machine.stepped.net,
             done: machine.done.net,
         };
+        let claims = claims.of_hardware(&members[0].1);
         Ok(Subject { model, claims, family, strobes, any_preset: false, members })
     }
 
@@ -283,7 +288,7 @@ impl Subject {
             let Some((_, hardware, machine)) = self.members.iter().find(|(other, ..)| *other == k) else { continue };
             let blocks = machine.encode(hardware, &self.model.words(hardware, curve))?;
             let words = blocks.into_iter().next().unwrap_or_default();
-            rows.extend(states(machine, &words).iter().map(|state| row(k, &symbols, machine, state)));
+            rows.extend(self::rows(k, &symbols, machine, &words));
         }
         match prove::violated(&self.family, self.strobes, &case, certificate, &rows)? {
             Some(invariant) => Err(ProofError::Untrue { kind: kind.name.clone(), invariant }),
@@ -299,7 +304,7 @@ impl Subject {
         for (place, (member, curve, symbols)) in curves.iter().enumerate() {
             let Some((words, symbols)) = self.loaded(place, *member, curve, symbols)? else { continue };
             let (k, _, machine) = &self.members[*member];
-            rows.extend(states(machine, &words).iter().map(|state| row(*k, &symbols, machine, state)));
+            rows.extend(self::rows(*k, &symbols, machine, &words));
         }
         let any = |register: &String| Symbol {
             name: format!("preset {register}"),
@@ -311,6 +316,7 @@ impl Subject {
             words.retain(|(input, _)| *input != format!("{register}_in"));
             words.push((format!("{register}_in"), formula::name(&format!("preset {register}"))));
         }
+        let guesses = (self.claims.guesses)(&self.members[0].1);
         let case = Case {
             name: kind.name.clone(),
             symbols: kind.symbols.iter().cloned().chain(presets.iter().map(any)).collect(),
@@ -321,6 +327,8 @@ impl Subject {
             rank: (self.claims.rank)(&self.members[0].1),
             modes: self.claims.modes.iter().map(|mode| (*mode).to_owned()).collect(),
             bitwise: self.claims.bitwise.iter().map(|register| (*register).to_owned()).collect(),
+            steps: (!guesses.is_empty()).then(|| "steps".to_owned()),
+            guesses,
         };
         Ok((case, rows))
     }

@@ -5,7 +5,7 @@ use super::certificate::Certificate;
 use super::family::Family;
 use super::obligations::Invariants;
 use super::poly::{Poly, Var};
-use super::proof::in_words;
+use super::proof::{Row, in_words};
 use super::system::{Case, CaseError, Strobes, System, range};
 use crate::netlist::Net;
 
@@ -42,22 +42,15 @@ impl<'f> Doubts<'f> {
         Ok(Doubts { system, invariants, relevant })
     }
 
-    /// Shows states between two steps that the invariants allow for a geometry of k-bit coordinates, until `visit` says
-    /// that it has seen enough: what each register means, in the order of the design. Of more than `most` combinations
-    /// of what is free, so many are tried, spread over all. Registers on which nothing depends are as in `usual`.
+    /// Shows states between two steps that the invariants allow, until `visit` says that it has seen enough. They are of
+    /// the geometry of `usual`, a row of a run, and registers on which nothing depends hold what they hold there. Of more
+    /// than `most` combinations of what is free, so many are tried, spread over all.
     ///
     /// Gives how many states were shown.
-    pub fn states(
-        &self,
-        k: u32,
-        symbols: &[i128],
-        usual: &[i128],
-        most: u64,
-        mut visit: impl FnMut(&[i128]) -> bool,
-    ) -> u64 {
+    pub fn states(&self, usual: &Row, most: u64, mut visit: impl FnMut(&Row) -> bool) -> u64 {
         let mut shown = 0;
         for own in &self.invariants {
-            let mut values = self.system.row(self.system.family.scale_at(k), symbols, usual);
+            let mut values = self.values(usual);
             for ((_, var), value) in self.system.modes.iter().zip(&own.modes) {
                 values[var.index()] = *value;
             }
@@ -77,7 +70,7 @@ impl<'f> Doubts<'f> {
                 }
                 if self.complete(own, &mut values) {
                     shown += 1;
-                    if visit(&self.registers(&values)) {
+                    if visit(&self.row(usual, &values)) {
                         return shown;
                     }
                 }
@@ -96,9 +89,8 @@ impl<'f> Doubts<'f> {
     /// What is wrong with a step that begins and ends in these states and overflows nowhere, in words; `None` where it is
     /// as it should be.
     #[must_use]
-    pub fn judge(&self, k: u32, symbols: &[i128], before: &[i128], after: &[i128], done: bool) -> Option<String> {
-        let row = |registers| self.system.row(self.system.family.scale_at(k), symbols, registers);
-        let (before, after) = (row(before), row(after));
+    pub fn judge(&self, before: &Row, after: &Row, done: bool) -> Option<String> {
+        let (before, after) = (self.values(before), self.values(after));
         if done {
             let missed = self.system.goals.iter().find(|(_, any)| !is_any(any, &after));
             return missed.map(|(name, _)| format!("the block ends, but {name} does not hold"));
@@ -124,7 +116,9 @@ impl<'f> Doubts<'f> {
         };
         let registers = self.system.registers.iter().filter(|(_, var)| self.relevant.contains(var)).map(of_register);
         let bits = self.system.bitwise.iter().flat_map(|(_, bits)| bits.iter().map(|bit| (*bit, 0, 1)));
-        registers.chain(bits).filter(|(var, ..)| !is_fixed(*var)).collect()
+        // More steps than a block of such coordinates takes.
+        let steps = self.system.steps.map(|var| (var, 0, 4 * values[Family::SCALE.index()]));
+        registers.chain(bits).chain(steps).filter(|(var, ..)| !is_fixed(*var)).collect()
     }
 
     /// Works out what the invariants determine; whether they all hold then, and every register holds its number.
@@ -143,8 +137,12 @@ impl<'f> Doubts<'f> {
             && self.system.registers.iter().all(fits)
     }
 
-    /// What each register means, in the order of the design.
-    fn registers(&self, values: &[i128]) -> Vec<i128> {
+    fn values(&self, row: &Row) -> Values {
+        self.system.row(self.system.family.scale_at(row.k), &row.symbols, &row.registers, row.steps)
+    }
+
+    /// The state of these values, of the geometry of another.
+    fn row(&self, usual: &Row, values: &[i128]) -> Row {
         let held = |register: &Net| {
             let whole = self.system.registers.iter().find(|(net, _)| net == register);
             let bits = self.system.bitwise.iter().find(|(net, _)| net == register);
@@ -154,7 +152,9 @@ impl<'f> Doubts<'f> {
                 (None, None) => 0,
             }
         };
-        self.system.family.design().registers().iter().map(held).collect()
+        let registers = self.system.family.design().registers().iter().map(held).collect();
+        let steps = self.system.steps.map_or(usual.steps, |var| values[var.index()]);
+        Row { registers, steps, ..usual.clone() }
     }
 }
 

@@ -61,7 +61,7 @@ fn load(system: &System<'_>, all: &[Invariants], oracle: &mut dyn Oracle, findin
         if !path.truth(system.strobes.loaded, 1)? {
             return astray(&mut path, "the edge that loads does not load", findings);
         }
-        row(system, all, &mut path, 1, findings)
+        row(system, all, &mut path, [1, 0], findings)
     });
     count(explored, findings);
 }
@@ -97,7 +97,7 @@ fn step(system: &System<'_>, all: &[Invariants], place: usize, oracle: &mut dyn 
                     claims(system, &mut path, clock + 1, findings)?;
                     goals(system, &mut path, clock + 1, findings)
                 } else {
-                    row(system, all, &mut path, clock + 1, findings)
+                    row(system, all, &mut path, [clock + 1, 1], findings)
                 };
             }
         }
@@ -162,12 +162,12 @@ fn claims(system: &System<'_>, path: &mut Path<'_, '_>, clock: usize, findings: 
     Ok(())
 }
 
-/// The invariants hold in the row at this clock.
+/// The invariants hold in the row at this clock, so many steps behind the first: 1, or 0 where the block was loaded.
 fn row(
     system: &System<'_>,
     all: &[Invariants],
     path: &mut Path<'_, '_>,
-    clock: usize,
+    [clock, steps]: [usize; 2],
     findings: &mut Findings,
 ) -> Result<(), Stop> {
     let mut modes = Vec::new();
@@ -182,7 +182,10 @@ fn row(
         let equalities = all[place].equalities.iter().flat_map(|(var, poly)| [vec![*var], poly.vars()].concat());
         clauses.chain(equalities).collect()
     };
-    let next = next_values(system, path, clock, |var| needed.contains(&var))?;
+    let mut next = next_values(system, path, clock, |var| needed.contains(&var))?;
+    if let Some(var) = system.steps.filter(|_| steps == 0) {
+        next[var.index()] = Some(Poly::from(0));
+    }
     let value = |var: Var| next.get(var.index()).and_then(Option::as_ref);
     for (var, poly) in &all[place].equalities {
         let gap = Poly::from(*var).minus(poly).replaced(value);
@@ -239,7 +242,7 @@ fn falls(
     Ok(())
 }
 
-/// What the wanted variables of registers stand for behind some clocks, by variable.
+/// What the wanted variables of registers stand for behind some clocks that are a step, by variable.
 fn next_values(
     system: &System<'_>,
     path: &mut Path<'_, '_>,
@@ -256,6 +259,9 @@ fn next_values(
             };
             next[var.index()] = Some(value);
         }
+    }
+    if let Some(var) = system.steps {
+        next[var.index()] = Some(Poly::from(var).plus_number(1));
     }
     for (register, bits) in &system.bitwise {
         if bits.iter().any(|bit| wanted(*bit)) {

@@ -21,6 +21,8 @@ pub struct Row {
     pub symbols: Vec<i128>,
     /// What every register holds as it is read, in the order of [`Design::registers`](crate::Design::registers).
     pub registers: Vec<i128>,
+    /// Steps that the block has taken.
+    pub steps: i128,
 }
 
 /// What came of an attempt at a proof. Every sentence names what it could not show.
@@ -80,16 +82,19 @@ impl Oracle for Search<'_> {
 /// Plays recorded contradictions back, each checked.
 struct Playback<'c> {
     answers: std::slice::Iter<'c, Option<Refutation>>,
-    /// Answers that do not show what they should.
-    wrong: usize,
+    /// An answer did not show what it should: nothing counts any more.
+    wrong: bool,
 }
 
 impl Oracle for Playback<'_> {
     fn refutes(&mut self, rows: &[Poly], _: usize, clauses: &[Vec<Poly>], _: Effort) -> bool {
+        // The answers that follow belong to other paths; so that these need not be gone through, each ends at once.
+        if self.wrong {
+            return true;
+        }
         let Some(Some(refutation)) = self.answers.next() else { return false };
-        let held = holds(refutation, &mut rows.to_vec(), clauses);
-        self.wrong += usize::from(!held);
-        held
+        self.wrong = !holds(refutation, &mut rows.to_vec(), clauses);
+        !self.wrong
     }
 }
 
@@ -130,11 +135,11 @@ pub fn check(family: &Family, strobes: Strobes, case: &Case, certificate: &Certi
         let astray = Some("the certificate speaks of variables that the case does not have".to_owned());
         return Ok(Proof { astray, ..Proof::default() });
     }
-    let mut playback = Playback { answers: certificate.answers.iter(), wrong: 0 };
+    let mut playback = Playback { answers: certificate.answers.iter(), wrong: false };
     let findings = obligations::check(&system, &certificate.invariants, &mut playback);
     let mut proof = proof(&system, &findings, certificate, Vec::new());
-    if playback.wrong > 0 {
-        proof.astray = Some(format!("{} steps of the certificate show nothing", playback.wrong));
+    if playback.wrong {
+        proof.astray = Some("a step of the certificate does not show what it should".to_owned());
     } else if !findings.broken_equalities.is_empty() || !findings.broken_clauses.is_empty() {
         proof.astray = Some("the certificate's invariants are not inductive".to_owned());
     }
@@ -155,7 +160,7 @@ pub fn violated(
     let system = System::new(family, strobes, case)?;
     let name = |var| system.variables.name(var);
     for row in rows {
-        let values = system.row(family.scale_at(row.k), &row.symbols, &row.registers);
+        let values = system.row(family.scale_at(row.k), &row.symbols, &row.registers, row.steps);
         let value = |poly: &Poly| poly.value(|var| values[var.index()]);
         let modes: Vec<i128> = system.modes.iter().map(|(_, var)| values[var.index()]).collect();
         let Some(own) = certificate.invariants.iter().find(|own| own.modes == modes) else {
@@ -230,7 +235,7 @@ type Values = (u32, Vec<i128>);
 fn guess(system: &System<'_>, rows: &[Row]) -> Vec<Invariants> {
     let mut by_modes: Vec<(Vec<i128>, Vec<Values>)> = Vec::new();
     for row in rows {
-        let values = system.row(system.family.scale_at(row.k), &row.symbols, &row.registers);
+        let values = system.row(system.family.scale_at(row.k), &row.symbols, &row.registers, row.steps);
         let modes: Vec<i128> = system.modes.iter().map(|(_, var)| values[var.index()]).collect();
         match by_modes.iter_mut().find(|(other, _)| *other == modes) {
             Some((_, group)) => group.push((row.k, values)),
@@ -254,10 +259,13 @@ fn guess_in(system: &System<'_>, modes: Vec<i128>, rows: &[Values]) -> Invariant
     };
     let flags: Vec<Var> = system.registers.iter().filter(|(net, _)| is_flag(net)).map(|(_, var)| *var).collect();
     let scale = (system.family.ks().len() > 1).then_some(Family::SCALE);
-    let free: Vec<Var> = scale.into_iter().chain(system.symbols.iter().copied()).chain(bits).collect();
-    let equalities = infer::equalities(&values, &registers, &free, &flags);
+    let free = scale.into_iter().chain(system.symbols.iter().copied()).chain(bits).chain(system.steps);
+    let free: Vec<Var> = free.collect();
+    let infer::Found { equalities, zeros } = infer::equalities(&values, &registers, &free, &flags);
     let authored = system.authored.iter().map(|(_, any)| any.clone());
     let mut clauses: Vec<Vec<Poly>> = authored.chain(system.rank.iter().map(|rank| vec![rank.clone()])).collect();
+    clauses.extend(system.guesses.iter().cloned());
+    clauses.extend(zeros.into_iter().flat_map(|zero| [vec![zero.negated()], vec![zero]]));
     // Bounds that are the same for every k.
     for var in
         registers.iter().filter(|var| equalities.iter().all(|(other, poly)| other != *var || poly.constant().is_none()))

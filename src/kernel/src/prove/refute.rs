@@ -274,6 +274,33 @@ mod tests {
     }
 
     #[test]
+    fn a_sum_of_many_products_is_found_where_nearly_every_step_towards_it_gains_nothing() {
+        // An arc from (xs, ys) to (xt, yt) has come to (x, y), x to its end, so that 2f is x*x - x + y*y + y less the same
+        // of the start; f - y is below the range of four times 2h.
+        let [h, xs, ys, xt, yt, f, x, y] = [0, 1, 2, 3, 4, 5, 6, 7].map(var);
+        let square = |a: &Poly| a.times(a);
+        let circle = square(&xs).plus(&square(&ys)).minus(&square(&xt)).minus(&square(&yt));
+        let gain = square(&x).minus(&x).plus(&square(&y)).plus(&y);
+        let twice = gain.minus(&square(&xs).minus(&xs).plus(&square(&ys)).plus(&ys)).minus(&f.times_number(2));
+        let most = h.times_number(2).plus_number(-1);
+        let mut rows = vec![h.plus_number(-4)];
+        rows.extend([&xs, &ys, &xt, &yt, &x, &y].into_iter().flat_map(|a| [a.clone(), most.minus(a)]));
+        rows.extend([f.plus(&h.times_number(4)), h.times_number(4).minus(&f).plus_number(-1)]);
+        rows.extend([x.plus(&h.times_number(4)), y.plus(&h.times_number(4)), xt.minus(&x), y.minus(&yt)]);
+        rows.extend([circle.clone(), circle.negated(), twice.clone(), twice.negated()]);
+        rows.extend([xt.minus(&xs), ys.minus(&yt), ys.clone(), xt.clone(), y.clone()].map(|a| a.plus_number(-1)));
+        rows.extend([x.minus(&f), y.minus(&x), y.minus(&x).minus(&yt).plus(&xt).plus_number(-1)]);
+        let own = rows.len();
+        rows.extend([x.minus(&xt), y.minus(&yt).plus_number(-1), y.minus(&x).plus_number(-1)]);
+        rows.push(y.minus(&f).minus(&h.times_number(4)).plus_number(-1));
+        let found = refute(&rows, own, &[], Effort::All, &mut 1).unwrap();
+        assert!(holds(&found, &mut rows.clone(), &[]));
+        // Without the circle f may be anything.
+        rows.retain(|row| *row != circle && *row != circle.negated());
+        assert_eq!(refute(&rows, own - 2, &[], Effort::All, &mut 1), None);
+    }
+
+    #[test]
     fn clauses_are_taken_apart() {
         let x = var(1);
         let clauses = [vec![x.plus_number(-3), x.negated().plus_number(-3)]];

@@ -11,81 +11,67 @@ const TINY: f64 = 1e-9;
 /// `height` many. `None` where there are none, or where the arithmetic was not good enough to find them.
 ///
 /// The simplex algorithm, phase one: every row begins with a column of its own, which must go. Only row 0 wants
-/// something, so that nearly every step is degenerate; a step that gains nothing takes a random column out of those
-/// that could, so that none can go round forever.
+/// something, so that nearly every step would gain nothing and could go round forever: so each row wants a little of
+/// its own beside, infinitely less than anything in the columns, by which every step gains.
 pub(crate) fn support(columns: &Columns, height: usize) -> Option<Vec<usize>> {
-    let width = columns.len() + 1;
-    // Row by row, the wanted column last. The cost row stands below: what is still missing.
+    let width = columns.len() + 2;
+    let (wanted, little) = (columns.len(), columns.len() + 1);
+    // Row by row, the wanted column and the little ones last. The cost row stands below: what is still missing.
     let mut table = vec![0.0; (height + 1) * width];
     for (column, entries) in columns.iter().enumerate() {
         for &(row, value) in entries {
             table[row * width + column] = value;
         }
     }
-    table[width - 1] = 1.0;
+    table[wanted] = 1.0;
+    let mut random = 0x2545_F491_4F6C_DD1D_u64;
+    for row in 0..height {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        #[allow(clippy::cast_precision_loss, reason = "any number from 1 to 2")]
+        let any = 1.0 + (random >> 12) as f64 / (1_u64 << 52) as f64;
+        table[row * width + little] = any;
+    }
     let mut basis: Vec<Option<usize>> = vec![None; height];
     // A row whose own column is still there costs what it holds; only row 0 holds something.
     for column in 0..width {
         table[height * width + column] = (0..height).map(|row| table[row * width + column]).sum();
     }
-    let mut random = 0x2545_F491_4F6C_DD1D_u64;
-    let mut still = 0;
     for _ in 0..40 * (height + 10) {
-        let missing = table[height * width + width - 1];
-        if missing < TINY {
+        if table[height * width + wanted] < TINY {
             return Some(basis.into_iter().flatten().collect());
         }
-        let entering = entering(&table[height * width..][..width - 1], &mut random, still > 2)?;
-        let leaving = leaving(&table, width, height, entering, &basis)?;
-        let gained = table[leaving * width + width - 1] > TINY;
-        still = if gained { 0 } else { still + 1 };
+        let entering = entering(&table[height * width..][..columns.len()])?;
+        let leaving = leaving(&table, width, height, entering)?;
         pivot(&mut table, width, height, leaving, entering);
         basis[leaving] = Some(entering);
     }
     None
 }
 
-/// A column that lowers what is missing: the one that lowers it most, or any.
-fn entering(costs: &[f64], random: &mut u64, any: bool) -> Option<usize> {
-    let good = |cost: &f64| *cost > TINY;
-    if !any {
-        let best = costs.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
-        return good(best.1).then_some(best.0);
-    }
-    let count = costs.iter().filter(|cost| good(cost)).count();
-    if count == 0 {
-        return None;
-    }
-    *random ^= *random << 13;
-    *random ^= *random >> 7;
-    *random ^= *random << 17;
-    #[allow(clippy::cast_possible_truncation, reason = "a remainder below a count")]
-    let chosen = (*random % count as u64) as usize;
-    costs.iter().enumerate().filter(|(_, cost)| good(cost)).nth(chosen).map(|(column, _)| column)
+/// The column that lowers what is missing most.
+fn entering(costs: &[f64]) -> Option<usize> {
+    let best = costs.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    (*best.1 > TINY).then_some(best.0)
 }
 
-/// The row whose column makes room: the first to come to 0; of several, one that still has its own column, and then
-/// the one with the largest entry.
-fn leaving(table: &[f64], width: usize, height: usize, entering: usize, basis: &[Option<usize>]) -> Option<usize> {
-    let mut best: Option<(usize, f64)> = None;
+/// The row whose column makes room: the first to come to 0, of several the first by the little that it wants.
+fn leaving(table: &[f64], width: usize, height: usize, entering: usize) -> Option<usize> {
+    let mut best: Option<(usize, [f64; 2])> = None;
     for row in 0..height {
-        let entry = table[row * width + entering];
-        let held = table[row * width + width - 1];
-        // A row at 0 whose own column is still there lets go of it by either sign.
-        let usable = entry > TINY || basis[row].is_none() && held.abs() < TINY && entry < -TINY;
-        if !usable {
+        let own = &table[row * width..][..width];
+        if own[entering] <= TINY {
             continue;
         }
-        let ratio = (held / entry).abs();
-        let better = best.is_none_or(|(other, least)| {
-            if (ratio - least).abs() > TINY {
-                return ratio < least;
-            }
-            let rank = |row: usize| (basis[row].is_none(), table[row * width + entering].abs());
-            let (mine, theirs) = (rank(row), rank(other));
-            mine.0 & !theirs.0 || mine.0 == theirs.0 && mine.1 > theirs.1
-        });
-        if better {
+        let ratio = [own[width - 2], own[width - 1]].map(|held| held / own[entering]);
+        let sooner =
+            best.is_none_or(
+                |(_, least)| {
+                    if (ratio[0] - least[0]).abs() > TINY { ratio[0] < least[0] } else { ratio[1] < least[1] }
+                },
+            );
+        if sooner {
             best = Some((row, ratio));
         }
     }

@@ -59,6 +59,10 @@ pub struct Case {
     pub modes: Vec<String>,
     /// Registers of fixed width that are held bit by bit.
     pub bitwise: Vec<String>,
+    /// A name for the number of steps that the block has taken, which no register holds.
+    pub steps: Option<String>,
+    /// What may hold between two steps; not believed, but left out where it does not.
+    pub guesses: Vec<Clause>,
 }
 
 /// What cannot be stated of a netlist.
@@ -104,6 +108,10 @@ pub(crate) struct System<'f> {
     pub(crate) goals: Vec<(String, Vec<Poly>)>,
     pub(crate) rank: Option<Poly>,
     pub(crate) modes: Vec<(Net, Var)>,
+    /// The number of steps that the block has taken.
+    pub(crate) steps: Option<Var>,
+    /// What may be an invariant beside.
+    pub(crate) guesses: Vec<Vec<Poly>>,
     /// Invariants of the netlist's author.
     pub(crate) authored: Vec<(String, Vec<Poly>)>,
 }
@@ -160,6 +168,8 @@ impl<'f> System<'f> {
             let var = variables.add(name, Some(least), Some(greatest)).ok_or_else(too_large)?;
             registers.push((register, var));
         }
+        let steps = case.steps.clone().map(|name| variables.add(name, Some(Poly::from(0)), None).ok_or_else(too_large));
+        let steps = steps.transpose()?;
         let clauses = |clauses: &[Clause]| -> Result<Vec<(String, Vec<Poly>)>, CaseError> {
             let clause = |clause: &Clause| {
                 let any = clause.any.iter().map(|formula| poly(formula, case, family, &variables));
@@ -181,6 +191,8 @@ impl<'f> System<'f> {
             goals: clauses(&case.goals)?,
             rank: case.rank.as_ref().map(|formula| poly(formula, case, family, &variables)).transpose()?,
             modes: modes.collect::<Result<_, CaseError>>()?,
+            steps,
+            guesses: clauses(&case.guesses)?.into_iter().map(|(_, any)| any).collect(),
             authored: clauses(&netlist.invariants)?,
             variables,
             symbols,
@@ -218,12 +230,16 @@ impl<'f> System<'f> {
         is_signed(self.family, register)
     }
 
-    /// Every variable that a row of a run has a value for, in order: the scale, the symbols, the registers, their bits.
-    pub(crate) fn row(&self, scale: i128, symbols: &[i128], registers: &[i128]) -> Vec<i128> {
+    /// Every variable that a row of a run has a value for, in order: the scale, the symbols, the registers, their bits, the
+    /// steps taken.
+    pub(crate) fn row(&self, scale: i128, symbols: &[i128], registers: &[i128], steps: i128) -> Vec<i128> {
         let mut row = vec![0; self.variables.len()];
         row[Family::SCALE.index()] = scale;
         for (var, value) in self.symbols.iter().zip(symbols) {
             row[var.index()] = *value;
+        }
+        if let Some(var) = self.steps {
+            row[var.index()] = steps;
         }
         let held = |register: Net| {
             let place = self.family.design().registers().iter().position(|other| *other == register);
