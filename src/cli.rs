@@ -235,6 +235,13 @@ pub(crate) struct TraceArgs {
     pub(crate) no_clk: bool,
 }
 
+impl TraceArgs {
+    /// A wave is to be written.
+    pub(crate) fn wanted(&self) -> bool {
+        self.vcd.is_some() || self.fst.is_some()
+    }
+}
+
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Outputs (- is standard output)")]
 pub(crate) struct OutputArgs {

@@ -46,6 +46,7 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
     let hardware = family.plan(&survey.size, &args.hardware.choices())?;
     let machine = family.machine(&hardware)?;
     let bench = Testbench::of_machine(hardware, machine).limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
+    let bench = if args.trace.wanted() { bench } else { bench.without_wave() };
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
     let head = ProgramHead { file: &file, family, hardware: bench.hardware(), engine: args.simulation.engine, pace };
