@@ -43,7 +43,7 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
         chords: args.chords,
     };
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
-    let hardware = family.plan(&survey.size, &args.hardware.choices())?;
+    let hardware = family.plan(&survey.size, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
     let machine = family.machine(&hardware)?;
     let bench = Testbench::of_machine(hardware, machine).limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
     let bench = if args.trace.wanted() { bench } else { bench.without_wave() };

@@ -46,7 +46,7 @@ pub(crate) struct Finished {
 pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
     let model = find(&args.model)?;
     let curve = curve(model.name, model.curve, &args.geometry)?;
-    let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
+    let bench = Testbench::new(model, &curve, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
     let bench = bench.limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);

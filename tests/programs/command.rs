@@ -199,3 +199,12 @@ fn a_width_whose_blocks_would_not_end_is_refused() {
     assert_eq!(folder.run("program p.ngc --method dpm --width 52 --max-clocks 9").code, 1);
     folder.good("program p.ngc --method dda --normalize --width 60");
 }
+
+#[test]
+fn a_feed_that_a_machine_of_programs_does_not_take_is_refused_by_its_name() {
+    let folder = Folder::new();
+    fs::write(folder.path("p.ngc"), "G01 X0.006 F60\n").unwrap();
+    let ran = folder.run("program p.ngc --method ppc --feed 600");
+    assert_eq!(ran.code, 2, "{ran:?}");
+    assert!(ran.err.contains("ppc does not take --feed; it takes --width"), "{ran:?}");
+}
