@@ -54,7 +54,7 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
     // All are opened before the first is written: where one is refused, nothing stands on standard output.
     let sinks = Sinks::open(&args.trace, outputs)?;
     let mut sink = |path: &Option<std::path::PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
-    let (steps, json, plot) = (sink(&args.steps)?, sink(&args.json)?, sink(&args.plot)?);
+    let (steps, json, plot) = (sink(&args.outputs.steps)?, sink(&args.outputs.json)?, sink(&args.outputs.plot)?);
     let mut waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &head.title())).transpose()?;
     let mut steps = steps.map(|sink| StepTable::new(&bench, sink)).transpose()?;
     let mut json = json.map(|sink| ProgramJson::new(head, sink)).transpose()?;

@@ -61,7 +61,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let mut csv = steps.map(|sink| CsvTable::new(&bench, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Picture(Plot::new(&curve)), sink));
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
-    let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.outputs.bits));
+    let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.bits));
     let mut coarse = CoarseWatch::new(&bench, &curve);
     let (mut spacing, mut progress) = (SpacingWatch::new(&bench, &curve), Progress::new());
 
