@@ -11,24 +11,23 @@ use stepwave::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail
 use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Sample, Testbench};
 
 use super::progress::Counter;
+use super::run::Finished;
 use super::wave::{Sinks, Waves};
 use crate::cli::ProgramArgs;
 use crate::failure::Failure;
-use crate::output::{self, Outputs, Sink};
+use crate::output::{Outputs, Sink};
 
 /// Runs a whole program and writes what was asked for.
 pub(crate) fn program(args: &ProgramArgs) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
-    let (text, failures) = simulate(args, &mut outputs)?;
-    let quiet = outputs.uses_stdout();
-    outputs.commit()?;
-    if !quiet {
-        output::print(&text)?;
-    }
-    if failures.is_empty() { Ok(()) } else { Err(Failure::Check(failures)) }
+    simulate(args, &mut outputs)?.tell(outputs)
 }
 
-fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<String>), Failure> {
+/// Simulates and stages every output.
+///
+/// # Errors
+/// Bad input, or an output cannot be written; nothing stands under a final name.
+pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
     let family = args.method;
     let file = args.file.display().to_string();
     let told = |error: &dyn std::fmt::Display| Failure::Trouble(format!("{file}: {error}"));
@@ -101,7 +100,7 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
         sink.write_all(picture.svg().as_bytes())?;
         sink.flush()?;
     }
-    Ok((table.text(&tail), failures))
+    Ok(Finished { text: table.text(&tail), failures })
 }
 
 /// Opens the program; it is read twice.

@@ -22,13 +22,7 @@ use crate::output::{self, Outputs};
 /// Runs a model and writes what was asked for.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
-    let finished = simulate(args, &mut outputs)?;
-    let quiet = outputs.uses_stdout();
-    outputs.commit()?;
-    if !quiet {
-        output::print(&finished.text)?;
-    }
-    if finished.failures.is_empty() { Ok(()) } else { Err(Failure::Check(finished.failures)) }
+    simulate(args, &mut outputs)?.tell(outputs)
 }
 
 /// A run whose outputs are staged.
@@ -37,6 +31,21 @@ pub(crate) struct Finished {
     pub(crate) text: String,
     /// What is wrong with the simulated hardware.
     pub(crate) failures: Vec<String>,
+}
+
+impl Finished {
+    /// Puts the outputs under their names, and tells what there is to tell.
+    ///
+    /// # Errors
+    /// An output cannot be written, or the simulated hardware failed a check.
+    pub(super) fn tell(self, outputs: Outputs) -> Result<(), Failure> {
+        let quiet = outputs.uses_stdout();
+        outputs.commit()?;
+        if !quiet {
+            output::print(&self.text)?;
+        }
+        if self.failures.is_empty() { Ok(()) } else { Err(Failure::Check(self.failures)) }
+    }
 }
 
 /// Simulates and stages every output.
