@@ -28,6 +28,8 @@ use specialise::{History, Specialised};
 const WARM_UP: u64 = 16 * 1024;
 /// Clocks looked back on when a loop is compiled.
 const LOOK_BACK: u64 = 1024;
+/// Clocks that inputs must have stayed before a loop is compiled for them that assumes nothing else.
+const STEADY: u64 = 16;
 /// Loops compiled with assumptions on registers before one without is used.
 const TRIES: usize = 6;
 
@@ -111,6 +113,7 @@ impl Compiled {
         let running: Vec<Net> = idle.running.iter().copied().filter(|net| registers.contains(net)).collect();
         let words = passing::HEAD + passing::EXTREMES * running.len();
         self.state.resize(registers.len() + self.design.inputs().len() + words, 0);
+        self.history = History::new(self.design.netlist(), &self.registers, STEADY.min(self.warm_up));
         self.idle = (!running.is_empty() && !self.watch.columns.is_empty())
             .then(|| Idle { running, flags: idle.flags.clone() });
         self
@@ -120,7 +123,9 @@ impl Compiled {
     fn step(&mut self, rows: &mut Rows) -> Stop {
         let changes = self.word.input_pending();
         if changes {
-            self.quiet = 0;
+            // A loop that passes over samples takes nothing for granted but inputs: they need not stay for long.
+            let kept = self.idle.as_ref().map_or(0, |_| self.warm_up.saturating_sub(self.history.window()));
+            self.quiet = self.quiet.min(kept);
         }
         let stop = self.word.run(1, rows);
         if changes {
