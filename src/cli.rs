@@ -119,6 +119,9 @@ pub(crate) struct RunArgs {
     pub(crate) trace: TraceArgs,
     #[command(flatten)]
     pub(crate) outputs: OutputArgs,
+    /// Show registers in binary in the printed table
+    #[arg(long, help_heading = "Outputs (- is standard output)")]
+    pub(crate) bits: bool,
     /// Keep states of the run in this file; where it exists, begin at the last state before --trace-from instead of at
     /// clock 0
     #[arg(long, value_name = "FILE", help_heading = "Wave")]
@@ -235,6 +238,13 @@ pub(crate) struct TraceArgs {
     pub(crate) no_clk: bool,
 }
 
+impl TraceArgs {
+    /// A wave is to be written.
+    pub(crate) fn wanted(&self) -> bool {
+        self.vcd.is_some() || self.fst.is_some()
+    }
+}
+
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Outputs (- is standard output)")]
 pub(crate) struct OutputArgs {
@@ -244,10 +254,7 @@ pub(crate) struct OutputArgs {
     /// Write the report as JSON
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
-    /// Draw the path over the ideal curve, and its error, as SVG
+    /// Draw the path over the ideal curve, and its error, or the contour of a program, as SVG
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
-    /// Show registers in binary in the printed table
-    #[arg(long)]
-    pub(crate) bits: bool,
 }

@@ -6,8 +6,8 @@ use clap::Args;
 use stepwave::models::program::{FAMILIES, Family};
 use stepwave::nc::{Corner, Integers, Scheme};
 
-use super::TraceArgs;
 use super::values::{ClockArgs, HardwareArgs, SimulationArgs, one_of, parse_blu};
+use super::{OutputArgs, TraceArgs};
 
 /// The radius of a tool: `1=4mm`.
 #[derive(Clone, Copy, Debug)]
@@ -83,13 +83,6 @@ pub(crate) struct ProgramArgs {
     pub(crate) simulation: SimulationArgs,
     #[command(flatten)]
     pub(crate) trace: TraceArgs,
-    /// Write the step table as CSV
-    #[arg(long, value_name = "FILE", help_heading = "Outputs (- is standard output)")]
-    pub(crate) steps: Option<PathBuf>,
-    /// Write the report as JSON, move by move
-    #[arg(long, value_name = "FILE", help_heading = "Outputs (- is standard output)")]
-    pub(crate) json: Option<PathBuf>,
-    /// Draw the contour and the way of the tool in x and y as SVG
-    #[arg(long, value_name = "FILE", help_heading = "Outputs (- is standard output)")]
-    pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) outputs: OutputArgs,
 }

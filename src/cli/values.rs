@@ -7,10 +7,12 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use stepwave::kernel::Width;
 use stepwave::kernel::engine::EngineKind;
 use stepwave::models::{
-    Adder, Beats, Choices, Compare, EndPoint, Form, Millionths, Named, OnOverflow, Preset, Radix, StepTiming, System,
-    Weights,
+    Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Millionths, ModelError, Named, OnOverflow, Preset, Radix,
+    StepTiming, System, Weights,
 };
 use stepwave::nc::Opens;
+
+use crate::failure::Failure;
 
 /// Coordinates of a point in BLU.
 #[derive(Clone, Debug)]
@@ -283,6 +285,16 @@ fn split<T>(given: impl Iterator<Item = (Option<String>, T)>) -> (Option<T>, BTr
 }
 
 impl HardwareArgs {
+    /// A model's error in the words of this command line: a feed gives the way of a period, which is a choice of its own.
+    pub(crate) fn told(&self, error: ModelError) -> Failure {
+        match error {
+            ModelError::NotTaken { model, choice: Choice::Step, takes } if self.feed.is_some() => {
+                Failure::Trouble(format!("{model} does not take --feed; it takes {takes}"))
+            }
+            other => other.into(),
+        }
+    }
+
     /// The choices made.
     pub(crate) fn choices(&self) -> Choices {
         let (width, widths) = split(self.width.iter().flat_map(|arg| arg.0.iter().cloned()));

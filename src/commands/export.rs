@@ -21,7 +21,7 @@ const DEEPEST: u64 = 1000;
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
     let curve = curve(model.name, model.curve, &args.geometry)?;
-    let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
+    let bench = Testbench::new(model, &curve, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let comment = [
         report::title(model, bench.hardware(), &curve),

@@ -1,7 +1,7 @@
 //! `stepwave golden`: recorded waves, simulated anew and compared bit by bit.
 //!
-//! `cases.toml` in the folder lists the cases: a name, the arguments of `stepwave run`, the exit code, and the source of
-//! the example. Recorded are the wave `NAME.vcd` with its viewer files, and the step table `NAME.csv`.
+//! `cases.toml` in the folder lists the cases: a name, the arguments of `stepwave run`, or those of `stepwave program` and
+//! a program in the folder, the exit code, and the source of the example. Recorded are the wave `NAME.vcd` with its viewer files, and the step table `NAME.csv`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,8 +13,8 @@ use stepwave::kernel::engine::EngineKind;
 use stepwave::kernel::trace::diverge::{self, Options};
 use stepwave::kernel::trace::read::Wave;
 
-use super::run;
-use crate::cli::{Cli, Command, GoldenCommand, RunArgs};
+use super::{program, run};
+use crate::cli::{Cli, Command, GoldenCommand};
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
 
@@ -35,7 +35,9 @@ struct Case {
     /// Where the example comes from; for people.
     #[allow(dead_code)]
     source: String,
-    /// Arguments of `stepwave run`.
+    /// File of the program in the folder, where it is one.
+    program: Option<String>,
+    /// Arguments of `stepwave run` or `stepwave program`.
     args: Vec<String>,
     /// Exit code that the run has.
     #[serde(default)]
@@ -53,7 +55,7 @@ pub(crate) fn run(command: &GoldenCommand) -> Result<(), Failure> {
     for case in &cases {
         let mut told = None;
         for engine in EngineKind::ALL {
-            let made = match simulate(case, engine) {
+            let made = match simulate(case, &args.dir, engine) {
                 Ok(made) => made,
                 Err(Failure::Check(sentences)) => {
                     differences.extend(sentences);
@@ -107,11 +109,15 @@ fn is_file_stem(name: &str) -> bool {
 type Files = BTreeMap<String, Vec<u8>>;
 
 /// Runs a case as its user would, in a folder of its own.
-fn simulate(case: &Case, engine: EngineKind) -> Result<Files, Failure> {
+fn simulate(case: &Case, folder: &Path, engine: EngineKind) -> Result<Files, Failure> {
     let wrong = |what: String| Failure::Trouble(format!("case {}: {what}", case.name));
     let dir = tempfile::tempdir()?;
     let file = |extension: &str| dir.path().join(format!("{}.{extension}", case.name)).into_os_string();
-    let mut words: Vec<std::ffi::OsString> = vec!["stepwave".into(), "run".into()];
+    let mut words: Vec<std::ffi::OsString> = vec!["stepwave".into()];
+    match &case.program {
+        Some(name) => words.extend(["program".into(), folder.join(name).into_os_string()]),
+        None => words.push("run".into()),
+    }
     words.extend(case.args.iter().map(Into::into));
     words.extend(["--engine".into(), engine.name().into(), "--vcd".into(), file("vcd"), "--steps".into(), file("csv")]);
     let in_words = |failure: Failure| match failure {
@@ -119,15 +125,23 @@ fn simulate(case: &Case, engine: EngineKind) -> Result<Files, Failure> {
         other => other,
     };
     let cli = Cli::try_parse_from(words).map_err(|error| in_words(Failure::usage(&error)))?;
-    let Command::Run(args) = cli.command else { return Err(wrong("is no run".to_owned())) };
-    let args: &RunArgs = &args;
-    let others = [&args.trace.fst, &args.checkpoints, &args.outputs.json, &args.outputs.plot];
+    let (trace, made, checkpoints) = match &cli.command {
+        Command::Run(args) => (&args.trace, &args.outputs, args.checkpoints.as_ref()),
+        Command::Program(args) => (&args.trace, &args.outputs, None),
+        _ => return Err(wrong("is neither a run nor a program".to_owned())),
+    };
+    let others = [trace.fst.as_ref(), checkpoints, made.json.as_ref(), made.plot.as_ref()];
     if others.iter().any(|path| path.is_some()) {
         let rest = "leave out --fst, --checkpoints, --json and --plot";
         return Err(wrong(format!("a wave and a step table are recorded; {rest}")));
     }
     let mut outputs = Outputs::default();
-    let finished = run::simulate(args, &mut outputs).map_err(in_words)?;
+    let finished = match &cli.command {
+        Command::Program(args) => program::simulate(args, &mut outputs),
+        Command::Run(args) => run::simulate(args, &mut outputs),
+        _ => return Err(wrong("is neither a run nor a program".to_owned())),
+    };
+    let finished = finished.map_err(in_words)?;
     outputs.commit()?;
     let exit = u8::from(!finished.failures.is_empty());
     if exit != case.exit {

@@ -11,24 +11,23 @@ use stepwave::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail
 use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Sample, Testbench};
 
 use super::progress::Counter;
+use super::run::Finished;
 use super::wave::{Sinks, Waves};
 use crate::cli::ProgramArgs;
 use crate::failure::Failure;
-use crate::output::{self, Outputs, Sink};
+use crate::output::{Outputs, Sink};
 
 /// Runs a whole program and writes what was asked for.
 pub(crate) fn program(args: &ProgramArgs) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
-    let (text, failures) = simulate(args, &mut outputs)?;
-    let quiet = outputs.uses_stdout();
-    outputs.commit()?;
-    if !quiet {
-        output::print(&text)?;
-    }
-    if failures.is_empty() { Ok(()) } else { Err(Failure::Check(failures)) }
+    simulate(args, &mut outputs)?.tell(outputs)
 }
 
-fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<String>), Failure> {
+/// Simulates and stages every output.
+///
+/// # Errors
+/// Bad input, or an output cannot be written; nothing stands under a final name.
+pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
     let family = args.method;
     let file = args.file.display().to_string();
     let told = |error: &dyn std::fmt::Display| Failure::Trouble(format!("{file}: {error}"));
@@ -43,9 +42,10 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
         chords: args.chords,
     };
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
-    let hardware = family.plan(&survey.size, &args.hardware.choices())?;
+    let hardware = family.plan(&survey.size, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
     let machine = family.machine(&hardware)?;
     let bench = Testbench::of_machine(hardware, machine).limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
+    let bench = if args.trace.wanted() { bench } else { bench.without_wave() };
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
     let head = ProgramHead { file: &file, family, hardware: bench.hardware(), engine: args.simulation.engine, pace };
@@ -53,7 +53,7 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
     // All are opened before the first is written: where one is refused, nothing stands on standard output.
     let sinks = Sinks::open(&args.trace, outputs)?;
     let mut sink = |path: &Option<std::path::PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
-    let (steps, json, plot) = (sink(&args.steps)?, sink(&args.json)?, sink(&args.plot)?);
+    let (steps, json, plot) = (sink(&args.outputs.steps)?, sink(&args.outputs.json)?, sink(&args.outputs.plot)?);
     let mut waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &head.title())).transpose()?;
     let mut steps = steps.map(|sink| StepTable::new(&bench, sink)).transpose()?;
     let mut json = json.map(|sink| ProgramJson::new(head, sink)).transpose()?;
@@ -100,7 +100,7 @@ fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<(String, Vec<St
         sink.write_all(picture.svg().as_bytes())?;
         sink.flush()?;
     }
-    Ok((table.text(&tail), failures))
+    Ok(Finished { text: table.text(&tail), failures })
 }
 
 /// Opens the program; it is read twice.

@@ -22,13 +22,7 @@ use crate::output::{self, Outputs};
 /// Runs a model and writes what was asked for.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
-    let finished = simulate(args, &mut outputs)?;
-    let quiet = outputs.uses_stdout();
-    outputs.commit()?;
-    if !quiet {
-        output::print(&finished.text)?;
-    }
-    if finished.failures.is_empty() { Ok(()) } else { Err(Failure::Check(finished.failures)) }
+    simulate(args, &mut outputs)?.tell(outputs)
 }
 
 /// A run whose outputs are staged.
@@ -39,6 +33,21 @@ pub(crate) struct Finished {
     pub(crate) failures: Vec<String>,
 }
 
+impl Finished {
+    /// Puts the outputs under their names, and tells what there is to tell.
+    ///
+    /// # Errors
+    /// An output cannot be written, or the simulated hardware failed a check.
+    pub(super) fn tell(self, outputs: Outputs) -> Result<(), Failure> {
+        let quiet = outputs.uses_stdout();
+        outputs.commit()?;
+        if !quiet {
+            output::print(&self.text)?;
+        }
+        if self.failures.is_empty() { Ok(()) } else { Err(Failure::Check(self.failures)) }
+    }
+}
+
 /// Simulates and stages every output.
 ///
 /// # Errors
@@ -46,7 +55,7 @@ pub(crate) struct Finished {
 pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
     let model = find(&args.model)?;
     let curve = curve(model.name, model.curve, &args.geometry)?;
-    let bench = Testbench::new(model, &curve, &args.hardware.choices())?;
+    let bench = Testbench::new(model, &curve, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
     let bench = bench.limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);
@@ -61,7 +70,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let mut csv = steps.map(|sink| CsvTable::new(&bench, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Picture(Plot::new(&curve)), sink));
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
-    let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.outputs.bits));
+    let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.bits));
     let mut coarse = CoarseWatch::new(&bench, &curve);
     let (mut spacing, mut progress) = (SpacingWatch::new(&bench, &curve), Progress::new());
 

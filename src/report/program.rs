@@ -51,20 +51,24 @@ pub struct ProgramTail<'a> {
 }
 
 impl ProgramHead<'_> {
-    /// One line for the wave's header.
+    /// One line for the wave's header; of the file the name alone, so that a wave is the same wherever its program lies.
     #[must_use]
     pub fn title(&self) -> String {
         let widths = self.hardware.widths.iter().map(|(name, width)| format!("{name}={}", width.get()));
         let widths = widths.collect::<Vec<_>>().join(",");
-        let file: String = self.file.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect();
+        let file: String = self.file_name().chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect();
         format!("program {file}; method {}; width {widths}", self.family.name)
     }
 
     /// Name of the file and family, for people.
     #[must_use]
     pub fn headline(&self) -> String {
-        let name = std::path::Path::new(self.file).file_name().map(|name| name.to_string_lossy().into_owned());
-        format!("{} by {}", name.unwrap_or_default(), self.family.title.to_lowercase())
+        format!("{} by {}", self.file_name(), self.family.title.to_lowercase())
+    }
+
+    fn file_name(&self) -> String {
+        let name = std::path::Path::new(self.file).file_name();
+        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
     }
 
     fn feed(&self, speed: f64) -> f64 {

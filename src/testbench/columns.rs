@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use stepwave_kernel::Net;
-use stepwave_kernel::netlist::Claim;
+use stepwave_kernel::netlist::{Claim, Op};
 use stepwave_models::Machine;
 
 /// Nets in the order of a row, each once.
@@ -17,11 +17,27 @@ impl Columns {
     /// Every named net of a machine, and the operands and flags of its strict cells.
     #[must_use]
     pub fn of(machine: &Machine) -> Columns {
+        Columns::of_nets(machine, machine.design.netlist().names.iter().map(|named| named.net))
+    }
+
+    /// What is looked at where no wave is written: every named register, the ports of the step table, and the operands
+    /// and flags of strict cells.
+    #[must_use]
+    pub fn without_wave(machine: &Machine) -> Columns {
+        let netlist = machine.design.netlist();
+        let names = netlist.names.iter().map(|named| named.net);
+        let registers = names.filter(|&net| matches!(netlist.cell(net).op, Op::Register { .. }));
+        let table = machine.table.iter().map(|(_, port)| port);
+        let strobes = [&machine.loaded, &machine.stepped].into_iter();
+        let ports = strobes.chain(&machine.pulses).chain(&machine.positions).chain(table);
+        Columns::of_nets(machine, registers.chain(ports.map(|port| port.net)))
+    }
+
+    /// These nets, and those of the properties.
+    fn of_nets(machine: &Machine, nets: impl Iterator<Item = Net>) -> Columns {
         let netlist = machine.design.netlist();
         let mut columns = Columns { nets: Vec::new(), index: HashMap::new() };
-        for named in &netlist.names {
-            columns.add(named.net);
-        }
+        nets.for_each(|net| columns.add(net));
         for property in &netlist.properties {
             columns.add(property.never);
             if let Claim::NoOverflow { left, right, .. } = property.claim {
@@ -48,7 +64,7 @@ impl Columns {
     /// Column of a net.
     ///
     /// # Panics
-    /// If the net is neither named nor an operand of a strict cell.
+    /// If the net is none of them.
     #[must_use]
     pub fn index(&self, net: Net) -> usize {
         self.index[&net]

@@ -131,6 +131,8 @@ pub struct Testbench {
     machine: Machine,
     blocks: Vec<Vec<(Net, u64)>>,
     columns: Columns,
+    /// Every sample is shown, for a wave; otherwise those of a program in which its machine is idle are passed over.
+    every_sample: bool,
     /// Clocks after which a run is given up.
     limit: u64,
 }
@@ -152,15 +154,21 @@ impl Testbench {
     /// The model itself is wrong, or registers are too wide to be added.
     pub fn of_hardware(model: &Model, hardware: Hardware) -> Result<Testbench, ModelError> {
         let machine = model.machine(&hardware)?;
-        let columns = Columns::of(&machine);
-        Ok(Testbench { hardware, machine, blocks: Vec::new(), columns, limit: u64::MAX })
+        Ok(Testbench::of_machine(hardware, machine))
     }
 
     /// A machine that runs whole programs, for [`run_program`](Self::run_program).
     #[must_use]
     pub fn of_machine(hardware: Hardware, machine: Machine) -> Testbench {
         let columns = Columns::of(&machine);
-        Testbench { hardware, machine, blocks: Vec::new(), columns, limit: u64::MAX }
+        Testbench { hardware, machine, blocks: Vec::new(), columns, every_sample: true, limit: u64::MAX }
+    }
+
+    /// The same machine where nobody writes a wave of its programs: much faster, but columns are those of
+    /// [`Columns::without_wave`], and samples in which the machine is idle may be passed over.
+    #[must_use]
+    pub fn without_wave(self) -> Testbench {
+        Testbench { columns: Columns::without_wave(&self.machine), every_sample: false, ..self }
     }
 
     /// The same hardware with the blocks of another geometry.

@@ -262,7 +262,7 @@ impl Observer for OverflowWatch {
                     continue;
                 }
                 let operands = watched.operands.map(|(a, _, b, _)| (rows.value(a, row), rows.value(b, row)));
-                let seen = Seen { property, clock: rows.first_clock() + row as u64, operands };
+                let seen = Seen { property, clock: rows.clock(row), operands };
                 self.count += 1;
                 self.tallies[property].count(watched, &seen);
                 if self.seen.len() < KEPT {

@@ -1,7 +1,7 @@
 //! A machine that runs a whole program: the host keeps its block buffer full.
 
 use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
+use stepwave_kernel::engine::{Engine, EngineKind, Idle, Rows, Stop, Watch};
 use stepwave_kernel::{Net, OnOverflow};
 use stepwave_models::ModelError;
 
@@ -53,7 +53,7 @@ impl Sample<'_> {
     /// Clocks since reset.
     #[must_use]
     pub fn clock(&self) -> u64 {
-        self.rows.first_clock() + self.row as u64
+        self.rows.clock(self.row)
     }
 
     /// Pulses of x, y and z at the edge before: -1, 0 or +1.
@@ -119,10 +119,18 @@ impl Testbench {
             stops.extend(netlist.properties.iter().map(|property| property.never));
         }
         let watch = Watch { columns: self.columns().nets().to_vec(), stops };
+        let columns = watch.columns.len();
+        let (engine, rows) = if self.every_sample {
+            (engine.build(self.design(), &watch), Rows::new(columns, CHUNK))
+        } else {
+            let flags = netlist.properties.iter().map(|property| property.never).collect();
+            let idle = Idle { running: vec![find("phase")?.net], flags };
+            (engine.build_passing(self.design(), &watch, &idle), Rows::sparse(columns, CHUNK))
+        };
         let mut run = Run {
             bench: self,
-            engine: engine.build(self.design(), &watch),
-            rows: Rows::new(watch.columns.len(), CHUNK),
+            engine,
+            rows,
             columns: StepColumns::of(self),
             more: find("more")?.net,
             host,

@@ -111,3 +111,21 @@ fn cases_that_cannot_be_are_refused_in_one_line_and_nothing_is_written() {
     }
     super::refused("golden check nowhere", &["cannot read nowhere/cases.toml"]);
 }
+
+#[test]
+fn a_case_may_be_a_program_that_lies_beside_it() {
+    let folder = folder(
+        "[[case]]\nname = \"two\"\nsource = \"by hand\"\nprogram = \"two.nc\"\nargs = [\"--method\", \"cim\"]\n",
+    );
+    folder.write("w/two.nc", "G01 X0.004 Y0.003 F600\nG02 X0.008 Y-0.001 I0 J-0.004\n");
+    assert_eq!(folder.good("golden record w"), "1 cases recorded, from 3 engines\n");
+    folder.good("program w/two.nc --method cim --vcd two.vcd --steps two.csv");
+    for file in ["two.vcd", "two.csv"] {
+        assert_eq!(folder.read(file), folder.read(&format!("w/{file}")));
+    }
+    // Another program under the same name is found out.
+    folder.write("w/two.nc", "G01 X0.004 Y0.002 F600\nG02 X0.008 Y-0.002 I0 J-0.004\n");
+    let ran = folder.run("golden check w");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert!(ran.err.contains("case two on gates: two.vcd differs: recorded is A"), "{ran:?}");
+}

@@ -54,5 +54,5 @@ fn what_data_sampling_does_not_take_is_refused_with_the_way_out() {
     run_refused("sampled-line --to 9,5 --step nan", &["'nan' is no length"]);
     run_refused("sampled-line --to 9,5 --feed=-1", &["'-1' is no feed"]);
     run_refused("sampled-line --to 9,5 --tolerance 1", &["sampled-line does not take --tolerance"]);
-    run_refused("dda-line --to 9,5 --feed 100", &["dda-line does not take --step"]);
+    run_refused("dda-line --to 9,5 --feed 100", &["dda-line does not take --feed; it takes --width"]);
 }

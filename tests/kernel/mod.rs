@@ -8,6 +8,7 @@ mod mistakes;
 mod native;
 mod one_mistake;
 mod operators;
+mod passing;
 pub(crate) mod random;
 mod semantics;
 mod simplified;

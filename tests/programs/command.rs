@@ -182,3 +182,29 @@ fn a_width_that_is_too_small_traps_in_its_block_or_is_refused() {
     assert_eq!(ran.code, 2, "{ran:?}");
     assert!(ran.err.contains("does not fit"), "{ran:?}");
 }
+
+#[test]
+fn a_width_whose_blocks_would_not_end_is_refused() {
+    let folder = Folder::new();
+    fs::write(folder.path("p.ngc"), "G01 X0.006 F60\n").unwrap();
+    for (options, bits) in [("dpm --width 64", 64), ("dpm --width 53", 53), ("dda --width 60", 60)] {
+        let ran = folder.run(&format!("program p.ngc --method {options} --json r.json"));
+        assert_eq!(ran.code, 2, "{ran:?}");
+        for hint in [&format!("2^{bits} steps"), "within 2^53 clocks", "--width 52 or less"] {
+            assert!(ran.err.contains(hint), "{hint}: {ran:?}");
+        }
+        assert_eq!(folder.files(), ["p.ngc"]);
+    }
+    // At the limit the run ends where it is told to, and normalised integrands take few steps in any width.
+    assert_eq!(folder.run("program p.ngc --method dpm --width 52 --max-clocks 9").code, 1);
+    folder.good("program p.ngc --method dda --normalize --width 60");
+}
+
+#[test]
+fn a_feed_that_a_machine_of_programs_does_not_take_is_refused_by_its_name() {
+    let folder = Folder::new();
+    fs::write(folder.path("p.ngc"), "G01 X0.006 F60\n").unwrap();
+    let ran = folder.run("program p.ngc --method ppc --feed 600");
+    assert_eq!(ran.code, 2, "{ran:?}");
+    assert!(ran.err.contains("ppc does not take --feed; it takes --width"), "{ran:?}");
+}

@@ -1,7 +1,10 @@
 //! The machines of whole programs against the recurrences of their methods, block by block.
 
 use proptest::prelude::*;
-use stepwave::testbench::{Ending, Host, Next, ObserverError, Outcome, Sample, Testbench};
+use stepwave::testbench::{
+    Ending, Host, Next, ObserverError, Outcome, OverflowEvent, OverflowWatch, RangeWatch, RegisterRange, Sample,
+    Testbench,
+};
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::program::{FAMILIES, Family, Size};
 use stepwave_models::{Choices, Hardware, OnOverflow, Preset};
@@ -145,6 +148,35 @@ fn moves() -> impl Strategy<Value = Vec<ToolMove>> {
     })
 }
 
+/// What a program is reported to have done.
+#[derive(PartialEq, Debug)]
+struct Reports {
+    paths: Vec<Vec<[i64; 3]>>,
+    clocks: Vec<u64>,
+    outcome: Outcome,
+    ranges: Vec<RegisterRange>,
+    overflows: Vec<OverflowEvent>,
+}
+
+/// Runs a machine with a pulse every 2^`slow` clocks, and looks at every sample or not.
+fn reports(family: &Family, moves: &[ToolMove], choices: &Choices, slow: u32, every_sample: bool) -> Reports {
+    let (mut rounder, mut blocks, mut size) =
+        (Rounder::new((!family.arcs).then_some(0.5)), Vec::new(), Size::default());
+    moves.iter().for_each(|of| rounder.blocks(of, &mut blocks).unwrap());
+    blocks.iter().for_each(|block| size.add(family, block));
+    let hardware = family.plan(&size, choices).unwrap();
+    let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware).unwrap()).limited(1 << 20);
+    let bench = if every_sample { bench } else { bench.without_wave() };
+    let words: Vec<_> =
+        blocks.iter().flat_map(|block| family.words(&hardware, block)).map(|block| block.words).collect();
+    let (blocks, rate) = (words.into_iter(), 1 << (32 - slow));
+    let mut host = Control { bench: &bench, blocks, rate, paths: Vec::new(), clocks: Vec::new() };
+    let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
+    let engine = if every_sample { EngineKind::Word } else { EngineKind::Compiled };
+    let outcome = bench.run_program(engine, &mut host, &mut [&mut overflow, &mut ranges]).unwrap();
+    Reports { paths: host.paths, clocks: host.clocks, outcome, ranges: ranges.finish(), overflows: overflow.events() }
+}
+
 fn choices(normalize: bool) -> Choices {
     Choices { normalize, on_overflow: Some(OnOverflow::Trap), ..Choices::default() }
 }
@@ -259,5 +291,22 @@ fn an_integrator_that_would_stand_beside_an_axis_steps_at_once() {
         let choices = Choices { preset: Some(preset), width, ..choices(false) };
         let ran = run_blocks(family("dda"), blocks.clone(), &choices, EngineKind::Word);
         assert_eq!((ran.outcome.ending, ran.outcome.reached), (Ending::Done, vec![15, 0, 0]), "{preset}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(4) })]
+
+    #[test]
+    fn a_report_is_the_same_where_idle_clocks_are_passed_over(moves in moves(), slow in 6u32..9, narrow: bool) {
+        for family in FAMILIES {
+            // The position overflows on its way; the loops are compiled behind 16384 clocks.
+            let widths = [("x".to_owned(), stepwave_kernel::Width::new(4).unwrap())].into_iter().filter(|_| narrow);
+            let choices = Choices { on_overflow: Some(OnOverflow::Wrap), widths: widths.collect(), ..Choices::default() };
+            let moves: Vec<ToolMove> = moves.iter().cycle().take(if family.name == "dpm" { 3 } else { 12 }).copied().collect();
+            let all = reports(family, &moves, &choices, slow, true);
+            let some = reports(family, &moves, &choices, slow, false);
+            prop_assert_eq!(all, some, "{}", family.name);
+        }
     }
 }

@@ -58,13 +58,8 @@ fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
     }
     registers.shown("unit");
     let mut hardware = planar::hardware(registers, size, n)?;
-    let widths = [JV[0], JV[1], JR[0], JR[1]].map(|name| hardware.bits(name));
-    if widths.iter().any(|&bits| bits != widths[0]) {
-        return Err(ModelError::Widths(format!(
-            "{}: jvx, jvy, jrx and jry share one scale and must be equally wide: give one --width",
-            FAMILY.name
-        )));
-    }
+    // Normalised, a block takes no more steps than its integrands need.
+    planar::one_scale(&FAMILY, &hardware, &[JV[0], JV[1], JR[0], JR[1]], !hardware.normalize)?;
     hardware.scale = &["jv", "jr"];
     hardware.stall_clocks = 0;
     Ok(hardware)

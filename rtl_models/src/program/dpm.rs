@@ -48,13 +48,7 @@ fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
     }
     registers.positions(size.positions.iter().map(|reach| reach.to_vec()));
     let mut hardware = registers.hardware(3, EndPoint::Iterations)?;
-    let counter = hardware.bits("q");
-    if COEFFICIENT[..3].iter().any(|name| hardware.bits(name) != counter) {
-        return Err(ModelError::Widths(format!(
-            "{}: q, mx, my and mz share one scale and must be equally wide: give one --width",
-            FAMILY.name
-        )));
-    }
+    planar::one_scale(&FAMILY, &hardware, &["q", COEFFICIENT[0], COEFFICIENT[1], COEFFICIENT[2]], true)?;
     hardware.scale = &["m"];
     hardware.stall_clocks = 0;
     Ok(hardware)

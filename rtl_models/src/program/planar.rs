@@ -46,6 +46,28 @@ pub(super) fn hardware(mut registers: Registers<'_>, size: &Size, n: u32) -> Res
     Ok(hardware)
 }
 
+/// Most bits of a machine whose blocks take 2^n steps: at a step every second clock they end within 2^53 clocks.
+const SCALE_BITS: u32 = 52;
+
+/// Checks registers that share one scale: they are equally wide, and where it is `fixed` for all blocks, these end.
+pub(super) fn one_scale(family: &Family, hardware: &Hardware, names: &[&str], fixed: bool) -> Result<(), ModelError> {
+    let (Some((last, others)), name) = (names.split_last(), family.name) else { return Ok(()) };
+    let bits = hardware.bits(last);
+    if others.iter().any(|other| hardware.bits(other) != bits) {
+        let others = others.join(", ");
+        return Err(ModelError::Widths(format!(
+            "{name}: {others} and {last} share one scale and must be equally wide: give one --width"
+        )));
+    }
+    if fixed && bits > SCALE_BITS {
+        return Err(ModelError::Widths(format!(
+            "{name}: a block takes 2^{bits} steps in registers of {bits} bits, at least two clocks each, and would not end \
+             within 2^53 clocks: give --width {SCALE_BITS} or less"
+        )));
+    }
+    Ok(())
+}
+
 fn choices_preset(registers: &Registers<'_>) -> crate::choices::Preset {
     registers.preset().unwrap_or(crate::choices::Preset::Half)
 }

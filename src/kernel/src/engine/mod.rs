@@ -26,6 +26,17 @@ pub struct Watch {
     pub stops: Vec<Net>,
 }
 
+/// When a machine is idle: in a sample in which no register but the running ones has just changed or is about to, and no
+/// flag or stop is 1. An engine that is [told](EngineKind::build_passing) may pass over such a sample, recording only what
+/// the running registers came to.
+#[derive(Clone, Debug)]
+pub struct Idle {
+    /// Registers that go on at every clock, read as unsigned numbers: the phase of a pulse source.
+    pub running: Vec<Net>,
+    /// Nets (1 bit) whose 1 is always recorded.
+    pub flags: Vec<Net>,
+}
+
 /// Why a run ended.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Stop {
@@ -55,8 +66,8 @@ pub trait Engine: Send {
     fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]);
 
     /// Runs until `clocks` clocks are done, `rows` is full, or a stop net is 1 in a sample; at least one clock is done
-    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded; what `rows` holds already must be
-    /// the samples right before.
+    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded that is not passed over; what `rows`
+    /// holds already must be the samples right before.
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
 
     /// Number of edges since reset.
@@ -109,10 +120,25 @@ impl EngineKind {
             EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch)),
         }
     }
+
+    /// As [`build`](Self::build), an engine that may pass over idle samples where it gets [sparse rows](Rows::sparse).
+    #[must_use]
+    pub fn build_passing(self, design: &Design, watch: &Watch, idle: &Idle) -> Box<dyn Engine> {
+        match self {
+            EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch).passing(idle)),
+            EngineKind::Gates | EngineKind::Word => self.build(design, watch),
+        }
+    }
 }
 
 /// The compiled engine, but compiling as soon as `warm_up` clocks were alike: for tests and measurements.
 #[must_use]
 pub fn compiled_after(design: &Design, watch: &Watch, warm_up: u64) -> Box<dyn Engine> {
     Box::new(compiled::Compiled::after(design, watch, warm_up))
+}
+
+/// As [`compiled_after`], passing over idle samples.
+#[must_use]
+pub fn passing_after(design: &Design, watch: &Watch, idle: &Idle, warm_up: u64) -> Box<dyn Engine> {
+    Box::new(compiled::Compiled::after(design, watch, warm_up).passing(idle))
 }

@@ -1,6 +1,7 @@
 //! Recorded samples: a block with a column for each net, filled by an engine, read by observers, and used again.
 //!
-//! Column by column, because whoever looks for a change, a least value or a flag reads one net over many clocks.
+//! Column by column, because whoever looks for a change, a least value or a flag reads one net over many clocks. Rows may
+//! be sparse: then each has its own clock, and of the samples between them only extremes are told.
 
 use fearless_simd::{Level, dispatch};
 
@@ -40,8 +41,11 @@ pub struct Rows {
     stride: usize,
     len: usize,
     first_clock: u64,
-    /// Column `c` begins at `c * stride`.
+    /// Column `c` begins at `c * stride`. Behind the last one stand the clocks of sparse rows.
     values: Vec<u64>,
+    sparse: bool,
+    /// What columns came to in samples that were passed over.
+    passed: Vec<(usize, Extremes)>,
     level: Level,
 }
 
@@ -52,7 +56,15 @@ impl Rows {
         // A line of the cache more, so that the columns of one row do not all fall into the same set of it.
         let stride = capacity + 8;
         let values = vec![0; columns * stride];
-        Rows { columns, capacity, stride, len: 0, first_clock: 0, values, level: Level::new() }
+        let level = Level::new();
+        Rows { columns, capacity, stride, len: 0, first_clock: 0, values, sparse: false, passed: Vec::new(), level }
+    }
+
+    /// As [`new`](Self::new), for an engine that passes over idle samples.
+    #[must_use]
+    pub fn sparse(columns: usize, capacity: usize) -> Rows {
+        let rows = Rows::new(columns, capacity);
+        Rows { values: vec![0; (columns + 1) * rows.stride], sparse: true, ..rows }
     }
 
     /// Number of rows held.
@@ -77,6 +89,17 @@ impl Rows {
     #[must_use]
     pub fn first_clock(&self) -> u64 {
         self.first_clock
+    }
+
+    /// Clock of a row.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    #[inline]
+    #[must_use]
+    pub fn clock(&self, row: usize) -> u64 {
+        assert!(row < self.len, "row {row} of {}", self.len);
+        if self.sparse { self.values[self.columns * self.stride + row] } else { self.first_clock + row as u64 }
     }
 
     /// The values of a column, one a row held.
@@ -111,17 +134,22 @@ impl Rows {
         dispatch!(self.level, _simd => nonzero(&values[..values.len().min(64)]))
     }
 
-    /// What the values of a column came to, all taken with the bits of `turned` turned over; `None` without a row. With
-    /// the sign bit turned over, two's complement sorts as unsigned numbers do.
+    /// What the values of a column came to, those passed over among them, all taken with the bits of `turned` turned over;
+    /// `None` without a sample. With the sign bit turned over, two's complement sorts as unsigned numbers do; what runs on
+    /// while samples are passed over is unsigned.
     ///
     /// # Panics
     /// If there is no such column.
     #[must_use]
     pub fn extremes(&self, column: usize, turned: u64) -> Option<Extremes> {
         let values = self.column(column);
-        let first = values.first()? ^ turned;
-        let (least, greatest, toggled) = dispatch!(self.level, _simd => extremes(values, turned, first));
-        Some(Extremes { least, greatest, first, toggled })
+        let recorded = values.first().map(|first| {
+            let first = first ^ turned;
+            let (least, greatest, toggled) = dispatch!(self.level, _simd => extremes(values, turned, first));
+            Extremes { least, greatest, first, toggled }
+        });
+        let passed = self.passed.iter().filter(|(passed, _)| *passed == column).map(|(_, extremes)| *extremes);
+        passed.chain(recorded).reduce(Extremes::and)
     }
 
     /// The value of a column in a row.
@@ -147,12 +175,26 @@ impl Rows {
 
     /// Every row with its clock, as [`row`](Self::row).
     pub fn iter(&self) -> impl Iterator<Item = (u64, Vec<u64>)> {
-        (0..self.len).map(|index| (self.first_clock + index as u64, self.row(index)))
+        (0..self.len).map(|index| (self.clock(index), self.row(index)))
     }
 
     /// Forgets the rows; the room stays.
     pub fn clear(&mut self) {
         self.len = 0;
+        self.passed.clear();
+    }
+
+    /// Samples between the rows may be left out.
+    pub(super) fn is_sparse(&self) -> bool {
+        self.sparse
+    }
+
+    /// Takes what a column came to in samples that were passed over.
+    pub(super) fn pass(&mut self, column: usize, later: Extremes) {
+        match self.passed.iter_mut().find(|(passed, _)| *passed == column) {
+            Some((_, extremes)) => *extremes = extremes.and(later),
+            None => self.passed.push((column, later)),
+        }
     }
 
     /// From one column to the next, in values.
@@ -185,7 +227,7 @@ impl Rows {
         if self.len == 0 {
             self.first_clock = clock;
         }
-        debug_assert_eq!(self.first_clock + self.len as u64, clock, "a row of another time");
+        debug_assert!(self.sparse || self.first_clock + self.len as u64 == clock, "a row of another time");
         // No more than `room`, which is a usize.
         self.len += usize::try_from(rows).unwrap_or(0);
     }
@@ -199,8 +241,11 @@ impl Rows {
         if self.len == 0 {
             self.first_clock = clock;
         }
-        debug_assert_eq!(self.first_clock + self.len as u64, clock, "a row of another time");
-        for (column, place) in self.values[self.len..].iter_mut().step_by(self.stride).enumerate() {
+        debug_assert!(self.sparse || self.first_clock + self.len as u64 == clock, "a row of another time");
+        if self.sparse {
+            self.values[self.columns * self.stride + self.len] = clock;
+        }
+        for (column, place) in self.values[self.len..].iter_mut().step_by(self.stride).take(self.columns).enumerate() {
             *place = value(column);
         }
         self.len += 1;

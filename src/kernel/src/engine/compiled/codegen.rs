@@ -45,11 +45,15 @@ pub(super) struct Plan<'a> {
     /// Rows from one column to the next.
     pub(super) stride: usize,
     pub(super) stops: &'a [Net],
+    /// Where there are some, samples are [passed over](super::passing) in which nothing but these registers changes.
+    pub(super) running: &'a [Net],
+    /// Nets that are never passed over while they are 1.
+    pub(super) flags: &'a [Net],
 }
 
 impl Plan<'_> {
     /// The register is its own next value in every phase, and fixed in none.
-    fn is_held(&self, index: usize) -> bool {
+    pub(super) fn is_held(&self, index: usize) -> bool {
         let (net, next) = self.registers[index];
         let holds = |logic: &Simplified| logic.net(net) == logic.net(next);
         holds(self.entry) && self.phases.iter().all(|phase| !phase.fixed.contains_key(&net) && holds(&phase.logic))
@@ -81,7 +85,7 @@ impl Plan<'_> {
 }
 
 /// Register values in one sample, by index into `Plan::registers`.
-type Sample = Vec<Value>;
+pub(super) type Sample = Vec<Value>;
 
 pub(super) struct Generator<'a, 'c> {
     plan: &'a Plan<'a>,
@@ -89,7 +93,7 @@ pub(super) struct Generator<'a, 'c> {
     state: Value,
     inputs: Vec<Value>,
     /// Columns that are stored in every row, by index.
-    busy: Vec<usize>,
+    pub(super) busy: Vec<usize>,
 }
 
 /// Type of the value of a net.
@@ -98,11 +102,11 @@ pub(super) fn kind(width: Width) -> Type {
 }
 
 /// Memory of the caller: aligned, present.
-fn trusted() -> MemFlags {
+pub(super) fn trusted() -> MemFlags {
     MemFlags::trusted()
 }
 
-fn offset(word: usize) -> i32 {
+pub(super) fn offset(word: usize) -> i32 {
     i32::try_from(word * 8).unwrap_or(i32::MAX)
 }
 
@@ -117,19 +121,9 @@ pub(super) fn immediate(value: u64) -> i64 {
 pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuilder<'_>, entry: Block) {
     let parameters = f.block_params(entry).to_vec();
     let [state, rows, clocks] = parameters[..] else { return };
-    let busy = (0..plan.columns.len()).filter(|column| !resting.contains(column)).collect();
-    let mut generator = Generator { plan, f, state, inputs: Vec::new(), busy };
+    let (mut generator, start) = Generator::begin(plan, resting, f, state);
     let widths: Vec<Width> =
         plan.registers.iter().map(|&(net, _)| plan.entry.netlist.width(plan.entry.net(net))).collect();
-    let start: Sample = widths.iter().enumerate().map(|(word, &width)| generator.load(word, width)).collect();
-    generator.inputs = plan
-        .inputs
-        .iter()
-        .enumerate()
-        .map(|(index, &net)| {
-            generator.load(plan.registers.len() + index, plan.entry.netlist.width(plan.entry.net(net)))
-        })
-        .collect();
 
     // Registers that keep their value throughout are read once and not carried.
     let carried: Vec<usize> = (0..plan.registers.len()).filter(|&index| !plan.is_held(index)).collect();
@@ -184,10 +178,31 @@ pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuild
     }
 }
 
-impl Generator<'_, '_> {
-    fn load(&mut self, word: usize, width: Width) -> Value {
+impl<'a, 'c> Generator<'a, 'c> {
+    /// A generator whose inputs are loaded, and the registers of the sample that the caller holds.
+    pub(super) fn begin(
+        plan: &'a Plan<'a>,
+        resting: &[usize],
+        f: &'a mut FunctionBuilder<'c>,
+        state: Value,
+    ) -> (Generator<'a, 'c>, Sample) {
+        let busy = (0..plan.columns.len()).filter(|column| !resting.contains(column)).collect();
+        let mut generator = Generator { plan, f, state, inputs: Vec::new(), busy };
+        let nets = plan.registers.iter().map(|&(net, _)| net).chain(plan.inputs.iter().copied());
+        let width = |net: Net| plan.entry.netlist.width(plan.entry.net(net));
+        let mut words: Sample = nets.enumerate().map(|(word, net)| generator.load(word, kind(width(net)))).collect();
+        generator.inputs = words.split_off(plan.registers.len());
+        (generator, words)
+    }
+
+    /// A word of the state.
+    pub(super) fn load(&mut self, word: usize, kind: Type) -> Value {
         let value = self.f.ins().load(types::I64, trusted(), self.state, offset(word));
-        if width == Width::ONE { self.f.ins().ireduce(types::I8, value) } else { value }
+        if kind == types::I8 { self.f.ins().ireduce(types::I8, value) } else { value }
+    }
+
+    pub(super) fn store_state(&mut self, word: usize, value: Value) {
+        self.f.ins().store(trusted(), value, self.state, offset(word));
     }
 
     pub(super) fn wide(&mut self, value: Value) -> Value {
@@ -204,11 +219,27 @@ impl Generator<'_, '_> {
     }
 
     /// Values of all nets that the next values and `observed` depend on.
-    fn settle(&mut self, logic: &Simplified, sample: &Sample, observed: &[Net]) -> HashMap<Net, Value> {
+    pub(super) fn settle(&mut self, logic: &Simplified, sample: &Sample, observed: &[Net]) -> HashMap<Net, Value> {
+        let mut roots: Vec<Net> = observed.iter().map(|&net| logic.net(net)).collect();
+        roots.extend(self.plan.registers.iter().map(|&(_, next)| logic.net(next)));
+        self.settle_roots(logic, sample, roots)
+    }
+
+    /// Values of some nets of `logic`, and of all that they depend on.
+    pub(super) fn settle_roots(&mut self, logic: &Simplified, sample: &Sample, roots: Vec<Net>) -> HashMap<Net, Value> {
+        self.settle_each(logic, sample, roots, |_, _, value| value)
+    }
+
+    /// The same, where `each` may put another value in the place of a net's, in the order of evaluation.
+    pub(super) fn settle_each(
+        &mut self,
+        logic: &Simplified,
+        sample: &Sample,
+        mut pending: Vec<Net>,
+        mut each: impl FnMut(&mut FunctionBuilder<'_>, Net, Value) -> Value,
+    ) -> HashMap<Net, Value> {
         let netlist = &logic.netlist;
         let mut needed = vec![false; netlist.cells.len()];
-        let mut pending: Vec<Net> = observed.iter().map(|&net| logic.net(net)).collect();
-        pending.extend(self.plan.registers.iter().map(|&(_, next)| logic.net(next)));
         while let Some(net) = pending.pop() {
             if !std::mem::replace(&mut needed[net.index()], true) {
                 netlist.cell(net).op.visit_inputs(|input| pending.push(input));
@@ -226,17 +257,18 @@ impl Generator<'_, '_> {
             }
         }
         for net in netlist.nets().filter(|net| needed[net.index()]) {
-            if !values.contains_key(&net) {
-                let cell = netlist.cell(net);
-                let value = self.operation(netlist, &cell, &values);
-                values.insert(net, value);
-            }
+            let value = match values.get(&net) {
+                Some(&value) => value,
+                None => self.operation(netlist, &netlist.cell(net), &values),
+            };
+            let value = each(self.f, net, value);
+            values.insert(net, value);
         }
         values
     }
 
     /// Next values of all registers.
-    fn edge(&mut self, logic: &Simplified, values: &HashMap<Net, Value>, sample: &Sample) -> Sample {
+    pub(super) fn edge(&mut self, logic: &Simplified, values: &HashMap<Net, Value>, sample: &Sample) -> Sample {
         let next = self.plan.registers.iter().enumerate();
         next.map(|(index, &(_, next))| values.get(&logic.net(next)).copied().unwrap_or(sample[index])).collect()
     }
@@ -258,7 +290,7 @@ impl Generator<'_, '_> {
         }
     }
 
-    fn record(&mut self, logic: &Simplified, values: &HashMap<Net, Value>, row: Value) -> Value {
+    pub(super) fn record(&mut self, logic: &Simplified, values: &HashMap<Net, Value>, row: Value) -> Value {
         for index in 0..self.busy.len() {
             let column = self.busy[index];
             let value = self.wide(values[&logic.net(self.plan.columns[column])]);
@@ -267,7 +299,7 @@ impl Generator<'_, '_> {
         self.f.ins().iadd_imm(row, i64::from(offset(1)))
     }
 
-    fn any_stop(&mut self, logic: &Simplified, values: &HashMap<Net, Value>) -> Option<Value> {
+    pub(super) fn any_stop(&mut self, logic: &Simplified, values: &HashMap<Net, Value>) -> Option<Value> {
         let possible = self.plan.stops.iter().filter(|&&net| logic.constant(net) != Some(0));
         let nets: Vec<Value> = possible.map(|&net| values[&logic.net(net)]).collect();
         nets.into_iter().reduce(|a, b| self.f.ins().bor(a, b))
@@ -275,18 +307,23 @@ impl Generator<'_, '_> {
 
     /// Where `condition` is not 0: writes the registers back and returns the number of samples recorded.
     fn leave_if(&mut self, condition: Value, sample: &Sample, recorded: Value, unrecorded_edge: bool) {
+        let stay = self.leaving(condition, sample);
+        let flag = self.f.ins().iconst(types::I64, i64::from(unrecorded_edge));
+        self.store_state(self.plan.registers.len() + self.plan.inputs.len(), flag);
+        self.f.ins().return_(&[recorded]);
+        self.f.switch_to_block(stay);
+    }
+
+    /// Goes on where `condition` is not 0, with the registers written back; the other way begins with the block returned.
+    pub(super) fn leaving(&mut self, condition: Value, sample: &Sample) -> Block {
         let (exit, stay) = (self.f.create_block(), self.f.create_block());
         self.f.set_cold_block(exit);
         self.f.ins().brif(condition, exit, &[], stay, &[]);
         self.f.switch_to_block(exit);
         for (word, &value) in sample.iter().enumerate() {
             let value = self.wide(value);
-            self.f.ins().store(trusted(), value, self.state, offset(word));
+            self.store_state(word, value);
         }
-        let flag = self.f.ins().iconst(types::I64, i64::from(unrecorded_edge));
-        let word = self.plan.registers.len() + self.plan.inputs.len();
-        self.f.ins().store(trusted(), flag, self.state, offset(word));
-        self.f.ins().return_(&[recorded]);
-        self.f.switch_to_block(stay);
+        stay
     }
 }

@@ -10,11 +10,12 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
 
 use super::codegen::{self, Plan};
+use super::passing;
 
 /// Values that an offset of 31 bits reaches.
 const FARTHEST: usize = 1 << 28;
 
-/// The compiled loop: state, rows, clocks → samples recorded.
+/// The compiled loop: state, rows, clocks → samples recorded, or clocks done where samples are passed over.
 type Loop = unsafe extern "C" fn(*mut u64, *mut u64, u64) -> u64;
 
 /// A compiled plan.
@@ -27,12 +28,16 @@ pub(super) struct Native {
     stride: usize,
     resting: Vec<usize>,
     phases: u64,
+    /// Samples are passed over: the word of the state that holds the room for rows.
+    room: Option<usize>,
 }
 
 impl Native {
     /// Compiles a plan; `None` where this machine has no code generator, or the rows are too large for one.
     pub(super) fn compile(plan: &Plan<'_>) -> Option<Native> {
-        let values = plan.columns.len().checked_mul(plan.stride)?;
+        let passes = !plan.running.is_empty();
+        // Behind the columns of sparse rows stand their clocks.
+        let values = (plan.columns.len() + usize::from(passes)).checked_mul(plan.stride)?;
         if values > FARTHEST {
             return None;
         }
@@ -49,7 +54,11 @@ impl Native {
         f.append_block_params_for_function_params(entry);
         f.switch_to_block(entry);
         let resting = plan.resting();
-        codegen::generate(plan, &resting, &mut f, entry);
+        if passes {
+            passing::generate(plan, &resting, &mut f, entry);
+        } else {
+            codegen::generate(plan, &resting, &mut f, entry);
+        }
         f.seal_all_blocks();
         f.finalize();
         let id = module.declare_function("clocks", Linkage::Export, &context.func.signature).ok()?;
@@ -60,14 +69,16 @@ impl Native {
         // SAFETY: `address` is the start of the function just finalised, whose signature is that of `Loop` in the
         // platform's C calling convention, the default of the module.
         let code = unsafe { std::mem::transmute::<*const u8, Loop>(address) };
+        let words = plan.registers.len() + plan.inputs.len();
         Some(Native {
             module: Some(module),
             code,
-            state_words: plan.registers.len() + plan.inputs.len() + 1,
-            columns: plan.columns.len(),
+            state_words: words + if passes { passing::words(plan) } else { 1 },
+            columns: plan.columns.len() + usize::from(passes),
             stride: plan.stride,
             resting,
             phases: plan.phases.len() as u64,
+            room: passes.then_some(words + passing::ROOM),
         })
     }
 
@@ -86,7 +97,8 @@ impl Native {
         self.stride
     }
 
-    /// Runs up to `clocks` clocks, recording a row of each into `rows` from row `first` on; gives the number recorded.
+    /// Runs up to `clocks` clocks, recording a row of each into `rows` from row `first` on; gives the number recorded. Where
+    /// samples are passed over, as many rows as the state says, and the number of clocks.
     ///
     /// # Panics
     /// If `state` or `rows` is too short, or `clocks` less than the number of phases.
@@ -95,12 +107,13 @@ impl Native {
         assert!(self.phases <= clocks && i64::try_from(clocks).is_ok(), "{clocks} clocks");
         if self.columns > 0 {
             let room = self.stride.saturating_sub(first) as u64;
-            assert!(clocks <= room, "{clocks} clocks, room for {room}");
+            let most = self.room.map_or(clocks, |word| state[word]);
+            assert!((1..=room).contains(&most), "{most} rows, room for {room}");
             assert!(rows.len() >= self.columns * self.stride, "{} values", rows.len());
         }
         // SAFETY: the code touches `state_words` words of `state`, and in each of `columns` columns of `stride` values at
-        // most `clocks` values behind `first`, all of which the assertions have checked; it calls nothing and keeps no
-        // pointer. The module that holds it lives.
+        // most `clocks` values behind `first`, or as many as its word of the room says, all of which the assertions have
+        // checked; it calls nothing and keeps no pointer. The module that holds it lives.
         unsafe { (self.code)(state.as_mut_ptr(), rows[first..].as_mut_ptr(), clocks) }
     }
 }
