@@ -315,15 +315,20 @@ mod tests {
     fn cells_are_as_wide_and_as_high_as_the_steps_of_the_grid() {
         let mut map = HeatMap::new(["to_x", "to_y"], ["0..9/3", "0..1"].map(|text| text.parse().unwrap()));
         for x in 0..4_i32 {
-            (0..2).for_each(|y| map.point([i64::from(3 * x), i64::from(y)], Some(f64::from(x) + 4.0 * f64::from(y))));
+            for y in 0..2_i32 {
+                map.point([i64::from(3 * x), i64::from(y)], Some(f64::from(x + 4 * y)));
+            }
         }
         let (width, pixels) = read_back(&map.png("t", "clocks", "", "w"));
-        // Columns of 155 pixels and rows of 52: the lowest shade stands in the left lower corner alone.
+        // Columns of 155 pixels, and two rows that share the least height of a map: the lowest shade is in the left lower
+        // corner.
         let row = |y: usize| pixels.chunks(width).nth(usize::try_from(TOP).unwrap() + y).unwrap();
         let left = row(20).iter().position(|ink| *ink == 253).unwrap() + 1;
         let shades = |y: usize| [0, 1, 2, 3].map(|x| row(y)[left + 155 * x + 150]);
-        assert!(shades(45).is_sorted() && shades(60).is_sorted(), "{:?} {:?}", shades(45), shades(60));
-        assert!(shades(60)[0] == 2 && shades(45)[0] > shades(60)[3] && shades(100) == shades(60));
+        let height = 80;
+        let [upper, lower] = [height - 2, height + 2].map(shades);
+        assert!(upper.is_sorted() && lower.is_sorted() && lower[0] == 2 && upper[0] > lower[3], "{upper:?} {lower:?}");
+        assert_eq!((shades(2), shades(2 * height - 2)), (upper, lower));
     }
 
     #[test]
