@@ -9,7 +9,7 @@ use std::io::Write as _;
 use std::ops::RangeInclusive;
 
 use rayon::prelude::*;
-use stepwave::models::{Choices, Claims, Model, find};
+use stepwave::models::{Choices, Claims, Model, Preset, find};
 use stepwave::study::proof::{
     Answer, Block, CertificateFile, DOUBTED, Fault, Narrower, ProofError, Subject, Way, ask, blocks, choices_at,
     question, search,
@@ -213,6 +213,11 @@ fn own_attempt(
         outputs.commit()?;
         return output::print(&text);
     }
+    let remainders = subject.presets();
+    let mut presets = extreme_presets(choices, &remainders);
+    if let Some(example) = presets.find_map(|own| search(model, claims, &own, &narrower, SEARCHED, refutes)) {
+        return refuted(args, model, &example);
+    }
     let names: Vec<&str> = open.iter().map(|claim| claim.name()).collect();
     let mut failure = format!(
         "not proved: {}; no counterexample among the geometries of up to {} bits that were tried",
@@ -237,4 +242,14 @@ fn own_attempt(
     }
     output::print(&text)?;
     Err(Failure::Check(vec![failure]))
+}
+
+/// Every remainder register of these at 0 or full, in all combinations; nothing where there are none.
+fn extreme_presets(choices: &Choices, registers: &[String]) -> impl Iterator<Item = Choices> {
+    let combinations = if registers.is_empty() { 0 } else { 1_u32 << registers.len().min(8) };
+    (0..combinations).map(move |combination| {
+        let preset = |place: usize| if combination >> place & 1 == 1 { Preset::Full } else { Preset::Zero };
+        let presets = registers.iter().enumerate().map(|(place, register)| (register.clone(), preset(place)));
+        Choices { presets: presets.collect(), ..choices.clone() }
+    })
 }

@@ -51,6 +51,46 @@ fn what_is_not_proved_is_said_with_exit_code_1_and_leaves_no_certificate() {
     assert_eq!(folder.files(), [""; 0]);
 }
 
+/// What a signal holds first in a wave.
+fn first(wave: &str, name: &str) -> String {
+    let var = wave.lines().find(|line| line.starts_with("$var ") && line.split(' ').nth(4) == Some(name)).unwrap();
+    let code = var.split(' ').nth(3).unwrap();
+    let value = wave.lines().find(|line| line.starts_with('b') && line.ends_with(&format!(" {code}"))).unwrap();
+    value[1..].split(' ').next().unwrap().to_owned()
+}
+
+#[test]
+fn a_step_from_a_state_that_may_be_unreachable_is_told_with_its_wave() {
+    let folder = Folder::new();
+    let ran = folder.run("prove dda-line --normalize --vcd doubt.vcd");
+    assert_eq!(ran.code, 1);
+    let mut lines = ran.out.lines().skip_while(|line| !line.starts_with("NOT INDUCTIVE at k = 3, Q1: "));
+    let wrong = lines.next().unwrap().split_once("Q1: ").unwrap().1;
+    let component = wrong.strip_suffix(" overflows").unwrap();
+    let state = lines.next().unwrap();
+    assert!(state.contains("that may be unreachable: busy = 1"), "{ran:?}");
+    assert!(ran.out.contains(&format!("  overflow of {component} at clock ")), "{ran:?}");
+    assert!(ran.err.ends_with("a step from a state that may be unreachable shows why\n"), "{ran:?}");
+    let wave = folder.read("doubt.vcd");
+    assert!(wave.contains(", from a state that may be unreachable $end\n"));
+    for register in ["x", "y", "jvx", "jry"] {
+        let told = state.split(", ").find_map(|word| word.strip_prefix(&format!("{register} = "))).unwrap();
+        let held = i64::from_str_radix(&first(&wave, register), 2).unwrap();
+        assert_eq!(told, held.to_string(), "{register}");
+    }
+    assert!(folder.files().contains(&"doubt.gtkw".to_owned()));
+}
+
+#[test]
+fn presets_at_their_ends_refute_what_is_not_proved_for_any() {
+    let folder = Folder::new();
+    let ran = folder.run("prove dda-line --end-point longest --any-preset");
+    assert!(ran.code == 1 && ran.out.starts_with("COUNTEREXAMPLE at k = "), "{ran:?}");
+    let command = ran.out.trim().split_once(": stepwave ").unwrap().1;
+    let again = folder.run(command);
+    assert!(again.code == 1 && again.err.contains("was missed"), "{command}: {again:?}");
+}
+
 #[test]
 fn bad_input_is_refused_in_a_sentence() {
     let folder = Folder::new();

@@ -52,9 +52,9 @@ pub(super) fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample)
 
 /// Shows a step that keeps a proof from being one, with its wave if one is wanted, and tells it.
 pub(super) fn doubted(args: &ProveArgs, model: &Model, doubt: &Doubt, choices: &Choices) -> Result<String, Failure> {
-    let Doubt { k, kind, curve, start, clocks, wrong, state } = doubt;
+    let Doubt { k, kind, curve, hardware, start, clocks, wrong, state } = doubt;
     let (_, run) = replayed(args, model, curve, choices)?;
-    let bench = Testbench::new(model, curve, choices)?;
+    let bench = Testbench::of_hardware(model, hardware.clone())?;
     let title = format!("{}, from a state that may be unreachable", report::title(model, bench.hardware(), curve));
     let mut outputs = Outputs::default();
     let time = ClockTime::from_hz(run.clock.clock_hz)?;

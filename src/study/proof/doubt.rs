@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use stepwave_kernel::Net;
 use stepwave_kernel::engine::{EngineKind, Rows, Watch};
 use stepwave_kernel::prove::{Certificate, Doubts, Row};
-use stepwave_models::{Kind, Machine};
+use stepwave_models::{Hardware, Kind, Machine};
 use stepwave_nc::Curve;
 
 use super::{ProofError, Subject, number, rows};
@@ -20,6 +20,8 @@ pub struct Doubt {
     pub kind: String,
     /// The geometry whose words stand on the inputs.
     pub curve: Curve,
+    /// The hardware, which takes every geometry of these coordinates.
+    pub hardware: Hardware,
     /// Where the step begins.
     pub start: Start,
     /// Clocks that show it.
@@ -68,7 +70,7 @@ impl Subject {
                 self.curves(kind).into_iter().filter(|(member, ..)| self.members[*member].0 == k).collect();
             for (place, (member, curve, symbols)) in curves.iter().enumerate() {
                 let Some((words, symbols)) = self.loaded(place, *member, curve, symbols)? else { continue };
-                let (.., machine) = &self.members[*member];
+                let (_, hardware, machine) = &self.members[*member];
                 let Some(usual) = rows(k, &symbols, machine, &words).into_iter().next() else { continue };
                 let mut stepper = Stepper::new(machine, &words);
                 let most = (MOST / curves.len() as u64).max(1);
@@ -86,6 +88,7 @@ impl Subject {
                     k,
                     kind: kind.name.clone(),
                     curve: curve.clone(),
+                    hardware: hardware.clone(),
                     start: stepper.start(&registers),
                     clocks,
                     wrong,

@@ -218,8 +218,9 @@ impl Subject {
         Subject { any_preset: true, ..self }
     }
 
-    /// Load words that are numbers of the geometry themselves, by their registers.
-    fn presets(&self) -> Vec<String> {
+    /// Remainder registers that start from any value; their load words are numbers of the geometry themselves.
+    #[must_use]
+    pub fn presets(&self) -> Vec<String> {
         let machine = &self.members[0].2;
         let remainders = machine.inputs.keys().filter(|register| register.starts_with("jr"));
         if self.any_preset { remainders.cloned().collect() } else { Vec::new() }
