@@ -228,7 +228,7 @@ fn own_attempt(
     let doubtful: Vec<_> = doubtful.into_iter().map(|(kind, _, certificate)| (kind, certificate)).collect();
     let looked = subject.doubt(&doubtful)?;
     if let Some(doubt) = &looked.found {
-        let own = choices_at(model, &claims, &choices, &narrower, doubt.k)?;
+        let own = choices_at(model, claims, choices, &narrower, doubt.k)?;
         text += &doubted(args, model, doubt, &own)?;
         failure += "; a step from a state that may be unreachable shows why";
     } else if doubtful.is_empty() {
