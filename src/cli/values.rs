@@ -11,6 +11,7 @@ use stepwave::models::{
     StepTiming, System, Weights,
 };
 use stepwave::nc::Opens;
+use stepwave::study::proof::ProofError;
 
 use crate::failure::Failure;
 
@@ -291,6 +292,14 @@ impl HardwareArgs {
             ModelError::NotTaken { model, choice: Choice::Step, takes } if self.feed.is_some() => {
                 Failure::Trouble(format!("{model} does not take --feed; it takes {takes}"))
             }
+            other => other.into(),
+        }
+    }
+
+    /// As [`told`](Self::told), of a study of the model.
+    pub(crate) fn told_of_study(&self, error: ProofError) -> Failure {
+        match error {
+            ProofError::Model(error) => self.told(error),
             other => other.into(),
         }
     }

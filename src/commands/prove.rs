@@ -124,7 +124,7 @@ fn asked(
     narrower: &Narrower,
 ) -> Result<Answer, Failure> {
     let k = args.bits.unwrap_or(ASKED);
-    let question = question(model, claims, choices, narrower, k)?;
+    let question = question(model, claims, choices, narrower, k).map_err(|error| args.hardware.told_of_study(error))?;
     let answer = ask(command, &question.script)?;
     let (word, what) = match answer {
         Answer::Sat => ("sat", "a register overflows or an end point is missed"),
@@ -185,7 +185,7 @@ fn own_attempt(
     if let Some(example) = search(model, claims, choices, &narrower, SEARCHED, refutes) {
         return refuted(args, model, &example);
     }
-    let subject = Subject::new(model, choices, &narrower)?;
+    let subject = Subject::new(model, choices, &narrower).map_err(|error| args.hardware.told_of_study(error))?;
     let subject = if args.any_preset { subject.with_any_preset() } else { subject };
     let kinds = subject.kinds();
     let attempts: Vec<Attempt> = kinds

@@ -14,7 +14,8 @@ use crate::output;
 /// Prints the table.
 pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
-    let found = widths(model, &args.hardware.choices(), &args.extent)?;
+    let found =
+        widths(model, &args.hardware.choices(), &args.extent).map_err(|error| args.hardware.told_of_study(error))?;
     output::print(&if args.json { as_json(model, &found) } else { table(model, &found) })
 }
 

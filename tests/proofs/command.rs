@@ -106,6 +106,8 @@ fn bad_input_is_refused_in_a_sentence() {
         ("prove ppc-line --narrower f", "give f=1"),
         ("prove ppc-line --narrower f=40", "cannot be 40 bits narrower"),
         ("prove ppc-line --preset half", "does not take --preset"),
+        ("prove ppc-line --feed 600 --blu 0.01mm", "does not take --feed"),
+        ("widths ppc-line --box 3 --feed 600 --blu 0.01mm", "does not take --feed"),
         ("prove check missing.cert", "cannot read missing.cert"),
         ("prove check other.cert", "does not begin with 'stepwave certificate 1'"),
         ("prove check broken.cert", "cannot be read"),
