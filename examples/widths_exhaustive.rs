@@ -1,8 +1,8 @@
 //! Compares the ranges that `stepwave widths` reports with those of single runs of one engine over every geometry of a
 //! box: `cargo run --release --example widths_exhaustive -- MODEL K [word|compiled|gates]`. Exit code 1 where they differ.
 //!
-//! All lines from the origin and all arcs inside a quadrant are run up to K = 8, all conics up to 6 and all helices up to 4;
-//! of more bits the same samples are compared, and the line says so.
+//! All lines from the origin and all arcs inside a quadrant are run up to K = 8, all conics too, but for `dda-conic` up to
+//! 6, and all helices up to 4; of more bits the same samples are compared, and the line says so.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program for a terminal")]
 

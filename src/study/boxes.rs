@@ -17,8 +17,10 @@ const MOST_BITS: u32 = 16;
 const MOST: usize = 1_000_000;
 /// Points of a grid in which arcs are looked for, at most.
 const MOST_POINTS: u64 = 1 << 22;
-/// Most bits of semi-axes of which all conics are listed, and of coordinates of which all helices are.
-const WHOLE_CONICS: u32 = 6;
+/// Most bits of semi-axes of which all conics are listed; fewer for integrators, whose blocks take 2^k times the clocks.
+const WHOLE_CONICS: u32 = 8;
+const WHOLE_INTEGRATED_CONICS: u32 = 6;
+/// Most bits of coordinates of which all helices are.
 const WHOLE_HELICES: u32 = 4;
 
 /// Which geometries a box holds.
@@ -98,7 +100,11 @@ impl Geometries {
             (None, Extent::Bits(k)) => {
                 let (curves, whole) = match model.curve {
                     CurveKind::Helix => (helices(*k), WHOLE_HELICES),
-                    _ => (conics(*k), WHOLE_CONICS),
+                    _ => {
+                        let integrates = model.method == "digital differential analyser";
+                        let whole = if integrates { WHOLE_INTEGRATED_CONICS } else { WHOLE_CONICS };
+                        (conics(*k, whole), whole)
+                    }
                 };
                 let hardware = widest(model, choices, &curves)?;
                 Ok(Geometries { curves, all: *k <= whole, k: *k, hardware, choices: choices.clone() })
@@ -245,9 +251,9 @@ fn sizes(k: u32, whole: u32) -> Vec<i64> {
 
 /// Quarters of ellipses with semi-axes of k bits, and arcs of parabolas and hyperbolas from or to the vertex, whose other
 /// end has coordinates of k bits and lies on the curve exactly.
-fn conics(k: u32) -> Vec<Curve> {
+fn conics(k: u32, whole: u32) -> Vec<Curve> {
     let greatest = (1_i64 << k) - 1;
-    let sizes = sizes(k, WHOLE_CONICS);
+    let sizes = sizes(k, whole);
     let mut all: Vec<Conic> = Vec::new();
     let square_root = |square: i64| Some(square.isqrt()).filter(|root| root * root == square);
     for &a in &sizes {
