@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use stepwave_kernel::bits::Reading;
+use stepwave_kernel::prove::Strobes;
 use stepwave_kernel::{Design, Net, Netlist, Width, elaborate};
 
 use crate::error::ModelError;
@@ -78,6 +79,14 @@ impl Machine {
             inputs: inputs.collect::<Result<_, ModelError>>()?,
             design: elaborate(netlist)?,
         })
+    }
+
+    /// The nets by which a proof follows a block.
+    #[must_use]
+    pub fn strobes(&self) -> Strobes {
+        let [load, preset_position, loaded, stepped, done] =
+            [self.load, self.preset_position, self.loaded, self.stepped, self.done].map(|port| port.net);
+        Strobes { load, preset_position, loaded, stepped, done }
     }
 
     /// The bits of every word of every block, checked against the inputs.

@@ -65,9 +65,7 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
-use crate::parts::{
-    Block, FineStage, Sequencer, SerialDivider, SerialMultiplier, SerialRoot, magnitude, negated, with_sign,
-};
+use crate::parts::{ArithmeticUnit, Block, FineStage, magnitude, negated, with_sign};
 use crate::plan;
 use crate::registers::Registers;
 use crate::sampling::Sampling;
@@ -191,10 +189,7 @@ struct Coarse<'m> {
     point: [Register<'m>; 2],
     /// R², whole.
     square: Register<'m>,
-    sequence: Sequencer<'m>,
-    multiplier: SerialMultiplier<'m>,
-    divider: SerialDivider<'m>,
-    root: SerialRoot<'m>,
+    unit: ArithmeticUnit<'m>,
 }
 
 /// What a system adds to the common sequence.
@@ -210,18 +205,6 @@ struct Way<'m> {
 }
 
 impl<'m> Coarse<'m> {
-    fn multiplied(&self, state: u64) -> Signal<'m> {
-        self.sequence.ends(state, self.multiplier.running())
-    }
-
-    fn divided(&self, state: u64) -> Signal<'m> {
-        self.sequence.ends(state, self.divider.running())
-    }
-
-    fn rooted(&self, state: u64) -> Signal<'m> {
-        self.sequence.ends(state, self.root.running())
-    }
-
     fn held(&self, name: &str, condition: Signal<'m>, value: Signal<'m>) -> Signal<'m> {
         let register = self.m.reg(name, value.bits());
         register.when(condition, value).else_hold();
@@ -247,8 +230,8 @@ impl<'m> Coarse<'m> {
     /// and v is what the circle leaves of R².
     fn by_direction(&self) -> Way<'m> {
         let (m, bits) = (self.m, self.sampling.magnitude());
-        let begins = |state| self.sequence.begins(state);
-        let product = self.multiplier.product();
+        let begins = |state| self.unit.begins(state);
+        let product = self.unit.multiplier.product();
         let f_bits = self.f.bits();
         // Bits of the fraction of tan and sec.
         let p = f_bits.min(bits - 2);
@@ -257,7 +240,7 @@ impl<'m> Coarse<'m> {
         let k = f_bits.min(40);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let half_cosine = m.lit(k, (std::f64::consts::FRAC_1_SQRT_2 / 2.0 * (1_u64 << k) as f64).round() as u64);
-        let half = self.held("half_step", self.multiplied(at::HALF), product.slice(k, f_bits));
+        let half = self.held("half_step", self.unit.multiplied(at::HALF), product.slice(k, f_bits));
 
         let [x, y] = self.point.map(|axis| axis.q);
         let [ax, ay] = [x, y].map(|coordinate| self.magnitude(coordinate));
@@ -275,29 +258,30 @@ impl<'m> Coarse<'m> {
         let backwards = self.held("backwards", begun, backwards);
         let other_negative = self.held("other_negative", begun, other.msb());
 
-        let tangent = self.held("tangent", self.divided(at::TANGENT), self.divider.quotient().slice(0, p + 1));
+        let tangent =
+            self.held("tangent", self.unit.divided(at::TANGENT), self.unit.divider.quotient().slice(0, p + 1));
         let one = m.lit(1, 1).concat(m.lit(2 * p, 0)).extend(2 * bits);
         let above_one = product.slice(0, 2 * p + 2).extend(2 * bits).wrapping_add(one);
-        let secant = self.root.root().slice(0, p + 2);
-        let way = self.divider.quotient().slice(0, f_bits);
+        let secant = self.unit.root.root().slice(0, p + 2);
+        let way = self.unit.divider.quotient().slice(0, f_bits);
         let driven = drives_x.mux(x, y);
         let wide = way.extend(driven.bits()).as_signed();
         let moved = backwards.mux(driven.wrapping_sub(wide), driven.wrapping_add(wide));
         let left = self.radicand().saturating_sub(product);
-        let found = with_sign(m, self.root.root(), bits + 1, other_negative);
-        let drive = self.sequence.at(at::DRIVE);
+        let found = with_sign(m, self.unit.root.root(), bits + 1, other_negative);
+        let drive = self.unit.sequence.at(at::DRIVE);
         for (axis, name) in [(0, drives_x), (1, !drives_x)] {
             self.point[axis]
                 .when(self.block.load, self.start(axis))
                 .when(drive & name, moved)
-                .when(self.rooted(at::ROOT) & !name, found)
+                .when(self.unit.rooted(at::ROOT) & !name, found)
                 .else_hold();
         }
-        self.divider.close(&[
+        self.unit.divider.close(&[
             (begun, ahead.concat(m.lit(p, 0)), below),
             (begins(at::COSINE), self.f.concat(m.lit(p, 0)), secant),
         ]);
-        self.root.close(&[(begins(at::SECANT), above_one), (begins(at::ROOT), left)]);
+        self.unit.root.close(&[(begins(at::SECANT), above_one), (begins(at::ROOT), left)]);
         let coordinate = self.magnitude(driven);
         Way {
             products: vec![
@@ -306,25 +290,25 @@ impl<'m> Coarse<'m> {
                 (begins(at::SQUARE), coordinate, coordinate),
             ],
             moves: vec![
-                (self.multiplied(at::HALF), at::SIDE_X),
-                (self.divided(at::TANGENT), at::SQUARE_TANGENT),
-                (self.multiplied(at::SQUARE_TANGENT), at::SECANT),
-                (self.rooted(at::SECANT), at::COSINE),
-                (self.divided(at::COSINE), at::DRIVE),
+                (self.unit.multiplied(at::HALF), at::SIDE_X),
+                (self.unit.divided(at::TANGENT), at::SQUARE_TANGENT),
+                (self.unit.multiplied(at::SQUARE_TANGENT), at::SECANT),
+                (self.unit.rooted(at::SECANT), at::COSINE),
+                (self.unit.divided(at::COSINE), at::DRIVE),
                 (drive, at::SQUARE),
-                (self.multiplied(at::SQUARE), at::ROOT),
+                (self.unit.multiplied(at::SQUARE), at::ROOT),
             ],
             first: [at::HALF, at::TANGENT],
-            stands: self.rooted(at::ROOT),
+            stands: self.unit.rooted(at::ROOT),
         }
     }
 
     /// λ = f/R, and clockwise Δx = λ(y - ½λx), Δy = -λ(x + ½λy); counter-clockwise λ is negative.
     fn by_step_factor(&self) -> Way<'m> {
         let (m, bits) = (self.m, self.sampling.magnitude());
-        let begins = |state| self.sequence.begins(state);
-        let product = self.multiplier.product();
-        let lambda = self.held("lambda", self.divided(at::LAMBDA), self.divider.quotient().slice(0, bits));
+        let begins = |state| self.unit.begins(state);
+        let product = self.unit.multiplier.product();
+        let lambda = self.held("lambda", self.unit.divided(at::LAMBDA), self.unit.divider.quotient().slice(0, bits));
         let [x, y] = self.point.map(|axis| axis.q);
         // Half of λ times a coordinate, with the coordinate's sign.
         let half = |coordinate: Signal<'m>| with_sign(m, product.slice(bits + 1, bits - 1), bits + 1, coordinate.msb());
@@ -332,8 +316,8 @@ impl<'m> Coarse<'m> {
             |a: Signal<'m>, b: Signal<'m>, subtract: Signal<'m>| subtract.mux(a.wrapping_sub(b), a.wrapping_add(b));
         let middle_y = plus(y, half(x), !self.ccw);
         let middle_x = plus(x, half(y), self.ccw);
-        let middle_y = self.held("middle_y", self.multiplied(at::MIDDLE_X), middle_y).as_signed();
-        let middle_x = self.held("middle_x", self.multiplied(at::MIDDLE_Y), middle_x).as_signed();
+        let middle_y = self.held("middle_y", self.unit.multiplied(at::MIDDLE_X), middle_y).as_signed();
+        let middle_x = self.held("middle_x", self.unit.multiplied(at::MIDDLE_Y), middle_x).as_signed();
         for (axis, state, middle, against) in
             [(0, at::STEP_X, middle_y, self.ccw), (1, at::STEP_Y, middle_x, !self.ccw)]
         {
@@ -341,13 +325,13 @@ impl<'m> Coarse<'m> {
             let whole = self.point[axis].q.concat(rest.q);
             let way = product.extend(2 * bits + 1).as_signed();
             let sum = plus(whole, way, middle.msb() ^ against);
-            let stepped = self.multiplied(state);
+            let stepped = self.unit.multiplied(state);
             let point = sum.slice(bits, bits + 1).as_signed();
             self.point[axis].when(self.block.load, self.start(axis)).when(stepped, point).else_hold();
             rest.when(self.block.load, m.lit(bits, 0)).when(stepped, sum.slice(0, bits)).else_hold();
         }
-        self.divider.close(&[(begins(at::LAMBDA), self.f.concat(m.lit(bits, 0)), self.root.root())]);
-        self.root.close(&[(begins(at::RADIUS), self.radicand())]);
+        self.unit.divider.close(&[(begins(at::LAMBDA), self.f.concat(m.lit(bits, 0)), self.unit.root.root())]);
+        self.unit.root.close(&[(begins(at::RADIUS), self.radicand())]);
         Way {
             products: vec![
                 (begins(at::MIDDLE_X), self.magnitude(x), lambda),
@@ -356,14 +340,14 @@ impl<'m> Coarse<'m> {
                 (begins(at::STEP_Y), self.magnitude(middle_x), lambda),
             ],
             moves: vec![
-                (self.rooted(at::RADIUS), at::LAMBDA),
-                (self.divided(at::LAMBDA), at::SIDE_X),
-                (self.multiplied(at::MIDDLE_X), at::MIDDLE_Y),
-                (self.multiplied(at::MIDDLE_Y), at::STEP_X),
-                (self.multiplied(at::STEP_X), at::STEP_Y),
+                (self.unit.rooted(at::RADIUS), at::LAMBDA),
+                (self.unit.divided(at::LAMBDA), at::SIDE_X),
+                (self.unit.multiplied(at::MIDDLE_X), at::MIDDLE_Y),
+                (self.unit.multiplied(at::MIDDLE_Y), at::STEP_X),
+                (self.unit.multiplied(at::STEP_X), at::STEP_Y),
             ],
             first: [at::RADIUS, at::MIDDLE_X],
-            stands: self.multiplied(at::STEP_Y),
+            stands: self.unit.multiplied(at::STEP_Y),
         }
     }
 }
@@ -392,18 +376,15 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         ccw: block.held(m, "ccw", 1),
         point: ["px", "py"].map(|name| m.reg_signed(name, bits + 1)),
         square: m.reg("square", 2 * n),
-        sequence: Sequencer::new(m, &[&COMMON[..], own].concat()),
-        multiplier: SerialMultiplier::new(m, bits, bits),
-        divider: SerialDivider::new(m, 2 * bits, bits),
-        root: SerialRoot::new(m, bits),
+        unit: ArithmeticUnit::new(m, &[&COMMON[..], own].concat(), [bits; 2], [2 * bits, bits], bits),
     };
     let ends = ["xe", "ye"].map(|name| block.held_signed(m, name, n + 1));
     let Way { products, moves, first, stands } =
         if by_direction { coarse.by_direction() } else { coarse.by_step_factor() };
 
-    let product = coarse.multiplier.product();
+    let product = coarse.unit.multiplier.product();
     let of_square = product.slice(0, 2 * n);
-    let [squared_x, squared_y] = [at::SQUARE_X, at::SQUARE_Y].map(|state| coarse.multiplied(state));
+    let [squared_x, squared_y] = [at::SQUARE_X, at::SQUARE_Y].map(|state| coarse.unit.multiplied(state));
     let sum = coarse.square.q.wrapping_add(of_square);
     coarse.square.when(squared_x, of_square).when(squared_y, sum).else_hold();
 
@@ -413,7 +394,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let [ex, ey] = ends.map(|end| magnitude(m, end).slice(0, n));
     let wide = bits + n + 2;
     let turned = |negative| with_sign(m, product.slice(0, bits + n), wide, negative);
-    let [side_x, side_y] = [at::SIDE_X, at::SIDE_Y].map(|state| coarse.multiplied(state));
+    let [side_x, side_y] = [at::SIDE_X, at::SIDE_Y].map(|state| coarse.unit.multiplied(state));
     let half_side = coarse.held("side", side_x, turned(ends[0].msb() ^ y.msb()));
     let side = half_side.as_signed().wrapping_sub(turned(ends[1].msb() ^ x.msb()));
     // Before it, in the sense of the motion.
@@ -425,7 +406,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     arrives.when(block.load, no).when(side_y, was_before & !before & !first_side.q).else_hold();
     first_side.when(block.load, yes).when(side_y, no).else_hold();
 
-    let begins = |state| coarse.sequence.begins(state);
+    let begins = |state| coarse.unit.begins(state);
     let [whole_x, whole_y] = [ax, ay].map(|coordinate| coordinate.slice(q, n));
     let common = [
         (begins(at::SQUARE_X), whole_x, whole_x),
@@ -433,8 +414,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         (begins(at::SIDE_X), ay, ex),
         (begins(at::SIDE_Y), ax, ey),
     ];
-    coarse.multiplier.close(&[&common[..], &products].concat());
-    let hand = m.name("hand", coarse.sequence.at(at::HAND) & fine.free());
+    coarse.unit.multiplier.close(&[&common[..], &products].concat());
+    let hand = m.name("hand", coarse.unit.sequence.at(at::HAND) & fine.free());
     let common = [
         (squared_x, at::SQUARE_Y),
         (squared_y, first[0]),
@@ -445,7 +426,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         (hand & !arrives.q, first[1]),
         (hand, 0),
     ];
-    coarse.sequence.close(block.load, &[&common[..], &moves].concat());
+    coarse.unit.sequence.close(block.load, &[&common[..], &moves].concat());
     // As wide as the points that the fine stage takes.
     let points = [x, y].map(|coordinate| coordinate.extend(bits + 2));
     fine.close(block, hardware, [hand, arrives.q], points, q, ends);

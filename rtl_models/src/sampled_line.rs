@@ -54,7 +54,7 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
-use crate::parts::{Block, FineStage, Sequencer, SerialDivider, SerialMultiplier, SerialRoot, with_sign};
+use crate::parts::{ArithmeticUnit, Block, FineStage, with_sign};
 use crate::registers::Registers;
 use crate::sampling::Sampling;
 use crate::{plan, words};
@@ -145,87 +145,84 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let f = block.held(coarse, "f", sampling.word_bits());
     let [long, short] = ["long", "short"].map(|name| block.held(coarse, name, n));
     let x_is_longest = block.held(coarse, "x_is_longest", 1);
-    let sequence = Sequencer::new(coarse, if by_direction { &DIRECTION[..] } else { &STEP_FACTOR });
-    let multiplier = SerialMultiplier::new(coarse, bits + 1, n);
-    let divider = SerialDivider::new(coarse, bits + sampling.word_bits().max(n + 1), bits.max(n));
-    let root = SerialRoot::new(coarse, bits);
-    let multiplied = |state| sequence.ends(state, multiplier.running());
-    let divided = |state| sequence.ends(state, divider.running());
+    let states = if by_direction { &DIRECTION[..] } else { &STEP_FACTOR };
+    let dividend = bits + sampling.word_bits().max(n + 1);
+    let unit = ArithmeticUnit::new(coarse, states, [bits + 1, n], [dividend, bits.max(n)], bits);
 
     // The length of the line, once a block.
     let square = coarse.reg("square", 2 * n);
-    let product = multiplier.product();
+    let product = unit.multiplier.product();
     let of_square = product.slice(0, 2 * n);
     square
-        .when(multiplied(at::SQUARE_FAR), of_square)
-        .when(multiplied(at::SQUARE_NEAR), square.q.wrapping_add(of_square))
+        .when(unit.multiplied(at::SQUARE_FAR), of_square)
+        .when(unit.multiplied(at::SQUARE_NEAR), square.q.wrapping_add(of_square))
         .else_hold();
-    let measured = sequence.ends(at::LENGTH, root.running());
+    let measured = unit.rooted(at::LENGTH);
     let radicand = square.q.concat(coarse.lit(2 * q, 0));
 
     // The way of the long axis, or the step factor: both once a block.
     let factor = coarse.reg(if by_direction { "step" } else { "lambda" }, bits + 1);
-    let quotient = divider.quotient();
+    let quotient = unit.divider.quotient();
     let beyond = quotient.slice(bits, quotient.bits() - bits).is_nonzero();
     // A way beyond the end is as good as one up to it.
     let whole = coarse.lit(1, 1).concat(coarse.lit(bits, 0));
-    factor.when(divided(at::FACTOR), beyond.mux(whole, quotient.slice(0, bits + 1))).else_hold();
+    factor.when(unit.divided(at::FACTOR), beyond.mux(whole, quotient.slice(0, bits + 1))).else_hold();
 
     // A period: what is below the fraction is kept for the next.
     let [far, near] = ["far", "near"].map(|name| coarse.reg(name, bits + 1));
     let near_rest = coarse.reg("remn", n);
     let [zero, no_rest] = [coarse.lit(bits + 1, 0), coarse.lit(n, 0)];
-    let begins = |state| sequence.begins(state);
     let (stepped_far, stepped_near);
     if by_direction {
         // Δs = (Δl·S + rest) / L, the rest kept.
-        (stepped_far, stepped_near) = (divided(at::SECOND), divided(at::SECOND));
+        (stepped_far, stepped_near) = (unit.divided(at::SECOND), unit.divided(at::SECOND));
         far.when(block.load, zero).when(stepped_far, far.q.wrapping_add(factor.q)).else_hold();
         near.when(block.load, zero).when(stepped_near, near.q.wrapping_add(quotient.slice(0, bits + 1))).else_hold();
-        near_rest.when(block.load, no_rest).when(stepped_near, divider.remainder().slice(0, n)).else_hold();
+        near_rest.when(block.load, no_rest).when(stepped_near, unit.divider.remainder().slice(0, n)).else_hold();
         let dividend = product.extend(bits + n + 1).wrapping_add(near_rest.q.extend(bits + n + 1));
         let shared = product.slice(0, sampling.word_bits() + n).concat(coarse.lit(q, 0));
-        multiplier.close(&[
-            (begins(at::SQUARE_FAR), long, long),
-            (begins(at::SQUARE_NEAR), short, short),
-            (begins(at::SHARE), f, long),
-            (begins(at::FIRST), factor.q, short),
+        unit.multiplier.close(&[
+            (unit.begins(at::SQUARE_FAR), long, long),
+            (unit.begins(at::SQUARE_NEAR), short, short),
+            (unit.begins(at::SHARE), f, long),
+            (unit.begins(at::FIRST), factor.q, short),
         ]);
-        divider.close(&[(begins(at::FACTOR), shared, root.root()), (begins(at::SECOND), dividend, long)]);
+        unit.divider
+            .close(&[(unit.begins(at::FACTOR), shared, unit.root.root()), (unit.begins(at::SECOND), dividend, long)]);
     } else {
         // λ = f / length; {way, rest} := {way, rest} + λ·L.
         let far_rest = coarse.reg("remf", n);
-        (stepped_far, stepped_near) = (multiplied(at::FIRST), multiplied(at::SECOND));
+        (stepped_far, stepped_near) = (unit.multiplied(at::FIRST), unit.multiplied(at::SECOND));
         for (way, rest, stepped) in [(far, far_rest, stepped_far), (near, near_rest, stepped_near)] {
             let sum = way.q.concat(rest.q).wrapping_add(product);
             way.when(block.load, zero).when(stepped, sum.slice(n, bits + 1)).else_hold();
             rest.when(block.load, no_rest).when(stepped, sum.slice(0, n)).else_hold();
         }
-        multiplier.close(&[
-            (begins(at::SQUARE_FAR), long, long),
-            (begins(at::SQUARE_NEAR), short, short),
-            (begins(at::FIRST), factor.q, long),
-            (begins(at::SECOND), factor.q, short),
+        unit.multiplier.close(&[
+            (unit.begins(at::SQUARE_FAR), long, long),
+            (unit.begins(at::SQUARE_NEAR), short, short),
+            (unit.begins(at::FIRST), factor.q, long),
+            (unit.begins(at::SECOND), factor.q, short),
         ]);
-        divider.close(&[(begins(at::FACTOR), f.concat(coarse.lit(bits, 0)), root.root())]);
+        unit.divider.close(&[(unit.begins(at::FACTOR), f.concat(coarse.lit(bits, 0)), unit.root.root())]);
     }
-    root.close(&[(begins(at::LENGTH), radicand)]);
+    unit.root.close(&[(unit.begins(at::LENGTH), radicand)]);
 
     let end = long.concat(coarse.lit(q, 0)).extend(bits + 1);
     let last = coarse.name("arrived", !far.q.less_than(end));
-    let hand = coarse.name("hand", sequence.at(at::HAND) & fine.free());
+    let hand = coarse.name("hand", unit.sequence.at(at::HAND) & fine.free());
     let more = hand & !last;
     let after_length = if by_direction { at::SHARE } else { at::FACTOR };
-    let shared = if by_direction { multiplied(at::SHARE) } else { coarse.lit(1, 0) };
-    let second = if by_direction { multiplied(at::FIRST) } else { stepped_far };
-    sequence.close(
+    let shared = if by_direction { unit.multiplied(at::SHARE) } else { coarse.lit(1, 0) };
+    let second = if by_direction { unit.multiplied(at::FIRST) } else { stepped_far };
+    unit.sequence.close(
         block.load,
         &[
-            (multiplied(at::SQUARE_FAR), at::SQUARE_NEAR),
-            (multiplied(at::SQUARE_NEAR), at::LENGTH),
+            (unit.multiplied(at::SQUARE_FAR), at::SQUARE_NEAR),
+            (unit.multiplied(at::SQUARE_NEAR), at::LENGTH),
             (measured, after_length),
             (shared, at::FACTOR),
-            (divided(at::FACTOR), at::FIRST),
+            (unit.divided(at::FACTOR), at::FIRST),
             (second, at::SECOND),
             (stepped_near, at::HAND),
             (more, at::FIRST),

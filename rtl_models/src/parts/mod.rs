@@ -2,6 +2,7 @@
 //! a register has to exist before the logic that drives it.
 
 mod arc_frame;
+mod arithmetic_unit;
 mod axis;
 mod beats;
 mod block;
@@ -31,6 +32,7 @@ mod sign;
 mod step_output;
 
 pub use arc_frame::{ArcFrame, square_gain};
+pub use arithmetic_unit::ArithmeticUnit;
 pub use axis::axis_counter;
 pub use beats::BeatRing;
 pub use block::{Block, Buffer};

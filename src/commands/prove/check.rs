@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use stepwave::models::{Choices, find};
 use stepwave::study::proof::{Block, CertificateFile, ProofError, Subject, Way};
 
+use super::counted::{followed, judge};
 use super::verdict::{Attempt, told, unproved};
-use super::{followed, judge};
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
 use crate::output;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use rayon::prelude::*;
 use stepwave_kernel::bits::Reading;
-use stepwave_kernel::prove::{AxisNets, Strobes, Sum, Word, follow, recount};
+use stepwave_kernel::prove::{AxisNets, Sum, Word, follow, recount};
 use stepwave_models::{AXES, Choices, Claims, Kind, Model};
 use stepwave_nc::Curve;
 
@@ -123,13 +123,7 @@ fn block(
         names.extend((0..width).map(|bit| format!("{register}.{bit}")));
         given.push((net, Word::Unknown));
     }
-    let strobes = Strobes {
-        load: machine.load.net,
-        preset_position: machine.preset_position.net,
-        loaded: machine.loaded.net,
-        stepped: machine.stepped.net,
-        done: machine.done.net,
-    };
+    let strobes = machine.strobes();
     let (design, limit) = (&machine.design, hardware.stall_clocks);
     let ends: Vec<_> = machine.positions.iter().map(|port| port.net).collect();
     let axes = machine.pulses.iter().zip(&ends).map(|(pulse, end)| AxisNets { pulse: pulse.net, position: *end });

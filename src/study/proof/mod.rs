@@ -201,13 +201,7 @@ impl Subject {
         let designs: Vec<(u32, Design)> = members.iter().map(|(k, _, machine)| (*k, machine.design.clone())).collect();
         let family = Family::of(&designs)?;
         let machine = &members[0].2;
-        let strobes = Strobes {
-            load: machine.load.net,
-            preset_position: machine.preset_position.net,
-            loaded: machine.loaded.net,
-            stepped: machine.stepped.net,
-            done: machine.done.net,
-        };
+        let strobes = machine.strobes();
         let claims = claims.of_hardware(&members[0].1);
         Ok(Subject { model, claims, family, strobes, any_preset: false, members })
     }

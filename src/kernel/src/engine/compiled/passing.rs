@@ -142,15 +142,16 @@ pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuild
 impl Passing<'_, '_> {
     fn loops(&mut self, rows: Value, start: &Sample) {
         let plan = self.plan;
+        let (carried, running) = (self.carried.clone(), self.running.clone());
         let values = self.generator.settle(plan.entry, start, &self.next());
         let first = self.generator.edge(plan.entry, &values, start);
         let [zero, one, ones] = [0, 1, -1].map(|number| self.generator.f.ins().iconst(types::I64, number));
         let extremes = self.running.iter().flat_map(|_| [ones, zero, zero, ones]).collect();
         let account = Account { done: one, recorded: zero, row: rows, extremes };
-        let (awake, idle) = (self.block(&self.carried.clone(), &account), self.block(&self.running.clone(), &account));
-        self.jump(awake, &self.carried.clone(), &first, &account);
+        let (awake, idle) = (self.block(&carried, &account), self.block(&running, &account));
+        self.jump(awake, &carried, &first, &account);
 
-        let (sample, account) = self.enter(awake, &self.carried.clone(), start);
+        let (sample, account) = self.enter(awake, &carried, start);
         let observed = self.observed();
         let values = self.generator.settle(plan.entry, &sample, &observed);
         let clock = self.generator.f.ins().iadd(self.clock, account.done);
@@ -172,16 +173,16 @@ impl Passing<'_, '_> {
         self.generator.f.ins().brif(woken, edge, &[], rest, &[]);
         self.generator.f.switch_to_block(edge);
         let next = self.generator.edge(plan.entry, &values, &sample);
-        self.jump(awake, &self.carried.clone(), &next, &account);
+        self.jump(awake, &carried, &next, &account);
         self.generator.f.switch_to_block(rest);
-        self.jump(idle, &self.running.clone(), &next, &account);
+        self.jump(idle, &running, &next, &account);
 
         // All registers but the running ones are those of the sample that was awake.
-        let (sample, account) = self.enter(idle, &self.running.clone(), &sample);
+        let (sample, account) = self.enter(idle, &running, &sample);
         let flags: Vec<Net> = plan.flags.iter().chain(plan.stops).copied().collect();
         let woken = self.woken(&sample, &flags);
         let stay = self.generator.f.create_block();
-        let arguments = self.arguments(&self.carried.clone(), &sample, &account);
+        let arguments = self.arguments(&carried, &sample, &account);
         self.generator.f.ins().brif(woken, awake, &arguments, stay, &[]);
         self.generator.f.switch_to_block(stay);
         let account = Account { extremes: self.extremes(&sample, &account.extremes), ..account };
@@ -189,7 +190,7 @@ impl Passing<'_, '_> {
         let values = self.generator.settle(plan.entry, &sample, &self.next());
         let next = self.generator.edge(plan.entry, &values, &sample);
         let done = self.generator.f.ins().iadd_imm(account.done, 1);
-        self.jump(idle, &self.running.clone(), &next, &Account { done, ..account });
+        self.jump(idle, &running, &next, &Account { done, ..account });
     }
 
     /// The nets of the next values.
