@@ -8,6 +8,7 @@ mod verdict;
 
 use std::io::Write as _;
 use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
 
 use stepwave::kernel::prove::Certificate;
 use stepwave::models::{Choices, Claims, Model, find};
@@ -25,6 +26,12 @@ pub(crate) fn run(args: &ProveArgs) -> Result<(), Failure> {
         Some(ProveCommand::Check { file }) => check::check(file),
         None => attempt(args),
     }
+}
+
+/// Prints a text, unless standard output is where a file goes.
+fn tell(args: &ProveArgs, text: &str) -> Result<(), Failure> {
+    let is_stdout = |path: &Option<PathBuf>| path.as_deref() == Some(Path::new("-"));
+    if is_stdout(&args.certificate) || is_stdout(&args.vcd) { Ok(()) } else { output::print(text) }
 }
 
 /// Bits of coordinates among which counterexamples are looked for.
@@ -68,9 +75,9 @@ impl Job<'_> {
             Answer::Unsat => ("unsat", "no register overflows, and every end point is reached"),
         };
         let (geometries, clocks) = (question.geometries, question.clocks);
-        output::print(&format!(
-            "{command} says {word} of {geometries} geometries of {k} bits within {clocks} clocks: {what}\n"
-        ))?;
+        let text =
+            format!("{command} says {word} of {geometries} geometries of {k} bits within {clocks} clocks: {what}\n");
+        tell(self.args, &text)?;
         Ok(answer)
     }
 }

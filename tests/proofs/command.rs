@@ -51,6 +51,27 @@ fn what_is_not_proved_is_said_with_exit_code_1_and_leaves_no_certificate() {
     assert_eq!(folder.files(), [""; 0]);
 }
 
+#[test]
+fn standard_output_holds_the_file_alone_and_a_path_with_a_blank_is_one_word() {
+    let folder = Folder::new();
+    let wave = folder.run("prove ppc-line --narrower f=1 --vcd -");
+    assert!(wave.code == 1 && wave.out.starts_with("$version") && !wave.out.contains("COUNTEREXAMPLE"), "{wave:?}");
+    let doubt = folder.run("prove dda-line --normalize --vcd -");
+    assert!(doubt.code == 1 && doubt.out.starts_with("$version") && !doubt.out.contains("INDUCTIVE"), "{doubt:?}");
+    for words in ["prove ppc-line --certificate -", "prove dpm-line --bits 3 --certificate -"] {
+        let certificate = folder.good(words);
+        assert!(
+            certificate.starts_with("stepwave certificate 1\n") && !certificate.contains("PROVED"),
+            "{certificate}"
+        );
+        std::fs::write(folder.path("own.cert"), certificate).unwrap();
+        folder.good("prove check own.cert");
+    }
+    let ran = folder.run_words(&["prove", "ppc-line", "--narrower", "f=1", "--vcd", "a trap.vcd"]);
+    assert!(ran.code == 1 && ran.out.ends_with(" --vcd 'a trap.vcd'\n"), "{ran:?}");
+    assert!(folder.read("a trap.vcd").starts_with("$version"));
+}
+
 /// What a signal holds first in a wave.
 fn first(wave: &str, name: &str) -> String {
     let var = wave.lines().find(|line| line.starts_with("$var ") && line.split(' ').nth(4) == Some(name)).unwrap();
@@ -107,6 +128,7 @@ fn bad_input_is_refused_in_a_sentence() {
         ("prove ppc-line --narrower f=40", "cannot be 40 bits narrower"),
         ("prove ppc-line --preset half", "does not take --preset"),
         ("prove ppc-line --feed 600 --blu 0.01mm", "does not take --feed"),
+        ("prove dpm-line --feed 600 --blu 0.01mm", "does not take --feed"),
         ("widths ppc-line --box 3 --feed 600 --blu 0.01mm", "does not take --feed"),
         ("prove check missing.cert", "cannot read missing.cert"),
         ("prove check other.cert", "does not begin with 'stepwave certificate 1'"),

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use stepwave::models::{Choices, find};
 use stepwave::study::proof::{Block, CertificateFile, ProofError, Subject, Way};
 
-use super::counted::{followed, judge};
+use super::counted::{followed, judge, unfollowed};
 use super::verdict::{Attempt, told, unproved};
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
@@ -34,11 +34,12 @@ pub(super) fn check(path: &Path) -> Result<(), Failure> {
             ks.push(k.ok_or_else(|| Failure::Trouble(format!("{name} is no certificate: counted {block}")))?);
         }
         ks.dedup();
-        let blocks = followed(model, &choices, &file.narrower.iter().cloned().collect(), ks, Way::Recount)?;
+        let blocks = followed(model, &choices, &file.narrower.iter().cloned().collect(), ks, Way::Recount)
+            .map_err(|error| unfollowed(error, Failure::from))?;
         if blocks.iter().map(Block::to_string).ne(file.counted.iter().cloned()) {
             return Err(Failure::Check(vec![format!("{name} does not say what its blocks come to")]));
         }
-        return judge(model, &blocks, &format!("the blocks of {name}"));
+        return output::print(&judge(model, &blocks, &format!("the blocks of {name}"))?);
     }
     let subject = Subject::new(model, &choices, &file.narrower.iter().cloned().collect())?;
     let subject = if any_preset { subject.with_any_preset() } else { subject };

@@ -9,9 +9,8 @@ use stepwave::study::proof::{Block, Narrower, ProofError, Way, blocks};
 
 use super::replay::refuted;
 use super::verdict::Claim;
-use super::{Job, SEARCHED};
+use super::{Job, SEARCHED, tell};
 use crate::failure::Failure;
-use crate::output;
 
 /// Bits of coordinates at which a model is proved unless the user says otherwise.
 const PROVED: RangeInclusive<u32> = 1..=16;
@@ -23,20 +22,24 @@ pub(super) fn followed(
     narrower: &Narrower,
     ks: Vec<u32>,
     way: Way,
-) -> Result<Vec<Block>, Failure> {
+) -> Result<Vec<Block>, ProofError> {
     let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
     let each = ks.into_par_iter().map(|k| blocks(model, &claims, choices, narrower, k, way));
-    match each.collect::<Result<Vec<_>, _>>() {
-        Ok(all) => Ok(all.concat()),
-        Err(lost @ ProofError::Lost { .. }) => {
-            Err(Failure::Check(vec![format!("UNKNOWN, no counterexample and no proof: {lost}")]))
+    Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// A block that cannot be followed is not proved, and not refuted; all else is bad input.
+pub(super) fn unfollowed(error: ProofError, told: impl Fn(ProofError) -> Failure) -> Failure {
+    match error {
+        lost @ ProofError::Lost { .. } => {
+            Failure::Check(vec![format!("UNKNOWN, no counterexample and no proof: {lost}")])
         }
-        Err(error) => Err(error.into()),
+        other => told(other),
     }
 }
 
-/// Tells of blocks that were followed, and fails where one of them does not end as it should.
-pub(super) fn judge(model: &Model, blocks: &[Block], what: &str) -> Result<(), Failure> {
+/// What blocks that were followed show, in words; fails where one of them does not end as it should.
+pub(super) fn judge(model: &Model, blocks: &[Block], what: &str) -> Result<String, Failure> {
     let about = model.claims.map_or("", |claims| claims.geometries.describe());
     let mut ks: Vec<u32> = blocks.iter().map(|block| block.k).collect();
     ks.dedup();
@@ -47,20 +50,17 @@ pub(super) fn judge(model: &Model, blocks: &[Block], what: &str) -> Result<(), F
         _ => format!("k = {}", ks.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")),
     };
     let wrong: Vec<String> = blocks.iter().filter(|block| !block.is_exact()).map(Block::to_string).collect();
+    if !wrong.is_empty() {
+        return Err(Failure::Check(vec![format!("not proved: {}: {}", Claim::Exact.name(), wrong.join("; "))]));
+    }
     let mut text = format!("{}: {about}, at {k}\n", model.name);
     for claim in Claim::ALL {
-        let proved = claim != Claim::Exact || wrong.is_empty();
-        let verdict = if proved { format!("PROVED at {k}") } else { "not proved".to_owned() };
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{verdict}: {}", claim.name());
+        let _ = writeln!(text, "PROVED at {k}: {}", claim.name());
     }
     let clocks: u64 = blocks.iter().map(|block| block.clocks).sum();
     let _ = writeln!(text, "{} blocks followed for {clocks} clocks with unknown coefficients", blocks.len());
-    output::print(&text)?;
-    if wrong.is_empty() {
-        return Ok(());
-    }
-    Err(Failure::Check(vec![format!("not proved: {}: {}", Claim::Exact.name(), wrong.join("; "))]))
+    Ok(text)
 }
 
 /// Attempts a proof at each width.
@@ -77,12 +77,14 @@ pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
     {
         return refuted(args, model, &example);
     }
-    let blocks = found?;
+    let told = |error| unfollowed(error, |error| args.hardware.told_of_study(error));
+    let blocks = found.map_err(told)?;
     // They are not believed: what counts is what the second way comes to.
-    if followed(model, choices, narrower, ks, Way::Recount)? != blocks {
+    if followed(model, choices, narrower, ks, Way::Recount).map_err(told)? != blocks {
         let model = model.name;
         return Err(Failure::Check(vec![format!("not proved: {model} pulse by pulse comes to something else")]));
     }
-    judge(model, &blocks, "the blocks that were followed")?;
-    certificate.write(choices.options(), Vec::new(), blocks.iter().map(Block::to_string).collect())
+    let text = judge(model, &blocks, "the blocks that were followed")?;
+    certificate.write(choices.options(), Vec::new(), blocks.iter().map(Block::to_string).collect())?;
+    tell(args, &text)
 }

@@ -8,9 +8,8 @@ use stepwave::study::proof::{DOUBTED, ProofError, Subject, choices_at};
 
 use super::replay::{doubted, refuted};
 use super::verdict::{Attempt, Claim, told, unproved};
-use super::{Job, SEARCHED};
+use super::{Job, SEARCHED, tell};
 use crate::failure::Failure;
-use crate::output;
 
 /// `1, 2`
 fn list(numbers: RangeInclusive<u32>) -> String {
@@ -45,7 +44,7 @@ pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
     let kinds = attempts.into_iter().map(|(kind, _, certificate)| (kind.name, certificate)).collect();
     let any = args.any_preset.then(|| "--any-preset".to_owned());
     certificate.write(choices.options().into_iter().chain(any).collect(), kinds, Vec::new())?;
-    output::print(&text)
+    tell(args, &text)
 }
 
 /// Looks for what keeps a proof from being one, and tells it behind what was proved.
@@ -78,7 +77,7 @@ fn undecided(job: &Job<'_>, subject: &Subject, attempts: &[Attempt], mut text: S
             "UNKNOWN: no step from {tried} states at k = {first} and {last} that the invariants allow shows why\n"
         );
     }
-    output::print(&text)?;
+    tell(args, &text)?;
     Err(Failure::Check(vec![failure]))
 }
 

@@ -1,5 +1,7 @@
 //! Counterexamples and doubtful steps: shown by the simulator before they are told.
 
+use std::borrow::Cow;
+use std::ffi::OsString;
 use std::fmt::Write as _;
 
 use clap::Parser;
@@ -12,9 +14,10 @@ use stepwave::testbench::{Observer, OverflowWatch, Testbench};
 
 use super::super::run::{Finished, simulate};
 use super::super::wave::{Sinks, Waves};
+use super::tell;
 use crate::cli::{Cli, Command, ProveArgs, RunArgs};
 use crate::failure::Failure;
-use crate::output::{self, Outputs};
+use crate::output::Outputs;
 
 /// The run of a geometry, with its wave if one is wanted, and the command that repeats it.
 fn replayed(
@@ -24,10 +27,14 @@ fn replayed(
     choices: &Choices,
 ) -> Result<(String, Box<RunArgs>), Failure> {
     let mut command = run_command(model, curve, choices);
+    // No word of it holds a blank.
+    let mut words: Vec<OsString> = command.split(' ').map(OsString::from).collect();
     if let Some(path) = &args.vcd {
-        command += &format!(" --vcd {}", path.display());
+        words.extend(["--vcd".into(), path.into()]);
+        let path = path.display().to_string();
+        command += &format!(" --vcd {}", shlex::try_quote(&path).unwrap_or(Cow::Borrowed(&path)));
     }
-    match Cli::try_parse_from(command.split(' ')) {
+    match Cli::try_parse_from(words) {
         Ok(Cli { command: Command::Run(run) }) => Ok((command, run)),
         _ => Err(Failure::Trouble(format!("what was found cannot be replayed: {command}"))),
     }
@@ -46,7 +53,7 @@ pub(super) fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample)
         return Err(Failure::Trouble(format!("the lanes and a single run differ: {command}")));
     }
     outputs.commit()?;
-    output::print(&format!("COUNTEREXAMPLE at k = {k}: {command}\n"))?;
+    tell(args, &format!("COUNTEREXAMPLE at k = {k}: {command}\n"))?;
     Err(Failure::Check(vec![format!("refuted at k = {k}: {shown}")]))
 }
 
