@@ -56,8 +56,8 @@ fn standard_output_holds_the_file_alone_and_a_path_with_a_blank_is_one_word() {
     let folder = Folder::new();
     let wave = folder.run("prove ppc-line --narrower f=1 --vcd -");
     assert!(wave.code == 1 && wave.out.starts_with("$version") && !wave.out.contains("COUNTEREXAMPLE"), "{wave:?}");
-    let doubt = folder.run("prove dda-line --normalize --vcd -");
-    assert!(doubt.code == 1 && doubt.out.starts_with("$version") && !doubt.out.contains("INDUCTIVE"), "{doubt:?}");
+    let step = folder.run("prove dda-line --normalize --vcd -");
+    assert!(step.code == 1 && step.out.starts_with("$version") && !step.out.contains("INDUCTIVE"), "{step:?}");
     for words in ["prove ppc-line --certificate -", "prove dpm-line --bits 3 --certificate -"] {
         let certificate = folder.good(words);
         assert!(
@@ -83,7 +83,7 @@ fn first(wave: &str, name: &str) -> String {
 #[test]
 fn a_step_from_a_state_that_may_be_unreachable_is_told_with_its_wave() {
     let folder = Folder::new();
-    let ran = folder.run("prove dda-line --normalize --vcd doubt.vcd");
+    let ran = folder.run("prove dda-line --normalize --vcd step.vcd");
     assert_eq!(ran.code, 1);
     let mut lines = ran.out.lines().skip_while(|line| !line.starts_with("NOT INDUCTIVE at k = 3, Q1: "));
     let wrong = lines.next().unwrap().split_once("Q1: ").unwrap().1;
@@ -92,14 +92,14 @@ fn a_step_from_a_state_that_may_be_unreachable_is_told_with_its_wave() {
     assert!(state.contains("that may be unreachable: busy = 1"), "{ran:?}");
     assert!(ran.out.contains(&format!("  overflow of {component} at clock ")), "{ran:?}");
     assert!(ran.err.ends_with("a step from a state that may be unreachable shows why\n"), "{ran:?}");
-    let wave = folder.read("doubt.vcd");
+    let wave = folder.read("step.vcd");
     assert!(wave.contains(", from a state that may be unreachable $end\n"));
     for register in ["x", "y", "jvx", "jry"] {
         let told = state.split(", ").find_map(|word| word.strip_prefix(&format!("{register} = "))).unwrap();
         let held = i64::from_str_radix(&first(&wave, register), 2).unwrap();
         assert_eq!(told, held.to_string(), "{register}");
     }
-    assert!(folder.files().contains(&"doubt.gtkw".to_owned()));
+    assert!(folder.files().contains(&"step.gtkw".to_owned()));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 mod command;
 mod counted;
-mod doubts;
+mod induction;
 mod invariants;
 mod widths;
 

@@ -4,9 +4,9 @@ use std::ops::RangeInclusive;
 
 use rayon::prelude::*;
 use stepwave::models::{Choices, Preset};
-use stepwave::study::proof::{DOUBTED, ProofError, Subject, choices_at};
+use stepwave::study::proof::{INDUCTION_KS, ProofError, Subject, choices_at};
 
-use super::replay::{doubted, refuted};
+use super::replay::{not_inductive, refuted};
 use super::verdict::{Attempt, Claim, told, unproved};
 use super::{Job, SEARCHED, tell};
 use crate::failure::Failure;
@@ -61,17 +61,17 @@ fn undecided(job: &Job<'_>, subject: &Subject, attempts: &[Attempt], mut text: S
         names.join(", "),
         SEARCHED.end()
     );
-    let doubtful = attempts.iter().filter(|(_, proof, _)| Claim::is_doubtful(proof));
-    let doubtful: Vec<_> = doubtful.map(|(kind, _, certificate)| (kind, certificate)).collect();
-    let looked = subject.doubt(&doubtful)?;
-    if let Some(doubt) = &looked.found {
-        let own = choices_at(model, claims, choices, narrower, doubt.k)?;
-        text += &doubted(args, model, doubt, &own)?;
+    let failed = attempts.iter().filter(|(_, proof, _)| Claim::may_fail_induction(proof));
+    let failed: Vec<_> = failed.map(|(kind, _, certificate)| (kind, certificate)).collect();
+    let looked = subject.counterexample_to_induction(&failed)?;
+    if let Some(step) = &looked.found {
+        let own = choices_at(model, claims, choices, narrower, step.k)?;
+        text += &not_inductive(args, model, step, &own)?;
         failure += "; a step from a state that may be unreachable shows why";
-    } else if doubtful.is_empty() {
+    } else if failed.is_empty() {
         text += "UNKNOWN: whether every block ends; no number is stated that every step makes less\n";
     } else {
-        let [first, last] = DOUBTED;
+        let [first, last] = INDUCTION_KS;
         let tried = looked.tried;
         text += &format!(
             "UNKNOWN: no step from {tried} states at k = {first} and {last} that the invariants allow shows why\n"

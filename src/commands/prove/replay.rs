@@ -1,4 +1,4 @@
-//! Counterexamples and doubtful steps: shown by the simulator before they are told.
+//! Counterexamples, and counterexamples to induction: shown by the simulator before they are told.
 
 use std::borrow::Cow;
 use std::ffi::OsString;
@@ -9,7 +9,7 @@ use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::models::{Choices, Model};
 use stepwave::nc::Curve;
 use stepwave::report::{self, run_command};
-use stepwave::study::proof::{Counterexample, Doubt};
+use stepwave::study::proof::{Counterexample, CounterexampleToInduction};
 use stepwave::testbench::{Observer, OverflowWatch, Testbench};
 
 use super::super::run::{Finished, simulate};
@@ -58,8 +58,13 @@ pub(super) fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample)
 }
 
 /// Shows a step that keeps a proof from being one, with its wave if one is wanted, and tells it.
-pub(super) fn doubted(args: &ProveArgs, model: &Model, doubt: &Doubt, choices: &Choices) -> Result<String, Failure> {
-    let Doubt { k, kind, curve, hardware, start, clocks, wrong, state } = doubt;
+pub(super) fn not_inductive(
+    args: &ProveArgs,
+    model: &Model,
+    step: &CounterexampleToInduction,
+    choices: &Choices,
+) -> Result<String, Failure> {
+    let CounterexampleToInduction { k, kind, curve, hardware, start, clocks, wrong, state } = step;
     let (_, run) = replayed(args, model, curve, choices)?;
     let bench = Testbench::of_hardware(model, hardware.clone())?;
     let title = format!("{}, from a state that may be unreachable", report::title(model, bench.hardware(), curve));

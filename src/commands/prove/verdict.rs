@@ -29,7 +29,7 @@ impl Claim {
     }
 
     /// A step may show why something is not proved: more than a rank is missing.
-    pub(super) fn is_doubtful(proof: &Proof) -> bool {
+    pub(super) fn may_fail_induction(proof: &Proof) -> bool {
         !proof.is_safe() || proof.endless.as_ref().is_some_and(|why| why != Proof::NO_RANK)
     }
 

@@ -3,8 +3,8 @@
 
 mod counted;
 mod counter;
-mod doubt;
 mod file;
+mod induction;
 mod runs;
 mod solver;
 
@@ -20,8 +20,8 @@ use stepwave_nc::Curve;
 
 pub use counted::{Block, Way, blocks};
 pub use counter::{Counterexample, Fault, search};
-pub use doubt::{DOUBTED, Doubt, Doubted};
 pub use file::{CertificateFile, FileError};
+pub use induction::{CounterexampleToInduction, INDUCTION_KS, InductionSearch};
 use runs::number;
 pub use runs::{State, states};
 pub use solver::{Answer, Question, SolverError, ask, question};

@@ -19,14 +19,13 @@
 mod certificate;
 mod counted;
 mod decisions;
-mod doubt;
 mod family;
 mod farkas;
 mod infer;
+mod invariant_states;
 mod obligations;
 mod path;
 mod poly;
-mod possible;
 mod proof;
 #[cfg(test)]
 mod random;
@@ -34,13 +33,14 @@ mod recount;
 mod refute;
 mod simplex;
 mod system;
+mod three_valued;
 mod variables;
 
 pub use certificate::{Certificate, CertificateError};
 pub use counted::{Followed, Lost, Sample, Sum, Word, follow};
-pub use doubt::Doubts;
 pub use family::{Family, FamilyError};
 pub use infer::fit;
+pub use invariant_states::InvariantStates;
 pub use proof::{Proof, Row, check, prove, violated};
 pub use recount::{AxisNets, recount};
 pub use system::{Case, CaseError, Strobes, Symbol};

@@ -1,15 +1,15 @@
 //! The second opinion on a block whose coefficients are unknown: its pulses counted one by one, each by the one bit of a
 //! coefficient that lets it through.
 //!
-//! It shares nothing with `counted` but the question. The netlist runs on sets of possible bits (`possible`): with all
+//! It shares nothing with `counted` but the question. The netlist runs in three-valued logic (`three_valued`): with all
 //! coefficients unknown, which shows when the block ends and which pulses are sure to come or to stay away; and once more
 //! for each bit of a coefficient, with that bit 0 and with it 1, all others unknown. A pulse that stays away in the one
 //! case and comes in the other is that bit's, whatever the others are. Last, the counter of each axis is cut out behind
 //! its pulse: from every place that so many pulses lead to, it must count one pulse as one, and nothing may overflow.
 
 use super::counted::{Followed, Lost, Sum, Word};
-use super::possible::{Bit, Possible};
 use super::system::Strobes;
+use super::three_valued::{Bit, ThreeValued};
 use crate::bits::Width;
 use crate::elaborate::Design;
 use crate::netlist::{Net, Op};
@@ -117,14 +117,14 @@ struct Block<'b> {
     /// Claims that are not known to hold, whatever the places of the axes.
     open: Vec<bool>,
     /// What registers may hold in any sample behind the load.
-    seen: Option<Possible<'b>>,
+    seen: Option<ThreeValued<'b>>,
 }
 
 impl<'b> Block<'b> {
     /// One run, in which unknown bits from `first` on are told apart; gives its clocks.
     fn run(&mut self, first: usize, limit: u64, axes: &mut [Axis]) -> Result<u64, Lost> {
         let netlist = self.design.netlist();
-        let mut sample = Possible::new(self.design);
+        let mut sample = ThreeValued::new(self.design);
         let mut place = 0;
         for (net, word) in self.words {
             match *word {
@@ -164,24 +164,24 @@ impl<'b> Block<'b> {
             sample.edge();
             if clock == 0 {
                 // Behind the load the words may be anything.
-                self.design.inputs().iter().for_each(|input| sample.of_mut(*input).fill(Bit::ANY));
+                self.design.inputs().iter().for_each(|input| sample.of_mut(*input).fill(Bit::X));
                 self.strobes(&mut sample, 0);
             }
         }
         Err(Lost::Endless { clocks: limit })
     }
 
-    fn strobes(&self, sample: &mut Possible<'_>, value: u64) {
+    fn strobes(&self, sample: &mut ThreeValued<'_>, value: u64) {
         for strobe in [self.strobes.load, self.strobes.preset_position] {
             sample.set(strobe, value);
         }
     }
 
     /// Widens what was seen by a sample.
-    fn see(&mut self, sample: &Possible<'b>) {
+    fn see(&mut self, sample: &ThreeValued<'b>) {
         let none = Bit { zero: 0, one: 0 };
         let seen = self.seen.get_or_insert_with(|| {
-            let mut nothing = Possible::new(self.design);
+            let mut nothing = ThreeValued::new(self.design);
             self.design.registers().iter().for_each(|register| nothing.of_mut(*register).fill(none));
             nothing
         });
@@ -192,7 +192,7 @@ impl<'b> Block<'b> {
     }
 
     /// Puts down the pulses with which the places came to this sample.
-    fn pulses(&self, sample: &Possible<'_>, clock: u64, first: usize, axes: &mut [Axis]) {
+    fn pulses(&self, sample: &ThreeValued<'_>, clock: u64, first: usize, axes: &mut [Axis]) {
         for (axis, nets) in axes.iter_mut().zip(self.nets) {
             if clock == 1 {
                 axis.start = number(sample.of(nets.position), NONE);
@@ -249,7 +249,7 @@ impl<'b> Block<'b> {
         let states: Vec<(i128, bool)> =
             (0..=most).map(|ahead| (ahead, false)).chain((0..most).map(|ahead| (ahead, true))).collect();
         let mut closed = self.open.clone();
-        self.design.inputs().iter().for_each(|input| sample.of_mut(*input).fill(Bit::ANY));
+        self.design.inputs().iter().for_each(|input| sample.of_mut(*input).fill(Bit::X));
         self.strobes(&mut sample, 0);
         for states in states.chunks(64) {
             let place = |(ahead, _): &(i128, bool)| start + sign * ahead;

@@ -1,7 +1,7 @@
-//! What bits may be: every bit of a netlist as the set of values that it may have, gate by gate, in 64 lanes at once.
+//! Three-valued simulation: every bit of a netlist is 0, 1 or X, which is either, gate by gate, in 64 lanes at once.
 //!
-//! Sums are chains of full adders, so it shares no arithmetic with what it is to check. A set may be larger than it must
-//! be, never smaller: what is known here is so.
+//! Sums are chains of full adders, so it shares no arithmetic with what it is to check. A bit may be X that need not be,
+//! never the other way round: what is known here is so.
 
 use crate::elaborate::Design;
 use crate::netlist::{Net, Op};
@@ -14,7 +14,7 @@ pub(super) struct Bit {
 }
 
 impl Bit {
-    pub(super) const ANY: Bit = Bit { zero: !0, one: !0 };
+    pub(super) const X: Bit = Bit { zero: !0, one: !0 };
 
     /// 1 in these lanes, 0 in the others.
     pub(super) fn known(ones: u64) -> Bit {
@@ -86,7 +86,7 @@ fn ripple(a: &[Bit], b: impl Iterator<Item = Bit>, carry: Bit, mut sum: impl FnM
 
 /// A netlist in one sample.
 #[derive(Clone, Debug)]
-pub(super) struct Possible<'d> {
+pub(super) struct ThreeValued<'d> {
     design: &'d Design,
     /// First bit of each net, and one more.
     places: Vec<usize>,
@@ -95,16 +95,16 @@ pub(super) struct Possible<'d> {
     taken: Vec<Bit>,
 }
 
-impl<'d> Possible<'d> {
+impl<'d> ThreeValued<'d> {
     /// Every bit may be anything.
-    pub(super) fn new(design: &'d Design) -> Possible<'d> {
+    pub(super) fn new(design: &'d Design) -> ThreeValued<'d> {
         let netlist = design.netlist();
         let mut places = vec![0];
         for net in netlist.nets() {
             places.push(places[net.index()] + netlist.width(net).get() as usize);
         }
-        let bits = vec![Bit::ANY; places[netlist.cells.len()]];
-        Possible { design, places, bits, taken: Vec::new() }
+        let bits = vec![Bit::X; places[netlist.cells.len()]];
+        ThreeValued { design, places, bits, taken: Vec::new() }
     }
 
     /// The bits of a net, the lowest first.
@@ -146,7 +146,7 @@ impl<'d> Possible<'d> {
                     let (first, beyond) = (self.places[next.index()], self.places[next.index() + 1]);
                     self.taken.extend(&self.bits[first..beyond]);
                 }
-                _ => self.taken.extend(std::iter::repeat_n(Bit::ANY, netlist.width(*register).get() as usize)),
+                _ => self.taken.extend(std::iter::repeat_n(Bit::X, netlist.width(*register).get() as usize)),
             }
         }
         let mut taken = self.taken.iter();
@@ -191,7 +191,7 @@ fn work_out<'b>(op: Op, own: &mut [Bit], held: impl Fn(Net) -> &'b [Bit]) {
             own[0] = into.xor(out);
         }
         Op::LessSigned(a, b) => {
-            let mut sign = Bit::ANY;
+            let mut sign = Bit::X;
             let (into, out) = ripple(held(a), complement(b), Bit::all(true), |_, bit| sign = bit);
             own[0] = sign.xor(into.xor(out));
         }

@@ -11,7 +11,7 @@ use crate::netlist::Net;
 
 /// The invariants of an attempt, by which states and steps are judged.
 #[derive(Clone, Debug)]
-pub struct Doubts<'f> {
+pub struct InvariantStates<'f> {
     system: System<'f>,
     invariants: Vec<Invariants>,
     relevant: Vec<Var>,
@@ -20,7 +20,7 @@ pub struct Doubts<'f> {
 /// What every variable stands for.
 type Values = Vec<i128>;
 
-impl<'f> Doubts<'f> {
+impl<'f> InvariantStates<'f> {
     /// The invariants that an attempt came to, and those of the author, kept or not.
     ///
     /// # Errors
@@ -30,7 +30,7 @@ impl<'f> Doubts<'f> {
         strobes: Strobes,
         case: &Case,
         certificate: &Certificate,
-    ) -> Result<Doubts<'f>, CaseError> {
+    ) -> Result<InvariantStates<'f>, CaseError> {
         let system = System::new(family, strobes, case)?;
         let mut invariants = certificate.invariants.clone();
         for own in &mut invariants {
@@ -39,7 +39,7 @@ impl<'f> Doubts<'f> {
         }
         let mut relevant: Vec<Var> = system.relevant().into_iter().collect();
         relevant.sort_unstable();
-        Ok(Doubts { system, invariants, relevant })
+        Ok(InvariantStates { system, invariants, relevant })
     }
 
     /// Shows states between two steps that the invariants allow, until `visit` says that it has seen enough. They are of

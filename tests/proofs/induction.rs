@@ -1,6 +1,6 @@
 //! Steps that keep a proof from being one: shown where something is not proved, and never where everything is.
 
-use stepwave::study::proof::{Doubt, Doubted, Narrower, Subject};
+use stepwave::study::proof::{CounterexampleToInduction, InductionSearch, Narrower, Subject};
 use stepwave::testbench::Start;
 use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};
 use stepwave_kernel::formula::{Clause, name};
@@ -8,11 +8,11 @@ use stepwave_models::{Choices, Kind, Machine, find};
 
 use super::{beats, narrower, subject};
 
-/// What an attempt at a kind of geometry leaves in doubt.
-fn doubted(subject: &Subject, kind: &Kind) -> Doubted {
+/// What keeps an attempt at a kind of geometry from being a proof.
+fn searched(subject: &Subject, kind: &Kind) -> InductionSearch {
     let (proof, certificate) = subject.prove(kind).unwrap();
     assert!(proof.holds(), "{}: {proof:#?}", kind.name);
-    subject.doubt(&[(kind, &certificate)]).unwrap()
+    subject.counterexample_to_induction(&[(kind, &certificate)]).unwrap()
 }
 
 /// The machine of coordinates of k bits, some registers narrower.
@@ -30,8 +30,8 @@ fn gates(machine: &Machine, start: &Start) -> Box<dyn Engine> {
     engine
 }
 
-fn held(doubt: &Doubt, register: &str) -> i128 {
-    doubt.state.iter().find(|(name, _)| name == register).unwrap().1
+fn held(step: &CounterexampleToInduction, register: &str) -> i128 {
+    step.state.iter().find(|(name, _)| name == register).unwrap().1
 }
 
 #[test]
@@ -40,55 +40,55 @@ fn no_state_that_the_invariants_of_a_proof_allow_shows_anything_wrong() {
         for model in ["ppc-line", "ppc-arc", "cim-line", "mindev-line", "vector-line"] {
             let subject = subject(model, &choices);
             let kind = subject.kinds().remove(0);
-            let Doubted { found, tried } = doubted(&subject, &kind);
+            let InductionSearch { found, tried } = searched(&subject, &kind);
             assert!(found.is_none() && tried > 100, "{model}, {tried}: {found:?}");
         }
     }
     let any = subject("dda-line", &Choices::default()).with_any_preset();
-    let Doubted { found, tried } = doubted(&any, &any.kinds()[0]);
+    let InductionSearch { found, tried } = searched(&any, &any.kinds()[0]);
     assert!(found.is_none() && tried > 50, "{tried}: {found:?}");
 }
 
 #[test]
-fn a_goal_that_is_one_off_is_doubted_by_a_step_that_ends_before_it() {
+fn a_goal_that_is_one_off_is_missed_by_a_step_that_ends_before_it() {
     for (model, symbol) in [("ppc-line", "|dx|"), ("ppc-arc", "xt"), ("cim-arc", "xt")] {
         let subject = subject(model, &Choices::default());
         let mut kind = subject.kinds().remove(0);
         kind.goals = vec![Clause::at_least_zero("x ends beyond", name("x") - name(symbol) - 1)];
-        let doubt = doubted(&subject, &kind).found.unwrap();
-        assert_eq!((doubt.wrong.as_str(), doubt.k), ("the block ends, but x ends beyond does not hold", 3), "{model}");
+        let step = searched(&subject, &kind).found.unwrap();
+        assert_eq!((step.wrong.as_str(), step.k), ("the block ends, but x ends beyond does not hold", 3), "{model}");
         let machine = machine(model, 3, &Narrower::new());
-        let mut engine = gates(&machine, &doubt.start);
-        for clock in 1..=doubt.clocks {
+        let mut engine = gates(&machine, &step.start);
+        for clock in 1..=step.clocks {
             assert_eq!(engine.value(machine.done.net), 0, "{model} at clock {}", clock - 1);
             engine.run(1, &mut Rows::new(0, 0));
         }
         assert_eq!(engine.value(machine.done.net), 1, "{model}");
         let x = machine.positions[0];
         let reached = x.reading.number(x.width, engine.value(x.net));
-        assert_eq!(reached, i128::from(doubt.curve.to()[0]), "{model}");
+        assert_eq!(reached, i128::from(step.curve.to()[0]), "{model}");
     }
 }
 
 #[test]
-fn an_overflow_is_doubted_from_a_state_that_satisfies_the_textbook() {
+fn an_overflow_comes_from_a_state_that_satisfies_the_textbook() {
     let subject = Subject::new(find("ppc-line").unwrap(), &Choices::default(), &narrower("f")).unwrap();
     let mut kind = subject.kinds().remove(0);
     // Ends are missed too.
     kind.goals.clear();
-    let doubt = doubted(&subject, &kind).found.unwrap();
-    assert_eq!(doubt.wrong, "ppc_line.f overflows");
+    let step = searched(&subject, &kind).found.unwrap();
+    assert_eq!(step.wrong, "ppc_line.f overflows");
     // F = xe·y - ye·x, and E counts the steps that are left.
-    let [x, y, f, e] = ["x", "y", "f", "e"].map(|register| held(&doubt, register));
-    let [xe, ye] = [0, 1].map(|axis| i128::from(doubt.curve.to()[axis]));
-    assert_eq!((f, e), (xe * y - ye * x, xe + ye - x - y), "{doubt:?}");
-    let machine = machine("ppc-line", doubt.k, &narrower("f"));
-    let mut engine = gates(&machine, &doubt.start);
+    let [x, y, f, e] = ["x", "y", "f", "e"].map(|register| held(&step, register));
+    let [xe, ye] = [0, 1].map(|axis| i128::from(step.curve.to()[axis]));
+    assert_eq!((f, e), (xe * y - ye * x, xe + ye - x - y), "{step:?}");
+    let machine = machine("ppc-line", step.k, &narrower("f"));
+    let mut engine = gates(&machine, &step.start);
     let violated = |engine: &dyn Engine| {
         let mut properties = machine.design.netlist().properties.iter();
         properties.any(|property| engine.value(property.never) == 1)
     };
-    for clock in 1..=doubt.clocks {
+    for clock in 1..=step.clocks {
         assert!(!violated(engine.as_ref()), "clock {}", clock - 1);
         engine.run(1, &mut Rows::new(0, 0));
     }

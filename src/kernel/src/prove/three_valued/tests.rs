@@ -1,4 +1,4 @@
-//! Sets of bits against an engine, on random netlists of every operator.
+//! Three-valued simulation against an engine, on random netlists of every operator.
 
 use super::*;
 use crate::elaborate::elaborate;
@@ -12,7 +12,7 @@ fn known_bits_give_what_the_engine_has_and_unknown_ones_never_leave_it_out() {
     for _ in 0..300 {
         let netlist = netlist(&mut dice);
         let design = elaborate(netlist.clone()).unwrap();
-        let mut possible = Possible::new(&design);
+        let mut sample = ThreeValued::new(&design);
         // What the registers hold in each lane; the last lanes do not know one bit of three.
         let mut held = vec![Vec::new(); 64];
         for register in design.registers() {
@@ -28,7 +28,7 @@ fn known_bits_give_what_the_engine_has_and_unknown_ones_never_leave_it_out() {
                 }
                 held.push(word);
             }
-            possible.of_mut(*register).copy_from_slice(&columns);
+            sample.of_mut(*register).copy_from_slice(&columns);
         }
         let mut engines: Vec<_> = held
             .iter()
@@ -39,11 +39,11 @@ fn known_bits_give_what_the_engine_has_and_unknown_ones_never_leave_it_out() {
             })
             .collect();
         for clock in 0..2 {
-            possible.settle(None);
+            sample.settle(None);
             for net in netlist.nets() {
                 for (lane, engine) in engines.iter().enumerate() {
                     let word = engine.value(net);
-                    for (place, bit) in possible.of(net).iter().enumerate() {
+                    for (place, bit) in sample.of(net).iter().enumerate() {
                         let is = word >> place & 1 == 1;
                         let may = [bit.zero, bit.one].map(|lanes| lanes >> lane & 1 == 1);
                         let what = || format!("bit {place} of {} in lane {lane}, clock {clock}", netlist.describe(net));
@@ -54,7 +54,7 @@ fn known_bits_give_what_the_engine_has_and_unknown_ones_never_leave_it_out() {
                     }
                 }
             }
-            possible.edge();
+            sample.edge();
             engines.iter_mut().for_each(|engine| _ = engine.run(1, &mut Rows::new(0, 0)));
         }
     }
@@ -65,11 +65,11 @@ fn known_bits_give_what_the_engine_has_and_unknown_ones_never_leave_it_out() {
 fn a_net_that_is_cut_off_keeps_what_it_was_given() {
     let mut dice = Dice(3);
     let design = elaborate(netlist(&mut dice)).unwrap();
-    let mut possible = Possible::new(&design);
+    let mut sample = ThreeValued::new(&design);
     let cut = design.netlist().nets().last().unwrap();
-    possible.set(cut, 1);
-    possible.settle(Some(cut));
-    assert_eq!(possible.of(cut)[0], Bit::all(true));
-    possible.settle(None);
-    assert_eq!(possible.of(cut)[0], Bit::ANY);
+    sample.set(cut, 1);
+    sample.settle(Some(cut));
+    assert_eq!(sample.of(cut)[0], Bit::all(true));
+    sample.settle(None);
+    assert_eq!(sample.of(cut)[0], Bit::X);
 }

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 use stepwave_kernel::Net;
 use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::prove::{Certificate, Doubts, Row};
+use stepwave_kernel::prove::{Certificate, InvariantStates, Row};
 use stepwave_models::{Hardware, Kind, Machine};
 use stepwave_nc::Curve;
 
@@ -13,7 +13,7 @@ use crate::testbench::Start;
 
 /// A step that keeps a proof from being one.
 #[derive(Clone, Debug)]
-pub struct Doubt {
+pub struct CounterexampleToInduction {
     /// Bits of coordinates.
     pub k: u32,
     /// The kind of geometry.
@@ -34,15 +34,15 @@ pub struct Doubt {
 
 /// What was looked for, and what was found.
 #[derive(Clone, Debug, Default)]
-pub struct Doubted {
+pub struct InductionSearch {
     /// The first such step.
-    pub found: Option<Doubt>,
+    pub found: Option<CounterexampleToInduction>,
     /// States that were tried.
     pub tried: u64,
 }
 
 /// Bits of coordinates whose states are tried.
-pub const DOUBTED: [u32; 2] = [3, 4];
+pub const INDUCTION_KS: [u32; 2] = [3, 4];
 /// States of each kind of geometry that are tried at most, at each of these.
 const MOST: u64 = 200_000;
 /// Clocks of a step at most.
@@ -54,18 +54,21 @@ impl Subject {
     ///
     /// # Errors
     /// See [`ProofError`].
-    pub fn doubt(&self, attempts: &[(&Kind, &Certificate)]) -> Result<Doubted, ProofError> {
-        let each = attempts.par_iter().map(|(kind, certificate)| self.doubt_kind(kind, certificate));
-        let each: Vec<Doubted> = each.collect::<Result<_, _>>()?;
-        let tried = each.iter().map(|doubted| doubted.tried).sum();
-        Ok(Doubted { found: each.into_iter().find_map(|doubted| doubted.found), tried })
+    pub fn counterexample_to_induction(
+        &self,
+        attempts: &[(&Kind, &Certificate)],
+    ) -> Result<InductionSearch, ProofError> {
+        let each = attempts.par_iter().map(|(kind, certificate)| self.in_kind(kind, certificate));
+        let each: Vec<InductionSearch> = each.collect::<Result<_, _>>()?;
+        let tried = each.iter().map(|search| search.tried).sum();
+        Ok(InductionSearch { found: each.into_iter().find_map(|search| search.found), tried })
     }
 
-    fn doubt_kind(&self, kind: &Kind, certificate: &Certificate) -> Result<Doubted, ProofError> {
+    fn in_kind(&self, kind: &Kind, certificate: &Certificate) -> Result<InductionSearch, ProofError> {
         let (case, _) = self.case(kind)?;
-        let doubts = Doubts::new(&self.family, self.strobes, &case, certificate)?;
-        let mut doubted = Doubted::default();
-        for k in DOUBTED {
+        let allowed = InvariantStates::new(&self.family, self.strobes, &case, certificate)?;
+        let mut search = InductionSearch::default();
+        for k in INDUCTION_KS {
             let curves: Vec<_> =
                 self.curves(kind).into_iter().filter(|(member, ..)| self.members[*member].0 == k).collect();
             for (place, (member, curve, symbols)) in curves.iter().enumerate() {
@@ -75,16 +78,16 @@ impl Subject {
                 let mut stepper = Stepper::new(machine, &words);
                 let most = (MOST / curves.len() as u64).max(1);
                 let mut found = None;
-                doubted.tried += doubts.states(&usual, most, |before| {
+                search.tried += allowed.states(&usual, most, |before| {
                     found = stepper.step(&before.registers).and_then(|Stepped { clocks, after, done, wrong }| {
                         let after = Row { registers: after, steps: before.steps + 1, ..before.clone() };
-                        let judged = || doubts.judge(before, &after, done);
+                        let judged = || allowed.judge(before, &after, done);
                         Some((before.registers.clone(), clocks, wrong.or_else(judged)?))
                     });
                     found.is_some()
                 });
                 let Some((registers, clocks, wrong)) = found else { continue };
-                doubted.found = Some(Doubt {
+                search.found = Some(CounterexampleToInduction {
                     k,
                     kind: kind.name.clone(),
                     curve: curve.clone(),
@@ -92,12 +95,12 @@ impl Subject {
                     start: stepper.start(&registers),
                     clocks,
                     wrong,
-                    state: stepper.names(&registers, |register| doubts.matters(register)),
+                    state: stepper.names(&registers, |register| allowed.matters(register)),
                 });
-                return Ok(doubted);
+                return Ok(search);
             }
         }
-        Ok(doubted)
+        Ok(search)
     }
 }
 
