@@ -6,6 +6,7 @@ use stepwave::nc::Curve;
 use stepwave::testbench::{Ending, Observer, PathWatch, Testbench};
 
 use super::geometry;
+use super::progress::Progress;
 use crate::cli::CompareArgs;
 use crate::failure::Failure;
 use crate::output;
@@ -25,11 +26,14 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     };
     let curve = geometry::curve("compare", kind, geometry)?;
     let mut rows = vec![HEADING.map(str::to_owned)];
-    for model in catalogue().iter().filter(|model| model.curve.fits(&curve)) {
-        for (form, choices) in forms(model) {
-            rows.extend(row(model, &form, &curve, &choices)?);
-        }
+    let models = catalogue().iter().filter(|model| model.curve.fits(&curve));
+    let runs: Vec<_> = models.flat_map(|model| forms(model).into_iter().map(move |form| (model, form))).collect();
+    let progress = Progress::of(runs.len() as u64, "machines");
+    for (model, (form, choices)) in runs {
+        rows.extend(row(model, &form, &curve, &choices)?);
+        progress.add(1);
     }
+    progress.finish();
     output::print(&if args.markdown { markdown(&rows) } else { aligned(&rows) })
 }
 

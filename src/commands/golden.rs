@@ -13,6 +13,7 @@ use stepwave::kernel::engine::EngineKind;
 use stepwave::kernel::trace::diverge::{self, Options};
 use stepwave::kernel::trace::read::Wave;
 
+use super::progress::Progress;
 use super::{program, run};
 use crate::cli::{Cli, Command, GoldenCommand};
 use crate::failure::Failure;
@@ -52,6 +53,7 @@ pub(crate) fn run(command: &GoldenCommand) -> Result<(), Failure> {
     };
     let cases = read_cases(&args.dir)?;
     let mut differences = Vec::new();
+    let progress = Progress::of(cases.len() as u64, "cases");
     for case in &cases {
         let mut told = None;
         for engine in EngineKind::ALL {
@@ -72,7 +74,9 @@ pub(crate) fn run(command: &GoldenCommand) -> Result<(), Failure> {
                 told = Some(made);
             }
         }
+        progress.add(1);
     }
+    progress.finish();
     orphans(&args.dir, &cases, &mut differences)?;
     if !differences.is_empty() {
         return Err(Failure::Check(differences));

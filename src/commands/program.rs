@@ -10,7 +10,7 @@ use stepwave::program::{Control, MoveReport, Onlooker, Pace, Preparation, Stream
 use stepwave::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail};
 use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Sample, Testbench};
 
-use super::progress::Counter;
+use super::progress::Progress;
 use super::run::Finished;
 use super::wave::{Sinks, Waves};
 use crate::cli::ProgramArgs;
@@ -59,12 +59,12 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
     let mut json = json.map(|sink| ProgramJson::new(head, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Part::new(&head.headline()), sink));
     let mut table = ProgramTable::new(head);
-    let mut progress = Progress { bar: Counter::new(survey.moves, "moves"), moves: 0 };
+    let mut moves = Moves(Progress::of(survey.moves, "moves"));
 
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
     let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut ranges];
     observers.extend(waves.iter_mut().flat_map(Waves::observers));
-    let mut onlookers: Vec<&mut dyn Onlooker> = vec![&mut table, &mut progress];
+    let mut onlookers: Vec<&mut dyn Onlooker> = vec![&mut table, &mut moves];
     onlookers.extend(steps.as_mut().map(|table| table as &mut dyn Onlooker));
     onlookers.extend(json.as_mut().map(|json| json as &mut dyn Onlooker));
     onlookers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Onlooker));
@@ -75,7 +75,7 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
     control.finish()?;
     let totals = std::mem::take(&mut control.totals);
     drop((control, observers));
-    progress.bar.finish();
+    drop(moves);
 
     let (ranges, overflows, tallies) = (ranges.finish(), overflow.events(), overflow.tallies());
     let tail = ProgramTail {
@@ -113,16 +113,12 @@ fn open(path: &Path) -> Result<BufReader<File>, Failure> {
     Ok(BufReader::new(File::open(path).map_err(|error| trouble(&error))?))
 }
 
-/// Counts moves for the progress bar.
-struct Progress {
-    bar: Counter,
-    moves: u64,
-}
+/// Counts moves for the progress line.
+struct Moves(Progress);
 
-impl Onlooker for Progress {
+impl Onlooker for Moves {
     fn moved(&mut self, _: &MoveReport) -> Result<(), ObserverError> {
-        self.moves += 1;
-        self.bar.set(self.moves);
+        self.0.add(1);
         Ok(())
     }
 }

@@ -12,7 +12,7 @@ use stepwave::testbench::{
 };
 
 use super::geometry::curve;
-use super::progress::Progress;
+use super::progress::RunProgress;
 use super::states::{Begin, States};
 use super::wave::{Sinks, Waves};
 use crate::cli::RunArgs;
@@ -72,7 +72,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
     let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.bits));
     let mut coarse = CoarseWatch::new(&bench, &curve);
-    let (mut spacing, mut progress) = (SpacingWatch::new(&bench, &curve), Progress::new());
+    let (mut spacing, mut progress) = (SpacingWatch::new(&bench, &curve), RunProgress::new(&bench, &curve));
 
     let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut ranges, &mut path, &mut spacing];
     observers.extend([&mut table as &mut dyn Observer, &mut progress]);
@@ -87,7 +87,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         None => bench.run(engine, &mut observers)?,
     };
     drop(observers);
-    progress.finish();
+    drop(progress);
 
     let report = Report {
         model,

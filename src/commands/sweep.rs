@@ -13,7 +13,7 @@ use stepwave::study::{
     Sweep, Variants, write_line,
 };
 
-use super::progress::Counter;
+use super::progress::Progress;
 use crate::cli::{Point, SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 use crate::failure::Failure;
 use crate::output::{self, Outputs, Sink, is_stream};
@@ -375,7 +375,8 @@ fn write(sweep: &Sweep, args: &TableArgs, outputs: &mut Outputs) -> Result<Strin
 /// Does the runs that are not done, a chunk at a time.
 fn all_rows(sweep: &Sweep, begun: u64, tables: &mut Tables) -> Result<(), Failure> {
     let all = sweep.geometries();
-    let mut counter = Counter::new(all, "geometries");
+    let progress = Progress::of(all, "geometries");
+    progress.begin_at(begun);
     // Runs, not geometries, are what takes time.
     let variants = sweep.variants().max(1);
     let (mut done, mut size) = (begun, (FIRST / variants).max(1));
@@ -384,7 +385,7 @@ fn all_rows(sweep: &Sweep, begun: u64, tables: &mut Tables) -> Result<(), Failur
         let rows = sweep.rows(done..end)?;
         tables.take(end - done, rows)?;
         done = end;
-        counter.set(done);
+        progress.set(done);
         let taken = start.elapsed();
         size = if taken > 2 * CHUNK {
             size / 2
@@ -395,7 +396,6 @@ fn all_rows(sweep: &Sweep, begun: u64, tables: &mut Tables) -> Result<(), Failur
         };
         size = size.clamp(1, (MOST / variants).max(1));
     }
-    counter.finish();
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use stepwave::models::{Model, find};
 use stepwave::report::run_command;
 use stepwave::study::widths::{Known, RegisterWidth, Widths, widths};
 
+use super::progress::Progress;
 use crate::cli::WidthsArgs;
 use crate::failure::Failure;
 use crate::output;
@@ -14,8 +15,10 @@ use crate::output;
 /// Prints the table.
 pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
+    let progress = Progress::new("geometries");
     let found =
         widths(model, &args.hardware.choices(), &args.extent).map_err(|error| args.hardware.told_of_study(error))?;
+    progress.finish();
     output::print(&if args.json { as_json(model, &found) } else { table(model, &found) })
 }
 
