@@ -7,6 +7,7 @@ use clap::CommandFactory;
 use clap::error::ErrorKind;
 
 use crate::cli::Cli;
+use crate::output::shown;
 
 /// A command did not end well.
 #[derive(Debug)]
@@ -39,22 +40,29 @@ impl Failure {
         let sentence = paragraph.join(" ");
         let sentence = sentence.strip_prefix("error: ").unwrap_or(&sentence);
         let program = Cli::command();
-        let command = std::env::args().nth(1).filter(|word| program.find_subcommand(word).is_some());
+        // Not `args`, which panics on what is not Unicode.
+        let command = std::env::args_os().nth(1).and_then(|word| word.into_string().ok());
+        let command = command.filter(|word| program.find_subcommand(word).is_some());
         let command = command.unwrap_or_default();
         let help = format!("stepwave {command}").trim_end().to_owned();
         Failure::Trouble(format!("{sentence} (see `{help} --help`)"))
     }
 }
 
+/// One line without control characters, whatever the words that it quotes hold.
+fn one_line(sentence: &str) -> String {
+    shown(&sentence.replace(['\n', '\r'], " ")).into_owned()
+}
+
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Failure::Check(sentences) => {
-                let lines: Vec<_> = sentences.iter().map(|sentence| format!("stepwave: {sentence}")).collect();
+                let line = |sentence: &String| format!("stepwave: {}", one_line(sentence));
+                let lines: Vec<_> = sentences.iter().map(line).collect();
                 f.write_str(&lines.join("\n"))
             }
-            // One line, whatever the words that it quotes hold.
-            Failure::Trouble(sentence) => write!(f, "stepwave: {}", sentence.replace(char::is_control, " ")),
+            Failure::Trouble(sentence) => write!(f, "stepwave: {}", one_line(sentence)),
             Failure::Help(text) => f.write_str(text),
         }
     }

@@ -1,5 +1,6 @@
 //! Files that appear whole or not at all: written under another name beside the final one and renamed at the end.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -227,12 +228,55 @@ impl Write for QuietPipe {
     }
 }
 
-/// Prints text on standard output.
+/// Prints text for people on standard output: what files and users call things may hold control characters, which are
+/// [shown](shown).
 ///
 /// # Errors
 /// Standard output cannot be written.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    print_data(&shown(text))
+}
+
+/// Prints data of our own making, byte by byte, on standard output.
+///
+/// # Errors
+/// Standard output cannot be written.
+pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
     let mut out = QuietPipe(io::stdout());
     out.write_all(text.as_bytes())?;
     Ok(out.flush()?)
+}
+
+/// The text with every character as an escape that would steer a terminal: control characters but line breaks, and
+/// marks that turn the direction of writing.
+pub(crate) fn shown(text: &str) -> Cow<'_, str> {
+    let steers = |c: char| match c {
+        '\n' => false,
+        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => true,
+        other => other.is_control(),
+    };
+    if !text.contains(steers) {
+        return Cow::Borrowed(text);
+    }
+    let mut safe = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        match u32::from(c) {
+            _ if !steers(c) => safe.push(c),
+            code @ ..0x100 => safe.push_str(&format!("\\x{code:02x}")),
+            code => safe.push_str(&format!("\\u{{{code:x}}}")),
+        }
+    }
+    Cow::Owned(safe)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shown;
+
+    #[test]
+    fn what_steers_a_terminal_is_shown_as_escapes() {
+        let steers = "a\x1b[31m\x07\x7f\u{9b}2J\r\t\0\u{202e}\u{2066}\u{200f}z";
+        assert_eq!(shown(steers), r"a\x1b[31m\x07\x7f\x9b2J\x0d\x09\x00\u{202e}\u{2066}\u{200f}z");
+        assert_eq!(shown("two\nlines, µ and \u{5d0}"), "two\nlines, µ and \u{5d0}");
+    }
 }

@@ -13,7 +13,7 @@ use crate::output;
 pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
     if args.json {
         let models: Vec<Value> = catalogue().iter().map(as_json).collect();
-        return output::print(&format!("{:#}\n", json!(models)));
+        return output::print_data(&format!("{:#}\n", json!(models)));
     }
     let methods = by_method();
     let mut text = format!("{} models by method\n\n", catalogue().len());

@@ -12,7 +12,7 @@ use crate::output::{self, Outputs};
 pub(crate) fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "stepwave", &mut script);
-    output::print(&String::from_utf8_lossy(&script))
+    output::print_data(&String::from_utf8_lossy(&script))
 }
 
 /// Writes a manual page for the program, for each command and for each command of a command.

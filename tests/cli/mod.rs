@@ -17,6 +17,7 @@ mod ranges;
 mod sampled;
 mod sweep;
 mod tables;
+mod terminal;
 
 use std::fs;
 use std::path::PathBuf;
