@@ -2,7 +2,7 @@
 //! box: `cargo run --release --example widths_exhaustive -- MODEL K [word|compiled|gates]`. Exit code 1 where they differ.
 //!
 //! All lines from the origin and all arcs inside a quadrant are run up to K = 8, all conics too, but for `dda-conic` up to
-//! 6, and all helices up to 4; of more bits the same samples are compared, and the line says so.
+//! 6, and all helices up to 4; of more bits the extreme ones are compared, and the line says so.
 
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program for a terminal")]
 
@@ -11,16 +11,16 @@ use std::time::Instant;
 
 use stepwave::kernel::engine::EngineKind;
 use stepwave::models::{Choices, find};
-use stepwave::study::widths::{ranges_alone, widths};
+use stepwave::study::widths::{ranges_alone, simulated};
 use stepwave::study::{Extent, Geometries};
 use stepwave::testbench::Testbench;
 
 fn compare(model: &str, k: &str, engine: EngineKind) -> Result<bool, Box<dyn std::error::Error>> {
     let (model, choices, extent) = (find(model)?, Choices::default(), k.parse::<Extent>()?);
     let start = Instant::now();
-    let found = widths(model, &choices, &extent)?;
-    let lanes = start.elapsed();
     let own = Geometries::of(model, &choices, &extent)?;
+    let found = simulated(model, &choices, &extent, own.clone(), &|_| {})?;
+    let lanes = start.elapsed();
     let bench = Testbench::of_hardware(model, own.hardware)?;
     let start = Instant::now();
     let alone = ranges_alone(model, &bench, &own.curves, engine)?;

@@ -4,6 +4,7 @@
 //! described by a few numbers, and where the machine stands in the end.
 
 mod arc;
+pub mod extremes;
 mod line;
 
 use stepwave_kernel::formula::{Clause, Formula, name, number};

@@ -131,7 +131,8 @@ impl Hardware {
     }
 
     /// The register is widened together with others.
-    pub(crate) fn shares_scale(&self, register: &str) -> bool {
+    #[must_use]
+    pub fn shares_a_scale(&self, register: &str) -> bool {
         self.scale.iter().any(|kind| register.starts_with(kind))
     }
 
@@ -149,7 +150,7 @@ impl Hardware {
         let fits = room.is_some_and(|room| bits <= room) && !self.normalize && self.adder == Adder::Parallel;
         // Whole units of a pulse multiplier.
         let all = self.cascade.map_or(all, |unit| all.next_multiple_of(unit.get()));
-        if self.shares_scale(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
+        if self.shares_a_scale(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
     }
 
     /// Letters of the axes.

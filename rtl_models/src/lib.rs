@@ -54,7 +54,7 @@ pub use choices::{
     Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Millionths, Named, Preset, Radix, StepTiming, System,
     Weights,
 };
-pub use claims::{Claims, Kind, Region};
+pub use claims::{Claims, Kind, Region, extremes};
 pub use error::ModelError;
 pub use hardware::{AXES, Hardware, Pace};
 pub use machine::{Machine, Port, Words};

@@ -110,7 +110,7 @@ fn does_not_fit(register: &str, port: &Port, hardware: &Hardware, blocks: &[Word
     let need = |value| port.reading.needed(value);
     let own = words().filter(|&(name, _)| name == register).map(|(_, value)| value);
     let value = own.max_by_key(|&value| need(value)).unwrap_or_default();
-    let integrators = words().filter(|(name, _)| hardware.shares_scale(name));
+    let integrators = words().filter(|(name, _)| hardware.shares_a_scale(name));
     // Registers with a fraction are that much wider than the width that is given for all.
     let all = integrators.map(|(name, value)| need(value).saturating_sub(hardware.fraction(name))).max().unwrap_or(1);
     ModelError::DoesNotFit {

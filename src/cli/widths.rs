@@ -8,12 +8,19 @@ use super::HardwareArgs;
 
 #[derive(Debug, Args)]
 #[command(after_help = "How a width is known to be enough:\n  \
-    proved      for every k, by `stepwave prove` with all registers as narrow as the table says\n  \
+    proved      for every k, by the method of `stepwave prove`, with all registers as narrow at once\n  \
+    proved at k at this k alone\n  \
     exhaustive  every geometry of the box was simulated\n  \
-    sampled     some were, the extreme ones among them\n\n\
+    sampled     the extreme ones were: corners, axes and next to them, greatest radii, largest and smallest weights\n  \
+    enough      proved to be enough, but perhaps not least: the last column says how many bits a run needs\n\n\
     The command in the last column shows what happens one bit below.\n\n\
+    --width N and --width REGISTER=N,… are the hardware that is judged: the column `given`. Where one is less than needed,\n\
+    the run that shows it is named and the exit code is 1. Without --width, `given` is the default. What is needed\n\
+    depends neither on that nor on --on-overflow, but for integrators (jv, jr): their width is the scale of the run.\n\n\
     Examples:\n  \
     stepwave widths ppc-line --box 8\n  \
+    stepwave widths ppc-line --box 0..300000x0..200000\n  \
+    stepwave widths ppc-arc --box 20 --width f=21\n  \
     stepwave widths dda-line --box 0..200x-50..50\n  \
     stepwave widths cim-conic --box 4\n  \
     stepwave widths bresenham --box 6 --json")]

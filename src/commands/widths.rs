@@ -2,24 +2,45 @@
 
 use std::fmt::Write as _;
 
-use serde_json::json;
+use serde_json::{Value, json};
 use stepwave::models::{Model, find};
 use stepwave::report::run_command;
-use stepwave::study::widths::{Known, RegisterWidth, Widths, widths};
+use stepwave::study::widths::{Known, RegisterWidth, Widths, Witness, widths};
 
 use super::progress::Progress;
 use crate::cli::WidthsArgs;
 use crate::failure::Failure;
 use crate::output;
 
-/// Prints the table.
+/// Prints the table; a width that is given and too narrow is a failed check.
 pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
+    let choices = args.hardware.choices();
     let progress = Progress::new("geometries");
-    let found =
-        widths(model, &args.hardware.choices(), &args.extent).map_err(|error| args.hardware.told_of_study(error))?;
+    let found = widths(model, &choices, &args.extent, &|more| progress.add(more));
     progress.finish();
-    output::print(&if args.json { as_json(model, &found) } else { table(model, &found) })
+    let found = found.map_err(|error| args.hardware.told_of_study(error))?;
+    output::print(&if args.json { as_json(model, &found) } else { table(model, &found) })?;
+    if choices.width.is_none() && choices.widths.is_empty() {
+        return Ok(());
+    }
+    let short = found.registers.iter().filter(|register| register.given < register.needed);
+    let sentences: Vec<String> = short.map(|register| too_narrow(model, register)).collect();
+    if sentences.is_empty() { Ok(()) } else { Err(Failure::Check(sentences)) }
+}
+
+/// What is wrong with a width that is given, in a sentence.
+fn too_narrow(model: &Model, register: &RegisterWidth) -> String {
+    let RegisterWidth { name, given, needed, .. } = register;
+    match &register.fault {
+        Some(fault) => {
+            format!("{name} of {given} bits is too narrow, it needs {needed}: {}", command(model, fault))
+        }
+        None => format!(
+            "{name} of {given} bits is not known to be enough, {needed} bits are: `stepwave sweep` looks for a run that \
+             needs more"
+        ),
+    }
 }
 
 fn known(register: &RegisterWidth) -> &'static str {
@@ -28,11 +49,24 @@ fn known(register: &RegisterWidth) -> &'static str {
         Known::ProvedHere => "proved at k",
         Known::Exhaustive => "exhaustive",
         Known::Sampled => "sampled",
+        Known::Enough => "enough",
     }
 }
 
-fn below(model: &Model, register: &RegisterWidth) -> Option<String> {
-    register.witness.as_ref().map(|(curve, choices)| run_command(model, curve, choices))
+fn command(model: &Model, witness: &Witness) -> String {
+    run_command(model, &witness.curve, &witness.choices)
+}
+
+fn below(model: &Model, register: &RegisterWidth) -> String {
+    let shown = register.shown;
+    match &register.witness {
+        Some(witness) if register.shown < register.needed => {
+            format!("not known; {shown} bits are needed: {}", command(model, witness))
+        }
+        Some(witness) if !witness.ran => format!("{} (at the end of a long run)", command(model, witness)),
+        Some(witness) => command(model, witness),
+        None => "nothing that a run shows".to_owned(),
+    }
 }
 
 fn relative(bits: u32, k: u32) -> String {
@@ -43,8 +77,8 @@ fn relative(bits: u32, k: u32) -> String {
 }
 
 fn table(model: &Model, found: &Widths) -> String {
-    let many = if found.all { "all" } else { "some" };
-    let mut text = format!("{}: {} geometries of {}, {many} of the box\n\n", model.name, found.simulated, found.extent);
+    let many = if found.all { "all of the box" } else { "the extreme ones of the box" };
+    let mut text = format!("{}: {} geometries of {}, {many}\n\n", model.name, found.simulated, found.extent);
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
@@ -53,22 +87,33 @@ fn table(model: &Model, found: &Widths) -> String {
     );
     for register in &found.registers {
         let values = format!("{} to {}", register.range.0, register.range.1);
-        let below = below(model, register).unwrap_or_else(|| "nothing that a run shows".to_owned());
         let _ = writeln!(
             text,
-            "{:<10} {:>5} {:>6}  {:<6} {values:<24} {:<11} {below}",
+            "{:<10} {:>5} {:>6}  {:<6} {values:<24} {:<11} {}",
             register.name,
             register.given,
             register.needed,
             relative(register.needed, found.k),
             known(register),
+            below(model, register),
         );
     }
     if found.faults > 0 {
-        let _ =
-            writeln!(text, "\n{} geometries overflow or never end at the given widths and are left out", found.faults);
+        let _ = writeln!(
+            text,
+            "\n{} geometries overflow or never end at the default widths and are left out",
+            found.faults
+        );
+    }
+    if found.cut > 0 {
+        let _ = writeln!(text, "\n{} geometries were followed for their first clocks only", found.cut);
     }
     text
+}
+
+/// A value of a register as a number.
+fn number(value: i128) -> Value {
+    i64::try_from(value).map(Value::from).or_else(|_| u64::try_from(value).map(Value::from)).unwrap_or(Value::Null)
 }
 
 fn as_json(model: &Model, found: &Widths) -> String {
@@ -77,10 +122,12 @@ fn as_json(model: &Model, found: &Widths) -> String {
             "name": register.name,
             "given": register.given,
             "needed": register.needed,
-            "least": register.range.0.to_string(),
-            "greatest": register.range.1.to_string(),
+            "shown": register.shown,
+            "least": number(register.range.0),
+            "greatest": number(register.range.1),
             "known": known(register),
-            "one_bit_below": below(model, register),
+            "one_bit_below": register.witness.as_ref().map(|witness| command(model, witness)),
+            "fault": register.fault.as_ref().map(|fault| command(model, fault)),
         })
     });
     let all = json!({
@@ -90,6 +137,7 @@ fn as_json(model: &Model, found: &Widths) -> String {
         "geometries": found.simulated,
         "all": found.all,
         "faults": found.faults,
+        "followed_in_part": found.cut,
         "registers": registers.collect::<Vec<_>>(),
     });
     format!("{all:#}\n")

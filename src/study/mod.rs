@@ -31,6 +31,7 @@
 mod boxes;
 mod columns;
 mod error;
+mod kform;
 mod machines;
 mod merge;
 mod parquet;
@@ -49,6 +50,7 @@ pub mod widths;
 pub use boxes::{Extent, Geometries};
 pub use columns::words;
 pub use error::StudyError;
+pub use kform::KForm;
 pub use merge::merge;
 pub use parquet::ParquetTable;
 pub use points::read_points;

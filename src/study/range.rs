@@ -34,6 +34,12 @@ impl Range {
         Range { first: number, last: number, step: 1 }
     }
 
+    /// The distance of two numbers.
+    #[must_use]
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
     /// How many numbers there are.
     #[must_use]
     pub fn count(&self) -> u64 {

@@ -273,7 +273,7 @@ impl Part {
     /// How many of `all` geometries this part has.
     #[must_use]
     pub fn count(self, all: u64) -> u64 {
-        (all + self.of).saturating_sub(self.number) / self.of
+        all.saturating_add(self.of).saturating_sub(self.number) / self.of
     }
 
     /// Number in the whole sweep of this part's geometry `place`.

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use stepwave::study::widths::{Known, Widths, ranges_alone, widths};
+use stepwave::study::proof::ProofError;
+use stepwave::study::widths::{Known, Widths, by_proof, ranges_alone, simulated};
 use stepwave::study::{Extent, Geometries};
 use stepwave::testbench::Testbench;
 use stepwave_kernel::engine::EngineKind;
@@ -10,6 +11,10 @@ use stepwave_models::{Choices, Model, Weights, catalogue, find};
 use stepwave_nc::{Curve, Shape};
 
 use crate::cli::Folder;
+
+fn widths(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Widths, ProofError> {
+    stepwave::study::widths::widths(model, choices, extent, &|_| {})
+}
 
 fn needed(found: &Widths, k: u32) -> BTreeMap<&str, i64> {
     found.registers.iter().map(|register| (register.name.as_str(), i64::from(register.needed) - i64::from(k))).collect()
@@ -88,8 +93,6 @@ fn a_box_of_ranges_holds_its_own_points_alone() {
         found.registers.into_iter().map(|register| (register.name, register.needed, register.range)).collect()
     };
     assert_eq!(ranges("-7..7x-7..7"), ranges("3"));
-    let large = of("bresenham", "0..2000x0..2000").unwrap();
-    assert!(!large.all && large.registers.iter().all(|register| register.known != Known::Exhaustive));
 }
 
 #[test]
@@ -130,18 +133,173 @@ fn the_table_names_a_run_that_one_bit_less_does_not_hold() {
     assert_eq!((&json["all"], &json["registers"][0]["known"]), (&true.into(), &"exhaustive".into()));
     for (words, hint) in [
         ("widths ppc-line", "--box"),
-        ("widths ppc-line --box 0", "1 to 16 bits"),
+        ("widths ppc-line --box 0", "1 to 52 bits"),
+        ("widths ppc-line --box 53", "1 to 52 bits"),
+        ("widths cim-conic --box 17", "at most 16 bits"),
+        ("widths mindev-arc --box 20", "at most 16 bits"),
+        ("widths ppc-line --box 20 --form bare", "at most 16 bits"),
         ("widths ppc-line --box 9..0x0..9", "give 0..9"),
         ("widths ppc-line --box 0..9", "0..255x0..255"),
         ("widths ppc-line --box 0..9x0..9x0..9", "give --box 0..9x0..9\n"),
         ("widths ppc-arc --box 0..9x0..9x0..9", "give --box 0..9x0..9"),
         ("widths ppc-arc --box 1..2x5..6", "the box holds nothing"),
-        ("widths ppc-arc --box 0..9999x0..9999", "0..2047x0..2047"),
-        ("widths ppc-line --box 0..65536x0..9", "within ±65535"),
+        ("widths ppc-line --box 0..4503599627370496x0..9", "within ±4503599627370495"),
         ("widths dda-helix --box 0..4x0..4", "give --box 4"),
         ("widths ppc-line --box 4 --preset half", "does not take --preset"),
     ] {
         let ran = folder.run(words);
         assert!(ran.code == 2 && ran.err.contains(hint) && ran.err.lines().count() == 1, "{words}: {ran:?}");
     }
+}
+
+#[test]
+fn a_large_box_of_bits_has_the_proved_width_and_a_run_that_needs_it() {
+    let pre = Choices { weights: Some(Weights::Pre), ..Choices::default() };
+    for (model, choices, rows) in [
+        // Lines: F in [-b, a - 1], a + b steps. Arcs: F in [-(2R - 1), 2R - 2], at most 2R steps in a quadrant.
+        ("ppc-line", Choices::default(), vec![("f", 1), ("e", 1), ("xe", 0), ("ye", 0), ("x", 1), ("y", 1)]),
+        ("ppc-arc", Choices::default(), vec![("f", 2), ("xi", 0), ("yi", 0), ("e", 1), ("x", 1)]),
+        ("cim-line", Choices::default(), vec![("f", 1), ("a", 0), ("b", 0), ("ex", 0)]),
+        ("cim-arc", pre, vec![("f", 1), ("a", 0), ("ey", 0)]),
+        ("dda-line", Choices::default(), vec![("jvx", 0), ("jry", 0), ("e", 1), ("x", 1)]),
+        ("mindev-line", Choices::default(), vec![("f", 2), ("l", 0)]),
+        ("bresenham", Choices::default(), vec![("cntx", 1), ("e", 0), ("stepsy", 0)]),
+    ] {
+        for k in [9, 16, 40] {
+            let found = widths(find(model).unwrap(), &choices, &Extent::Bits(k)).unwrap();
+            let own = needed(&found, k);
+            for (register, bits) in &rows {
+                assert_eq!(own[register], *bits, "{model} of {k} bits: {register}");
+            }
+            for register in &found.registers {
+                assert_eq!(register.known, Known::Proved, "{model} of {k} bits: {register:?}");
+                let witness = register.witness.as_ref().unwrap_or_else(|| panic!("{model} of {k} bits: {register:?}"));
+                // Positions alone come to their extremes only at the end of a line.
+                assert!(witness.ran || k > 16 && matches!(register.name.as_str(), "x" | "y"), "{model}: {register:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_box_of_ranges_may_need_less_than_its_bits() {
+    let of = |model: &str, extent: &str| {
+        let found = widths(find(model).unwrap(), &Choices::default(), &extent.parse().unwrap()).unwrap();
+        let rows = found.registers.iter();
+        rows.map(|register| (register.name.clone(), (register.needed, register.known))).collect::<BTreeMap<_, _>>()
+    };
+    for (extent, rows) in [
+        // 299,999 needs 19 bits and a sign; 500,000 steps.
+        ("0..300000x0..200000", [("f", 20), ("e", 19), ("xe", 19), ("ye", 18), ("x", 20), ("y", 19)]),
+        // F within [-2^18, 2^18 - 1], though a coordinate of 2^18 has 19 bits.
+        ("0..262144x0..262144", [("f", 19), ("e", 20), ("xe", 19), ("ye", 19), ("x", 20), ("y", 20)]),
+        ("-262144..0x0..3", [("f", 19), ("e", 19), ("xe", 19), ("ye", 2), ("x", 19), ("y", 3)]),
+    ] {
+        let found = of("ppc-line", extent);
+        for (register, bits) in rows {
+            assert_eq!(found[register], (bits, Known::Proved), "{extent}: {register}");
+        }
+    }
+}
+
+/// Wants a proof to give what the simulation of every geometry of a box gives, or more where it says so.
+fn assert_proof_agrees(model: &'static Model, extent: &str) {
+    let (choices, box_of) = (Choices::default(), extent.parse::<Extent>().unwrap());
+    let whole = Geometries::of(model, &choices, &box_of).unwrap();
+    assert!(whole.all);
+    let whole = simulated(model, &choices, &box_of, whole, &|_| {}).unwrap();
+    let proved = by_proof(model, &choices, &box_of, &|_| {}).unwrap().unwrap();
+    assert_eq!(proved.registers.len(), whole.registers.len());
+    for (proved, true_one) in proved.registers.iter().zip(&whole.registers) {
+        assert_eq!(proved.name, true_one.name);
+        let (least, most) = (true_one.needed, proved.needed);
+        assert!(proved.shown <= least && least <= most, "{} {extent}: {proved:?} {true_one:?}", model.name);
+        assert!(proved.known == Known::Enough || least == most, "{} {extent}: {proved:?} {true_one:?}", model.name);
+    }
+}
+
+#[test]
+fn what_is_proved_of_a_box_is_what_all_of_its_geometries_need() {
+    for model in ["ppc-line", "cim-line", "mindev-line", "vector-line"] {
+        for extent in ["0..8x0..8", "-3..16x2..5", "9..9x0..8", "-16..-4x-9..30", "0..31/6x3..29/2", "5..40x0..0"] {
+            assert_proof_agrees(find(model).unwrap(), extent);
+        }
+    }
+    for (model, extent) in [("dda-line", "0..8x0..5"), ("bresenham", "0..8x-8..3"), ("ppc-arc", "-25..25x0..33")] {
+        assert_proof_agrees(find(model).unwrap(), extent);
+    }
+}
+
+#[test]
+fn the_extreme_geometries_need_what_all_of_them_need() {
+    for model in catalogue() {
+        let ks: &[u32] = match model.name {
+            "dda-helix" | "dda-conic" => &[3],
+            "stepgen" | "dpm-line" | "ppc-conic" | "cim-conic" => &[4],
+            _ => &[4, 6],
+        };
+        for &k in ks {
+            let (choices, extent) = (Choices::default(), Extent::Bits(k));
+            let of = |set: Geometries| simulated(model, &choices, &extent, set, &|_| {}).unwrap();
+            let all = Geometries::of(model, &choices, &extent).unwrap();
+            let extremes = Geometries::extremes(model, &choices, &extent).unwrap();
+            assert!(all.all && !extremes.all);
+            let [all, extremes] = [of(all), of(extremes)];
+            let rows = |found: &Widths| -> Vec<(String, u32)> {
+                found.registers.iter().map(|register| (register.name.clone(), register.needed)).collect()
+            };
+            assert_eq!(rows(&extremes), rows(&all), "{} of {k} bits", model.name);
+        }
+    }
+}
+
+#[test]
+fn conics_of_the_largest_box_lie_on_their_curves() {
+    for model in ["cim-conic", "ppc-conic"] {
+        let found = Geometries::extremes(find(model).unwrap(), &Choices::default(), &Extent::Bits(16)).unwrap();
+        let on = |curve: &Curve| matches!(curve, Curve::Conic(conic) if conic.ends_on_curve());
+        assert!(found.curves.iter().all(on) && found.k == 16);
+        let has = |is: fn(&Shape) -> bool| {
+            found.curves.iter().any(|curve| matches!(curve, Curve::Conic(conic) if is(&conic.shape())))
+        };
+        assert!(has(|shape| matches!(shape, Shape::Ellipse { semi_axes: [65535, 65535] })));
+        assert!(has(|shape| matches!(shape, Shape::Ellipse { semi_axes: [1, 65535] })));
+        assert!(has(|shape| matches!(shape, Shape::Hyperbola { semi_axes: [39321, 39321], .. })));
+        assert!(has(|shape| matches!(shape, Shape::Parabola { c: 65535, .. })));
+    }
+}
+
+#[test]
+fn a_width_that_is_given_is_judged() {
+    let folder = Folder::new();
+    // F of 6-bit lines needs 7 bits, of 6-bit arcs 8.
+    for (words, code, told) in [
+        ("widths ppc-line --box 6 --width f=7", 0, ""),
+        ("widths ppc-line --box 6 --width f=6", 1, "f of 6 bits is too narrow, it needs 7: stepwave run ppc-line"),
+        ("widths ppc-line --box 20 --width f=20", 1, "f of 20 bits is too narrow, it needs 21: stepwave run ppc-line"),
+        ("widths ppc-line --box 6 --width 5", 1, "xe of 5 bits is too narrow, it needs 6: stepwave run ppc-line"),
+        ("widths ppc-line --box 6 --width 9", 0, ""),
+        ("widths ppc-arc --box 6 --width f=7", 1, "f of 7 bits is too narrow, it needs 8"),
+        ("widths dda-line --box 4 --width 6", 0, ""),
+        ("widths dda-line --box 4 --width 3", 1, "jvx of 3 bits is too narrow, it needs 4"),
+        ("widths cim-conic --box 2 --width 2", 1, "is too narrow"),
+        ("widths ppc-line --box 6 --width g=7", 2, "has no register g"),
+    ] {
+        let ran = folder.run(words);
+        assert!(ran.code == code && ran.err.contains(told) && ran.err.is_empty() == (code == 0), "{words}: {ran:?}");
+    }
+    let table = folder.run("widths ppc-line --box 6 --width f=6");
+    let f = table.out.lines().find(|line| line.starts_with("f ")).unwrap();
+    assert_eq!(f.split_whitespace().take(3).collect::<Vec<_>>(), ["f", "6", "7"]);
+    // The run that is named shows it.
+    let named = table.err.lines().next().unwrap().split_once("stepwave run").unwrap().1;
+    let shown = folder.run(&format!("run{named}"));
+    assert!(shown.code == 1 && shown.err.contains("overflow of ppc_line.f"), "{shown:?}");
+    // The scale of an integrator is that of the hardware: its remainder fills 6 bits.
+    let json: serde_json::Value =
+        serde_json::from_str(&folder.good("widths dda-line --box 4 --width 6 --json")).unwrap();
+    let row = |name: &str| json["registers"].as_array().unwrap().iter().find(|row| row["name"] == name).unwrap();
+    assert_eq!((&row("jrx")["given"], &row("jrx")["needed"]), (&6.into(), &6.into()));
+    assert_eq!((&row("jvx")["given"], &row("jvx")["needed"]), (&6.into(), &4.into()));
+    assert_eq!((&row("x")["least"], &row("x")["greatest"]), (&(-15).into(), &15.into()));
 }

@@ -3,13 +3,14 @@
 use stepwave_kernel::formula::{Clause, name};
 use stepwave_nc::{Arc, Curve, Direction};
 
+use super::extremes::{self, Reach};
 use super::{Kind, coordinate, spread};
 
 /// Quadrants by the signs of their coordinates.
 const QUADRANTS: [[i64; 2]; 4] = [[1, 1], [-1, 1], [-1, -1], [1, -1]];
 const DIRECTIONS: [(&str, Direction); 2] = [("SR", Direction::Clockwise), ("NR", Direction::CounterClockwise)];
 
-/// Most bits of coordinates of which all arcs are listed; of more, those are.
+/// Most bits of coordinates of which all arcs are listed; of more, the extreme ones.
 pub(super) const WHOLE: u32 = 8;
 
 /// |x| grows in this quadrant, 0 to 3: clockwise in Q1 and Q3.
@@ -74,7 +75,11 @@ pub(super) fn quarter(radius: i64) -> Option<Curve> {
 }
 
 pub(super) fn curves(k: u32, most: usize) -> Vec<Curve> {
-    let greatest = (1_i64 << k.min(WHOLE)) - 1;
+    let greatest = (1_i64 << k.min(52)) - 1;
+    if k > WHOLE {
+        let pairs = extremes::arcs([Reach::within(greatest); 2]);
+        return spread(pairs, most).into_iter().filter_map(extremes::inside).collect();
+    }
     let mut points: Vec<(i64, [i64; 2])> =
         (0..=greatest).flat_map(|x| (0..=greatest).map(move |y| (x * x + y * y, [x, y]))).collect();
     points.sort_unstable();

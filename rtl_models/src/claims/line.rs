@@ -3,12 +3,13 @@
 use stepwave_kernel::formula::{Clause, name};
 use stepwave_nc::{Curve, Line};
 
+use super::extremes::{self, Reach};
 use super::{Kind, coordinate, spread};
 
 /// Signs of the motion.
 const QUADRANTS: [(&str, [i128; 2]); 4] = [("Q1", [1, 1]), ("Q2", [-1, 1]), ("Q3", [-1, -1]), ("Q4", [1, -1])];
 
-/// Most bits of coordinates of which all lines are listed.
+/// Most bits of coordinates of which all lines are listed; of more, the extreme ones.
 pub(super) const WHOLE: u32 = 8;
 
 /// All lines.
@@ -82,13 +83,11 @@ pub(super) fn to(point: [i64; 2]) -> Option<Curve> {
 }
 
 pub(super) fn curves(k: u32, most: usize) -> Vec<Curve> {
-    let greatest = (1_i64 << k.min(40)) - 1;
-    let sides: Vec<i64> = if k <= WHOLE {
-        (-greatest..=greatest).collect()
-    } else {
-        let some = [0, 1, 2, 3, 5, greatest / 3, greatest / 2, greatest / 2 + 1, greatest - 2, greatest - 1, greatest];
-        some.iter().flat_map(|way| [*way, -way]).collect()
-    };
-    let points = sides.iter().flat_map(|x| sides.iter().map(move |y| [*x, *y])).filter(|point| *point != [0, 0]);
+    let greatest = (1_i64 << k.min(52)) - 1;
+    if k > WHOLE {
+        return spread(extremes::lines([Reach::within(greatest); 2]).collect(), most);
+    }
+    let sides = || -greatest..=greatest;
+    let points = sides().flat_map(|x| sides().map(move |y| [x, y])).filter(|point| *point != [0, 0]);
     spread(points.collect(), most).into_iter().filter_map(to).collect()
 }

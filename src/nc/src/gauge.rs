@@ -102,17 +102,24 @@ impl Gauge<'_> {
 }
 
 impl Screen {
-    /// The greatest deviation of some positions, in BLU; 0 where there are none. Branchless, for hot loops.
+    /// The greatest deviation of some positions, in BLU; 0 where there are none. Branchless, for hot loops: within the
+    /// reach that the screen was made for no product and no sum leaves `i64`, so that none of them is checked.
     #[inline(always)]
     #[must_use]
     pub fn greatest(&self, positions: impl Iterator<Item = [i64; 2]>) -> f64 {
         match self.0 {
             Plane::Line { from: [x0, y0], delta: [dx, dy], length } => {
-                let cross = |[x, y]: [i64; 2]| (dx * (y - y0) - dy * (x - x0)).unsigned_abs();
+                let cross = |[x, y]: [i64; 2]| {
+                    let [x, y] = [x.wrapping_sub(x0), y.wrapping_sub(y0)];
+                    dx.wrapping_mul(y).wrapping_sub(dy.wrapping_mul(x)).unsigned_abs()
+                };
                 positions.map(cross).fold(0, u64::max) as f64 / length
             }
             Plane::Circle { center: [x0, y0], radius_squared, radius } => {
-                let squared = |[x, y]: [i64; 2]| ((x - x0) * (x - x0) + (y - y0) * (y - y0)).unsigned_abs();
+                let squared = |[x, y]: [i64; 2]| {
+                    let [x, y] = [x.wrapping_sub(x0), y.wrapping_sub(y0)];
+                    x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)).unsigned_abs()
+                };
                 let start = (radius_squared, radius_squared);
                 let (least, most) =
                     positions.map(squared).fold(start, |(least, most), now| (least.min(now), most.max(now)));

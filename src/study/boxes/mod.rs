@@ -1,0 +1,251 @@
+//! Boxes of geometries: all that coordinates of so many bits can tell, or the points of a grid; whole, or the extreme ones.
+
+mod conics;
+mod helices;
+mod plane;
+
+use std::fmt;
+use std::str::FromStr;
+
+use stepwave_kernel::Width;
+use stepwave_models::{Choices, CurveKind, Hardware, Model, Region};
+use stepwave_nc::{Curve, Line};
+
+use super::proof::ProofError;
+use super::{Grid, Range};
+
+/// Most bits of coordinates where every width is proved at once.
+pub(super) const MOST_BITS: u32 = 52;
+/// Most bits of coordinates where geometries are simulated to their ends.
+pub(super) const MOST_SIMULATED_BITS: u32 = 16;
+/// Geometries that are listed at most; of more, the extreme ones.
+const MOST: usize = 1_000_000;
+/// Most bits of semi-axes of which all conics are listed; fewer for integrators, whose blocks take 2^k times the clocks.
+const WHOLE_CONICS: u32 = 8;
+const WHOLE_INTEGRATED_CONICS: u32 = 6;
+/// Most bits of coordinates of which all helices are.
+const WHOLE_HELICES: u32 = 4;
+
+/// Which geometries a box holds.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Extent {
+    /// Coordinates, or semi-axes and parameters of conics, of so many bits.
+    Bits(u32),
+    /// End points of lines from the origin, or both ends of arcs about it, among these points.
+    Grid(Grid),
+}
+
+impl FromStr for Extent {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Extent, String> {
+        if let Ok(bits) = text.parse::<u32>() {
+            let fits = (1..=MOST_BITS).contains(&bits);
+            return if fits { Ok(Extent::Bits(bits)) } else { Err(format!("a box has 1 to {MOST_BITS} bits")) };
+        }
+        let no_box =
+            || format!("'{text}' is no box: give bits, such as 8, or a range for each axis, such as 0..255x0..255");
+        let grid: Grid = text.parse().map_err(|error: super::StudyError| error.to_string())?;
+        if grid.0.len() < 2 { Err(no_box()) } else { Ok(Extent::Grid(grid)) }
+    }
+}
+
+impl fmt::Display for Extent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Extent::Bits(bits) => write!(f, "{bits} bits"),
+            Extent::Grid(grid) => grid.fmt(f),
+        }
+    }
+}
+
+impl Extent {
+    /// Bits of the coordinates in it.
+    ///
+    /// # Errors
+    /// A coordinate needs more than [`MOST_BITS`].
+    pub fn bits(&self) -> Result<u32, ProofError> {
+        let Grid(ranges) = match self {
+            Extent::Bits(bits) => return Ok(*bits),
+            Extent::Grid(grid) => grid,
+        };
+        let ends = ranges.iter().flat_map(|range| [range.at(0), range.at(range.count() - 1)]);
+        let most = ends.map(i64::unsigned_abs).max().unwrap_or(0);
+        match Width::needed_unsigned(most.into()) {
+            bits if bits <= MOST_BITS => Ok(bits),
+            bits => Err(ProofError::Box(format!(
+                "a coordinate of {most} needs {bits} bits, but a box has at most {MOST_BITS}: give ranges within ±{}",
+                (1_i64 << MOST_BITS) - 1
+            ))),
+        }
+    }
+
+    /// Axes of the geometries in it.
+    #[must_use]
+    pub fn axes(&self) -> usize {
+        match self {
+            Extent::Bits(_) => 2,
+            Extent::Grid(Grid(ranges)) => ranges.len(),
+        }
+    }
+}
+
+/// The geometries of a box, with one hardware that takes all of them.
+#[derive(Clone, Debug)]
+pub struct Geometries {
+    /// They.
+    pub curves: Vec<Curve>,
+    /// They are all of the box.
+    pub all: bool,
+    /// Bits of their coordinates.
+    pub k: u32,
+    /// The hardware.
+    pub hardware: Hardware,
+    /// Choices with which a run of any of them is on such hardware, but for what the geometry tells.
+    pub choices: Choices,
+}
+
+/// Which geometries a model's box is made of: the region over which something is claimed of it, or that of its curves.
+fn region(model: &Model) -> Option<Region> {
+    match (model.claims, model.curve) {
+        (Some(claims), _) => Some(claims.geometries),
+        (None, CurveKind::Line { .. }) => Some(Region::Lines),
+        (None, CurveKind::Arc) => Some(Region::QuadrantArcs),
+        (None, CurveKind::Conic | CurveKind::Helix) => None,
+    }
+}
+
+impl Geometries {
+    /// The geometries of this box that a model takes: all of them, or where these are too many the
+    /// [extreme ones](Geometries::extremes).
+    ///
+    /// # Errors
+    /// There is no such box for the model, there are none in it, or the hardware cannot be built.
+    pub fn of(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Geometries, ProofError> {
+        Geometries::made(model, choices, extent, true)
+    }
+
+    /// The extreme geometries of this box: at its corners, on and next to its axes, of its greatest radii and its largest
+    /// and smallest weights, both ways round.
+    ///
+    /// # Errors
+    /// See [`of`](Geometries::of).
+    pub fn extremes(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Geometries, ProofError> {
+        Geometries::made(model, choices, extent, false)
+    }
+
+    fn made(model: &'static Model, choices: &Choices, extent: &Extent, wanted: bool) -> Result<Geometries, ProofError> {
+        let k = extent.bits()?;
+        let Some(region) = region(model) else { return Geometries::in_space(model, choices, extent, k, wanted) };
+        let arcs = region == Region::QuadrantArcs;
+        let sides = match extent {
+            Extent::Bits(k) => {
+                let most = (1_i64 << k) - 1;
+                Grid(vec![Range::new(-most, most, 1).map_err(|error| ProofError::Box(error.to_string()))?; 2])
+            }
+            Extent::Grid(grid) => grid.clone(),
+        };
+        plane::check(model, &sides, arcs)?;
+        let listed = match extent {
+            _ if !wanted => None,
+            Extent::Bits(k) => region.is_whole(*k).then(|| region.curves(*k, usize::MAX)),
+            Extent::Grid(grid) if arcs => plane::all_arcs(grid),
+            Extent::Grid(grid) => plane::all_lines(grid),
+        };
+        let all = listed.is_some();
+        let mut curves = listed.unwrap_or_else(|| plane::extremes(&sides, arcs));
+        let axes = sides.0.len();
+        let kinds = region.kinds();
+        if axes == 2 {
+            curves.retain(|curve| kinds.iter().any(|kind| region.symbols(kind, curve).is_some()));
+        }
+        let largest = if axes == 2 { region.largest(k) } else { line(vec![(1_i64 << k) - 1; axes]) };
+        let (Some(largest), false) = (largest, curves.is_empty()) else {
+            return Err(ProofError::Box(format!(
+                "the box holds nothing for {}, which takes {}: give a larger one",
+                model.name,
+                region.describe()
+            )));
+        };
+        let choices = Choices { width: choices.width.or(Width::new(u64::from(k)).ok()), ..choices.clone() };
+        Ok(Geometries { curves, all, k, hardware: model.plan(&largest, &choices)?, choices })
+    }
+
+    /// Conics and helices.
+    fn in_space(
+        model: &'static Model,
+        choices: &Choices,
+        extent: &Extent,
+        k: u32,
+        wanted: bool,
+    ) -> Result<Geometries, ProofError> {
+        if matches!(extent, Extent::Grid(_)) {
+            return Err(ProofError::Box(format!(
+                "the box of {} is told in bits: give --box 4; `stepwave sweep` studies ranges of such curves",
+                model.name
+            )));
+        }
+        check_simulated(model, k)?;
+        let integrates = model.method == "digital differential analyser";
+        let (whole, of): (_, fn(u32, bool) -> Vec<Curve>) = match model.curve {
+            CurveKind::Helix => (WHOLE_HELICES, helices::helices),
+            _ if integrates => (WHOLE_INTEGRATED_CONICS, conics::conics),
+            _ => (WHOLE_CONICS, conics::conics),
+        };
+        let all = wanted && k <= whole;
+        let curves = of(k, all);
+        let hardware = widest(model, choices, &curves)?;
+        Ok(Geometries { curves, all, k, hardware, choices: choices.clone() })
+    }
+}
+
+/// Runs of geometries of so many bits come to their ends in some time.
+///
+/// # Errors
+/// They do not.
+pub(super) fn check_simulated(model: &Model, k: u32) -> Result<(), ProofError> {
+    if k <= MOST_SIMULATED_BITS {
+        return Ok(());
+    }
+    Err(ProofError::Box(format!(
+        "no proof for every width covers {} with these choices, so that a box of {k} bits would have to be simulated: \
+         give one of at most {MOST_SIMULATED_BITS} bits",
+        model.name
+    )))
+}
+
+fn line(to: Vec<i64>) -> Option<Curve> {
+    Line::new(vec![0; to.len()], to).ok().map(Curve::Line)
+}
+
+/// The sizes of a box: all, or the extreme ones.
+fn sizes(k: u32, all: bool) -> Vec<i64> {
+    let greatest = (1_i64 << k) - 1;
+    if all {
+        return (1..=greatest).collect();
+    }
+    let mut sizes =
+        vec![1, 2, 3, 5, greatest / 3, greatest / 2, greatest / 2 + 1, greatest - 2, greatest - 1, greatest];
+    sizes.retain(|size| (1..=greatest).contains(size));
+    sizes.sort_unstable();
+    sizes.dedup();
+    sizes
+}
+
+/// The hardware whose registers are as wide as any of these curves needs them.
+fn widest(model: &Model, choices: &Choices, curves: &[Curve]) -> Result<Hardware, ProofError> {
+    let mut plans = curves.iter().map(|curve| model.plan(curve, choices));
+    let Some(first) = plans.next() else {
+        return Err(ProofError::Box(format!("the box holds nothing for {}: give a larger one", model.name)));
+    };
+    let mut widest = first?;
+    for plan in plans {
+        let plan = plan?;
+        for (name, width) in plan.widths {
+            let own = widest.widths.entry(name).or_insert(width);
+            *own = (*own).max(width);
+        }
+        widest.stall_clocks = widest.stall_clocks.max(plan.stall_clocks);
+    }
+    Ok(widest)
+}

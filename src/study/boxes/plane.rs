@@ -1,0 +1,90 @@
+//! Lines and arcs in a grid: all of them, or the extreme ones.
+
+use std::collections::BTreeMap;
+
+use stepwave_models::Model;
+use stepwave_models::extremes::{self, Reach};
+use stepwave_nc::Curve;
+
+use super::{MOST, line};
+use crate::study::proof::ProofError;
+use crate::study::{Grid, Range};
+
+/// Points of a grid in which all arcs are looked for, at most.
+const MOST_POINTS: u64 = 1 << 22;
+
+/// The model takes geometries of as many axes as the grid has ranges.
+pub(super) fn check(model: &Model, Grid(ranges): &Grid, arcs: bool) -> Result<(), ProofError> {
+    let (axes, most) = (ranges.len(), model.curve.max_axes());
+    if axes <= most {
+        return Ok(());
+    }
+    let takes = if arcs { "arcs in the plane" } else { model.curve.describe() };
+    let ranges = vec!["0..9"; most].join("x");
+    Err(ProofError::Box(format!(
+        "the box has {axes} ranges, but {} interpolates {takes}: give --box {ranges}",
+        model.name
+    )))
+}
+
+/// Points of a grid.
+pub(super) fn count(Grid(ranges): &Grid) -> u128 {
+    ranges.iter().fold(1_u128, |count, range| count.saturating_mul(range.count().into()))
+}
+
+/// The lines from the origin to all points of a grid; `None` if they are too many.
+pub(super) fn all_lines(grid: &Grid) -> Option<Vec<Curve>> {
+    let count = count(grid);
+    let point = |mut place: u128| {
+        let digit = |range: &Range| {
+            let count = u128::from(range.count());
+            let digit = place % count;
+            place /= count;
+            range.at(u64::try_from(digit).unwrap_or(0))
+        };
+        grid.0.iter().map(digit).collect::<Vec<i64>>()
+    };
+    (count < MOST as u128).then(|| (0..count).map(point).filter_map(line).collect())
+}
+
+/// All arcs about the origin inside one quadrant whose ends are points of a grid, on one circle; `None` if they are too
+/// many, or the points are.
+pub(super) fn all_arcs(grid: &Grid) -> Option<Vec<Curve>> {
+    let [x, y] = grid.0[..] else { return None };
+    if count(grid) > u128::from(MOST_POINTS) {
+        return None;
+    }
+    let mut circles: BTreeMap<i128, Vec<[i64; 2]>> = BTreeMap::new();
+    let square = |place: i64| i128::from(place).pow(2);
+    for x in x.numbers() {
+        y.numbers().for_each(|y| circles.entry(square(x) + square(y)).or_default().push([x, y]));
+    }
+    let mut arcs = Vec::new();
+    for points in circles.values() {
+        let side = |axis: usize, point: &[i64; 2]| point[axis].signum();
+        for from in points {
+            // The ends of an arc inside a quadrant are on no two sides of an axis.
+            let near =
+                |to: &&[i64; 2]| *to != from && [0, 1].iter().all(|&axis| side(axis, from) * side(axis, to) >= 0);
+            arcs.extend(points.iter().filter(near).filter_map(|to| extremes::inside([*from, *to])));
+            if arcs.len() > MOST {
+                return None;
+            }
+        }
+    }
+    Some(arcs)
+}
+
+/// The extreme lines or arcs of a grid.
+pub(super) fn extremes(Grid(ranges): &Grid, arcs: bool) -> Vec<Curve> {
+    let sides: Vec<Reach> = ranges.iter().map(reach).collect();
+    match sides[..] {
+        [x, y] if arcs => extremes::arcs([x, y]).into_iter().filter_map(extremes::inside).collect(),
+        _ => extremes::points(&sides).into_iter().filter_map(line).collect(),
+    }
+}
+
+fn reach(range: &Range) -> Reach {
+    let last = range.at(range.count() - 1);
+    Reach { least: range.at(0), greatest: last, step: range.step() }
+}

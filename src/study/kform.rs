@@ -1,0 +1,92 @@
+//! Widths relative to k: proved for every k at once, and evaluated at any.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use stepwave_models::{Choices, Hardware, Model, ModelError};
+
+use super::boxes::{Extent, Geometries};
+use super::proof::{Block, Narrower, ProofError, Subject, Way, blocks, choices_at};
+use super::widths::least_seen;
+
+/// The k whose geometries are all simulated to find how wide registers must be; the first at which a choice, such as a
+/// preset, fits is taken.
+const FOUND: std::ops::RangeInclusive<u32> = 5..=8;
+/// The greatest k at which a block of a counted model is followed: it takes 2^k clocks.
+const MOST_FOLLOWED: u32 = 16;
+
+/// Widths that are enough for every geometry of coordinates of k bits, whatever k is: those by default, less so many bits.
+#[derive(Clone, Debug)]
+pub struct KForm {
+    model: &'static Model,
+    choices: Choices,
+    narrower: Narrower,
+    /// Each k needs a proof of its own.
+    counted: bool,
+}
+
+impl KForm {
+    /// The form of a model with these choices; `None` where none is proved. Widths among the choices are left out.
+    ///
+    /// # Errors
+    /// The hardware cannot be built.
+    pub fn of(model: &'static Model, choices: &Choices) -> Result<Option<KForm>, ProofError> {
+        let Some(claims) = model.claims else { return Ok(None) };
+        let choices = Choices { width: None, widths: BTreeMap::new(), ..choices.clone() };
+        let mut found = None;
+        for k in FOUND {
+            match Geometries::of(model, &choices, &Extent::Bits(k)) {
+                Ok(geometries) => {
+                    found = Some(least_seen(model, &geometries)?);
+                    break;
+                }
+                Err(ProofError::Model(ModelError::DoesNotFit { .. })) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        let Some(seen) = found else { return Ok(None) };
+        let counted = !claims.counted.is_empty();
+        let narrower = seen.iter().map(|(name, given, needed)| (name.clone(), given.saturating_sub(*needed)));
+        let narrower: Narrower = narrower.filter(|(_, less)| *less > 0).collect();
+        // Where not all of the registers can be as narrow at once, those by default may still be proved.
+        for narrower in [narrower, Narrower::new()] {
+            if counted || is_proved(model, &choices, &narrower) {
+                return Ok(Some(KForm { model, choices, narrower, counted }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Hardware that is wide enough for every geometry of coordinates of `k` bits; `None` where it is not proved at this k.
+    ///
+    /// # Errors
+    /// There is no such hardware.
+    pub fn hardware(&self, k: u32) -> Result<Option<Hardware>, ProofError> {
+        let Some(claims) = self.model.claims else { return Ok(None) };
+        if self.counted {
+            let exact = |block: &Block| block.is_exact();
+            let followed = k <= MOST_FOLLOWED
+                && blocks(self.model, &claims, &self.choices, &self.narrower, k, Way::Follow)
+                    .is_ok_and(|blocks| blocks.iter().all(exact));
+            if !followed {
+                return Ok(None);
+            }
+        }
+        let choices = choices_at(self.model, &claims, &self.choices, &self.narrower, k)?;
+        let Some(largest) = claims.geometries.largest(k) else { return Ok(None) };
+        Ok(Some(self.model.plan(&largest, &choices)?))
+    }
+
+    /// It was proved for every k at once.
+    #[must_use]
+    pub fn is_for_every_k(&self) -> bool {
+        !self.counted
+    }
+}
+
+/// With registers as narrow as this nothing overflows and every end is reached, for every k.
+fn is_proved(model: &'static Model, choices: &Choices, narrower: &Narrower) -> bool {
+    let Ok(subject) = Subject::new(model, choices, narrower) else { return false };
+    let safe = |kind| subject.prove(&kind).is_ok_and(|(proof, _)| proof.is_safe());
+    subject.kinds().into_par_iter().all(safe)
+}

@@ -1,0 +1,86 @@
+//! Hardware of given widths, judged by what a box needs.
+
+use std::collections::BTreeMap;
+
+use stepwave_kernel::Width;
+use stepwave_models::{Choices, Hardware, Model};
+
+use super::simulate::too_narrow;
+use super::{Known, Widths};
+use crate::study::boxes::{Extent, Geometries};
+use crate::study::proof::ProofError;
+
+/// The choices of hardware that is wide enough for a box: without the widths that are given, unless registers of one scale
+/// are given more bits than the box needs. Those run otherwise on wider hardware, not only with room to spare.
+pub(super) fn ample(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Choices, ProofError> {
+    let default = Choices { width: None, widths: BTreeMap::new(), on_overflow: None, ..choices.clone() };
+    if choices.width.is_none() && choices.widths.is_empty() {
+        return Ok(default);
+    }
+    let least = Geometries::extremes(model, &default, extent)?;
+    let given = given(model, choices, &least)?;
+    let scaled = |hardware: &Hardware| {
+        let own = hardware.widths.iter().filter(|(name, _)| hardware.shares_a_scale(name));
+        own.map(|(name, width)| (name.clone(), *width)).collect::<BTreeMap<String, Width>>()
+    };
+    let (default_widths, own) = (scaled(&least.hardware), scaled(&given));
+    let wider = own.iter().any(|(name, width)| default_widths.get(name).is_some_and(|default| width > default));
+    if !wider {
+        return Ok(default);
+    }
+    // All of the scale at once, as wide as the widest of them is wider.
+    let more = own.iter().map(|(name, width)| width.get().saturating_sub(least.hardware.bits(name))).max().unwrap_or(0);
+    let widths = default_widths.into_iter().map(|(name, width)| {
+        let wide = own.get(&name).copied().unwrap_or(width).max(width);
+        Ok((name, wide))
+    });
+    match choices.width {
+        Some(width) => Ok(Choices { width: Some(width), ..default }),
+        None if more > 0 => Ok(Choices { widths: widths.collect::<Result<_, ProofError>>()?, ..default }),
+        None => Ok(default),
+    }
+}
+
+/// The hardware with the widths that are given.
+fn given(model: &'static Model, choices: &Choices, least: &Geometries) -> Result<Hardware, ProofError> {
+    let typed = Choices { width: choices.width.or(least.choices.width), on_overflow: None, ..choices.clone() };
+    let mut widest: Option<Hardware> = None;
+    for curve in &least.curves {
+        let plan = model.plan(curve, &typed)?;
+        let Some(own) = &mut widest else {
+            widest = Some(plan);
+            continue;
+        };
+        for (name, width) in plan.widths {
+            let known = own.widths.entry(name).or_insert(width);
+            *known = (*known).max(width);
+        }
+    }
+    widest.ok_or_else(|| ProofError::Box(format!("the box holds nothing for {}: give a larger one", model.name)))
+}
+
+/// Puts the widths that are given in the place of those by default, and looks for a run where they are too narrow.
+pub(super) fn judge(
+    model: &'static Model,
+    choices: &Choices,
+    ample: &Choices,
+    found: &mut Widths,
+) -> Result<(), ProofError> {
+    if choices.width.is_none() && choices.widths.is_empty() {
+        return Ok(());
+    }
+    let set = Geometries::extremes(model, ample, &found.extent)?;
+    let hardware = given(model, choices, &set)?;
+    for register in &mut found.registers {
+        register.given = hardware.bits(&register.name);
+        if register.given >= register.needed {
+            continue;
+        }
+        // What one bit less does not hold, fewer bits do not hold either.
+        let Some(witness) = &register.witness else { continue };
+        let certain = register.known != Known::Sampled;
+        register.fault =
+            too_narrow(model, &set.choices, (&register.name, register.given), &witness.curve, certain && !witness.ran);
+    }
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! Runs that show how wide registers must be: many in lanes, and single ones one bit below.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use stepwave_kernel::bits::to_signed;
+use stepwave_kernel::engine::EngineKind;
+use stepwave_kernel::engine::lanes::{LaneProgram, LaneStop, LaneWatch, Observe};
+use stepwave_kernel::{Net, Width};
+use stepwave_models::{Choices, Model, ModelError};
+use stepwave_nc::Curve;
+
+use super::{Tick, Witness};
+use crate::testbench::{Ending, RangeWatch, Testbench};
+
+/// Clocks after which a run is given up.
+pub(super) const LIMIT: u64 = 1 << 24;
+/// Clocks of a single run one bit below, at most.
+const SHOWN: u64 = 1 << 20;
+
+/// What was seen of a register: least and greatest value, and where.
+#[derive(Clone)]
+pub(super) struct Seen {
+    pub(super) least: (i128, usize),
+    pub(super) greatest: (i128, usize),
+}
+
+impl Seen {
+    pub(super) fn take(&mut self, value: i128, place: usize) {
+        if value < self.least.0 {
+            self.least = (value, place);
+        }
+        if value > self.greatest.0 {
+            self.greatest = (value, place);
+        }
+    }
+
+    /// The bits that hold all of it, and the run that needs them.
+    pub(super) fn needs(&self, signed: bool) -> (u32, usize) {
+        let [least, greatest] = [self.least, self.greatest].map(|(value, at)| (Width::needed(value, signed), at));
+        if least.0 > greatest.0 { least } else { greatest }
+    }
+}
+
+/// What many runs came to.
+#[derive(Default)]
+pub(super) struct Runs {
+    /// Every register with a width to choose, by name.
+    pub(super) seen: BTreeMap<String, Seen>,
+    /// Runs that ended in a fault.
+    pub(super) faults: usize,
+    /// Runs that were cut off at the limit; what they showed until then counts.
+    pub(super) cut: usize,
+}
+
+/// Least and greatest value of every register with a width to choose, by name, in runs of at most `limit` clocks.
+pub(super) fn simulate(bench: &Testbench, curves: &[Curve], limit: u64, tick: Tick<'_>) -> Result<Runs, ModelError> {
+    let (machine, netlist) = (bench.machine(), bench.design().netlist());
+    let names = bench.hardware().widths.keys();
+    let registers: Vec<(String, Net, bool)> = names
+        .filter_map(|name| netlist.find(name).map(|named| (name.clone(), named.net, named.format.is_signed())))
+        .collect();
+    let ends =
+        registers.iter().flat_map(|&(_, net, signed)| [Observe::Min { net, signed }, Observe::Max { net, signed }]);
+    let watch = LaneWatch {
+        traps: netlist.properties.iter().map(|property| property.never).collect(),
+        rest: vec![(machine.load.net, 0), (machine.preset_position.net, 0)],
+        observe: ends.collect(),
+        limit,
+        ..LaneWatch::new(machine.done.net)
+    };
+    let program = LaneProgram::new(bench.design(), &watch);
+    let lanes = bench.lanes(limit)?;
+    let (mut runs, mut place) = (Runs::default(), 0);
+    program.run(
+        curves.iter(),
+        |curve: &Curve| lanes.job(curve),
+        |end: Result<_, ModelError>| {
+            match end {
+                Ok(end) if matches!(end.stop, LaneStop::Done | LaneStop::Limit) => {
+                    runs.cut += usize::from(end.stop == LaneStop::Limit);
+                    for ((name, net, signed), pair) in registers.iter().zip(end.values.chunks(2)) {
+                        let width = netlist.width(*net);
+                        let number =
+                            |bits: u64| if *signed { i128::from(to_signed(width, bits)) } else { i128::from(bits) };
+                        let (least, greatest) = (number(pair[0]), number(pair[1]));
+                        let first = Seen { least: (least, place), greatest: (greatest, place) };
+                        let own = runs.seen.entry(name.clone()).or_insert(first);
+                        own.take(least, place);
+                        own.take(greatest, place);
+                    }
+                }
+                _ => runs.faults += 1,
+            }
+            place += 1;
+            tick(1);
+        },
+    );
+    Ok(runs)
+}
+
+/// Least and greatest value of every register over single runs of these curves on one engine, one after another instead of
+/// in lanes: what [`widths`](super::widths) is judged by. Runs that do not come to their end are left out.
+///
+/// # Errors
+/// A value does not fit in its register.
+pub fn ranges_alone(
+    model: &Model,
+    bench: &Testbench,
+    curves: &[Curve],
+    engine: EngineKind,
+) -> Result<BTreeMap<String, (i128, i128)>, ModelError> {
+    type Ranges = BTreeMap<String, (i128, i128)>;
+    let joined = |mut all: Ranges, one: Ranges| {
+        for (name, (least, greatest)) in one {
+            let own = all.entry(name).or_insert((least, greatest));
+            *own = (own.0.min(least), own.1.max(greatest));
+        }
+        Ok(all)
+    };
+    let alone = |curve: &Curve| {
+        let bench = bench.of(model, curve)?.limited(LIMIT);
+        let mut watch = RangeWatch::new(&bench);
+        let outcome = bench.run(engine, &mut [&mut watch]);
+        if outcome.is_ok_and(|outcome| outcome.ending != Ending::Done) {
+            return Ok(Ranges::new());
+        }
+        Ok(watch.finish().into_iter().map(|range| (range.name, (range.least, range.greatest))).collect())
+    };
+    curves.par_iter().map(alone).try_reduce(Ranges::new, joined)
+}
+
+/// The run of this curve with a register of so many `bits`, fewer than the curve needs: it is refused, or traps. `None`
+/// where it does neither within some clocks, unless a proof says that it will (`certain`).
+pub(super) fn too_narrow(
+    model: &Model,
+    wide: &Choices,
+    (name, bits): (&str, u32),
+    curve: &Curve,
+    certain: bool,
+) -> Option<Witness> {
+    let mut choices = wide.clone();
+    choices.widths.insert(name.to_owned(), Width::new(u64::from(bits)).ok()?);
+    let ran = match Testbench::new(model, curve, &choices) {
+        // A load word does not fit, or the registers no longer fit each other.
+        Err(ModelError::DoesNotFit { .. } | ModelError::Widths(_)) => true,
+        Err(_) => return None,
+        Ok(bench) => {
+            let outcome = bench.limited(SHOWN).run(EngineKind::Word, &mut []).ok()?;
+            match outcome.ending {
+                Ending::Trapped => true,
+                Ending::Limit if certain => false,
+                _ => return None,
+            }
+        }
+    };
+    Some(Witness { curve: curve.clone(), choices, ran })
+}
