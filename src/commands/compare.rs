@@ -29,12 +29,17 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     let models = catalogue().iter().filter(|model| model.curve.fits(&curve));
     let runs: Vec<_> = models.flat_map(|model| forms(model).into_iter().map(move |form| (model, form))).collect();
     let progress = Progress::of(runs.len() as u64, "machines");
+    let mut left_out = Vec::new();
     for (model, (form, choices)) in runs {
-        rows.extend(row(model, &form, &curve, &choices)?);
+        match row(model, &form, &curve, &choices)? {
+            Ok(row) => rows.push(row),
+            Err(reason) => left_out.push(format!("\nLeft out: {}{form}: {reason}\n", model.name)),
+        }
         progress.add(1);
     }
     progress.finish();
-    output::print(&if args.markdown { markdown(&rows) } else { aligned(&rows) })
+    let table = if args.markdown { markdown(&rows) } else { aligned(&rows) };
+    output::print(&(table + &left_out.concat()))
 }
 
 const HEADING: [&str; 6] = ["model", "steps", "clocks", "greatest error (BLU)", "widest register", "end point"];
@@ -66,11 +71,16 @@ fn forms(model: &Model) -> Vec<(String, Choices)> {
     forms
 }
 
-/// What a form of a model comes to; nothing where it cannot be built for this curve.
-fn row(model: &Model, form: &str, curve: &Curve, choices: &Choices) -> Result<Option<[String; 6]>, Failure> {
+/// What a form of a model comes to; or why it cannot be built for this curve.
+fn row(
+    model: &Model,
+    form: &str,
+    curve: &Curve,
+    choices: &Choices,
+) -> Result<Result<[String; 6], ModelError>, Failure> {
     let bench = match Testbench::new(model, curve, choices) {
         Ok(bench) => bench,
-        Err(ModelError::TooWide { .. } | ModelError::Widths(_)) => return Ok(None),
+        Err(error @ (ModelError::TooWide { .. } | ModelError::Widths(_))) => return Ok(Err(error)),
         Err(error) => return Err(error.into()),
     };
     let mut path = PathWatch::new(&bench, curve);
@@ -87,7 +97,7 @@ fn row(model: &Model, form: &str, curve: &Curve, choices: &Choices) -> Result<Op
     let hardware = bench.hardware();
     let own = hardware.widths.iter().filter(|(name, _)| !hardware.letters().contains(&name.as_str()));
     let widest = own.max_by_key(|(name, width)| (width.get(), std::cmp::Reverse(*name)));
-    Ok(Some([
+    Ok(Ok([
         format!("{}{form}", model.name),
         outcome.steps.to_string(),
         outcome.clocks.to_string(),

@@ -32,14 +32,11 @@ pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
 /// What is wrong with a width that is given, in a sentence.
 fn too_narrow(model: &Model, register: &RegisterWidth) -> String {
     let RegisterWidth { name, given, needed, .. } = register;
+    let needs = format!("{name} of {given} bits is too narrow, it needs {needed}");
     match &register.fault {
-        Some(fault) => {
-            format!("{name} of {given} bits is too narrow, it needs {needed}: {}", command(model, fault))
-        }
-        None => format!(
-            "{name} of {given} bits is not known to be enough, {needed} bits are: `stepwave sweep` looks for a run that \
-             needs more"
-        ),
+        Some(fault) => format!("{needs}: {}", command(model, fault)),
+        None if register.known != Known::Enough || *given < register.shown => needs,
+        None => format!("{name} of {given} bits is not proved to be enough, {needed} bits are"),
     }
 }
 

@@ -150,3 +150,27 @@ fn compare_has_a_row_for_each_form_of_the_dda() {
     );
     assert_eq!(rows("--from 5,0,0 --to 0,5,3 --ccw"), ["dda-helix", "dda-helix --preset half"]);
 }
+
+#[test]
+fn compare_names_what_it_leaves_out() {
+    // f of cim-conic would add numbers of 64 bits: a²b is about 2^60, and F has two bits more.
+    let printed = good("compare --hyperbola 1000000,1000000 --from 1000000,0 --to 1000000,100");
+    assert!(printed.contains("\nppc-conic ") && !printed.contains("\ncim-conic "), "{printed}");
+    for form in ["", " --beats 1"] {
+        assert!(printed.contains(&format!("\nLeft out: cim-conic{form}: these registers are too wide")), "{printed}");
+    }
+}
+
+#[test]
+fn conics_with_long_axes_run_or_are_refused_with_the_limit() {
+    // F of a parabola is about c; that of the others, about a²b twice, has more than 64 bits.
+    reaches("ppc-conic --parabola 1099511627776 --from 0,0 --to 1,100", "(1, 100)");
+    for words in [
+        "cim-conic --ellipse 2000000,1500000 --from 2000000,0 --to 0,1500000 --ccw",
+        "ppc-conic --ellipse 67108864,67108864 --from 67108864,0 --to 0,67108864 --ccw",
+        "ppc-conic --hyperbola 3000000,3000000 --from 3000000,0 --to 5000000,4000000",
+    ] {
+        let ran = Folder::new().run(&format!("run {words}"));
+        assert!(ran.code == 2 && ran.err.contains("a register holds 1 to 64 bits"), "{words}: {ran:?}");
+    }
+}

@@ -235,8 +235,8 @@ fn the_extreme_geometries_need_what_all_of_them_need() {
     for model in catalogue() {
         let ks: &[u32] = match model.name {
             "dda-helix" | "dda-conic" => &[3],
-            "stepgen" | "dpm-line" | "ppc-conic" | "cim-conic" => &[4],
-            _ => &[4, 6],
+            "stepgen" | "dpm-line" | "ppc-conic" | "cim-conic" | "sampled-line" | "sampled-arc" => &[4],
+            _ => &[4, 5],
         };
         for &k in ks {
             let (choices, extent) = (Choices::default(), Extent::Bits(k));
@@ -283,7 +283,7 @@ fn a_width_that_is_given_is_judged() {
         ("widths dda-line --box 4 --width 6", 0, ""),
         ("widths dda-line --box 4 --width 3", 1, "jvx of 3 bits is too narrow, it needs 4"),
         ("widths cim-conic --box 2 --width 2", 1, "is too narrow"),
-        ("widths ppc-line --box 6 --width g=7", 2, "has no register g"),
+        ("widths ppc-line --box 6 --width g=7", 2, "has no register 'g'"),
     ] {
         let ran = folder.run(words);
         assert!(ran.code == code && ran.err.contains(told) && ran.err.is_empty() == (code == 0), "{words}: {ran:?}");

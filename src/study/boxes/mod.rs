@@ -153,7 +153,12 @@ impl Geometries {
             Extent::Grid(grid) => plane::all_lines(grid),
         };
         let all = listed.is_some();
-        let mut curves = listed.unwrap_or_else(|| plane::extremes(&sides, arcs));
+        let extremes = || match plane::extremes(&sides, arcs) {
+            // No two of its extreme points are on one circle; others may be.
+            none if none.is_empty() && arcs => plane::all_arcs(&sides).unwrap_or_default(),
+            some => some,
+        };
+        let mut curves = listed.unwrap_or_else(extremes);
         let axes = sides.0.len();
         let kinds = region.kinds();
         if axes == 2 {
@@ -167,7 +172,7 @@ impl Geometries {
                 region.describe()
             )));
         };
-        let choices = Choices { width: choices.width.or(Width::new(u64::from(k)).ok()), ..choices.clone() };
+        let choices = Choices { width: choices.width.or(width(choices, k)), ..choices.clone() };
         Ok(Geometries { curves, all, k, hardware: model.plan(&largest, &choices)?, choices })
     }
 
@@ -197,6 +202,13 @@ impl Geometries {
         let hardware = widest(model, choices, &curves)?;
         Ok(Geometries { curves, all, k, hardware, choices: choices.clone() })
     }
+}
+
+/// The width of registers that hold every number of `k` bits, in whole digits and whole units.
+fn width(choices: &Choices, k: u32) -> Option<Width> {
+    let bits = choices.radix.unwrap_or_default().reading().needed((1_i128 << k) - 1);
+    let bits = bits.next_multiple_of(choices.cascade.map_or(1, Width::get));
+    Width::new(u64::from(bits)).ok()
 }
 
 /// Runs of geometries of so many bits come to their ends in some time.

@@ -95,8 +95,8 @@ const FOLLOWED: u64 = 1 << 12;
 /// Points of a grid, and bits of coordinates, up to which all geometries are simulated even if widths are proved.
 const SMALL: (u128, u32) = (20_000, 9);
 const SMALL_BITS: u32 = 8;
-/// Bits of coordinates up to which the geometries of a grid are listed where a proof leaves something open.
-const MOST_LISTED: u32 = 12;
+/// Clocks that are simulated at most where a proof leaves something open.
+const MOST_CLOCKS: u64 = 1 << 32;
 /// The least k that a proof covers.
 const LEAST_PROVED: u32 = 3;
 
@@ -123,12 +123,21 @@ fn needed(model: &'static Model, ample: &Choices, extent: &Extent, tick: Tick<'_
         return simulated(model, ample, extent, Geometries::of(model, ample, extent)?, tick);
     };
     let is_decided = found.registers.iter().all(|register| register.known != Known::Enough);
-    if is_decided || matches!(extent, Extent::Bits(_)) || k > MOST_LISTED {
+    if is_decided || matches!(extent, Extent::Bits(_)) {
         return Ok(found);
     }
     // The box itself may need less than is proved of its bits.
     let whole = Geometries::of(model, ample, extent)?;
-    if whole.all { simulated(model, ample, extent, whole, tick) } else { Ok(found) }
+    let bearable = whole.all && clocks(model, &whole) <= MOST_CLOCKS;
+    if bearable { simulated(model, ample, extent, whole, tick) } else { Ok(found) }
+}
+
+/// About how many clocks all of these take.
+fn clocks(model: &Model, set: &Geometries) -> u64 {
+    let integrates = model.method == "digital differential analyser" || model.method == "digital pulse multiplier";
+    let way = |curve: &Curve| curve.from().iter().zip(curve.to()).map(|(from, to)| 4 * from.abs_diff(*to)).sum::<u64>();
+    let clocks = |curve: &Curve| if integrates { 1 << set.k } else { way(curve) };
+    set.curves.iter().map(clocks).fold(0, u64::saturating_add)
 }
 
 /// The widths that a proof for every k gives for this box, with the runs of its extreme geometries that need them; `None`
@@ -213,7 +222,9 @@ fn by_form(
 ) -> Result<Widths, ProofError> {
     let set = Geometries::extremes(model, ample, extent)?;
     let bench = Testbench::of_hardware(model, set.hardware.clone())?;
-    let Runs { mut seen, faults, cut } = simulate(&bench, &set.curves, FOLLOWED, tick)?;
+    // Of a counted block, which is proved at one k, the counter comes round in 2^k clocks.
+    let limit = if form.is_for_every_k() { FOLLOWED } else { LIMIT };
+    let Runs { mut seen, faults, cut } = simulate(&bench, &set.curves, limit, tick)?;
     // Every end is reached: that is proved.
     for (place, curve) in set.curves.iter().enumerate() {
         for (axis, (from, to)) in AXES.iter().zip(curve.from().iter().zip(curve.to())) {

@@ -15,7 +15,7 @@ use crate::testbench::{Ending, RangeWatch, Testbench};
 
 /// Clocks after which a run is given up.
 pub(super) const LIMIT: u64 = 1 << 24;
-/// Clocks of a single run one bit below, at most.
+/// Clocks of a single run one bit below, at most, where a proof says how it ends.
 const SHOWN: u64 = 1 << 20;
 
 /// What was seen of a register: least and greatest value, and where.
@@ -146,7 +146,7 @@ pub(super) fn too_narrow(
         Err(ModelError::DoesNotFit { .. } | ModelError::Widths(_)) => true,
         Err(_) => return None,
         Ok(bench) => {
-            let outcome = bench.limited(SHOWN).run(EngineKind::Word, &mut []).ok()?;
+            let outcome = bench.limited(if certain { SHOWN } else { LIMIT }).run(EngineKind::Word, &mut []).ok()?;
             match outcome.ending {
                 Ending::Trapped => true,
                 Ending::Limit if certain => false,
