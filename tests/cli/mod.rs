@@ -18,6 +18,7 @@ mod sampled;
 mod sweep;
 mod tables;
 mod terminal;
+mod waves;
 
 use std::fs;
 use std::path::PathBuf;

@@ -36,6 +36,7 @@ mod elaborate;
 pub mod engine;
 pub mod export;
 pub mod formula;
+pub mod guard;
 pub mod netlist;
 pub mod passes;
 pub mod prove;

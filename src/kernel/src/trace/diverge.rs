@@ -3,7 +3,7 @@
 //! # What is compared with what
 //! By clock (the default), sample *k* of A with sample *k* + offset of B, a sample being what [`read`](super::read)
 //! says; the clocks themselves are not compared. By time, the values after every change, the times of both sides taken
-//! to one unit; a file without a timescale counts in nanoseconds. Only what both sides have is compared by value; that
+//! to one unit; if one file alone names no timescale, its times cannot be compared. Only what both sides have is compared by value; that
 //! one side lasts longer is a difference of its own. With an offset it is enough that both have the same number of
 //! cycles, or that they end together.
 //!
@@ -74,8 +74,8 @@ pub enum CompareError {
     #[error(transparent)]
     Clock(#[from] ClockError),
     /// Not a pattern.
-    #[error("`{pattern}` is not a glob: {source}")]
-    BadGlob { pattern: String, source: globset::Error },
+    #[error("`{pattern}` is not a glob: {reason}")]
+    BadGlob { pattern: String, reason: String },
     /// A rule of the map without effect is a slip of the pen.
     #[error("the map renames `{from}`, but the first wave has no such signal or scope")]
     UnusedMap { from: String },
@@ -88,9 +88,21 @@ pub enum CompareError {
     /// The offset is larger than the wave.
     #[error("an offset of {offset} cycles leaves nothing to compare: the waves have {a} and {b} cycles")]
     NoOverlap { offset: i64, a: u64, b: u64 },
+    /// Its unit would be a guess.
+    #[error(
+        "{without} names no time scale, {with} counts in {unit}: write `$timescale {unit} $end`, or what is true, into the \
+         header of {without}, or compare by clock"
+    )]
+    NoTimescale { without: String, with: String, unit: Timescale },
     /// Timescales of seconds and zeptoseconds, say.
     #[error("the times of the two waves do not fit one unit")]
     TimeRange,
+}
+
+impl CompareError {
+    fn no_timescale(without: &Wave, with: &Wave, unit: Timescale) -> Self {
+        CompareError::NoTimescale { without: without.name().into(), with: with.name().into(), unit }
+    }
 }
 
 /// A place on the common axis.
@@ -102,13 +114,13 @@ pub enum Moment {
     Time {
         /// Number of units.
         count: u128,
-        /// Common to both waves.
-        unit: Timescale,
+        /// Common to both waves; none if neither names one.
+        unit: Option<Timescale>,
     },
 }
 
 impl Moment {
-    fn time(position: i128, unit: Timescale) -> Self {
+    fn time(position: i128, unit: Option<Timescale>) -> Self {
         Moment::Time { count: position.unsigned_abs(), unit }
     }
 }
@@ -275,7 +287,7 @@ impl<'w> Group<'w> {
         };
         Difference {
             at: frames.moment(position),
-            times: time(&frames.a).zip(time(&frames.b)).filter(|_| frames.unit.is_none()).map(|(a, b)| [a, b]),
+            times: time(&frames.a).zip(time(&frames.b)).filter(|_| !frames.by_time).map(|(a, b)| [a, b]),
             signal: self.a,
             path_b: &self.b.path,
             a: frames.a.value_at(self.a, position),
@@ -295,10 +307,10 @@ fn context<'w>(frames: &Frames<'w>, found: &[(i128, Group<'w>)], lines: usize) -
     let reach = i128::try_from(lines).unwrap_or(i128::MAX);
     let range = first.saturating_sub(reach).max(frames.common.start)
         ..first.saturating_add(reach).saturating_add(1).min(frames.common.end);
-    let shown = |position: i128| if frames.unit.is_some() { position == *first } else { range.contains(&position) };
+    let shown = |position: i128| if frames.by_time { position == *first } else { range.contains(&position) };
     let shown: Vec<&Group<'w>> =
         found.iter().filter(|(position, _)| shown(*position)).map(|(_, group)| group).take(COLUMNS).collect();
-    let positions: Vec<i128> = if frames.unit.is_none() {
+    let positions: Vec<i128> = if !frames.by_time {
         range.collect()
     } else {
         let mut all = vec![*first];

@@ -51,10 +51,11 @@ pub fn write_merged(a: &Wave, b: &Wave, options: &Options, out: &mut dyn Write) 
     entries.sort_by(|x, y| x.scopes.cmp(&y.scopes));
 
     let mut writer = Writer::new(BufWriter::with_capacity(1 << 16, out));
-    let sources = header(&mut writer, &entries, unit(&frames)?)?;
+    let (unit, step) = unit(&frames)?;
+    let sources = header(&mut writer, &entries, unit)?;
     let raw = Frame::raw(a);
     let tracks = sources.into_iter().map(|(source, id)| Track::new(source, id, &frames, &raw)).collect();
-    body(writer.writer(), tracks, &frames)?;
+    body(&mut Times { out: writer.writer(), step }, tracks, &frames)?;
     Ok(writer.flush()?)
 }
 
@@ -68,18 +69,27 @@ struct Entry<'w> {
 fn entries<'w>(frames: &Frames<'w>, options: &Options) -> Result<Vec<Entry<'w>>, CompareError> {
     let mut entries = Vec::new();
     let mut taken = HashSet::new();
-    let mut push = |top: &str, name: &str, source| {
+    let mut next: HashMap<(Vec<String>, String), u64> = HashMap::new();
+    let mut push = |top: &str, name: &str, source: Source<'w>| {
+        // A vector without bits has nothing to show.
+        if source.width() == 0 && matches!(source.kind(), Kind::Unsigned | Kind::Signed) {
+            return;
+        }
         let mut scopes: Vec<String> = std::iter::once(top).chain(name.split('.')).map(identifier).collect();
         let base = scopes.pop().unwrap_or_default();
         let mut name = base.clone();
-        let mut number = 2;
-        while !taken.insert((scopes.clone(), name.clone())) {
-            name = format!("{base}_{number}");
-            number += 1;
+        if taken.contains(&(scopes.clone(), name.clone())) {
+            // The next number is kept, so that many names of one kind take no longer than others.
+            let number = next.entry((scopes.clone(), base.clone())).or_insert(2);
+            while taken.contains(&(scopes.clone(), name.clone())) {
+                name = format!("{base}_{number}");
+                *number += 1;
+            }
         }
+        taken.insert((scopes.clone(), name.clone()));
         entries.push(Entry { scopes, name, source });
     };
-    if frames.unit.is_none() {
+    if !frames.by_time {
         let wave = frames.a.wave;
         let clock = &wave.signals()[wave.clock()?.signal()];
         push("a", clock.leaf(), Source::Clock(clock));
@@ -113,8 +123,13 @@ fn identifier(name: &str) -> String {
     plain
 }
 
-fn unit(frames: &Frames<'_>) -> Result<(u32, TimescaleUnit), MergeError> {
-    let unit = frames.unit.or(frames.a.wave.timescale()).unwrap_or(Timescale::NANOSECOND);
+/// A time scale of VCD: a factor of 1, 10 or 100 and a unit.
+type VcdScale = (u32, TimescaleUnit);
+
+/// The time scale of the file, if one is known, and how many of it make a unit of the frames.
+fn unit(frames: &Frames<'_>) -> Result<(Option<VcdScale>, u64), MergeError> {
+    let unit = if frames.by_time { frames.unit } else { frames.a.wave.timescale() };
+    let Some(unit) = unit else { return Ok((None, 1)) };
     let name = match unit.exponent {
         -15 => TimescaleUnit::FS,
         -12 => TimescaleUnit::PS,
@@ -124,21 +139,24 @@ fn unit(frames: &Frames<'_>) -> Result<(u32, TimescaleUnit), MergeError> {
         0 => TimescaleUnit::S,
         _ => return Err(MergeError::Unit { unit }),
     };
-    Ok((unit.factor, name))
+    let factor = [100, 10].into_iter().find(|factor| unit.factor.is_multiple_of(*factor)).unwrap_or(1);
+    Ok((Some((factor, name)), (unit.factor / factor).into()))
 }
 
 /// Writes the header and gives each distinct source its id code: an alias costs nothing.
 fn header<'w>(
     writer: &mut Writer<impl Write>,
     entries: &[Entry<'w>],
-    (factor, unit): (u32, TimescaleUnit),
+    scale: Option<VcdScale>,
 ) -> io::Result<Vec<(Source<'w>, IdCode)>> {
     let mut sources = Vec::new();
     let mut ids: HashMap<_, IdCode> = HashMap::new();
     let mut open: &[String] = &[];
     writeln!(writer.writer(), "$version stepwave $end")?;
     writeln!(writer.writer(), "$comment two waves a and b; xor is 0 where they agree $end")?;
-    writer.timescale(factor, unit)?;
+    if let Some((factor, unit)) = scale {
+        writer.timescale(factor, unit)?;
+    }
     for Entry { scopes, name, source } in entries {
         let common = open.iter().zip(scopes).take_while(|(x, y)| x == y).count();
         for _ in common..open.len() {
@@ -173,46 +191,67 @@ fn header<'w>(
     Ok(sources)
 }
 
-fn body(out: &mut impl Write, mut tracks: Vec<Track<'_, '_>>, frames: &Frames<'_>) -> Result<(), MergeError> {
-    let time_of = |track: &Track<'_, '_>, position: i128| match frames.unit {
+/// Where times are written in the time scale of the file.
+struct Times<'o, W> {
+    out: &'o mut W,
+    step: u64,
+}
+
+impl<W: Write> Times<'_, W> {
+    fn write(&mut self, time: u64) -> io::Result<()> {
+        let scaled = u128::from(time) * u128::from(self.step);
+        writeln!(self.out, "#{scaled}")
+    }
+}
+
+fn body(
+    times: &mut Times<'_, impl Write>,
+    mut tracks: Vec<Track<'_, '_>>,
+    frames: &Frames<'_>,
+) -> Result<(), MergeError> {
+    let time_of = |track: &Track<'_, '_>, position: i128| match frames.by_time {
         // Positions are times already.
-        Some(_) => u64::try_from(position).map(Some).map_err(|_| MergeError::TimeRange),
-        None if track.is_clock() => Ok(u64::try_from(position).ok()),
-        None => Ok(frames.a.time_of(position)),
+        true => u64::try_from(position).map(Some).map_err(|_| MergeError::TimeRange),
+        false if track.is_clock() => Ok(u64::try_from(position).ok()),
+        false => Ok(frames.a.time_of(position)),
     };
-    let (start, mut now, end) = match frames.unit {
-        Some(_) => {
+    let (start, mut now, end) = match frames.by_time {
+        true => {
             let whole = |time: i128| u64::try_from(time).map_err(|_| MergeError::TimeRange);
             let last = frames.a.last_position().max(frames.b.last_position());
             (frames.common.start, whole(frames.common.start)?, whole(last)?)
         }
-        None => {
-            let times = frames.a.wave.times();
-            (0, times.first().copied().unwrap_or(0), times.last().copied().unwrap_or(0))
+        false => {
+            let all = frames.a.wave.times();
+            (0, all.first().copied().unwrap_or(0), all.last().copied().unwrap_or(0))
         }
     };
+    if end.checked_mul(times.step).is_none() {
+        return Err(MergeError::TimeRange);
+    }
     // The time of the next change, with its position; a track ends with the wave.
     let upcoming = |track: &mut Track<'_, '_>| -> Result<Option<(u64, i128)>, MergeError> {
         let Some(next) = track.next_change() else { return Ok(None) };
         Ok(time_of(track, next)?.map(|time| (time, next)))
     };
-    writeln!(out, "#{now}\n$dumpvars")?;
+    times.write(now)?;
+    writeln!(times.out, "$dumpvars")?;
     let mut queue = BinaryHeap::new();
     for (number, track) in tracks.iter_mut().enumerate() {
         let start = if track.is_clock() { now.into() } else { start };
-        track.write(start, &mut |bytes| out.write_all(bytes))?;
+        track.write(start, &mut |bytes| times.out.write_all(bytes))?;
         queue.extend(upcoming(track)?.map(|(time, next)| Reverse((time, number, next))));
     }
-    writeln!(out, "$end")?;
+    writeln!(times.out, "$end")?;
     while let Some(mut top) = queue.peek_mut() {
         let Reverse((time, number, position)) = *top;
         let track = &mut tracks[number];
         track.write(position, &mut |bytes| {
             if time > now {
                 now = time;
-                writeln!(out, "#{now}")?;
+                times.write(now)?;
             }
-            out.write_all(bytes)
+            times.out.write_all(bytes)
         })?;
         match upcoming(track)? {
             Some((time, next)) => *top = Reverse((time, number, next)),
@@ -220,7 +259,7 @@ fn body(out: &mut impl Write, mut tracks: Vec<Track<'_, '_>>, frames: &Frames<'_
         }
     }
     if end > now {
-        writeln!(out, "#{end}")?;
+        times.write(end)?;
     }
     Ok(())
 }

@@ -5,6 +5,7 @@ pub mod fst;
 pub mod gtkw;
 pub mod merge;
 mod moves;
+mod pattern;
 pub mod probe;
 pub mod read;
 pub mod timescale;

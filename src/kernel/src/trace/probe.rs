@@ -2,11 +2,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use globset::{Glob, GlobMatcher};
+use globset::GlobMatcher;
 
 use crate::bits::Width;
 use crate::elaborate::Design;
 use crate::netlist::{Format, Net, Op};
+use crate::trace::pattern::glob;
 
 /// What kind of thing drives a shown net.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -73,10 +74,7 @@ pub struct Selection {
 }
 
 fn matchers(patterns: &[String]) -> Result<Vec<GlobMatcher>, PatternError> {
-    let compile = |pattern: &String| match Glob::new(pattern) {
-        Ok(glob) => Ok(glob.compile_matcher()),
-        Err(error) => Err(PatternError::Syntax(pattern.clone(), error.kind().to_string())),
-    };
+    let compile = |pattern: &String| glob(pattern).map_err(|reason| PatternError::Syntax(pattern.clone(), reason));
     patterns.iter().map(compile).collect()
 }
 

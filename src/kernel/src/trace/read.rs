@@ -25,18 +25,25 @@
 //! # Ok::<(), stepwave_kernel::trace::read::WaveError>(())
 //! ```
 
+mod blocks;
 mod clock;
 mod decode;
-mod scan;
+mod fst;
+mod limits;
+mod names;
+mod store;
 #[cfg(test)]
 pub(crate) mod tests;
+mod timescale;
 mod value;
+mod vcd;
 
 pub use clock::{Clock, ClockError};
+pub(crate) use value::extension;
 pub use value::{Value, Vector};
 
 use std::fmt::{self, Display, Formatter};
-use std::fs::File;
+use std::fs::{File, FileType};
 use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
@@ -46,8 +53,16 @@ pub struct Wave {
     timescale: Option<Timescale>,
     times: Vec<u64>,
     signals: Vec<Signal>,
-    stored: Vec<wellen::Signal>,
+    stored: Vec<store::Changes>,
     clock: Result<Clock, ClockError>,
+}
+
+/// What a reader makes of a file.
+struct Content {
+    signals: Vec<Signal>,
+    stored: Vec<store::Changes>,
+    times: Vec<u64>,
+    timescale: Option<Timescale>,
 }
 
 /// A named signal of a wave. Two names of one signal are two of these that share their stored changes.
@@ -100,9 +115,6 @@ pub struct Timescale {
 }
 
 impl Timescale {
-    /// What a file that names no unit counts in, as in GTKWave.
-    pub const NANOSECOND: Self = Self { factor: 1, exponent: -9 };
-
     /// `count` units as a person writes it: `1750 ns`.
     #[must_use]
     pub fn show(self, count: u128) -> String {
@@ -144,17 +156,37 @@ pub enum WaveError {
     /// An unfinished or truncated file.
     #[error("{name}: {place}: the file ends inside {what}; it was cut off or is still being written")]
     CutOff { name: String, place: String, what: &'static str },
+    /// What a reader would have to guess.
+    #[error("{name}: {place}: {reason}")]
+    Refused { name: String, place: String, reason: String },
+    /// The VCD of ports with strengths.
+    #[error("{name}: line {line}: extended VCD ($dumpports) is not supported: dump with $dumpvars")]
+    Extended { name: String, line: u64 },
+    /// A small file that inflates.
+    #[error(
+        "{name}: {what} take more than {limit}, the limit for a file of its size; convert it to VCD, which has none"
+    )]
+    TooMuch { name: String, what: String, limit: String },
+    /// A pipe that gives and gives.
+    #[error(
+        "{name}: it gives more than {}, the limit for a pipe; write it to a file first",
+        limits::mebibytes(limits::MAX_PIPE)
+    )]
+    Endless { name: String },
+    /// Such as a disk or a terminal.
+    #[error("{name}: it is a device, not a wave: name a file or a pipe")]
+    Device { name: String },
     /// The format demands that times never decrease.
     #[error("{name}: line {line}: the time goes back from #{from} to #{to}")]
     TimeDecreases { name: String, line: u64, from: u64, to: u64 },
     /// Not a whole number from 0 up, or one too large.
-    #[error("{name}: line {line}: `#{time}` is not a time")]
+    #[error("{name}: line {line}: `#{time}` is not a time, a whole number from 0 to {}", u64::MAX)]
     BadTime { name: String, line: u64, time: String },
     /// A value that belongs to no variable.
     #[error("{name}: line {line}: a value for the id code `{id}`, which no $var declares")]
     UndeclaredId { name: String, line: u64, id: String },
     /// A width that no hardware has, but that would fill the memory.
-    #[error("{name}: `{path}` is declared {width} bits wide; at most {} can be read", decode::MAX_WIDTH)]
+    #[error("{name}: `{path}` is declared {width} bits wide; at most {} can be read", limits::MAX_WIDTH)]
     TooWide { name: String, path: String, width: u32 },
     /// Anything else; the reason is the decoder's.
     #[error("{name}: broken wave file: {reason}")]
@@ -165,8 +197,7 @@ pub enum WaveError {
 }
 
 impl Wave {
-    /// Reads a whole file; the format is recognised by its content. What is no regular file (a pipe) is read to its
-    /// end first. The clock is the one found as [`Clock`] says; a file without a clock is no error until cycles are
+    /// Reads a whole file or pipe; the format is recognised by its content. The clock is the one found as [`Clock`] says; a file without a clock is no error until cycles are
     /// asked for.
     ///
     /// # Errors
@@ -176,15 +207,18 @@ impl Wave {
         let name = path.display().to_string();
         let io = |source| WaveError::Io { name: name.clone(), source };
         let mut file = File::open(path).map_err(io)?;
+        let kind = file.metadata().map_err(io)?.file_type();
+        if is_device(kind) {
+            return Err(WaveError::Device { name });
+        }
         let mut head = Vec::with_capacity(HEAD);
         file.by_ref().take(HEAD as u64).read_to_end(&mut head).map_err(io)?;
         let format = Self::format(&head, &name)?;
-        if file.metadata().map_err(io)?.is_file() {
+        if kind.is_file() {
             file.rewind().map_err(io)?;
             decode::wave(BufReader::with_capacity(1 << 16, file), format, name)
         } else {
-            file.read_to_end(&mut head).map_err(io)?;
-            decode::wave(Cursor::new(head), format, name)
+            decode::piped(head, file, format, name)
         }
     }
 
@@ -198,11 +232,11 @@ impl Wave {
         decode::wave(Cursor::new(bytes), format, name)
     }
 
-    fn format(head: &[u8], name: &str) -> Result<scan::Format, WaveError> {
+    fn format(head: &[u8], name: &str) -> Result<blocks::Format, WaveError> {
         if head.is_empty() {
             return Err(WaveError::Empty { name: name.into() });
         }
-        scan::format(head).ok_or_else(|| WaveError::NotAWave { name: name.into() })
+        blocks::format(head).ok_or_else(|| WaveError::NotAWave { name: name.into() })
     }
 
     /// The same wave sampled by the clock `wanted`: a full dotted path, or the last parts of one; of several that
@@ -290,12 +324,12 @@ impl Wave {
 
     /// The value of a signal of this wave after its change with this number.
     pub(crate) fn value(&self, signal: &Signal, change: usize) -> Value<'_> {
-        Value::new(self.stored[signal.stored].data().get_value_at(change), signal.kind == Kind::Signed, change)
+        self.stored[signal.stored].value(change, signal.kind == Kind::Signed)
     }
 
     /// The time indices of the changes of a signal of this wave, not decreasing.
     pub(crate) fn change_times(&self, signal: &Signal) -> &[u32] {
-        self.stored[signal.stored].time_indices()
+        self.stored[signal.stored].times()
     }
 }
 
@@ -308,3 +342,14 @@ impl fmt::Debug for Wave {
 
 /// The bytes by which a format is recognised.
 const HEAD: usize = 512;
+
+/// Reading a device has no end, or waits for a person.
+fn is_device(kind: FileType) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        kind.is_char_device() || kind.is_block_device()
+    }
+    #[cfg(not(unix))]
+    false
+}

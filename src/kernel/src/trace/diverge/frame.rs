@@ -22,7 +22,9 @@ pub(crate) struct Frames<'w> {
     pub(crate) b: Frame<'w>,
     /// The positions at which both have a value.
     pub(crate) common: Range<i128>,
-    /// The unit of the positions if they are times.
+    /// Whether the positions are times.
+    pub(crate) by_time: bool,
+    /// The unit of the positions if they are times, and if the files name one.
     pub(crate) unit: Option<Timescale>,
     /// Set if one side lasts longer.
     pub(crate) lengths: Option<Lengths>,
@@ -49,20 +51,20 @@ impl<'w> Frames<'w> {
         let lengths = (!even).then_some(Lengths { a: Moment::Clock(cycles_a), b: Moment::Clock(cycles_b) });
         let a = Frame { wave: a, axis: Axis::Cycles { clock: a.clock()?, shift: 0 } };
         let b = Frame { wave: b, axis: Axis::Cycles { clock: b.clock()?, shift } };
-        Ok(Self { a, b, common, unit: None, lengths })
+        Ok(Self { a, b, common, by_time: false, unit: None, lengths })
     }
 
     fn by_time(a: &'w Wave, b: &'w Wave) -> Result<Self, CompareError> {
-        let [scale_a, scale_b] = [a, b].map(|wave| wave.timescale().unwrap_or(Timescale::NANOSECOND));
-        let exponent = scale_a.exponent.min(scale_b.exponent);
-        let whole = |scale: Timescale| {
-            let ten = 10i128.checked_pow(scale.exponent.abs_diff(exponent).into());
-            ten.and_then(|ten| ten.checked_mul(scale.factor.into())).ok_or(CompareError::TimeRange)
+        let (unit, [step_a, step_b]) = match (a.timescale(), b.timescale()) {
+            (Some(scale_a), Some(scale_b)) => {
+                let (unit, steps) = common_unit(scale_a, scale_b)?;
+                (Some(unit), steps)
+            }
+            (None, None) => (None, [1, 1]),
+            // Any unit would be a guess.
+            (Some(unit), None) => return Err(CompareError::no_timescale(b, a, unit)),
+            (None, Some(unit)) => return Err(CompareError::no_timescale(a, b, unit)),
         };
-        let [step_a, step_b] = [whole(scale_a)?, whole(scale_b)?];
-        let divides = |factor: &u32| step_a % i128::from(*factor) == 0 && step_b % i128::from(*factor) == 0;
-        let unit = Timescale { factor: [100, 10].into_iter().find(divides).unwrap_or(1), exponent };
-        let [step_a, step_b] = [step_a, step_b].map(|step| step / i128::from(unit.factor));
         let ends = |wave: &Wave, step: i128| {
             let at = |time: Option<&u64>| step.checked_mul(time.copied().unwrap_or(0).into());
             at(wave.times().first()).zip(at(wave.times().last())).ok_or(CompareError::TimeRange)
@@ -73,14 +75,15 @@ impl<'w> Frames<'w> {
         let a = Frame { wave: a, axis: Axis::Times { scale: step_a } };
         let b = Frame { wave: b, axis: Axis::Times { scale: step_b } };
         let common = first_a.min(first_b)..last_a.min(last_b).saturating_add(1);
-        Ok(Self { a, b, common, unit: Some(unit), lengths })
+        Ok(Self { a, b, common, by_time: true, unit, lengths })
     }
 
     /// A position in the words of the report.
     pub(crate) fn moment(&self, position: i128) -> Moment {
-        match self.unit {
-            Some(unit) => Moment::time(position, unit),
-            None => Moment::Clock(u64::try_from(position).unwrap_or(0)),
+        if self.by_time {
+            Moment::time(position, self.unit)
+        } else {
+            Moment::Clock(u64::try_from(position).unwrap_or(0))
         }
     }
 
@@ -96,6 +99,19 @@ impl<'w> Frames<'w> {
         }
         None
     }
+}
+
+/// The coarsest unit that divides both time scales, and the number of these units in each.
+fn common_unit(a: Timescale, b: Timescale) -> Result<(Timescale, [i128; 2]), CompareError> {
+    let exponent = a.exponent.min(b.exponent);
+    let whole = |scale: Timescale| {
+        let ten = 10i128.checked_pow(scale.exponent.abs_diff(exponent).into());
+        ten.and_then(|ten| ten.checked_mul(scale.factor.into())).ok_or(CompareError::TimeRange)
+    };
+    let steps = [whole(a)?, whole(b)?];
+    let divides = |factor: &u32| steps.iter().all(|step| step % i128::from(*factor) == 0);
+    let unit = Timescale { factor: [100, 10].into_iter().find(divides).unwrap_or(1), exponent };
+    Ok((unit, steps.map(|step| step / i128::from(unit.factor))))
 }
 
 impl<'w> Frame<'w> {

@@ -2,8 +2,9 @@
 
 use super::frame::Frames;
 use super::{CompareError, Options};
+use crate::trace::pattern::glob;
 use crate::trace::read::{Signal, Wave};
-use globset::{Glob, GlobSet, GlobSetBuilder};
+use globset::GlobMatcher;
 use std::collections::{HashMap, HashSet};
 
 /// A signal under the name by which both sides are compared. One of the sides may lack it.
@@ -31,25 +32,22 @@ pub(crate) fn pairs<'w>(frames: &Frames<'w>, options: &Options) -> Result<Vec<Pa
     let ignore = globs(&options.ignore)?;
     pairs.retain(|pair| {
         let clock = pair.a.is_some_and(|a| frames.a.is_clock(a)) || pair.b.is_some_and(|b| frames.b.is_clock(b));
-        let hit = |globs: &GlobSet| {
+        let hit = |globs: &[GlobMatcher]| {
             let signals = || pair.a.into_iter().chain(pair.b);
-            globs.is_match(&pair.name) || signals().any(|s| globs.is_match(&s.path) || globs.is_match(s.leaf()))
+            let one = |glob: &GlobMatcher| {
+                glob.is_match(&pair.name) || signals().any(|s| glob.is_match(&s.path) || glob.is_match(s.leaf()))
+            };
+            globs.iter().any(one)
         };
         !clock && (select.is_empty() || hit(&select)) && !hit(&ignore)
     });
     if pairs.is_empty() { Err(CompareError::NothingToCompare) } else { Ok(pairs) }
 }
 
-fn globs(patterns: &[String]) -> Result<GlobSet, CompareError> {
-    let bad = |pattern: &str| {
-        let pattern = pattern.to_string();
-        move |source| CompareError::BadGlob { pattern, source }
-    };
-    let mut set = GlobSetBuilder::new();
-    for pattern in patterns {
-        set.add(Glob::new(pattern).map_err(bad(pattern))?);
-    }
-    set.build().map_err(bad(&patterns.join(", ")))
+fn globs(patterns: &[String]) -> Result<Vec<GlobMatcher>, CompareError> {
+    let compile =
+        |pattern: &String| glob(pattern).map_err(|reason| CompareError::BadGlob { pattern: pattern.clone(), reason });
+    patterns.iter().map(compile).collect()
 }
 
 /// The names by which the signals of A and of B are compared.

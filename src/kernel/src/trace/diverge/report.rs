@@ -107,7 +107,8 @@ impl Display for Moment {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match *self {
             Moment::Clock(cycle) => write!(f, "clock {cycle}"),
-            Moment::Time { count, unit } => f.write_str(&unit.show(count)),
+            Moment::Time { count, unit: Some(unit) } => f.write_str(&unit.show(count)),
+            Moment::Time { count, unit: None } => write!(f, "#{count}"),
         }
     }
 }

@@ -214,3 +214,20 @@ fn the_clocks_may_have_different_names() {
     let b = wave(&COUNTER.vcd().replace(" clk ", " osc ")).with_clock("x.osc").expect("that clock");
     assert!(same(&COUNTER.wave(), &b));
 }
+
+#[test]
+fn by_time_a_fraction_of_a_unit_is_the_finer_unit_and_a_missing_unit_is_not_guessed() {
+    let by_time = options(|o| o.by = By::Time);
+    let unit = |unit: &'static str| Counter { unit, ..COUNTER }.wave();
+    assert_eq!(report(&unit("0.1ps"), &unit("100 fs"), &by_time), "same: 4 signals up to 12000 fs");
+    assert!(report(&unit("0.1ps"), &unit("1 ps"), &by_time).contains("differs: A ends at 12000 fs, B at 120000 fs"));
+    let none = || wave(&COUNTER.vcd().replace("$timescale 1 ns $end", ""));
+    assert_eq!(report(&none(), &none(), &by_time), "same: 4 signals up to #120");
+    let guess = compare(&none(), &unit("1 ns"), &by_time).expect_err("no unit").to_string();
+    assert_eq!(
+        guess,
+        "memory names no time scale, memory counts in 1 ns: write `$timescale 1 ns $end`, or what is true, into the header \
+         of memory, or compare by clock"
+    );
+    assert!(same(&none(), &unit("1 ns")));
+}

@@ -110,3 +110,34 @@ fn signals_of_one_side_other_kinds_and_odd_names_are_kept_too() {
         (1..6).map(|signal| merged.value_at_time(signal, 15).expect("a signal").to_string()).collect();
     assert_eq!(last, ["\"A B\\\\\"", "event no. 2", "x", "x", "11111111 (-1)"]);
 }
+
+#[test]
+fn wide_vectors_are_written_with_their_fewest_digits() {
+    let vars = "$var wire 1 ! clk $end $var wire 1000000 \" q $end $var wire 130 # w $end $var wire 0 $ none $end";
+    let ones = "1".repeat(130);
+    let a = wave(&file(vars, &format!("#0 0! b1 \" b{ones} # #5 1! b110 \" bx #")));
+    let b = wave(&file(vars, "#0 0! b11 \" b0 # #5 1! bx01 \" bx #"));
+    let merged = merged(&a, &b, &Options::default());
+    assert!(merged.len() < 2000, "{}", merged.len());
+    let read = wave(&merged);
+    let shown = |path: &str, time| {
+        let signal = read.find(path).unwrap_or_else(|| panic!("{path} in {merged}"));
+        read.value_at_time(signal, time).expect("a signal").to_string()
+    };
+    assert_eq!((shown("a.m.q", 0), shown("b.m.q", 5)), ("1000000'b1".into(), "1000000'bx01".into()));
+    assert_eq!((shown("xor.m.q", 0), shown("xor.m.q", 5)), ("1000000'b10".into(), "1000000'bx11".into()));
+    assert_eq!((shown("xor.m.w", 0), shown("xor.m.w", 5)), (ones, "0".repeat(130)));
+}
+
+#[test]
+fn a_time_scale_that_is_not_1_10_or_100_becomes_one_that_is() {
+    let text = |unit: &str| {
+        file("$var wire 1 ! clk $end $var wire 1 \" q $end", "#0 0! 0\" #5 1! #9 1\"").replace("1 ns", unit)
+    };
+    let odd = merged(&wave(&text("500 ps")), &wave(&text("500 ps")), &Options::default());
+    // The samples of a cycle stand from its edge on, which comes after 5 times 500 ps; the end after 9.
+    assert!(odd.contains("$timescale 100 ps $end") && odd.ends_with("#25\n1!\n1\"\n1#\n#45\n"), "{odd}");
+    let none = text("1 ns").replace("$timescale 1 ns $end", "");
+    let none = merged(&wave(&none), &wave(&none), &Options { by: By::Time, ..Options::default() });
+    assert!(!none.contains("$timescale") && none.contains("\n#9\n"), "{none}");
+}

@@ -1,7 +1,7 @@
 //! One variable of the merged file, followed through time.
 
 use crate::trace::diverge::{Frame, Frames, Walk};
-use crate::trace::read::{Kind, Signal, Value};
+use crate::trace::read::{Kind, Signal, Value, extension};
 use std::io::{self, Write};
 use vcd::IdCode;
 
@@ -106,8 +106,9 @@ impl<'f, 'w> Track<'f, 'w> {
                 if width > 1 {
                     line.push(b'b');
                 }
-                // Nearly all values are plain numbers; the others are taken bit by bit.
+                // Nearly all values are plain numbers; the others are taken bit by bit. Wide vectors are never written whole.
                 match (number(value), other.map(|other| (other, number(other)))) {
+                    (None, other) if width > WIDE => push_wide(line, value, other.map(|(other, _)| other), width),
                     (Some(a), None) => push_number(line, a, width),
                     (Some(a), Some((_, Some(b)))) => push_number(line, a ^ b, width),
                     (None, None) => line.extend(digits(value, width).map(four_state)),
@@ -147,6 +148,30 @@ impl<'f, 'w> Track<'f, 'w> {
             }
         }
     }
+}
+
+/// Vectors wider than this never come as numbers.
+const WIDE: u32 = 128;
+
+/// The fewest digits that extend to a wide vector, or to where two of them differ.
+fn push_wide(line: &mut Vec<u8>, value: Value<'_>, other: Option<Value<'_>>, width: u32) {
+    let shortest = |value| if let Value::Bits(bits) = value { bits.shortest().unwrap_or(b"x") } else { b"x" };
+    let a = shortest(value);
+    let Some(b) = other.map(shortest) else {
+        line.extend(a.iter().map(|digit| four_state(char::from(*digit))));
+        return;
+    };
+    let length = a.len().max(b.len());
+    // One digit more stands for all those that neither has.
+    let from = if length < width as usize { length + 1 } else { length };
+    let digit = |digits: &[u8], place: usize| {
+        digits
+            .len()
+            .checked_sub(place)
+            .and_then(|at| digits.get(at))
+            .map_or(extension(digits), |digit| char::from(*digit))
+    };
+    line.extend((1..=from).rev().map(|place| exclusive_or((digit(a, place), digit(b, place)))));
 }
 
 fn number(value: Value<'_>) -> Option<u128> {

@@ -1,6 +1,8 @@
 //! The clock of a wave and the cycles it cuts time into.
 
 use super::{Kind, Signal, Value, Wave};
+use std::cmp::Reverse;
+use std::collections::HashSet;
 
 /// The clock that samples a wave.
 ///
@@ -19,8 +21,15 @@ pub struct Clock {
 #[expect(missing_docs, reason = "the message says what the fields are")]
 pub enum ClockError {
     /// It may have been written without.
-    #[error("{name}: no 1-bit signal named clk or clock; name the clock with --clock or compare with --by time")]
-    None { name: String },
+    #[error(
+        "{name}: no 1-bit signal named clk or clock; name the clock with --clock{} or compare with --by time",
+        shown(candidates)
+    )]
+    None {
+        name: String,
+        /// The 1-bit signals with the most rising edges, best first, and how many.
+        candidates: Vec<(String, usize)>,
+    },
     /// A slip of the pen.
     #[error("{name}: no signal `{wanted}` to use as the clock; --by time needs none")]
     Unknown { name: String, wanted: String },
@@ -32,11 +41,23 @@ pub enum ClockError {
     Flat { name: String, path: String },
 }
 
+/// Signals that a message proposes as clocks.
+const CANDIDATES: usize = 5;
+
+fn shown(candidates: &[(String, usize)]) -> String {
+    let mut shown: Vec<String> = Vec::new();
+    for (path, edges) in candidates {
+        shown.push(format!("{path}, {edges} rising edge{}", if *edges == 1 { "" } else { "s" }));
+    }
+    if shown.is_empty() { String::new() } else { format!(" ({})", shown.join("; ")) }
+}
+
 impl Clock {
     pub(super) fn found(wave: &Wave) -> Result<Self, ClockError> {
         let is_clock = |signal: &Signal| ["clk", "clock"].iter().any(|name| signal.leaf().eq_ignore_ascii_case(name));
         let one_bit = |signal: &Signal| is_bit(signal) && is_clock(signal);
-        let signal = shallowest(wave, one_bit).ok_or_else(|| ClockError::None { name: wave.name.clone() })?;
+        let signal = shallowest(wave, one_bit)
+            .ok_or_else(|| ClockError::None { name: wave.name.clone(), candidates: Self::candidates(wave) })?;
         Self::new(wave, signal)
     }
 
@@ -52,21 +73,22 @@ impl Clock {
         Self::new(wave, signal)
     }
 
+    /// The 1-bit signals that rise most often, by the number of their edges, then by their order; another name of one
+    /// does not count.
+    fn candidates(wave: &Wave) -> Vec<(String, usize)> {
+        let mut seen = HashSet::new();
+        let new = wave.signals.iter().filter(|signal| is_bit(signal) && seen.insert(signal.stored));
+        let mut all: Vec<(&Signal, usize)> = new.map(|signal| (signal, rising(wave, signal).len())).collect();
+        all.retain(|(_, edges)| *edges > 0);
+        all.sort_by_key(|(_, edges)| Reverse(*edges));
+        all.truncate(CANDIDATES);
+        all.into_iter().map(|(signal, edges)| (signal.path.clone(), edges)).collect()
+    }
+
     fn new(wave: &Wave, signal: usize) -> Result<Self, ClockError> {
         let clock = &wave.signals[signal];
-        let times = wave.change_times(clock);
-        let mut edges = Vec::new();
-        let mut high_before = true;
-        for (change, time) in times.iter().enumerate() {
-            if times.get(change + 1) != Some(time) {
-                let high = matches!(wave.value(clock, change), Value::Bits(bits) if bits.to_u128() == Some(1));
-                if high && !high_before {
-                    edges.push(*time);
-                }
-                high_before = high;
-            }
-        }
-        // A wave of one cycle holds no edge behind its beginning: only the clock falls in it.
+        let edges = rising(wave, clock);
+        // A wave of one cycle holds no edge after its beginning: only the clock falls in it.
         let others = || wave.signals.iter().enumerate().filter(|(index, _)| *index != signal);
         let changes = || others().any(|(_, signal)| wave.change_times(signal).last() > Some(&0));
         if edges.is_empty() && changes() {
@@ -96,6 +118,23 @@ impl Clock {
     pub(crate) fn cycle_of(&self, time_index: u32) -> u32 {
         self.cycle_of[time_index as usize]
     }
+}
+
+/// The time indices at which a bit rises.
+fn rising(wave: &Wave, signal: &Signal) -> Vec<u32> {
+    let times = wave.change_times(signal);
+    let mut edges = Vec::new();
+    let mut high_before = true;
+    for (change, time) in times.iter().enumerate() {
+        if times.get(change + 1) != Some(time) {
+            let high = matches!(wave.value(signal, change), Value::Bits(bits) if bits.to_u128() == Some(1));
+            if high && !high_before {
+                edges.push(*time);
+            }
+            high_before = high;
+        }
+    }
+    edges
 }
 
 fn is_bit(signal: &Signal) -> bool {

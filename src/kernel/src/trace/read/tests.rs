@@ -1,3 +1,6 @@
+mod foreign;
+mod inflated;
+
 use super::{ClockError, Kind, Timescale, Wave, WaveError};
 use std::fmt::Write;
 
@@ -123,7 +126,7 @@ fn the_clock_is_the_shallowest_clk_or_clock_unless_named() {
 fn a_file_without_a_clock_is_read_and_points_to_the_way_out() {
     let wave = wave(&file("$var wire 1 ! q $end", "#0 0! #1 1!"));
     let problem = wave.cycles().expect_err("no clock");
-    assert_eq!(problem, ClockError::None { name: "memory".into() });
+    assert!(matches!(&problem, ClockError::None { name, .. } if name == "memory"));
     assert!(problem.to_string().contains("--clock") && problem.to_string().contains("--by time"));
 }
 
@@ -139,7 +142,7 @@ fn values_read_by_the_kind_of_their_variable() {
     let kinds: Vec<Kind> = wave.signals().iter().take(5).map(|signal| signal.kind).collect();
     assert_eq!(kinds, [Kind::Unsigned, Kind::Signed, Kind::Real, Kind::Text, Kind::Event]);
     assert_eq!(wave.signals()[0].path, "m.u");
-    assert_eq!(wave.timescale(), Some(Timescale::NANOSECOND));
+    assert_eq!(wave.timescale(), Some(Timescale { factor: 1, exponent: -9 }));
 }
 
 #[test]
@@ -163,10 +166,10 @@ fn what_is_no_wave_is_refused_with_its_place() {
     assert!(one("#0\nb1").starts_with("memory: line 7: the file ends inside a value"));
     assert_eq!(one("#0 b1 ! #5 b0 ! #4"), "memory: line 6: the time goes back from #5 to #4");
     assert_eq!(one("#0 b1 %"), "memory: line 6: a value for the id code `%`, which no $var declares");
-    assert_eq!(one("#-3"), "memory: line 6: `#-3` is not a time");
+    assert_eq!(one("#-3"), "memory: line 6: `#-3` is not a time, a whole number from 0 to 18446744073709551615");
     assert_eq!(
         one("#0 b10101 !"),
-        "memory: broken wave file: Failed to parse four state value: b10101 for signal of size 4"
+        "memory: line 6: `b10101` is not a value of `m.q`, which is 4 bits: it has more digits"
     );
     let wide = error(file("$var wire 4294967295 ! q $end", "#0 b1 !"));
     assert_eq!(wide, "memory: `m.q` is declared 4294967295 bits wide; at most 1048576 can be read");

@@ -1,7 +1,9 @@
 //! The value of a signal at one moment: what counts as the same, and how a person reads it.
 
 use std::fmt::{self, Display, Formatter, Write};
-use wellen::{BitVecRef, SignalValueRef};
+
+/// Vectors wider than this are shown as they are written in Verilog: `300'b1x`, with the fewest digits.
+const SHOWN_WHOLE: u32 = 256;
 
 /// The value of a signal at one moment.
 ///
@@ -12,7 +14,7 @@ use wellen::{BitVecRef, SignalValueRef};
 pub enum Value<'w> {
     /// Nothing has been written yet. In a bit vector that means `x` in every bit.
     Unset,
-    /// A bit vector of at least one bit.
+    /// A bit vector.
     Bits(Vector<'w>),
     /// A real number.
     Real(f64),
@@ -22,16 +24,7 @@ pub enum Value<'w> {
     Count(usize),
 }
 
-impl<'w> Value<'w> {
-    pub(super) fn new(raw: SignalValueRef<'w>, signed: bool, change: usize) -> Self {
-        match raw {
-            SignalValueRef::Event => Value::Count(change + 1),
-            SignalValueRef::BitVec(bits) => Value::Bits(Vector { bits, signed }),
-            SignalValueRef::String(text) => Value::Text(text),
-            SignalValueRef::Real(real) => Value::Real(real),
-        }
-    }
-
+impl Value<'_> {
     /// Whether the two are the same value: bit vectors of equal width with the same state in every bit (`x` is only
     /// `x`, `z` only `z`; a vector not yet set is all `x`), reals of equal value (not-a-number is itself), equal
     /// texts.
@@ -39,7 +32,9 @@ impl<'w> Value<'w> {
     pub fn same(self, other: Value<'_>) -> bool {
         match (self, other) {
             (Value::Unset, Value::Unset) => true,
-            (Value::Unset, Value::Bits(bits)) | (Value::Bits(bits), Value::Unset) => bits.digits().all(|d| d == 'x'),
+            (Value::Unset, Value::Bits(bits)) | (Value::Bits(bits), Value::Unset) => {
+                bits.width == 0 || bits.shortest() == Some(b"x")
+            }
             (Value::Bits(a), Value::Bits(b)) => a.same(b),
             (Value::Real(a), Value::Real(b)) => a == b || (a.is_nan() && b.is_nan()),
             (Value::Text(a), Value::Text(b)) => a == b,
@@ -54,7 +49,7 @@ impl<'w> Value<'w> {
     pub fn cell(self) -> String {
         match self {
             Value::Unset => "x".into(),
-            Value::Bits(bits) if bits.width() > 16 => bits.decimal().unwrap_or_else(|| bits.digits().collect()),
+            Value::Bits(bits) if bits.width() > 16 => bits.decimal().unwrap_or_else(|| bits.to_string()),
             Value::Bits(bits) => bits.digits().collect(),
             other => other.to_string(),
         }
@@ -76,55 +71,84 @@ impl Display for Value<'_> {
 /// A bit vector whose bits may also be `x`, `z` or one of VHDL's other states.
 #[derive(Clone, Copy, Debug)]
 pub struct Vector<'w> {
-    bits: BitVecRef<'w>,
-    signed: bool,
+    pub(super) width: u32,
+    pub(super) signed: bool,
+    pub(super) content: Content<'w>,
+}
+
+/// What a vector holds. Equal vectors of one width have equal content: digits stand only where a number cannot, and are
+/// the fewest that extend to the value, in lower case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Content<'w> {
+    Number(u128),
+    Digits(&'w [u8]),
 }
 
 impl<'w> Vector<'w> {
-    /// Number of bits, at least 1.
+    /// Number of bits.
     #[must_use]
     pub fn width(self) -> u32 {
-        self.bits.width()
+        self.width
     }
 
     /// The bits as lower-case characters, most significant first: `0 1 x z`, and `h u w l -` from VHDL.
     pub fn digits(self) -> impl Iterator<Item = char> + use<'w> {
-        let Self { bits, .. } = self;
-        (0..bits.width()).rev().map(move |bit| bits.get_bit(bit).as_ascii())
+        let Self { width, content, .. } = self;
+        let (number, written) = match content {
+            Content::Number(number) => (Some(number), &[] as &[u8]),
+            Content::Digits(digits) => (None, digits),
+        };
+        let bit = move |bit: u32| number.map(|number| if number >> bit & 1 == 1 { '1' } else { '0' });
+        let numbers = (0..if number.is_some() { width } else { 0 }).rev().filter_map(bit);
+        let left = if number.is_some() { 0 } else { (width as usize).saturating_sub(written.len()) };
+        numbers
+            .chain(std::iter::repeat_n(extension(written), left))
+            .chain(written.iter().map(|digit| char::from(*digit)))
+    }
+
+    /// The fewest digits that extend to the value, of a vector that is no number.
+    pub(crate) fn shortest(self) -> Option<&'w [u8]> {
+        if let Content::Digits(digits) = self.content { Some(digits) } else { None }
     }
 
     /// The bits as a number without a sign, if every bit is 0 or 1 and there are at most 128.
     #[must_use]
     pub fn to_u128(self) -> Option<u128> {
-        let bytes = self.bits.be_bytes().filter(|_| self.width() <= 128)?;
-        Some(bytes.iter().fold(0, |number, byte| number << 8 | u128::from(*byte)))
+        if let Content::Number(number) = self.content { Some(number) } else { None }
     }
 
     /// The number in decimal, two's complement if the variable is an `integer`; under the conditions of
     /// [`to_u128`](Self::to_u128).
     #[must_use]
     pub fn decimal(self) -> Option<String> {
-        let number = self.to_u128()?;
-        let unused = 128 - self.width();
+        let number = self.to_u128().filter(|_| self.width > 0)?;
+        let unused = 128 - self.width;
         Some(if self.signed { ((number << unused).cast_signed() >> unused).to_string() } else { number.to_string() })
     }
 
-    // Not `BitVecRef`'s own comparison: its bytes carry state tags in unused bits when a vector also has x or z values.
     fn same(self, other: Vector<'_>) -> bool {
-        match (self.bits.be_bytes(), other.bits.be_bytes()) {
-            _ if self.width() != other.width() => false,
-            (Some(a), Some(b)) => a == b,
-            _ => self.digits().eq(other.digits()),
-        }
+        self.width == other.width && self.content == other.content
+    }
+}
+
+/// What stands to the left of digits that are fewer than the bits.
+pub(crate) fn extension(digits: &[u8]) -> char {
+    match digits.first() {
+        Some(b'x') => 'x',
+        Some(b'z') => 'z',
+        _ => '0',
     }
 }
 
 impl Display for Vector<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if let Some(digits) = self.shortest().filter(|_| self.width > SHOWN_WHOLE) {
+            return write!(f, "{}'b{}", self.width, String::from_utf8_lossy(digits));
+        }
         self.digits().try_for_each(|digit| f.write_char(digit))?;
         // One bit is its own decimal.
         match self.decimal() {
-            Some(number) if self.width() > 1 => write!(f, " ({number})"),
+            Some(number) if self.width > 1 => write!(f, " ({number})"),
             _ => Ok(()),
         }
     }
