@@ -15,6 +15,8 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::record::{Field, reader::RowIter};
 use parquet::schema::types::Type;
 
+use stepwave_kernel::guard::guarded;
+
 use super::parts::PartHead;
 use super::table::{Column, Kind, Row, Value};
 use super::{StudyError, Sweep};
@@ -141,6 +143,11 @@ fn write_column<'v, T: DataType>(
     column.close()
 }
 
+/// The crate panics on some files that were changed.
+fn broken(reason: &str) -> String {
+    format!("its Parquet is broken ({reason}): copy the file anew, or do this part again")
+}
+
 /// A part in Parquet being read.
 pub(super) struct ParquetPart {
     pub(super) head: PartHead,
@@ -151,6 +158,10 @@ pub(super) struct ParquetPart {
 impl ParquetPart {
     /// Opens a part; inside, why it is none.
     pub(super) fn open(path: &Path) -> Result<ParquetPart, String> {
+        guarded(|| ParquetPart::opened(path)).unwrap_or_else(|reason| Err(broken(&reason)))
+    }
+
+    fn opened(path: &Path) -> Result<ParquetPart, String> {
         let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
         let reader = SerializedFileReader::new(file).map_err(|error| error.to_string())?;
         let file = reader.metadata().file_metadata();
@@ -170,8 +181,12 @@ impl ParquetPart {
         Ok(ParquetPart { head, columns, rows })
     }
 
-    /// The next row.
+    /// The next row. After one that cannot be read there is none.
     pub(super) fn next(&mut self) -> Option<Result<Row, String>> {
+        guarded(|| self.step()).unwrap_or_else(|reason| Some(Err(broken(&reason))))
+    }
+
+    fn step(&mut self) -> Option<Result<Row, String>> {
         let row = match self.rows.next()? {
             Ok(row) => row,
             Err(error) => return Some(Err(error.to_string())),

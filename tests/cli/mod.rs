@@ -12,6 +12,7 @@ mod modern;
 mod outputs;
 mod overflow;
 mod pages;
+mod parts;
 mod progress;
 mod ranges;
 mod sampled;
