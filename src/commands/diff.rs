@@ -22,8 +22,8 @@ use crate::output::{self, Outputs};
 /// that all signals of a file share are taken off first, on each side.
 ///
 /// Nothing in a file is guessed: what is unclear or contradicts itself is refused with its line or signal. Limits: vectors
-/// of 1048576 bits, 256 scopes within one another, paths of 4096 bytes, 256 MiB from a pipe; an FST may inflate to 64 MiB
-/// and 32 times its size.
+/// of 1048576 bits, 256 scopes within one another, paths of 4096 bytes, lines of 32 MiB, 256 MiB from a pipe; an FST may
+/// inflate to 64 MiB and 32 times its size.
 ///
 /// Exit code: 0 same, 1 different, 2 trouble.
 #[derive(Debug, clap::Args)]

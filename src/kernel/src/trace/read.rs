@@ -11,7 +11,7 @@
 //!
 //! So the samples depend neither on the time unit, nor on the period of the clock, nor on delays within a cycle. A
 //! rising edge is a change to 1 from 0, `x` or `z`; the first value of the clock is none. Where a signal changes
-//! several times at one time, the last counts.
+//! several times at one time, the last counts. Values before the first time of a VCD are those at time 0.
 //!
 //! ```
 //! use stepwave_kernel::trace::read::Wave;

@@ -6,6 +6,8 @@ pub(super) const MAX_WIDTH: u32 = 1 << 20;
 pub(super) const MAX_DEPTH: usize = 256;
 /// Bytes of a path, all scopes and the name.
 pub(super) const MAX_PATH: usize = 4096;
+/// Bytes of a line: it is read as a whole.
+pub(super) const MAX_LINE: u64 = 32 << 20;
 /// Bytes that a pipe may give: it has no end that can be seen in advance.
 pub(super) const MAX_PIPE: u64 = 1 << 28;
 /// Bytes that a compressed file of any size may inflate to, and what its size adds to that, by the byte.

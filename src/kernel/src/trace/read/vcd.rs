@@ -5,9 +5,9 @@ mod ids;
 
 use super::names::Names;
 use super::store::{Changes, Misfit};
-use super::{Content, Kind, Timescale, WaveError};
+use super::{Content, Kind, Timescale, WaveError, limits};
 use ids::Ids;
-use std::io::BufRead;
+use std::io::{BufRead, Read};
 
 /// Reads a whole file of `length` bytes, or of as many as limit it.
 pub(super) fn read(input: &mut impl BufRead, name: &str, length: u64) -> Result<Content, WaveError> {
@@ -28,11 +28,16 @@ pub(super) fn read(input: &mut impl BufRead, name: &str, length: u64) -> Result<
     let mut line = Vec::with_capacity(256);
     loop {
         line.clear();
-        let read = input.read_until(b'\n', &mut line).map_err(|source| WaveError::Io { name: name.into(), source })?;
+        let io = |source| WaveError::Io { name: name.into(), source };
+        let read = input.by_ref().take(limits::MAX_LINE + 1).read_until(b'\n', &mut line).map_err(io)?;
         if read == 0 {
             break;
         }
         vcd.line += 1;
+        if read as u64 > limits::MAX_LINE {
+            let limit = limits::mebibytes(limits::MAX_LINE);
+            return Err(vcd.refused(format!("a line of more than {limit} cannot be read; break it at any blank")));
+        }
         for word in line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
             vcd.word(word)?;
         }

@@ -163,6 +163,8 @@ fn a_small_file_takes_little_time_and_memory_or_is_refused_by_its_limit() {
     let same = soon(|| wave(&file(&same, "")));
     assert_eq!(same.signals().last().map(|signal| signal.path.as_str()), Some("m.q#20000"));
 
+    let line = error(file("", &" ".repeat(33 << 20)));
+    assert_eq!(line, "memory: line 6: a line of more than 32 MiB cannot be read; break it at any blank");
     let deep = "$scope module s $end ".repeat(300);
     assert!(error(file(&deep, "")).contains("more than 256 scopes within one another cannot be read"));
     let long = format!("$scope module {} $end", "s".repeat(5000));
