@@ -1,5 +1,7 @@
 //! What other programs write, and what no reader should guess.
 
+use super::super::blocks::Format;
+use super::super::decode;
 use super::{Kind, Timescale, Wave, error, file, wave};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -176,4 +178,28 @@ fn a_small_file_takes_little_time_and_memory_or_is_refused_by_its_limit() {
     let bits = repeated(&|bit| format!("$var wire 1 i{bit} q [{}] $end", 20_000 - bit));
     let body = repeated(&|time| format!("#{time}\n{}i7", time % 2));
     assert!(soon(|| error(file(&bits, &body))).contains("`m.q` is declared bit by bit, 20000 bits"));
+}
+
+/// Gives lines and lines.
+struct Endless;
+
+impl std::io::Read for Endless {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        buffer.fill(b'x');
+        if let Some(last) = buffer.last_mut() {
+            *last = b'\n';
+        }
+        Ok(buffer.len())
+    }
+}
+
+#[test]
+fn a_pipe_without_an_end_is_refused_by_its_limit() {
+    let head = b"$comment ".to_vec();
+    let refused = soon(|| decode::piped(head, Endless, Format::Vcd, "pipe".into())).expect_err("no end").to_string();
+    assert_eq!(refused, "pipe: it gives more than 256 MiB, the limit for a pipe; write it to a file first");
+    let text = file("$var wire 1 ! clk $end", "#0 0! #1 1!");
+    let (head, rest) = text.as_bytes().split_at(20);
+    let wave = decode::piped(head.to_vec(), rest, Format::Vcd, "pipe".into()).expect("a wave");
+    assert_eq!(wave.cycles(), Ok(2));
 }
