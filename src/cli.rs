@@ -2,17 +2,23 @@
 
 use std::path::PathBuf;
 
+use clap::builder::StringValueParser;
 use clap::{Args, Parser, Subcommand};
 use stepwave::nc::Opens;
 
 use crate::commands::diff::DiffArgs;
 
+mod endings;
+mod names;
 mod program;
 mod proof;
 mod sweep;
 mod values;
 mod widths;
 
+pub(crate) use endings::{Format, file_of};
+pub(crate) use names::{Registers, known_register, registers};
+use names::{all_registers, listed, model_name};
 pub(crate) use program::ProgramArgs;
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
@@ -106,6 +112,7 @@ pub(crate) struct GoldenArgs {
     stepwave run ppc-line --to 6,4 --width f=3 --vcd trap.vcd")]
 pub(crate) struct RunArgs {
     /// The model; `stepwave list` shows them
+    #[arg(value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: String,
     #[command(flatten)]
     pub(crate) geometry: GeometryArgs,
@@ -124,7 +131,7 @@ pub(crate) struct RunArgs {
     pub(crate) bits: bool,
     /// Keep states of the run in this file; where it exists, begin at the last state before --trace-from instead of at
     /// clock 0
-    #[arg(long, value_name = "FILE", help_heading = "Wave")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json]), help_heading = "Wave")]
     pub(crate) checkpoints: Option<PathBuf>,
 }
 
@@ -142,6 +149,7 @@ pub(crate) struct RunArgs {
 #[command(group(clap::ArgGroup::new("checked").multiple(true)))]
 pub(crate) struct ExportArgs {
     /// The model; `stepwave list` shows them
+    #[arg(value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: String,
     #[command(flatten)]
     pub(crate) geometry: GeometryArgs,
@@ -150,16 +158,16 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) clock: ClockArgs,
     /// Write the netlist as a Verilog module
-    #[arg(long, value_name = "FILE", group = "exports", help_heading = "Outputs (- is standard output)")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Verilog]), group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) verilog: Option<PathBuf>,
     /// Write a Verilog test bench that loads and runs the geometry as `run` does
-    #[arg(long, value_name = "FILE", group = "exports", help_heading = "Outputs (- is standard output)")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Verilog]), group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) testbench: Option<PathBuf>,
     /// Write the netlist and its properties as BTOR2, for model checkers
-    #[arg(long, value_name = "FILE", groups = ["exports", "checked"], help_heading = "Outputs (- is standard output)")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Btor2]), groups = ["exports", "checked"], help_heading = "Outputs (- is standard output)")]
     pub(crate) btor2: Option<PathBuf>,
     /// Write an SMT-LIB 2 script that asks whether a property is violated within --depth clocks, for solvers
-    #[arg(long, value_name = "FILE", groups = ["exports", "checked"], help_heading = "Outputs (- is standard output)")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::SmtLib]), groups = ["exports", "checked"], help_heading = "Outputs (- is standard output)")]
     pub(crate) smt2: Option<PathBuf>,
     /// Leave these load words open, or all: any values, also such as no geometry gives, loaded in the first clock and never
     /// again. What is known of them is for you to add
@@ -209,17 +217,19 @@ pub(crate) struct GeometryArgs {
 #[command(group(clap::ArgGroup::new("wave").multiple(true)))]
 pub(crate) struct TraceArgs {
     /// Write the wave as VCD, with a GTKWave save file and state-name files beside it
-    #[arg(long, value_name = "FILE", group = "wave")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Vcd]), group = "wave")]
     pub(crate) vcd: Option<PathBuf>,
     /// Write the wave as FST, with the same files beside it; next to a --vcd of the same name they take the whole
     /// name of the FST file (w.fst.gtkw beside w.gtkw)
-    #[arg(long, value_name = "FILE", group = "wave")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Fst]), group = "wave")]
     pub(crate) fst: Option<PathBuf>,
     /// Dump only names that match (leaf name or dotted path; may be repeated)
     #[arg(long, requires = "wave", value_name = "GLOB")]
+    #[arg(value_parser = listed(StringValueParser::new(), all_registers()), hide_possible_values = true)]
     pub(crate) trace: Vec<String>,
     /// Leave out names that match (may be repeated)
     #[arg(long, requires = "wave", value_name = "GLOB")]
+    #[arg(value_parser = listed(StringValueParser::new(), all_registers()), hide_possible_values = true)]
     pub(crate) trace_exclude: Vec<String>,
     /// Dump at most this many levels of scopes; 1 is the top scope alone
     #[arg(long, requires = "wave", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
@@ -249,12 +259,12 @@ impl TraceArgs {
 #[command(next_help_heading = "Outputs (- is standard output)")]
 pub(crate) struct OutputArgs {
     /// Write the step table as CSV
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Csv]))]
     pub(crate) steps: Option<PathBuf>,
     /// Write the report as JSON
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json]))]
     pub(crate) json: Option<PathBuf>,
     /// Draw the path over the ideal curve, and its error, or the contour of a program, as SVG
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Svg]))]
     pub(crate) plot: Option<PathBuf>,
 }

@@ -16,6 +16,8 @@ pub(crate) enum Failure {
     Check(Vec<String>),
     /// Bad input or usage, or a file cannot be read or written: exit code 2.
     Trouble(String),
+    /// The same with an extract of a file, in lines.
+    Extract(String),
     /// No command was given: the help, exit code 2.
     Help(String),
 }
@@ -25,7 +27,7 @@ impl Failure {
     pub(crate) fn code(&self) -> u8 {
         match self {
             Failure::Check(_) => 1,
-            Failure::Trouble(_) | Failure::Help(_) => 2,
+            Failure::Trouble(_) | Failure::Extract(_) | Failure::Help(_) => 2,
         }
     }
 
@@ -35,10 +37,15 @@ impl Failure {
         if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
             return Failure::Help(text.trim_end().to_owned());
         }
-        // The first paragraph says what is wrong; usage and tips follow.
+        // The first paragraph says what is wrong; tips and usage follow.
         let paragraph: Vec<&str> = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim).collect();
         let sentence = paragraph.join(" ");
-        let sentence = sentence.strip_prefix("error: ").unwrap_or(&sentence);
+        let mut sentence = sentence.strip_prefix("error: ").unwrap_or(&sentence).to_owned();
+        // That a word after `--` is a value is seldom what was meant.
+        let tips = text.lines().filter_map(|line| line.trim().strip_prefix("tip: "));
+        for tip in tips.filter(|tip| !tip.starts_with("to pass ")) {
+            sentence += &format!("; {tip}");
+        }
         let program = Cli::command();
         // Not `args`, which panics on what is not Unicode.
         let command = std::env::args_os().nth(1).and_then(|word| word.into_string().ok());
@@ -63,6 +70,10 @@ impl fmt::Display for Failure {
                 f.write_str(&lines.join("\n"))
             }
             Failure::Trouble(sentence) => write!(f, "stepwave: {}", one_line(sentence)),
+            Failure::Extract(text) => {
+                let lines: Vec<_> = text.lines().map(one_line).collect();
+                write!(f, "stepwave: {}", lines.join("\n"))
+            }
             Failure::Help(text) => f.write_str(text),
         }
     }

@@ -1,7 +1,7 @@
 //! Why a model cannot be built or loaded for a geometry.
 
 use stepwave_kernel::diag::Code;
-use stepwave_kernel::{Diagnostics, Width};
+use stepwave_kernel::{Diagnostics, Width, did_you_mean};
 
 use crate::choices::Choice;
 
@@ -9,7 +9,7 @@ use crate::choices::Choice;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
     /// No model bears this name.
-    #[error("there is no model '{name}'; the models are {known}")]
+    #[error("there is no model '{name}'{}; the models are {known}", did_you_mean(.name, .known.split(", ")))]
     UnknownModel {
         /// Name asked for.
         name: String,
@@ -49,7 +49,8 @@ pub enum ModelError {
         reason: String,
     },
     /// `--width` or `--preset` names a register that does not exist here.
-    #[error("{model} has no register '{register}' here for {}; it has {known}", .choice.option())]
+    #[error("{model} has no register '{register}' here for {}{}; it has {known}", .choice.option(),
+        did_you_mean(.register, .known.split(", ")))]
     UnknownRegister {
         /// The model.
         model: &'static str,

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use super::HardwareArgs;
+use super::endings::{Format, file_of};
+use super::names::{all_widths, listed, model_name};
 use super::values::{Narrower, parse_narrower};
 
 #[derive(Debug, Args)]
@@ -24,12 +26,13 @@ pub(crate) struct ProveArgs {
     #[command(subcommand)]
     pub(crate) check: Option<ProveCommand>,
     /// The model; `stepwave list` shows them
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: Option<String>,
     #[command(flatten)]
     pub(crate) hardware: HardwareArgs,
     /// Take registers by so many bits narrower than by default: f=1
-    #[arg(long, value_name = "REGISTER=BITS,…", value_parser = parse_narrower)]
+    #[arg(long, value_name = "REGISTER=BITS,…", hide_possible_values = true)]
+    #[arg(value_parser = listed(parse_narrower, all_widths()))]
     pub(crate) narrower: Vec<Narrower>,
     /// Ask an SMT solver too, which reads SMT-LIB 2 from its input, about every geometry of --bits (default 2): 'z3 -in'
     #[arg(long, value_name = "COMMAND")]
@@ -41,10 +44,10 @@ pub(crate) struct ProveArgs {
     #[arg(long, conflicts_with = "preset")]
     pub(crate) any_preset: bool,
     /// Write the proof for `stepwave prove check`
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[]))]
     pub(crate) certificate: Option<PathBuf>,
     /// Write the wave of a counterexample, or of a step that keeps the proof from being one, as VCD
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Vcd]))]
     pub(crate) vcd: Option<PathBuf>,
     /// Tell the invariants that were proved, and the paths on which something could not be shown
     #[arg(long)]

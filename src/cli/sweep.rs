@@ -2,11 +2,14 @@
 
 use std::path::PathBuf;
 
+use clap::builder::StringValueParser;
 use clap::{Args, Subcommand};
-use stepwave::models::StepTiming;
+use stepwave::models::{Adder, Beats, Compare, EndPoint, Form, OnOverflow, Radix, StepTiming, System, Weights};
 use stepwave::nc::Opens;
 use stepwave::study::{Grid, Range};
 
+use super::endings::{Format, file_of};
+use super::names::{all_widths, list_of, listed, model_name, words};
 use super::values::{Point, opens, parse_point, parse_timing};
 
 /// A grid on the command line.
@@ -62,7 +65,7 @@ pub(crate) struct SweepArgs {
     #[command(subcommand)]
     pub(crate) command: Option<SweepCommand>,
     /// The model; `stepwave list` shows them
-    #[arg(required = true)]
+    #[arg(required = true, value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: Option<String>,
     #[command(flatten)]
     pub(crate) space: SpaceArgs,
@@ -77,6 +80,7 @@ pub(crate) enum SweepCommand {
     /// Join the parts of a sweep (--shard) to the very file that the whole sweep writes
     Merge {
         /// The file to write; Parquet if its name ends in .parquet, else CSV; - is standard output
+        #[arg(value_parser = file_of(&[Format::Csv, Format::Parquet]))]
         out: PathBuf,
         /// All parts, CSV or Parquet, in any order
         #[arg(required = true)]
@@ -142,31 +146,32 @@ pub(crate) struct SpaceArgs {
 #[command(next_help_heading = "Hardware choices (lists; each model takes some, `stepwave list` tells which)")]
 pub(crate) struct VariantArgs {
     /// Widths of all magnitude registers, or of single ones: 8..12, or 8,f=9..11
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", hide_possible_values = true)]
+    #[arg(value_parser = listed(StringValueParser::new(), all_widths()))]
     pub(crate) width: Option<String>,
     /// Start values of the remainder registers: zero,half,full or numbers
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = words(&["zero", "half", "full"]), hide_possible_values = true)]
     pub(crate) preset: Option<String>,
     /// Left-shift normalisation: no,yes
-    #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = "yes")]
+    #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = "yes", value_parser = words(&["no", "yes"]), hide_possible_values = true)]
     pub(crate) normalize: Option<String>,
     /// Number systems: 2,10
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<Radix>(), hide_possible_values = true)]
     pub(crate) radix: Option<String>,
     /// Adders: parallel,serial
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<Adder>(), hide_possible_values = true)]
     pub(crate) adder: Option<String>,
     /// What ends a block: total,per-axis,longest,iterations
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<EndPoint>(), hide_possible_values = true)]
     pub(crate) end_point: Option<String>,
     /// How the deviation of a line is kept: magnitude,signed
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<Form>(), hide_possible_values = true)]
     pub(crate) form: Option<String>,
     /// Interval weights: mid,pre,post
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<Weights>(), hide_possible_values = true)]
     pub(crate) weights: Option<String>,
     /// Clocks of a step: 4,1
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<Beats>(), hide_possible_values = true)]
     pub(crate) beats: Option<String>,
     /// Feed overrides in percent, or none
     #[arg(long = "override", value_name = "LIST")]
@@ -175,7 +180,7 @@ pub(crate) struct VariantArgs {
     #[arg(long, value_name = "LIST")]
     pub(crate) cascade: Option<String>,
     /// Comparisons of a counter: ge,gt
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<Compare>(), hide_possible_values = true)]
     pub(crate) compare: Option<String>,
     /// Bits of the phase accumulator whose changes are steps
     #[arg(long, value_name = "LIST")]
@@ -184,7 +189,7 @@ pub(crate) struct VariantArgs {
     #[arg(long, value_name = "NAME=CLOCKS,…", value_parser = parse_timing)]
     pub(crate) timing: Vec<StepTiming>,
     /// Systems of data sampling: 7m,7360
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<System>(), hide_possible_values = true)]
     pub(crate) system: Option<String>,
     /// Bits of the fraction of coarse points
     #[arg(long, value_name = "LIST")]
@@ -193,7 +198,7 @@ pub(crate) struct VariantArgs {
     #[arg(long, value_name = "LIST")]
     pub(crate) step: Option<String>,
     /// What cells do that must not overflow: trap,saturate,wrap
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", value_parser = list_of::<OnOverflow>(), hide_possible_values = true)]
     pub(crate) on_overflow: Option<String>,
 }
 
@@ -205,17 +210,17 @@ pub(crate) struct TableArgs {
         value_parser = clap::value_parser!(u64).range(1..=(1 << 31) - 1))]
     pub(crate) max_clocks: u64,
     /// Write the rows as CSV
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Csv]))]
     pub(crate) csv: Option<PathBuf>,
     /// Write the rows as Parquet
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Parquet]))]
     pub(crate) parquet: Option<PathBuf>,
     /// Column that --plot shows [default: error_max]
     #[arg(long, value_name = "COLUMN", requires = "plot")]
     pub(crate) heat: Option<String>,
     /// Draw a heat map over the grid, as PNG if the name ends in .png, else as SVG; of several runs of a point the greatest
     /// number shows; may be repeated
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Svg, Format::Png]))]
     pub(crate) plot: Vec<PathBuf>,
     /// Go on with what a killed sweep of the same words has left beside the final file; with nothing left, begin
     #[arg(long)]

@@ -13,6 +13,7 @@ use stepwave::models::{
 use stepwave::nc::Opens;
 use stepwave::study::proof::ProofError;
 
+use super::names::{all_widths, listed};
 use crate::failure::Failure;
 
 /// Coordinates of a point in BLU.
@@ -186,10 +187,12 @@ fn parse_feed(text: &str) -> Result<f64, String> {
 #[command(next_help_heading = "Hardware (each model takes some; `stepwave list` tells which)")]
 pub(crate) struct HardwareArgs {
     /// Width of all magnitude registers, or of single ones by name [default: the least that holds the geometry]
-    #[arg(long, value_name = "N|REGISTER=N,…", value_parser = parse_width)]
+    #[arg(long, value_name = "N|REGISTER=N,…", hide_possible_values = true)]
+    #[arg(value_parser = listed(parse_width, all_widths()))]
     width: Vec<WidthArg>,
     /// Start value of the remainder registers: zero, half, full, a number, or jrx=…,jry=…
-    #[arg(long, value_name = "PRESET", value_parser = parse_preset)]
+    #[arg(long, value_name = "PRESET", hide_possible_values = true)]
+    #[arg(value_parser = listed(parse_preset, ["zero", "half", "full"].map(str::to_owned).into()))]
     preset: Vec<PresetArg>,
     /// Left-shift normalisation of the integrands
     #[arg(long)]

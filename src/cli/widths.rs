@@ -5,6 +5,7 @@ use clap::Args;
 use stepwave::study::Extent;
 
 use super::HardwareArgs;
+use super::names::model_name;
 
 #[derive(Debug, Args)]
 #[command(after_help = "How a width is known to be enough:\n  \
@@ -26,6 +27,7 @@ use super::HardwareArgs;
     stepwave widths bresenham --box 6 --json")]
 pub(crate) struct WidthsArgs {
     /// The model; `stepwave list` shows them
+    #[arg(value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: String,
     /// Bits of the coordinates, or a range for each axis (0..255x0..255): every line from the origin to such a point, or
     /// every arc inside a quadrant with both ends on the circle; in bits also every helix over such an arc, and every

@@ -8,6 +8,7 @@ use stepwave::kernel::trace::diverge::{self, By, Options};
 use stepwave::kernel::trace::merge::write_merged;
 use stepwave::kernel::trace::read::{Wave, WaveError};
 
+use crate::cli::{Format, file_of};
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
 
@@ -66,7 +67,7 @@ pub(crate) struct DiffArgs {
 
     /// Also write both sides and their exclusive-or as one VCD for the viewer (`-`: to standard output, instead of the
     /// report)
-    #[arg(long, value_name = "F.vcd")]
+    #[arg(long, value_name = "F.vcd", value_parser = file_of(&[Format::Vcd]))]
     merged: Option<PathBuf>,
 }
 

@@ -89,7 +89,10 @@ fn read_cases(dir: &Path) -> Result<Vec<Case>, Failure> {
     let path = dir.join("cases.toml");
     let cannot = |error: &dyn std::fmt::Display| Failure::Trouble(format!("cannot read {}: {error}", path.display()));
     let text = fs::read_to_string(&path).map_err(|error| cannot(&error))?;
-    let cases: Cases = toml::from_str(&text).map_err(|error| cannot(&error))?;
+    let cases: Cases = toml::from_str(&text).map_err(|error: toml::de::Error| {
+        // TOML shows the line and points at the place in it.
+        Failure::Extract(format!("cannot read {}: {}", path.display(), error.to_string().trim_end()))
+    })?;
     for (index, case) in cases.case.iter().enumerate() {
         if !is_file_stem(&case.name) {
             let rule = "give letters, digits, '-', '_' and '.', not first '.' or '-'";

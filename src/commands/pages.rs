@@ -4,7 +4,9 @@ use std::path::Path;
 
 use clap::CommandFactory;
 
-use crate::cli::Cli;
+use stepwave::models::catalogue;
+
+use crate::cli::{Cli, Registers, registers};
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
 
@@ -12,7 +14,57 @@ use crate::output::{self, Outputs};
 pub(crate) fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "stepwave", &mut script);
-    output::print_data(&String::from_utf8_lossy(&script))
+    let mut script = String::from_utf8_lossy(&script).into_owned();
+    if shell == clap_complete::Shell::Bash {
+        script += &bash_registers();
+    }
+    output::print_data(&script)
+}
+
+/// What makes bash offer the registers of the very model, where one is on the line, and no blank after `f=`.
+fn bash_registers() -> String {
+    let mut cases = String::new();
+    for model in catalogue() {
+        for (option, which) in [("width", Registers::Resizable), ("trace", Registers::All)] {
+            cases +=
+                &format!("            {option},{}) echo \"{}\" ;;\n", model.name, registers(model, which).join(" "));
+        }
+    }
+    format!(
+        r#"
+_stepwave_registers() {{
+    local word
+    for word in "${{COMP_WORDS[@]:0:COMP_CWORD}}"; do
+        case "$1,$word" in
+{cases}        esac
+    done
+}}
+
+_stepwave_with_registers() {{
+    local registers suffix
+    case "$3" in
+        --width|--narrower) suffix="="; registers=$(_stepwave_registers width) ;;
+        --trace|--trace-exclude) suffix=""; registers=$(_stepwave_registers trace) ;;
+        *) _stepwave "$@"; return ;;
+    esac
+    if [[ -z "$registers" ]]; then
+        _stepwave "$@"
+    else
+        COMPREPLY=( $(compgen -W "$registers" -S "$suffix" -- "$2") )
+    fi
+    if [[ -n "$suffix" ]]; then
+        compopt -o nospace 2>/dev/null
+    fi
+    return 0
+}}
+
+if [[ "${{BASH_VERSINFO[0]}}" -eq 4 && "${{BASH_VERSINFO[1]}}" -ge 4 || "${{BASH_VERSINFO[0]}}" -gt 4 ]]; then
+    complete -F _stepwave_with_registers -o nosort -o bashdefault -o default stepwave
+else
+    complete -F _stepwave_with_registers -o bashdefault -o default stepwave
+fi
+"#
+    )
 }
 
 /// Writes a manual page for the program, for each command and for each command of a command.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
+use stepwave::kernel::did_you_mean;
 use stepwave::models::{Choice, CurveKind, Model, find};
 use stepwave::nc::Direction;
 use stepwave::report::heat::HeatMap;
@@ -14,7 +15,7 @@ use stepwave::study::{
 };
 
 use super::progress::Progress;
-use crate::cli::{Point, SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
+use crate::cli::{Point, SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs, known_register};
 use crate::failure::Failure;
 use crate::output::{self, Outputs, Sink, is_stream};
 
@@ -32,6 +33,11 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Failure> {
     let model = find(args.model.as_deref().unwrap_or_default())?;
     let [number, of] = args.outputs.shard.unwrap_or([1, 1]);
     let space = space(model, &args.space)?;
+    for (choice, list) in [(Choice::Width, &args.variants.width), (Choice::Preset, &args.variants.preset)] {
+        let parts = list.iter().flat_map(|list| list.split(','));
+        let mut names = parts.filter_map(|part| part.split_once('=')).map(|(name, _)| name.trim());
+        names.try_for_each(|name| known_register(model, choice, name))?;
+    }
     let sweep = Sweep::new(model, space, variants(&args.variants)?, Part { number, of }, args.outputs.max_clocks)?;
     let mut outputs = Outputs::default();
     let text = write(&sweep, &args.outputs, &mut outputs)?;
@@ -187,7 +193,7 @@ impl Heat {
         if !known.contains(&name) {
             let what = match sweep.column(name) {
                 Some(_) => format!("the column '{name}' is no measure"),
-                None => format!("there is no column '{name}'"),
+                None => format!("there is no column '{name}'{}", did_you_mean(name, known.iter().copied())),
             };
             return Err(StudyError::Column { what, known: known.join(", ") }.into());
         }

@@ -3,12 +3,12 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use stepwave::kernel::Net;
 use stepwave::kernel::trace::fst::{FstBody, FstHeader};
 use stepwave::kernel::trace::gtkw::{View, side_files};
 use stepwave::kernel::trace::probe::{Probe, Selection};
 use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::kernel::trace::vcd::{Background, VcdBody, VcdHeader};
+use stepwave::kernel::{Net, did_you_mean};
 use stepwave::testbench::{Observer, OverflowEvent, Testbench, Trigger, WaveBody, WaveWriter, Window};
 
 use crate::cli::TraceArgs;
@@ -173,7 +173,10 @@ fn flag_column(bench: &Testbench, name: &str) -> Result<usize, Failure> {
     let mut found: Vec<(String, Net)> = all.filter(|(path, _)| path == name || path.ends_with(&end)).collect();
     found.dedup_by_key(|(_, net)| *net);
     match found.as_slice() {
-        [] => refuse(format!("there is no signal '{name}' in this netlist")),
+        [] => {
+            let known = netlist.names.iter().map(|named| named.name.as_str());
+            refuse(format!("there is no signal '{name}' in this netlist{}", did_you_mean(name, known)))
+        }
         [(_, net)] if netlist.width(*net).get() == 1 => Ok(bench.columns().index(*net)),
         [(_, net)] => refuse(format!("{name} has {}, but a trigger is 1 bit wide", netlist.width(*net))),
         several => {

@@ -1,5 +1,6 @@
 //! What can be wrong with a study.
 
+use stepwave_kernel::did_you_mean;
 use stepwave_models::ModelError;
 
 /// Why a sweep cannot be made, gone on with, or joined; every message names the value and the way out.
@@ -25,7 +26,7 @@ pub enum StudyError {
         last: i64,
     },
     /// A word among the values of a hardware choice.
-    #[error("'{word}' is no value of {option}: give {values}")]
+    #[error("'{word}' is no value of {option}{}: give {values}", did_you_mean(.word, .values.split(", ")))]
     NoValue {
         /// The word.
         word: String,

@@ -3,6 +3,7 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
+use stepwave_kernel::did_you_mean;
 use stepwave_models::{AXES, CurveKind, Model};
 use stepwave_nc::{Direction, Opens};
 
@@ -23,8 +24,9 @@ pub fn read_points(file: &Path, model: &Model) -> Result<Space, StudyError> {
     let heading: Vec<String> = fields(first).iter().map(|name| name.trim().to_owned()).collect();
     let known = known(model);
     if let Some(unknown) = heading.iter().find(|name| !known.contains(name)) {
+        let hint = did_you_mean(unknown, known.iter().map(String::as_str));
         let message =
-            format!("there is no column '{unknown}' for {}: its columns are {}", model.name, known.join(", "));
+            format!("there is no column '{unknown}' for {}{hint}: its columns are {}", model.name, known.join(", "));
         return Err(mistake(1, message));
     }
     if heading.iter().enumerate().any(|(place, name)| heading[..place].contains(name)) {

@@ -14,7 +14,7 @@ use stepwave_kernel::formula::{self, Formula};
 use stepwave_kernel::prove::{
     self, Case, CaseError, Certificate, Family, FamilyError, Lost, Proof, Row, Strobes, Symbol,
 };
-use stepwave_kernel::{Design, Net, Width};
+use stepwave_kernel::{Design, Net, Width, did_you_mean};
 use stepwave_models::{AXES, Choices, Claims, Hardware, Kind, Machine, Model, ModelError};
 use stepwave_nc::Curve;
 
@@ -145,8 +145,9 @@ pub fn choices_at(
         if meant.is_empty() {
             let known: Vec<&str> = default.widths.keys().map(String::as_str).collect();
             return Err(ModelError::Widths(format!(
-                "{} has no register {given} with a width to choose: give one of {}",
+                "{} has no register {given} with a width to choose{}: give one of {}",
                 model.name,
+                did_you_mean(given, known.iter().copied()),
                 known.join(", ")
             )));
         }

@@ -77,14 +77,14 @@ pub enum CompareError {
     #[error("`{pattern}` is not a glob: {reason}")]
     BadGlob { pattern: String, reason: String },
     /// A rule of the map without effect is a slip of the pen.
-    #[error("the map renames `{from}`, but the first wave has no such signal or scope")]
-    UnusedMap { from: String },
+    #[error("the map renames `{from}`, but the first wave has no such signal or scope{hint}")]
+    UnusedMap { from: String, hint: String },
     /// Two signals of A would be compared with one of B.
     #[error("the map gives two signals of the first wave the name `{name}`")]
     MapCollision { name: String },
     /// "No difference" would be a hollow claim.
-    #[error("no signal is left to compare; loosen --signals or --ignore")]
-    NothingToCompare,
+    #[error("no signal is left to compare{hint}; loosen --signals or --ignore")]
+    NothingToCompare { hint: String },
     /// The offset is larger than the wave.
     #[error("an offset of {offset} cycles leaves nothing to compare: the waves have {a} and {b} cycles")]
     NoOverlap { offset: i64, a: u64, b: u64 },

@@ -6,6 +6,7 @@ use globset::GlobMatcher;
 
 use crate::bits::Width;
 use crate::elaborate::Design;
+use crate::nearest::did_you_mean;
 use crate::netlist::{Format, Net, Op};
 use crate::trace::pattern::glob;
 
@@ -57,6 +58,14 @@ pub enum PatternError {
     /// The glob has a syntax error.
     #[error("'{0}' is no name pattern ({1}): use * and ? as in a shell, such as 'jr*' or 'dda_line.x.*'")]
     Syntax(String, String),
+    /// A pattern that is to keep signals keeps none.
+    #[error("no signal is called '{pattern}'{hint}; `stepwave list` names the registers")]
+    Unused {
+        /// The pattern.
+        pattern: String,
+        /// The name that was perhaps meant.
+        hint: String,
+    },
     /// Nothing is left to show.
     #[error("no signal is left to trace: {patterns}; `stepwave list` names the registers")]
     NothingLeft {
@@ -78,6 +87,13 @@ fn matchers(patterns: &[String]) -> Result<Vec<GlobMatcher>, PatternError> {
     patterns.iter().map(compile).collect()
 }
 
+/// A pattern fits the leaf name, the dotted path, or the path without the design's name.
+fn matches(glob: &GlobMatcher, scopes: &[String], name: &str) -> bool {
+    let inner = [&scopes[1..], &[name.to_owned()]].concat().join(".");
+    let path = format!("{}.{inner}", scopes[0]);
+    [name, path.as_str(), inner.as_str()].iter().any(|text| glob.is_match(text))
+}
+
 impl Selection {
     /// Keeps the names that match one of `include` (all, if it is empty) and none of `exclude`, in at most `depth`
     /// levels of scopes (1 is the top scope alone). A pattern is compared with the leaf name, the dotted path, and the
@@ -90,11 +106,7 @@ impl Selection {
     }
 
     fn keeps(&self, scopes: &[String], name: &str) -> bool {
-        let inner = [&scopes[1..], &[name.to_owned()]].concat().join(".");
-        let path = format!("{}.{inner}", scopes[0]);
-        let any = |globs: &[GlobMatcher]| {
-            globs.iter().any(|glob| [name, path.as_str(), inner.as_str()].iter().any(|text| glob.is_match(text)))
-        };
+        let any = |globs: &[GlobMatcher]| globs.iter().any(|glob| matches(glob, scopes, name));
         (self.include.is_empty() || any(&self.include))
             && !any(&self.exclude)
             && self.depth.is_none_or(|depth| scopes.len() <= depth)
@@ -104,7 +116,7 @@ impl Selection {
     /// where each net stands in the rows; a net that is not among them is left out.
     ///
     /// # Errors
-    /// Nothing is left.
+    /// Nothing is left, or a pattern that is to keep signals fits none.
     pub fn probes(&self, design: &Design, columns: &[Net]) -> Result<Vec<Probe>, PatternError> {
         let netlist = design.netlist();
         let column_of: HashMap<Net, usize> = columns.iter().enumerate().map(|(index, &net)| (net, index)).collect();
@@ -122,6 +134,13 @@ impl Selection {
             order.push(scope);
             let inner = (0..netlist.scopes.len()).rev();
             pending.extend(inner.filter(|&i| netlist.scopes[i].parent.is_some_and(|parent| parent.index() == scope)));
+        }
+        let names = || netlist.names.iter().map(|named| (&scopes[named.scope.index()], named.name.as_str()));
+        let fits = |glob: &&GlobMatcher| names().any(|(scopes, name)| matches(glob, scopes, name));
+        if let Some(unused) = self.include.iter().find(|glob| !fits(glob)) {
+            let pattern = unused.glob().to_string();
+            let hint = did_you_mean(&pattern, names().map(|(_, name)| name));
+            return Err(PatternError::Unused { pattern, hint });
         }
         let mut probes = Vec::new();
         for scope in order {

@@ -3,6 +3,7 @@
 use super::frame::Frames;
 use super::{CompareError, Options};
 use crate::trace::pattern::glob;
+use crate::nearest::did_you_mean;
 use crate::trace::read::{Signal, Wave};
 use globset::GlobMatcher;
 use std::collections::{HashMap, HashSet};
@@ -41,7 +42,14 @@ pub(crate) fn pairs<'w>(frames: &Frames<'w>, options: &Options) -> Result<Vec<Pa
         };
         !clock && (select.is_empty() || hit(&select)) && !hit(&ignore)
     });
-    if pairs.is_empty() { Err(CompareError::NothingToCompare) } else { Ok(pairs) }
+    if pairs.is_empty() {
+        let known =
+            || [a, b].into_iter().flat_map(Wave::signals).flat_map(|signal| [signal.path.as_str(), signal.leaf()]);
+        let hints = options.signals.iter().map(|given| did_you_mean(given, known()));
+        let hint = hints.into_iter().find(|hint| !hint.is_empty()).unwrap_or_default();
+        return Err(CompareError::NothingToCompare { hint });
+    }
+    Ok(pairs)
 }
 
 fn globs(patterns: &[String]) -> Result<Vec<GlobMatcher>, CompareError> {
@@ -63,7 +71,12 @@ fn names(a: &Wave, b: &Wave, map: &[(String, String)]) -> Result<(Vec<String>, V
         }
     }
     if let Some((_, (from, _))) = used.iter().zip(map).find(|(used, _)| !**used) {
-        return Err(CompareError::UnusedMap { from: from.clone() });
+        // Signals and the scopes that they are in.
+        let prefixes =
+            |path: &'_ str| path.match_indices('.').map(|(at, _)| at).chain([path.len()]).collect::<Vec<_>>();
+        let known =
+            a.signals().iter().flat_map(|signal| prefixes(&signal.path).into_iter().map(|at| &signal.path[..at]));
+        return Err(CompareError::UnusedMap { from: from.clone(), hint: did_you_mean(from, known) });
     }
     let mut seen = HashSet::with_capacity(names_a.len());
     if let Some(twice) = names_a.iter().find(|name| !seen.insert(name.as_str())) {

@@ -173,7 +173,7 @@ fn globs_select_and_ignore_by_path_and_by_name() {
     assert_eq!(ignore("*.x.c*"), "same: 2 signals over 12 cycles");
     let select = |glob: &str| compare(&a, &b, &options(|o| o.signals = vec![glob.into()])).map(|c| c.signals);
     assert!(matches!(select("{odd,e}"), Ok(2)));
-    assert!(matches!(select("nothing"), Err(CompareError::NothingToCompare)));
+    assert!(matches!(select("nothing"), Err(CompareError::NothingToCompare { .. })));
     assert!(matches!(select("[z"), Err(CompareError::BadGlob { pattern, .. }) if pattern == "[z"));
 }
 

@@ -1,0 +1,100 @@
+//! Names that shells complete: models, registers, and the values of lists. What is given is judged elsewhere, so that a
+//! wrong name has the sentence of whoever knows the right ones.
+
+use std::collections::{BTreeSet, HashSet};
+use std::ffi::OsStr;
+
+use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
+use clap::{Arg, Command, Error};
+use stepwave::models::{AXES, Choice, Model, ModelError, Named, catalogue};
+
+/// A parser whose values a shell can propose.
+#[derive(Clone)]
+pub(crate) struct Listed<P> {
+    inner: P,
+    words: Vec<String>,
+}
+
+impl<P: TypedValueParser> TypedValueParser for Listed<P> {
+    type Value = P::Value;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<P::Value, Error> {
+        self.inner.parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(self.words.iter().map(PossibleValue::new)))
+    }
+}
+
+/// What a parser takes, with words to propose.
+pub(crate) fn listed<P: TypedValueParser>(inner: P, words: Vec<String>) -> Listed<P> {
+    Listed { inner, words }
+}
+
+/// The name of a model.
+pub(crate) fn model_name() -> Listed<StringValueParser> {
+    let names = catalogue().iter().map(|model| model.name.to_owned());
+    listed(StringValueParser::new(), names.collect())
+}
+
+/// A list of the words of a choice.
+pub(crate) fn list_of<T: Named>() -> Listed<StringValueParser> {
+    words(&T::ALL.iter().map(|(word, _)| *word).collect::<Vec<_>>())
+}
+
+/// A list of words.
+pub(crate) fn words(words: &[&str]) -> Listed<StringValueParser> {
+    listed(StringValueParser::new(), words.iter().map(|&word| word.to_owned()).collect())
+}
+
+/// Which registers are meant.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Registers {
+    All,
+    /// Those whose width is a choice.
+    Resizable,
+}
+
+/// Registers of a model: those of `jvx, jvy, …` for every axis that it takes.
+pub(crate) fn registers(model: &Model, which: Registers) -> Vec<String> {
+    let axes = &AXES[..model.curve.max_axes().min(AXES.len())];
+    let mut names: Vec<String> = Vec::new();
+    let fixed = |width: &str| width.parse::<u32>().is_ok();
+    for doc in model.registers.iter().filter(|doc| which == Registers::All || !fixed(doc.width)) {
+        let given: Vec<&str> = doc.name.split(", ").filter(|name| *name != "…").collect();
+        names.extend(given.iter().map(|&name| name.to_owned()));
+        let common = given[0].strip_suffix(AXES[0]).filter(|_| doc.name.ends_with('…'));
+        names.extend(common.into_iter().flat_map(|common| axes.iter().map(move |axis| format!("{common}{axis}"))));
+    }
+    let mut seen = HashSet::new();
+    names.retain(|name| seen.insert(name.clone()));
+    names
+}
+
+/// Registers of all models, as patterns of signals.
+pub(crate) fn all_registers() -> Vec<String> {
+    of_all_models(Registers::All, "")
+}
+
+/// Registers of all models whose width is a choice, with the sign that follows them there.
+pub(crate) fn all_widths() -> Vec<String> {
+    of_all_models(Registers::Resizable, "=")
+}
+
+fn of_all_models(which: Registers, suffix: &str) -> Vec<String> {
+    let names: BTreeSet<String> = catalogue().iter().flat_map(|model| registers(model, which)).collect();
+    names.into_iter().map(|name| name + suffix).collect()
+}
+
+/// Refuses the name of a register that a model has for no geometry; a name without its axis letter or number stands for
+/// several.
+pub(crate) fn known_register(model: &Model, choice: Choice, given: &str) -> Result<(), ModelError> {
+    let kind = |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
+    let of_axes = |name: &str| AXES.iter().any(|axis| name.strip_suffix(axis) == Some(given));
+    let known = registers(model, Registers::Resizable);
+    if known.iter().any(|name| name == given || of_axes(name) || kind(name) == kind(given)) {
+        return Ok(());
+    }
+    Err(ModelError::UnknownRegister { model: model.name, choice, register: given.to_owned(), known: known.join(", ") })
+}

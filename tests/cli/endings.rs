@@ -1,0 +1,58 @@
+//! The ending of a file and the option that writes it must agree.
+
+use super::Folder;
+
+#[test]
+fn an_ending_of_another_format_is_refused_with_the_right_option() {
+    let sweep = "sweep dda-line --to-grid 1..3x1..3";
+    for (words, sentence) in [
+        (
+            "run dda-line --to 8,6 --vcd x.fst",
+            "--vcd writes VCD, but x.fst has the ending of FST: give --fst x.fst, or x.vcd",
+        ),
+        (
+            "run dda-line --to 8,6 --fst x.VCD",
+            "--fst writes FST, but x.VCD has the ending of VCD: give --vcd x.VCD, or x.fst",
+        ),
+        ("run dda-line --to 8,6 --json x.csv", "but x.csv has the ending of CSV: give --steps x.csv, or x.json"),
+        ("run dda-line --to 8,6 --steps sub/x.json", "give --json sub/x.json, or sub/x.csv"),
+        ("run dda-line --to 8,6 --plot x.png", "--plot writes SVG, but x.png has the ending of PNG: give x.svg"),
+        ("run dda-line --to 8,6 --checkpoints x.vcd --vcd w", "give --vcd x.vcd, or x.json"),
+        ("run dda-line --to 8,6 --vcd part.ngc", "has the ending of an NC program: give part.vcd"),
+        (
+            "program a.ngc --method ppc --steps x.parquet",
+            "--steps writes CSV, but x.parquet has the ending of Parquet: give x.csv",
+        ),
+        ("export dda-line --to 8,6 --verilog x.btor2", "give --btor2 x.btor2, or x.v"),
+        ("export dda-line --to 8,6 --smt2 x.v", "give --verilog x.v, or x.smt2"),
+        ("prove ppc-line --vcd x.fst", "--vcd writes VCD, but x.fst has the ending of FST: give x.vcd"),
+        ("prove ppc-line --certificate x.vcd", "give --vcd x.vcd, or a name with another ending"),
+        ("diff a.vcd b.vcd --merged x.fst", "--merged writes VCD, but x.fst has the ending of FST: give x.vcd"),
+        (&format!("{sweep} --csv x.parquet"), "give --parquet x.parquet, or x.csv"),
+        (&format!("{sweep} --parquet x.csv"), "give --csv x.csv, or x.parquet"),
+        (&format!("{sweep} --plot x.json"), "--plot writes SVG or PNG, but x.json has the ending of JSON: give x.svg"),
+        ("sweep merge x.vcd a.csv", "writes CSV or Parquet, but x.vcd has the ending of VCD"),
+    ] {
+        let folder = Folder::new();
+        let ran = folder.run(words);
+        assert!(ran.code == 2 && ran.err.contains(sentence), "{words}: {ran:?}");
+        assert_eq!(folder.files(), [""; 0], "{words}");
+    }
+}
+
+#[test]
+fn other_names_are_left_to_the_user() {
+    for options in [
+        "--vcd x.txt",
+        "--vcd x",
+        "--vcd x.v.vcd",
+        "--vcd .fst",
+        "--steps x.dat",
+        "--json x.JSON",
+        "--plot /dev/null",
+        "--steps -",
+    ] {
+        let ran = Folder::new().run(&format!("run dda-line --to 8,6 {options}"));
+        assert_eq!(ran.code, 0, "{options}: {ran:?}");
+    }
+}
