@@ -7,6 +7,8 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::ErrorKind;
 use clap::{Arg, Command, Error};
 
+use crate::output::is_stream;
+
 /// What a file may hold.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Format {
@@ -65,7 +67,7 @@ impl TypedValueParser for FileParser {
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<PathBuf, Error> {
         let path = PathBufValueParser::new().parse_ref(command, arg, value)?;
-        match path.extension().and_then(said) {
+        match path.extension().and_then(said).filter(|_| !is_stream(&path)) {
             Some(entry) if !self.writes.contains(&entry.0) => Err(self.refusal(command, arg, &path, entry)),
             _ => Ok(path),
         }

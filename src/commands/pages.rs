@@ -15,10 +15,25 @@ pub(crate) fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "stepwave", &mut script);
     let mut script = String::from_utf8_lossy(&script).into_owned();
-    if shell == clap_complete::Shell::Bash {
-        script += &bash_registers();
+    match shell {
+        clap_complete::Shell::Bash => script += &bash_registers(),
+        clap_complete::Shell::Fish => script += &fish_models(),
+        _ => {}
     }
     output::print_data(&script)
+}
+
+/// What makes fish offer models, as its script knows options only, until one is on the line.
+fn fish_models() -> String {
+    let names: Vec<&str> = catalogue().iter().map(|model| model.name).collect();
+    let names = names.join(" ");
+    let line = |command: &str| {
+        format!(
+            "complete -c stepwave -n \"__fish_stepwave_using_subcommand {command}; and not __fish_seen_subcommand_from {names}\" \
+             -f -a \"{names}\"\n"
+        )
+    };
+    ["run", "export", "sweep", "widths", "prove"].map(line).concat()
 }
 
 /// What makes bash offer the registers of the very model, where one is on the line, and no blank after `f=`.

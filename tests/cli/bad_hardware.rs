@@ -152,8 +152,11 @@ fn units_of_a_pulse_multiplier_that_do_not_go_together_are_refused() {
 #[test]
 fn an_unknown_model_is_refused_with_those_there_are() {
     for model in ["nope", "PPC-LINE", "ppc_line", "ppc-"] {
-        let hint = format!("there is no model '{model}'; the models are ");
-        run_refused(&format!("{model} --to 6,4"), &[&hint, "ppc-line", "ppc-arc", "dda-line", "dda-arc"]);
+        let hint = format!("there is no model '{model}'");
+        run_refused(
+            &format!("{model} --to 6,4"),
+            &[&hint, "; the models are ", "ppc-line", "ppc-arc", "dda-line", "dda-arc"],
+        );
     }
     run_refused("--ppc-line --to 6,4", &["'--ppc-line'"]);
     refused_words(&["run", "", "--to", "6,4"], &["there is no model ''"]);
@@ -280,7 +283,7 @@ fn a_subcommand_or_option_that_does_not_exist_is_refused_with_the_way_to_the_hel
 
 #[test]
 fn a_message_is_one_line_whatever_the_words_that_it_quotes() {
-    refused_words(&["run", "a\nb\u{1b}[31m", "--to", "6,4"], &["there is no model 'a b [31m'"]);
+    refused_words(&["run", "a\nb\u{1b}[31m", "--to", "6,4"], &["there is no model 'a b\\x1b[31m'"]);
     refused_words(&["run", "ppc-line", "--to", "6\n7,4"], &["is no coordinate"]);
     refused_words(&["run", "ppc-line", "--to", "6,4", "--vcd", "w.vcd", "--trace", "x\ny"], &["keep 'x y'"]);
     refused_words(&["fr\nob"], &["unrecognized subcommand"]);

@@ -15,7 +15,7 @@ fn a_slip_of_the_pen_is_answered_with_the_nearest_name() {
         ("prove dda-lin", "(did you mean 'dda-line'?)"),
         ("run dda-line --to 8,6 --width jxr=4", "no register 'jxr' here for --width (did you mean 'jrx'?)"),
         ("run dda-line --to 8,6 --preset jyr=4", "no register 'jyr' here for --preset (did you mean 'jry'?)"),
-        ("prove ppc-line --narrower fe=1", "no register fe with a width to choose (did you mean 'f'?)"),
+        ("prove ppc-line --narrower fx=1", "no register fx with a width to choose (did you mean 'f'?)"),
         ("run dda-line --to 8,6 --vcd w.vcd --trace jxr", "no signal is called 'jxr' (did you mean 'jrx'?)"),
         ("run dda-line --to 8,6 --vcd w.vcd --trace x --trace jvz", "no signal is called 'jvz' (did you mean 'jv"),
         (

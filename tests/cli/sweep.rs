@@ -359,7 +359,7 @@ fn bad_words_are_refused_and_leave_no_file() {
         ("--resume", &["--csv FILE or --parquet FILE"]),
         ("--csv - --resume", &["--csv FILE or --parquet FILE"]),
         ("--csv nowhere/s.csv", &["cannot write nowhere/s.csv", "does not exist"]),
-        ("--csv s.csv --parquet s.csv", &["two outputs would go to s.csv"]),
+        ("--csv s --parquet s", &["two outputs would go to s"]),
         ("--csv s.csv --plot nowhere/p.svg", &["cannot write nowhere/p.svg"]),
         ("--plot p.png --plot p.png", &["two outputs would go to p.png"]),
         ("--plot - --plot -", &["two outputs cannot both go to standard output"]),
