@@ -139,11 +139,14 @@ pub(super) fn too_narrow(
     curve: &Curve,
     certain: bool,
 ) -> Option<Witness> {
-    let mut choices = wide.clone();
-    choices.widths.insert(name.to_owned(), Width::new(u64::from(bits)).ok()?);
+    let choices = with_width(wide.clone(), name, bits)?;
     let ran = match Testbench::new(model, curve, &choices) {
-        // A load word does not fit, or the registers no longer fit each other.
-        Err(ModelError::DoesNotFit { .. } | ModelError::Widths(_)) => true,
+        Err(ModelError::DoesNotFit { .. }) => true,
+        // The registers do not fit each other, though they do with one bit more.
+        Err(ModelError::Widths(_)) => {
+            let more = with_width(wide.clone(), name, bits + 1)?;
+            model.plan(curve, &more).is_ok().then_some(true)?
+        }
         Err(_) => return None,
         Ok(bench) => {
             let outcome = bench.limited(if certain { SHOWN } else { LIMIT }).run(EngineKind::Word, &mut []).ok()?;
@@ -155,4 +158,10 @@ pub(super) fn too_narrow(
         }
     };
     Some(Witness { curve: curve.clone(), choices, ran })
+}
+
+/// The same choices with a register of so many bits.
+fn with_width(mut choices: Choices, name: &str, bits: u32) -> Option<Choices> {
+    choices.widths.insert(name.to_owned(), Width::new(u64::from(bits)).ok()?);
+    Some(choices)
 }
