@@ -129,6 +129,9 @@ pub(crate) struct RunArgs {
     /// Show registers in binary in the printed table
     #[arg(long, help_heading = "Outputs (- is standard output)")]
     pub(crate) bits: bool,
+    /// Print the table of a DDA arc, conic or helix as textbooks do: in row k the J_V that step k used, not the one after it
+    #[arg(long, help_heading = "Outputs (- is standard output)")]
+    pub(crate) textbook: bool,
     /// Keep states of the run in this file; where it exists, begin at the last state before --trace-from instead of at
     /// clock 0
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json]), help_heading = "Wave")]

@@ -189,9 +189,15 @@ impl System {
     /// The period T in seconds.
     #[must_use]
     pub fn period(self) -> f64 {
+        let [seconds, of] = self.period_ratio();
+        seconds as f64 / of as f64
+    }
+
+    /// The period T as a ratio of whole numbers of seconds: 8 ms, or 10.24 ms.
+    pub(crate) fn period_ratio(self) -> [u64; 2] {
         match self {
-            System::Direction => 0.008,
-            System::StepFactor => 0.010_24,
+            System::Direction => [1, 125],
+            System::StepFactor => [32, 3125],
         }
     }
 }
@@ -205,6 +211,13 @@ impl Millionths {
     #[must_use]
     pub fn units(self) -> f64 {
         self.0 as f64 / 1e6
+    }
+
+    /// The nearest to a number of units, from 0 on, with as much as the type holds.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn saturating(units: f64) -> Millionths {
+        Millionths((units * 1e6).round() as u64)
     }
 
     /// The nearest to a number of units from 0 on; `None` where it is beyond all measure.
@@ -388,11 +401,19 @@ pub struct Choices {
     pub step: Option<Millionths>,
     /// Greatest chord error in BLU.
     pub tolerance: Option<Millionths>,
+    /// Frequency of the clock in Hz, by which data sampling divides it; the least with which it keeps its period if none.
+    pub clock_hz: Option<Millionths>,
     /// What a strict cell does on overflow.
     pub on_overflow: Option<OnOverflow>,
 }
 
 impl Choices {
+    /// All by default, with the clock of 1 MHz that commands have where none is given.
+    #[must_use]
+    pub fn at_1_mhz() -> Choices {
+        Choices { clock_hz: Some(Millionths::saturating(1e6)), ..Choices::default() }
+    }
+
     /// The choices that differ from "by default".
     #[must_use]
     pub fn given(&self) -> Vec<Choice> {

@@ -79,7 +79,8 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let n = plan::magnitude_bits(choices, plan::largest_coordinate(&sectors));
     let rule = choices.weights.unwrap_or_default();
     let mut registers = Registers::new(NAME, choices);
-    registers.register("f", n + 2).register("a", n).register("b", n);
+    let f = plan::off_circle_bits(curve, choices, n) + 2;
+    registers.register("f", f).register("a", n).register("b", n);
     registers.shown("base").shown("quad").end_counters(2, n);
     registers.positions(plan::arc_positions(curve, &sectors));
     let error_bound = (rule == Weights::Mid).then_some(1.0);

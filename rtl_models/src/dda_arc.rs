@@ -24,11 +24,15 @@
 //! coordinate is R rounded to the nearest integer, and loads each sector anew. 2^n must be greater than the largest
 //! coordinate.
 //!
-//! Two limits of the method itself: with a preset of zero or full the motion can come to a stand one pulse before an
-//! axis, where J_V is 0 already (with `half` only arcs were seen to whose end lies beside their circle); and the counter
-//! `total` may miss the end.
+//! Two limits of the method itself: with a preset of zero or full the motion can stop for good one pulse before an axis,
+//! where J_V is 0 already (with `half`, the default, this was only seen on arcs whose end lies off their circle); and the
+//! counter `total` may miss the end.
 //!
-//! The arc NR1 from (5, 0) to (0, 5) in 3 bits, from the golden file `waves/dda-arc-nr1.csv`; the wave stands beside it:
+//! Textbooks print in row k of their tables the J_V that step k used; here row k holds every register after step k, so
+//! that their J_V is that of row k-1. `run --textbook` prints the table as they do. Their tables begin with remainders of
+//! 0: `--preset zero`.
+//!
+//! The arc NR1 from (5, 0) to (0, 5) in 3 bits with `--preset zero`, from the golden file `waves/dda-arc-nr1.csv`; the wave stands beside it:
 //!
 //! ```text
 #![doc = include_str!("../../waves/dda-arc-nr1.csv")]
@@ -38,7 +42,7 @@ use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::Module;
 use stepwave_nc::{Crossing, Curve, Sector};
 
-use crate::choices::{Choice, Choices, EndPoint};
+use crate::choices::{Choice, Choices, EndPoint, Preset};
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
@@ -66,7 +70,7 @@ pub(crate) const MODEL: Model = Model {
     ],
     choices: &[
         ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the arc)" },
-        ChoiceDoc { choice: Choice::Preset, values: "zero (default) | half | full | N, or jrx=N,jry=N" },
+        ChoiceDoc { choice: Choice::Preset, values: "half (default) | zero | full | N, or jrx=N,jry=N" },
         ChoiceDoc { choice: Choice::Normalize, values: "left-shift normalisation (default: none)" },
         ChoiceDoc { choice: Choice::EndPoint, values: "per-axis (default) | total" },
         ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
@@ -79,6 +83,7 @@ pub(crate) const MODEL: Model = Model {
 };
 
 fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
+    let choices = &Choices { preset: Some(choices.preset.unwrap_or(Preset::Half)), ..choices.clone() };
     let end_point = plan::integrated_end_point(NAME, choices)?;
     let sectors = plan::arc(curve).map(|arc| arc.sectors(Crossing::RoundedRadius)).unwrap_or_default();
     let n = plan::magnitude_bits(choices, plan::largest_coordinate(&sectors));

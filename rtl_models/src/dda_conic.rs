@@ -32,6 +32,9 @@
 //! so normalised, all of them and their corrections are shifted left until the greatest of the sector, which the loader
 //! knows, has its top bit set.
 //!
+//! Textbooks print in row k of their tables the J_V that step k used; here it is the J_V after step k. `run --textbook`
+//! prints the table as they do.
+//!
 //! Limits of the method itself: the path may leave the curve by more than one BLU (on quarter ellipses of semi-axes
 //! below 30 by up to 2.13 with the preset zero, 1.17 with half, 2.07 with full); with a preset of full, seldom with
 //! zero, the motion can come to a stand before an axis or a vertex, where J_V is 0 already (with `half` it was never seen

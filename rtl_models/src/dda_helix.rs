@@ -27,6 +27,9 @@
 //! 2^n must be greater than the largest coordinate and than Z/θ. The fraction has the bits that jrz is wider than jrx
 //! (`--width jrz=N`): with f of them z errs by less than θ/2^f BLU.
 //!
+//! Textbooks print in row k of their tables the J_V that step k used; here it is the J_V after step k. `run --textbook`
+//! prints the table as they do.
+//!
 //! Limits are those of `dda-arc`: with a preset of zero or full the motion can come to a stand one pulse before an axis,
 //! and then z still arrives.
 //!

@@ -46,6 +46,7 @@ mod hardware;
 mod machine;
 mod model;
 mod plan;
+mod promise;
 mod registers;
 mod sampling;
 mod words;
@@ -57,9 +58,10 @@ pub use choices::{
 pub use claims::{Claims, Kind, Region, extremes};
 pub use error::ModelError;
 pub use hardware::{AXES, Hardware, Pace};
-pub use machine::{Machine, Port, Words};
+pub use machine::{CutWord, Loaded, Machine, Port, Words};
 
 pub use model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+pub use promise::Promise;
 pub use sampling::Sampling;
 pub use stepwave_kernel::OnOverflow;
 

@@ -1,10 +1,11 @@
 //! A machine: a design with the ports that a test bench needs, found by their names.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use stepwave_kernel::bits::Reading;
 use stepwave_kernel::prove::Strobes;
-use stepwave_kernel::{Design, Net, Netlist, Width, elaborate};
+use stepwave_kernel::{Design, Net, Netlist, OnOverflow, Width, elaborate};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
@@ -89,17 +90,76 @@ impl Machine {
         Strobes { load, preset_position, loaded, stepped, done }
     }
 
-    /// The bits of every word of every block, checked against the inputs.
+    /// The bits of every word of every block, each of which must fit: for whoever makes statements about all geometries.
     ///
     /// # Errors
     /// A value does not fit in its register.
     pub fn encode(&self, hardware: &Hardware, blocks: &[Words]) -> Result<Vec<Vec<(Net, u64)>>, ModelError> {
-        let encode = |&(register, value): &(&'static str, i128)| {
-            let port = self.inputs.get(register).ok_or_else(|| ModelError::MissingPort(register.to_owned()))?;
-            let bits = port.reading.bits(port.width, value);
-            Ok((port.net, bits.ok_or_else(|| does_not_fit(register, port, hardware, blocks))?.value()))
-        };
-        blocks.iter().map(|words| words.iter().map(encode).collect()).collect()
+        self.loaded(hardware, blocks, OnOverflow::Trap).map(|loaded| loaded.blocks)
+    }
+
+    /// The bits of every word of every block as the hardware takes them. What does not fit is refused where overflows
+    /// trap; else it is cut to the lowest bits as a bus cuts it, or held at an end of the range, and listed.
+    ///
+    /// # Errors
+    /// Where overflows trap: a value does not fit in its register.
+    pub fn load(&self, hardware: &Hardware, blocks: &[Words]) -> Result<Loaded, ModelError> {
+        self.loaded(hardware, blocks, hardware.on_overflow)
+    }
+
+    fn loaded(&self, hardware: &Hardware, blocks: &[Words], mode: OnOverflow) -> Result<Loaded, ModelError> {
+        let mut loaded = Loaded::default();
+        for (index, words) in blocks.iter().enumerate() {
+            let mut block = Vec::with_capacity(words.len());
+            for &(register, value) in words {
+                let port = self.inputs.get(register).ok_or_else(|| ModelError::MissingPort(register.to_owned()))?;
+                let bits = match (port.reading.bits(port.width, value), mode) {
+                    (Some(bits), _) => bits,
+                    (None, OnOverflow::Trap) => return Err(does_not_fit(register, port, hardware, blocks)),
+                    (None, OnOverflow::Wrap) => port.reading.wrapped(port.width, value),
+                    (None, OnOverflow::Saturate) => port.reading.saturated(port.width, value),
+                };
+                let taken = port.reading.number(port.width, bits.value());
+                if taken != value {
+                    loaded.cut.push(CutWord { register, block: index, value, loaded: taken, width: port.width });
+                }
+                block.push((port.net, bits.value()));
+            }
+            loaded.blocks.push(block);
+        }
+        Ok(loaded)
+    }
+}
+
+/// What the inputs of a machine are set to, block by block.
+#[derive(Clone, Debug, Default)]
+pub struct Loaded {
+    /// Each input and its bits.
+    pub blocks: Vec<Vec<(Net, u64)>>,
+    /// The words that did not fit in their registers.
+    pub cut: Vec<CutWord>,
+}
+
+/// A load word that did not fit in its register, and what the register took of it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct CutWord {
+    /// The register.
+    pub register: &'static str,
+    /// Index of the block, from 0.
+    pub block: usize,
+    /// The word.
+    pub value: i128,
+    /// What was loaded.
+    pub loaded: i128,
+    /// Width of the register.
+    pub width: Width,
+}
+
+/// `e = 300 does not fit in its 8 bits: 44 was loaded`
+impl fmt::Display for CutWord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let CutWord { register, value, loaded, width, .. } = self;
+        write!(f, "{register} = {value} does not fit in its {width}: {loaded} was loaded")
     }
 }
 

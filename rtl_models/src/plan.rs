@@ -113,6 +113,19 @@ pub(crate) fn arc_positions(curve: &Curve, sectors: &[Sector]) -> [Vec<i64>; 2] 
     [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect())
 }
 
+/// The n of a deviation register, where magnitudes have `n` bits. Forced steps lead to an end off the circle, where F is up
+/// to twice the radius, which may need a bit more than the coordinates between both ends.
+pub(crate) fn off_circle_bits(curve: &Curve, choices: &Choices, n: u32) -> u32 {
+    arc(curve).map_or(n, |arc| n.max(magnitude_bits(choices, off_circle_radius(arc))))
+}
+
+/// The radius of an arc whose end lies off the circle, in whole BLU, rounded up; 0 of others.
+pub(crate) fn off_circle_radius(arc: &Arc) -> u64 {
+    // Within 2^53.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    if arc.ends_on_circle() { 0 } else { arc.radius().ceil() as u64 }
+}
+
 /// Hardware that judges every step of an arc by its deviation: registers `f` of so many more bits than the largest
 /// coordinate (where the end point is on the circle, and where it lies beside it), `xi`, `yi`, `quad`, and `e` or `ex`, `ey`.
 pub(crate) fn judged_arc(
@@ -133,7 +146,11 @@ pub(crate) fn judged_arc(
     let sectors = arc(curve).map(|arc| arc.sectors(crossing)).unwrap_or_default();
     let n = magnitude_bits(choices, largest_coordinate(&sectors));
     let mut registers = Registers::new(model, choices);
-    registers.register("f", n + deviation[usize::from(!on_circle)]).register("xi", n).register("yi", n).shown("quad");
+    registers
+        .register("f", off_circle_bits(curve, choices, n) + deviation[usize::from(!on_circle)])
+        .register("xi", n)
+        .register("yi", n)
+        .shown("quad");
     match end_point {
         EndPoint::PerAxis => registers.end_counters(2, n),
         _ => registers.register("e", n + 3),

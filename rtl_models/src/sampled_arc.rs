@@ -1,7 +1,7 @@
 //! `sampled-arc`: data sampling (数据采样法), arc: a coarse stage once a period, and a fine DDA between.
 //!
 //! ```text
-//!   coarse, one state after another                     fine, a burst of 2^k clocks
+//!   coarse, one state after another                     fine, 2^k additions in T
 //!   ┌────────────┐
 //!   │ multiplier │◄─┐                                   jvx_next ──► jvx ──► + ──► jrx ──┐
 //!   │ divider    │◄─┼── state ──► px, py ──► round ────┤ (buffer)            ▲───────────┘
@@ -18,7 +18,8 @@
 //! | cx, cy | n+2+q | coarse point that the burst draws to, signed |
 //! | jvx, jvy | k | whole pulses of the period; `jvx_next`, `jvy_next` those of the next |
 //! | jrx, jry | k | remainder J_R: the preset |
-//! | e | k+1 | clocks of the burst left |
+//! | e | k+1 | additions of the period left |
+//! | phase | as it needs | divider of the clock: parts of an addition that have passed |
 //!
 //! n bits hold 1.25·R and some BLU, q is `--fraction`, and 2^k is greater than the way of any period. The signs of px and
 //! py are all that tells quadrants apart; nothing is reloaded at the axes.
@@ -39,9 +40,11 @@
 //! The chord of a period leaves the arc by f²/(8R): steps for which that is more than `--tolerance`, or which are longer
 //! than R/2, are refused.
 //!
-//! The multiplier (shift and add), the divider and the root (both restoring) take a bit a clock. While a burst draws one
-//! period, they calculate the next; a period takes as many clocks as the longer of both. `stepped` marks the end of
-//! each burst: a row of the step table is a period.
+//! The multiplier (shift and add), the divider and the root (both restoring) take a bit a clock. While the fine stage
+//! draws one period, they calculate the next. A divider of the clock spreads the 2^k additions of a period over T, so
+//! that at the clock frequency given a period takes T, what is not a whole number of clocks carried on to the next; a
+//! clock that leaves the coarse calculation too few clocks is refused. `stepped` marks the end of each period, which is a
+//! row of the step table.
 //!
 //! A quarter of the circle of 10 BLU with 4 BLU a period, from the golden file `waves/sampled-arc-7m.csv`; the wave
 //! stands beside it:
@@ -116,7 +119,19 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let sectors = plan::arc(curve).map(|arc| arc.sectors(Crossing::PathExtreme)).unwrap_or_default();
     // The end may lie 1 BLU beside the circle, and a path by the step factor ends outside it.
     let more = 2.0 + growth(&sampling, radius);
-    sampling.hardware(&mut registers, choices, more, plan::arc_positions(curve, &sectors))
+    let coarse = f64::from(coarse_clocks(&sampling));
+    sampling.hardware(&mut registers, choices, [more, coarse], plan::arc_positions(curve, &sectors))
+}
+
+/// Clocks from one hand-over to the next: a component takes a bit a clock, and its state two more.
+fn coarse_clocks(sampling: &Sampling) -> u32 {
+    let bits = sampling.magnitude();
+    let [product, root, quotient] = [bits + 2, bits + 2, 2 * bits + 2];
+    let (sides, hand, drive) = (2 * product, 1, 1);
+    match sampling.system {
+        System::Direction => 2 * quotient + 2 * root + 2 * product + drive + sides + hand,
+        System::StepFactor => 4 * product + sides + hand,
+    }
 }
 
 /// How far a full circle by the step factor ends outside, in BLU: λ = f/R, and R grows by the factor sqrt(1 + λ⁴/4) in

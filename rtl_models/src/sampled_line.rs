@@ -1,7 +1,7 @@
 //! `sampled-line`: data sampling (数据采样法), line of 2 axes: a coarse stage once a period, and a fine DDA between.
 //!
 //! ```text
-//!   coarse, one state after another                     fine, a burst of 2^k clocks
+//!   coarse, one state after another                     fine, 2^k additions in T
 //!   ┌────────────┐
 //!   │ multiplier │◄─┐                                   jvx_next ──► jvx ──► + ──► jrx ──┐
 //!   │ divider    │◄─┼── state ──► far, near ──► round ─┤ (buffer)            ▲───────────┘
@@ -18,7 +18,8 @@
 //! | cx, cy | n+2+q | coarse point that the burst draws to, from the start, signed |
 //! | jvx, jvy | k | whole pulses of the period; `jvx_next`, `jvy_next` those of the next |
 //! | jrx, jry | k | remainder J_R: the preset |
-//! | e | k+1 | clocks of the burst left |
+//! | e | k+1 | additions of the period left |
+//! | phase | as it needs | divider of the clock: parts of an addition that have passed |
 //!
 //! n bits hold the length of the line, q is `--fraction`, and 2^k is greater than f and the pulse that rounding may add.
 //!
@@ -33,9 +34,11 @@
 //! rounded to the nearest pulse; the fraction stays in the point. The last period is the one in which the long axis would
 //! come to its end or beyond: it takes what is left, so that the end is exact.
 //!
-//! The multiplier (shift and add), the divider and the root (both restoring) take a bit a clock. While a burst draws one
-//! period, they calculate the next; a period takes as many clocks as the longer of both. `stepped` marks the end of
-//! each burst: a row of the step table is a period.
+//! The multiplier (shift and add), the divider and the root (both restoring) take a bit a clock. While the fine stage
+//! draws one period, they calculate the next. A divider of the clock spreads the 2^k additions of a period over T, so
+//! that at the clock frequency given a period takes T, what is not a whole number of clocks carried on to the next; a
+//! clock that leaves the coarse calculation too few clocks is refused. `stepped` marks the end of each period, which is a
+//! row of the step table.
 //!
 //! The line (12, -5) with 4 BLU a period, from the golden file `waves/sampled-line-12-5.csv`; the wave stands beside it:
 //!
@@ -93,9 +96,24 @@ pub(crate) const MODEL: Model = Model {
 fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
     let sampling = Sampling::plan(NAME, choices, curve.length(), None)?;
     let mut registers = Registers::new(NAME, choices);
-    let hardware = sampling.hardware(&mut registers, choices, 0.0, plan::end_positions(curve))?;
+    let coarse = f64::from(coarse_clocks(&sampling));
+    let hardware = sampling.hardware(&mut registers, choices, [0.0, coarse], plan::end_positions(curve))?;
     // Half a pulse of rounding on each axis, twice where the fine stage is between two pulses.
     Ok(Hardware { error_bound: Some(1.5 * SQRT_2), ..hardware })
+}
+
+/// Clocks from one hand-over to the next: a component takes a bit a clock, and its state two more.
+fn coarse_clocks(sampling: &Sampling) -> u32 {
+    let product = sampling.whole + 2;
+    let hand = 1;
+    match sampling.system {
+        System::Direction => product + dividend_bits(sampling) + 2 + hand,
+        System::StepFactor => 2 * product + hand,
+    }
+}
+
+fn dividend_bits(sampling: &Sampling) -> u32 {
+    sampling.magnitude() + sampling.word_bits().max(sampling.whole + 1)
 }
 
 /// States of the coarse stage; SHARE is one of `7m` alone.
@@ -146,8 +164,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let [long, short] = ["long", "short"].map(|name| block.held(coarse, name, n));
     let x_is_longest = block.held(coarse, "x_is_longest", 1);
     let states = if by_direction { &DIRECTION[..] } else { &STEP_FACTOR };
-    let dividend = bits + sampling.word_bits().max(n + 1);
-    let unit = ArithmeticUnit::new(coarse, states, [bits + 1, n], [dividend, bits.max(n)], bits);
+    let dividend = [dividend_bits(&sampling), bits.max(n)];
+    let unit = ArithmeticUnit::new(coarse, states, [bits + 1, n], dividend, bits);
 
     // The length of the line, once a block.
     let square = coarse.reg("square", 2 * n);

@@ -24,7 +24,14 @@ pub struct Sampling {
     pub chord_error: f64,
     /// Greatest chord error that is taken.
     pub tolerance: Millionths,
+    /// Frequency of the clock in Hz; `None` for the least with which the period is kept.
+    pub clock_hz: Option<Millionths>,
+    /// Clocks of a period T, as a ratio of whole numbers without a common divisor.
+    pub clocks: [u64; 2],
 }
+
+/// Most bits of the clocks of a period, so that the divider of the clock adds within 64 bits.
+const MOST_CLOCK_BITS: u32 = 60;
 
 /// The way of a period in BLU where none is chosen.
 const STEP: u64 = 8;
@@ -36,6 +43,12 @@ const LEAST_FRACTION: u32 = 8;
 const MOST: u32 = 31;
 
 impl Sampling {
+    /// Clocks of a period T, in the mean.
+    #[must_use]
+    pub fn period_clocks(&self) -> f64 {
+        self.clocks[0] as f64 / self.clocks[1] as f64
+    }
+
     /// Bits of the word of f.
     pub(crate) fn word_bits(&self) -> u32 {
         Width::needed_unsigned(self.word.into())
@@ -105,16 +118,46 @@ impl Sampling {
         let chord_error = radius.map_or(0.0, |radius| step.units() * step.units() / (8.0 * radius));
         // It is below 2^31: a step beyond does not get here.
         let word = u64::try_from(word).unwrap_or(u64::MAX);
-        Ok(Sampling { system: choices.system.unwrap_or_default(), fraction, step, word, whole, chord_error, tolerance })
+        let (system, clock_hz, clocks) = (choices.system.unwrap_or_default(), choices.clock_hz, [1, 1]);
+        Ok(Sampling { system, fraction, step, word, whole, chord_error, tolerance, clock_hz, clocks })
+    }
+
+    /// Clocks of a period T at the clock that was chosen, or else the least that hold `least` clocks.
+    ///
+    /// # Errors
+    /// The clock leaves fewer clocks in a period than `least`, which `why` needs.
+    fn period(&self, model: &'static str, least: u64, why: &str) -> Result<[u64; 2], ModelError> {
+        let [seconds, of] = self.system.period_ratio().map(u128::from);
+        let Some(hz) = self.clock_hz else { return Ok([least, 1]) };
+        let (clocks, of) = (u128::from(hz.0) * seconds, of * 1_000_000);
+        let period = self.system.period() * 1e3;
+        if clocks < u128::from(least) * of {
+            let enough = (u128::from(least) * of).div_ceil(seconds * 1_000_000);
+            return Err(ModelError::Widths(format!(
+                "{model}: a clock of {hz} Hz has {} clocks in the period of {period} ms, but {why} {least}: give --clock-hz \
+                 {enough} or more",
+                clocks / of
+            )));
+        }
+        let common = common_divisor(clocks, of);
+        let ratio = [clocks / common, of / common].map(u64::try_from);
+        match ratio {
+            [Ok(clocks), Ok(of)] if clocks >> MOST_CLOCK_BITS == 0 => Ok([clocks, of]),
+            _ => Err(ModelError::Widths(format!(
+                "{model}: a clock of {hz} Hz is more than the divider of the clock can count in the period of {period} ms: \
+                 give a lower --clock-hz, or one in whole Hz"
+            ))),
+        }
     }
 
     /// Hardware of a coarse stage and a fine stage of two axes, whose integrators hold the greatest way of a period:
-    /// f, rounded to whole pulses, and `more` BLU by which the last way may be longer.
+    /// f, rounded to whole pulses, and `more` BLU by which the last way may be longer. The coarse stage takes `coarse`
+    /// clocks a period.
     pub(crate) fn hardware(
         self,
         registers: &mut Registers<'_>,
         choices: &Choices,
-        more: f64,
+        [more, coarse]: [f64; 2],
         positions: impl IntoIterator<Item = Vec<i64>>,
     ) -> Result<Hardware, ModelError> {
         let n = choices.width.map_or_else(|| Width::needed_unsigned(whole(self.step.units() + 1.0 + more)), Width::get);
@@ -124,13 +167,25 @@ impl Sampling {
         }
         registers.positions(positions);
         let hardware = registers.integrators(2, crate::choices::EndPoint::Iterations, 1)?;
-        // Clocks of all units of a period, and of those in front of the first; and periods without a pulse.
-        let coarse = u64::from(self.magnitude()) * 32 + 64;
+        let coarse = u64::try_from(whole(coarse)).unwrap_or(u64::MAX);
+        // Additions at least two clocks apart leave one for the integrands of the next period.
+        let burst = 1_u64.checked_shl(hardware.bits("jrx") + 1).unwrap_or(u64::MAX);
+        let (least, why) = if burst > coarse {
+            (burst, "the additions of the fine stage take")
+        } else {
+            (coarse, "the coarse calculation takes")
+        };
+        let clocks = self.period(hardware.model, least, why)?;
+        // The calculation once a block; and periods without a pulse.
         let periods = u64::try_from(whole((4.0 / self.step.units()).min(1e9))).unwrap_or(u64::MAX >> 32) + 4;
-        let burst = hardware.stall_clocks;
-        let stall_clocks = coarse.saturating_add(burst).saturating_mul(periods);
-        Ok(Hardware { sampling: Some(self), stall_clocks, ..hardware })
+        let period = (clocks[0] / clocks[1]).saturating_add(2);
+        let stall_clocks = coarse.saturating_mul(2).saturating_add(period.saturating_mul(periods));
+        Ok(Hardware { sampling: Some(Sampling { clocks, ..self }), stall_clocks, ..hardware })
     }
+}
+
+fn common_divisor(a: u128, b: u128) -> u128 {
+    if b == 0 { a.max(1) } else { common_divisor(b, a % b) }
 }
 
 /// The whole number not below a length.

@@ -307,6 +307,11 @@ impl HardwareArgs {
         }
     }
 
+    /// The choices made, for a clock of this frequency in Hz.
+    pub(crate) fn choices_at(&self, clock_hz: f64) -> Choices {
+        Choices { clock_hz: Some(Millionths::saturating(clock_hz)), ..self.choices() }
+    }
+
     /// The choices made.
     pub(crate) fn choices(&self) -> Choices {
         let (width, widths) = split(self.width.iter().flat_map(|arg| arg.0.iter().cloned()));
@@ -337,6 +342,7 @@ impl HardwareArgs {
             fraction: self.fraction,
             step: self.step.or_else(|| self.feed.map(of_feed)),
             tolerance: self.tolerance,
+            clock_hz: None,
             on_overflow: self.on_overflow,
         }
     }

@@ -27,7 +27,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     let curve = geometry::curve("compare", kind, geometry)?;
     let mut rows = vec![HEADING.map(str::to_owned)];
     let models = catalogue().iter().filter(|model| model.curve.fits(&curve));
-    let runs: Vec<_> = models.flat_map(|model| forms(model).into_iter().map(move |form| (model, form))).collect();
+    let runs: Vec<_> =
+        models.flat_map(|model| forms(model, &curve).into_iter().map(move |form| (model, form))).collect();
     let progress = Progress::of(runs.len() as u64, "machines");
     let mut left_out = Vec::new();
     for (model, (form, choices)) in runs {
@@ -45,28 +46,31 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
 const HEADING: [&str; 6] = ["model", "steps", "clocks", "greatest error (BLU)", "widest register", "end point"];
 
 /// The forms of a model whose path or clocks differ: its default, and one for each of the common choices.
-fn forms(model: &Model) -> Vec<(String, Choices)> {
+fn forms(model: &Model, curve: &Curve) -> Vec<(String, Choices)> {
     let takes = |choice| model.choices.iter().any(|doc| doc.choice == choice);
-    let mut forms = vec![(String::new(), Choices::default())];
+    let mut forms = vec![(String::new(), Choices::at_1_mhz())];
     if takes(Choice::Beats) {
-        forms.push((" --beats 1".to_owned(), Choices { beats: Some(Beats::One), ..Choices::default() }));
+        forms.push((" --beats 1".to_owned(), Choices { beats: Some(Beats::One), ..Choices::at_1_mhz() }));
     }
     if takes(Choice::Preset) {
-        let half = Choices { preset: Some(Preset::Half), ..Choices::default() };
-        forms.push((" --preset half".to_owned(), half.clone()));
+        let own = model.plan(curve, &Choices::at_1_mhz()).ok();
+        let has_half = own.is_some_and(|hardware| hardware.presets.iter().all(|preset| *preset == Preset::Half));
+        let (other, half) = if has_half { (Preset::Zero, "") } else { (Preset::Half, " --preset half") };
+        forms.push((format!(" --preset {other}"), Choices { preset: Some(other), ..Choices::at_1_mhz() }));
         if takes(Choice::Normalize) {
-            forms.push((" --preset half --normalize".to_owned(), Choices { normalize: true, ..half }));
+            let normalized = Choices { preset: Some(Preset::Half), normalize: true, ..Choices::at_1_mhz() };
+            forms.push((format!("{half} --normalize"), normalized));
         }
     }
     if takes(Choice::System) {
         let system = Some(System::StepFactor);
-        forms.push((" --system 7360".to_owned(), Choices { system, ..Choices::default() }));
+        forms.push((" --system 7360".to_owned(), Choices { system, ..Choices::at_1_mhz() }));
     }
     if takes(Choice::Radix) {
-        forms.push((" --radix 10".to_owned(), Choices { radix: Some(Radix::Decimal), ..Choices::default() }));
+        forms.push((" --radix 10".to_owned(), Choices { radix: Some(Radix::Decimal), ..Choices::at_1_mhz() }));
     }
     if takes(Choice::Adder) {
-        forms.push((" --adder serial".to_owned(), Choices { adder: Some(Adder::Serial), ..Choices::default() }));
+        forms.push((" --adder serial".to_owned(), Choices { adder: Some(Adder::Serial), ..Choices::at_1_mhz() }));
     }
     forms
 }

@@ -21,7 +21,8 @@ const DEEPEST: u64 = 1000;
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
     let curve = curve(model.name, model.curve, &args.geometry)?;
-    let bench = Testbench::new(model, &curve, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
+    let bench = Testbench::loading(model, &curve, &args.hardware.choices_at(args.clock.clock_hz))
+        .map_err(|error| args.hardware.told(error))?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let comment = [
         report::title(model, bench.hardware(), &curve),
@@ -43,6 +44,9 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
         files.write(path, &export::btor2(&design, &checking))?;
     }
     let mut text = summary(&bench);
+    for word in bench.cut_words() {
+        text += &format!("warning: {word}\n");
+    }
     if let Some(path) = &args.smt2 {
         let depth = args.depth.or_else(|| bench.clocks_within(DEEPEST)).unwrap_or(DEEPEST);
         files.write(path, &export::smt2(&design, &checking, depth))?;

@@ -44,7 +44,9 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
     let hardware = family.plan(&survey.size, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
     let machine = family.machine(&hardware)?;
-    let bench = Testbench::of_machine(hardware, machine).limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
+    let bench = Testbench::of_machine(hardware, machine)
+        .as_hardware_loads()
+        .limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
     let bench = if args.trace.wanted() { bench } else { bench.without_wave() };
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
@@ -148,7 +150,7 @@ impl Onlooker for StepTable {
             write!(self.out, ",{value}")?;
         }
         let pulses = if number == 0 { [0; 3] } else { sample.pulses() };
-        for value in pulses.into_iter().chain(sample.position()) {
+        for value in pulses.into_iter().chain(sample.counters()) {
             write!(self.out, ",{value}")?;
         }
         writeln!(self.out)?;

@@ -19,6 +19,9 @@ use crate::cli::RunArgs;
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
 
+/// Models of which textbooks print the integrands that a step used.
+const TEXTBOOK_MODELS: [&str; 3] = ["dda-arc", "dda-conic", "dda-helix"];
+
 /// Runs a model and writes what was asked for.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
@@ -54,9 +57,16 @@ impl Finished {
 /// Bad input, or an output cannot be written; nothing stands under a final name.
 pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
     let model = find(&args.model)?;
+    if args.textbook && !TEXTBOOK_MODELS.contains(&model.name) {
+        let (name, models) = (model.name, TEXTBOOK_MODELS.join(", "));
+        return Err(Failure::Trouble(format!(
+            "textbooks print the registers of {name} as the step table does: leave --textbook out; it is for {models}"
+        )));
+    }
     let curve = curve(model.name, model.curve, &args.geometry)?;
-    let bench = Testbench::new(model, &curve, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
-    let bench = bench.limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
+    let bench = Testbench::loading(model, &curve, &args.hardware.choices_at(args.clock.clock_hz))
+        .map_err(|error| args.hardware.told(error))?;
+    let bench = bench.limited_to(args.simulation.max_clocks);
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);
 
@@ -70,7 +80,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let mut csv = steps.map(|sink| CsvTable::new(&bench, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Picture(Plot::new(&curve)), sink));
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
-    let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.bits));
+    let (mut path, mut table) = (PathWatch::new(&bench, &curve), TextbookTable::new(&bench, args.bits, args.textbook));
     let mut coarse = CoarseWatch::new(&bench, &curve);
     let (mut spacing, mut progress) = (SpacingWatch::new(&bench, &curve), RunProgress::new(&bench, &curve));
 
@@ -99,6 +109,8 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         worst: path.worst,
         coarse: coarse.and_then(|coarse| coarse.worst),
         trains: spacing.finish(),
+        cut: bench.cut_words().to_vec(),
+        blocks: bench.blocks(),
         overflows: overflow.events(),
         overflow_count: overflow.count,
         tallies: overflow.tallies(),

@@ -141,7 +141,8 @@ impl<'a, R: BufRead> Control<'a, R> {
                 let rate = rate(self.pace, self.family, &block, &part, self.speed);
                 let mut words = part.words;
                 words.push(("rate", rate.word.into()));
-                let encoded = self.bench.machine().encode(self.bench.hardware(), &[words])?;
+                let loaded = self.bench.load(&[words])?;
+                self.totals.cut(of.place.line, &loaded.cut);
                 let given = Given {
                     index: self.moves,
                     of,
@@ -151,7 +152,7 @@ impl<'a, R: BufRead> Control<'a, R> {
                     limited: rate.limited,
                     length: std::mem::take(&mut length),
                 };
-                self.ready.extend(encoded.into_iter().map(|words| (Next::Block(words), None)));
+                self.ready.extend(loaded.blocks.into_iter().map(|words| (Next::Block(words), None)));
                 if let Some((_, of)) = self.ready.back_mut() {
                     *of = Some(given);
                 }
@@ -172,6 +173,10 @@ impl<R: BufRead> Host for Control<'_, R> {
         }
     }
 
+    fn cut_words(&self) -> u64 {
+        self.totals.cut_words
+    }
+
     fn begun(&mut self, sample: &Sample<'_>) -> Result<(), ObserverError> {
         let Some(given) = self.given.pop_front() else { return Ok(()) };
         let goes_on = self.running.as_ref().is_some_and(|(running, _)| running.index == given.index);
@@ -188,9 +193,9 @@ impl<R: BufRead> Host for Control<'_, R> {
         report.commanded = given.commanded;
         report.source_hz = report.source_hz.max(given.source_hz);
         report.limited |= given.limited;
-        report.bound = match ((self.family.error_bound)(self.bench.hardware(), &given.block), report.bound) {
-            (Some(bound), Some(before)) => Some(bound.max(before)),
-            (bound, _) => bound,
+        report.promise = match (self.family.promise(self.bench.hardware(), &given.block), report.promise) {
+            (Some(promise), Some(before)) => Some(promise.or_wider(before)),
+            (promise, _) => promise,
         };
         if !goes_on {
             for onlooker in &mut self.onlookers {

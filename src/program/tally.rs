@@ -1,5 +1,6 @@
 //! What a machine made of one move of the tool, and of all of them.
 
+use stepwave_models::{CutWord, Promise};
 use stepwave_nc::{Cause, Feed, PulseBlock, ToolMove, Way};
 
 use super::deviation::{off_programmed, off_segment};
@@ -33,7 +34,7 @@ pub struct MoveReport {
     /// Greatest distance from the curve that the machine was told, in BLU.
     pub error: f64,
     /// What its method promises of it.
-    pub bound: Option<f64>,
+    pub promise: Option<Promise>,
     /// Greatest distance of the tool's centre from the compensated contour, in BLU.
     pub off_compensated: f64,
     /// Greatest distance of the tool's edge from the programmed contour, in BLU.
@@ -59,7 +60,7 @@ impl MoveReport {
             source_hz: 0.0,
             limited: false,
             error: 0.0,
-            bound: None,
+            promise: None,
             off_compensated: 0.0,
             off_programmed: None,
             ripple: Ripple::new(from, begun),
@@ -98,7 +99,7 @@ impl MoveReport {
     /// The method kept what it promises.
     #[must_use]
     pub fn within_bound(&self) -> bool {
-        self.bound.is_none_or(|bound| self.error <= bound + 1e-9)
+        self.promise.is_none_or(|promise| promise.is_kept(self.error))
     }
 
     /// Mean speed in BLU per second.
@@ -162,14 +163,27 @@ pub struct Totals {
     pub off_programmed: Greatest,
     /// Moves that asked the pulse source for more than it can give.
     pub limited: u64,
+    /// Load words that did not fit in their registers.
+    pub cut_words: u64,
+    /// The first of them, each with its line of the program.
+    pub cut: Vec<(u64, CutWord)>,
     /// Sentences about what is wrong; the first few.
     pub failures: Vec<String>,
 }
 
+/// Load words that are kept.
+const CUT_WORDS: usize = 100;
 /// Sentences that are kept.
 const FAILURES: usize = 8;
 
 impl Totals {
+    /// Takes the load words of a block of this line that were cut.
+    pub(super) fn cut(&mut self, line: u64, words: &[CutWord]) {
+        self.cut_words += words.len() as u64;
+        let room = CUT_WORDS.saturating_sub(self.cut.len());
+        self.cut.extend(words.iter().take(room).map(|word| (line, *word)));
+    }
+
     pub(super) fn add(&mut self, report: &MoveReport) {
         let line = report.of.place.line;
         self.moves += 1;
@@ -196,11 +210,11 @@ impl Totals {
                 "line {line}: the end point ({x}, {y}, {z}) was missed: the machine stands at ({a}, {b}, {c})"
             ));
         }
-        if let (false, Some(bound)) = (report.within_bound(), report.bound) {
+        if let (false, Some(promise)) = (report.within_bound(), report.promise) {
             self.beyond += 1;
             let error = report.error;
             fail(format!(
-                "line {line}: the path is {error:.3} BLU off its curve, where the method promises {bound} BLU"
+                "line {line}: the path is {error:.3} BLU off its curve, where the method promises at most {promise}"
             ));
         }
     }

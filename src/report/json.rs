@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 use stepwave_kernel::bits::Reading;
 use stepwave_kernel::netlist::Arithmetic;
-use stepwave_models::Named;
+use stepwave_models::{CutWord, Named, Promise};
 use stepwave_nc::{Curve, Shape};
 
 use super::{Report, summary};
@@ -12,12 +12,22 @@ use crate::testbench::{Ending, OverflowEvent, OverflowTally};
 /// Version of the report's form; a change of meaning raises it.
 const SCHEMA: u32 = 1;
 
-/// A number as JSON; one beyond 64 bits as text.
+/// A number as JSON; one beyond 64 bits to the 53 bits that a real number holds.
 pub(super) fn number(value: i128) -> Value {
     if let Ok(value) = i64::try_from(value) {
         return json!(value);
     }
-    u64::try_from(value).map_or_else(|_| json!(value.to_string()), |value| json!(value))
+    u64::try_from(value).map_or_else(|_| json!(value as f64), |value| json!(value))
+}
+
+/// The word of a choice as JSON: a number where it is one.
+pub(super) fn choice(name: &str, word: &str) -> Value {
+    // The systems of data sampling are names.
+    if name == "system" {
+        return json!(word);
+    }
+    let whole = word.parse::<i64>().map(|number| json!(number));
+    whole.or_else(|_| word.parse::<f64>().map(|number| json!(number))).unwrap_or_else(|_| json!(word))
 }
 
 fn geometry(curve: &Curve) -> Value {
@@ -82,6 +92,16 @@ pub(super) fn event(event: &OverflowEvent) -> Value {
     }
 }
 
+pub(super) fn cut_word(word: &CutWord) -> Value {
+    json!({
+        "register": word.register,
+        "block": word.block,
+        "value": number(word.value),
+        "loaded": number(word.loaded),
+        "width": word.width.get(),
+    })
+}
+
 pub(super) fn tally(tally: &OverflowTally) -> Value {
     json!({
         "component": tally.first.component(),
@@ -100,7 +120,7 @@ impl Report<'_> {
         let choices: Map<String, Value> = choices
             .into_iter()
             .filter(|(name, _)| *name != "width")
-            .map(|(name, value)| (name.replace('-', "_"), json!(value)))
+            .map(|(name, value)| (name.replace('-', "_"), choice(name, &value)))
             .collect();
         let widths: Map<String, Value> =
             self.hardware.widths.iter().map(|(name, width)| (name.clone(), json!(width.get()))).collect();
@@ -146,7 +166,8 @@ impl Report<'_> {
                 "greatest": worst.error,
                 "step": worst.step,
                 "position": worst.position,
-                "bound": self.hardware.error_bound,
+                "bound": self.promise().map(Promise::bound),
+                "ends_off": self.promise().map(Promise::ends),
                 "within_bound": self.path_within_bound(),
             })
         });
@@ -173,10 +194,12 @@ impl Report<'_> {
                 "reached": outcome.reached,
                 "exact": self.end_exact(),
             },
+            "position_counters": outcome.counters,
             "path_error": path_error,
             "sampling": self.sampling(),
             "pulse_spacing": spacing,
             "rate_deviation": rate_deviation,
+            "cut_words": self.cut.iter().map(cut_word).collect::<Vec<_>>(),
             "overflow": {
                 "count": self.overflow_count,
                 "events": self.overflows.iter().map(event).collect::<Vec<_>>(),
@@ -196,6 +219,7 @@ impl Report<'_> {
         Some(json!({
             "system": sampling.system.word(),
             "period_seconds": sampling.system.period(),
+            "period_clocks": sampling.period_clocks(),
             "fraction_bits": sampling.fraction,
             "step": sampling.step.units(),
             "feed_mm_per_min": sampling.step.units() * self.blu_mm * 60.0 / sampling.system.period(),
@@ -208,16 +232,17 @@ impl Report<'_> {
         }))
     }
 
-    /// Mean speed along the curve: BLU per step, and mm/min at the clock and BLU chosen.
+    /// Mean speed along the curve: BLU per step, and mm/min at the clock and BLU chosen. Clocks that load are none of the
+    /// motion.
     fn feed(&self) -> Value {
-        // Counts of clocks and steps are far below 2^53.
-        #[allow(clippy::cast_precision_loss)]
-        let (steps, clocks) = (self.outcome.steps.max(1) as f64, self.outcome.clocks.max(1) as f64);
+        let moving = self.outcome.clocks.saturating_sub(self.outcome.load_clocks);
+        let (steps, clocks) = (self.outcome.steps.max(1) as f64, moving.max(1) as f64);
         let length = self.curve.length();
         json!({
             "clock_hz": self.clock_hz,
             "blu_mm": self.blu_mm,
             "length": length,
+            "clocks": moving,
             "mean_per_step": length / steps,
             "mean_mm_per_min": 60.0 * length * self.blu_mm * self.clock_hz / clocks,
         })

@@ -12,7 +12,7 @@ mod table;
 
 use stepwave_kernel::OnOverflow;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Hardware, Model, Preset};
+use stepwave_models::{CutWord, Hardware, Model, Preset, Promise};
 use stepwave_nc::Curve;
 
 use crate::testbench::{
@@ -24,9 +24,6 @@ pub use part::Part;
 pub use program::{ProgramHead, ProgramJson, ProgramTable, ProgramTail, TABLE_MOVES};
 pub use summary::{choices, geometry, title};
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
-
-/// Room for rounding when a path error is compared with the method's bound, in BLU.
-const ROUNDING: f64 = 1e-9;
 
 /// Everything known about a finished run.
 #[derive(Debug)]
@@ -49,6 +46,10 @@ pub struct Report<'a> {
     pub coarse: Option<CoarseError>,
     /// The pulses of each axis.
     pub trains: Vec<PulseTrain>,
+    /// Load words that did not fit in their registers, and what these took.
+    pub cut: Vec<CutWord>,
+    /// Blocks that the curve was loaded in.
+    pub blocks: usize,
     /// The first overflows in full.
     pub overflows: Vec<OverflowEvent>,
     /// Number of overflows.
@@ -68,13 +69,21 @@ impl Report<'_> {
         self.outcome.reached == self.curve.to()
     }
 
-    /// The path error stayed within the method's bound, where it has one.
+    /// Sentences about position counters that do not show where the pulses led.
+    fn wrong_counters(&self) -> Vec<String> {
+        wrong_counters(&self.outcome, self.hardware)
+    }
+
+    /// What the method promises of the path, if it promises anything.
+    #[must_use]
+    pub fn promise(&self) -> Option<Promise> {
+        Promise::of(self.hardware.error_bound, self.curve)
+    }
+
+    /// The path error stayed within what the method promises.
     #[must_use]
     pub fn path_within_bound(&self) -> bool {
-        match (&self.worst, self.hardware.error_bound) {
-            (Some(worst), Some(bound)) => worst.error <= bound + ROUNDING,
-            _ => true,
-        }
+        self.worst.as_ref().zip(self.promise()).is_none_or(|(worst, promise)| promise.is_kept(worst.error))
     }
 
     /// Bits that a register needs: for the values that it held, and for the results that did not fit.
@@ -88,24 +97,35 @@ impl Report<'_> {
     /// from values that were reached: neither bits to spare nor a register that was just wide enough gives one.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
+        let mut warnings: Vec<String> = self.cut.iter().map(|word| self.of_block(word)).collect();
         let clocks = self.outcome.clocks;
-        let cut = |why: &str| vec![format!("ranges and bits needed are those up to clock {clocks} alone, where {why}")];
+        let cut = |why: &str| format!("ranges and bits needed are those up to clock {clocks} alone, where {why}");
         match self.outcome.ending {
-            Ending::Trapped => return cut("the run was stopped"),
+            Ending::Trapped => {
+                warnings.push(cut("the run was stopped"));
+                return warnings;
+            }
             Ending::Stalled { .. } | Ending::Endless { .. } | Ending::Limit => {
-                return cut("the machine was given up");
+                warnings.push(cut("the machine was given up"));
+                return warnings;
             }
             Ending::Done => {}
         }
-        let mut warnings: Vec<String> = self.tallies.iter().map(|tally| self.went_on(tally)).collect();
-        if let Some(tally) = self.tallies.first() {
+        warnings.extend(self.tallies.iter().map(|tally| self.went_on(tally)));
+        let since = self.tallies.first().map(|tally| format!("behind clock {}", tally.first.clock()));
+        if let Some(since) = if self.cut.is_empty() { since } else { Some("from the load on".to_owned()) } {
             warnings.push(format!(
-                "what registers held behind clock {} is not what the method makes of this curve, so ranges and bits \
-                 needed say little about it",
-                tally.first.clock()
+                "what registers held {since} is not what the method makes of this curve, so ranges and bits needed say \
+                 little about it",
             ));
         }
         warnings
+    }
+
+    /// A load word that was cut, with its block where there are several.
+    fn of_block(&self, word: &CutWord) -> String {
+        let word_of = if self.blocks > 1 { format!("block {}: ", word.block + 1) } else { String::new() };
+        format!("{word_of}{word}")
     }
 
     /// How often a component overflowed while the run went on.
@@ -164,8 +184,9 @@ impl Report<'_> {
                 return failures;
             }
             Ending::Limit => {
+                let cut = if self.cut.is_empty() { "" } else { ", with a load word that was cut" };
                 failures.push(format!(
-                    "not done after {} clocks, at {}: give a greater --max-clocks",
+                    "not done after {} clocks{cut}, at {}: give a greater --max-clocks",
                     self.outcome.clocks,
                     summary::point(&self.outcome.reached)
                 ));
@@ -173,11 +194,12 @@ impl Report<'_> {
             }
             Ending::Done => {}
         }
+        failures.extend(self.wrong_counters());
         if !self.end_exact() {
             let (wanted, reached) = (summary::point(self.curve.to()), summary::point(&self.outcome.reached));
             failures.push(format!("the end point {wanted} was missed: the machine stands at {reached}"));
         }
-        if let (false, Some(worst), Some(bound)) = (self.path_within_bound(), &self.worst, self.hardware.error_bound) {
+        if let (false, Some(worst), Some(promise)) = (self.path_within_bound(), &self.worst, self.promise()) {
             let curve = match self.curve {
                 Curve::Line(_) => "line",
                 Curve::Arc(_) => "arc",
@@ -185,7 +207,7 @@ impl Report<'_> {
                 Curve::Helix(_) => "helix",
             };
             failures.push(format!(
-                "the path left the {curve}: {:.3} BLU off at {} after step {}, where the method promises at most {bound} BLU",
+                "the path left the {curve}: {:.3} BLU off at {} after step {}, where the method promises at most {promise}",
                 worst.error,
                 summary::point(&worst.position),
                 worst.step,
@@ -193,6 +215,19 @@ impl Report<'_> {
         }
         failures
     }
+}
+
+/// A sentence for each position counter that does not show where the pulses led.
+fn wrong_counters(outcome: &Outcome, hardware: &Hardware) -> Vec<String> {
+    let shown = outcome.counters.iter().zip(&outcome.reached).zip(&outcome.pulses).zip(hardware.letters());
+    let wrong = shown.filter(|(((counter, place), _), _)| counter != place);
+    wrong
+        .map(|(((counter, place), pulses), axis)| {
+            format!(
+                "the counter {axis} shows {counter}, {pulses} pulses were given: it is wrong, the pulses led to {place}"
+            )
+        })
+        .collect()
 }
 
 fn way_out(event: &OverflowEvent, hardware: &Hardware) -> String {

@@ -6,10 +6,10 @@ use std::io::{self, Write};
 use serde_json::{Map, Value, json};
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::program::Family;
-use stepwave_models::{Choice, Hardware, Named};
+use stepwave_models::{Choice, Hardware, Named, Promise};
 use stepwave_nc::Side;
 
-use super::json::{event, number, tally};
+use super::json::{cut_word, event, number, tally};
 use crate::program::{Greatest, MoveReport, Onlooker, Pace, Totals};
 use crate::testbench::{Ending, ObserverError, Outcome, OverflowEvent, OverflowTally, RegisterRange};
 
@@ -17,6 +17,8 @@ use crate::testbench::{Ending, ObserverError, Outcome, OverflowEvent, OverflowTa
 const SCHEMA: u32 = 1;
 /// Most moves that a table for people shows.
 pub const TABLE_MOVES: usize = 64;
+/// Most load words that were cut that a table for people shows.
+const SHOWN_CUTS: usize = 8;
 
 /// What is known of a program before it runs.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +80,7 @@ impl ProgramHead<'_> {
     fn choices(&self) -> Map<String, Value> {
         let hardware = self.hardware;
         let value = |choice: Choice| match choice {
-            Choice::Preset => Some(json!(hardware.presets.first().map(ToString::to_string))),
+            Choice::Preset => hardware.presets.first().map(|preset| super::json::choice("preset", &preset.to_string())),
             Choice::Normalize => Some(json!(hardware.normalize)),
             Choice::OnOverflow => Some(json!(hardware.on_overflow.word())),
             _ => None,
@@ -154,6 +156,7 @@ impl<'a, W: Write> ProgramJson<'a, W> {
             "steps": totals.steps,
             "pulses": { "x": totals.pulses[0], "y": totals.pulses[1], "z": totals.pulses[2] },
             "reached": outcome.reached,
+            "position_counters": outcome.counters,
             "missed_end_points": totals.missed,
             "beyond_bound": totals.beyond,
             "path_error": greatest(totals.error),
@@ -161,6 +164,14 @@ impl<'a, W: Write> ProgramJson<'a, W> {
             "programmed_contour_error": greatest(totals.off_programmed),
             "limited_feeds": totals.limited,
             "registers": registers.collect::<Vec<_>>(),
+            "cut_words": {
+                "count": totals.cut_words,
+                "words": totals.cut.iter().map(|(line, word)| {
+                    let mut word = cut_word(word);
+                    word["line"] = json!(line);
+                    word
+                }).collect::<Vec<_>>(),
+            },
             "overflow": {
                 "events": tail.overflows.iter().map(event).collect::<Vec<_>>(),
                 "components": tail.tallies.iter().map(tally).collect::<Vec<_>>(),
@@ -205,7 +216,7 @@ impl<W: Write> Onlooker for ProgramJson<'_, W> {
                 Side::Left(radius) => json!({ "side": "left", "radius": radius }),
                 Side::Right(radius) => json!({ "side": "right", "radius": radius }),
             },
-            "path_error": { "greatest": report.error, "bound": report.bound, "within_bound": report.within_bound() },
+            "path_error": { "greatest": report.error, "bound": report.promise.map(Promise::bound), "within_bound": report.within_bound() },
             "compensated_contour_error": report.off_compensated,
             "programmed_contour_error": report.off_programmed,
             "feed": {
@@ -232,9 +243,12 @@ impl ProgramTail<'_> {
             (Ending::Trapped, Some(event)) => vec![format!("line {line}: {event}{}", super::way_out(event, hardware))],
             (Ending::Limit, _) => {
                 let clocks = self.outcome.clocks;
-                vec![format!("line {line}: given up at clock {clocks}: give a greater --max-clocks, or leave it out")]
+                let cut = if self.totals.cut_words > 0 { ", with a load word that was cut" } else { "" };
+                vec![format!(
+                    "line {line}: given up at clock {clocks}{cut}: give a greater --max-clocks, or leave it out"
+                )]
             }
-            _ => self.totals.failures.clone(),
+            _ => [self.totals.failures.clone(), super::wrong_counters(self.outcome, hardware)].concat(),
         }
     }
 }
@@ -287,6 +301,12 @@ impl<'a> ProgramTable<'a> {
             format!("{} end points missed", totals.missed)
         };
         let _ = writeln!(text, "{exact}; {} overflow(s)", tail.tallies.iter().map(|tally| tally.count).sum::<u64>());
+        for (line, word) in tail.totals.cut.iter().take(SHOWN_CUTS) {
+            let _ = writeln!(text, "warning: line {line}: {word}");
+        }
+        if totals.cut_words > SHOWN_CUTS as u64 {
+            let _ = writeln!(text, "warning: {} load words did not fit; --json FILE lists more", totals.cut_words);
+        }
         let um = pace.blu_mm * 1000.0;
         for (what, greatest) in [
             ("off the curve that the machine was told", totals.error),

@@ -111,6 +111,9 @@ impl Report<'_> {
                 writeln!(text, "was still under way at {}", point(&outcome.reached))
             }
         };
+        for sentence in self.wrong_counters() {
+            let _ = writeln!(text, "{sentence}");
+        }
         if let Some(worst) = &self.worst {
             let at = point(&worst.position);
             let _ = writeln!(text, "greatest path error {:.3} BLU at {at} after step {}", worst.error, worst.step);
@@ -161,11 +164,12 @@ impl Report<'_> {
         let micrometres = |length: f64| format!("{length:.6} BLU ({:.6} µm)", length * self.blu_mm * 1e3);
         let period = sampling.system.period();
         let mut text = format!(
-            "coarse stage {}: {} BLU in {} ms, {:.3} mm/min\n",
+            "coarse stage {}: {} BLU in {} ms, {:.3} mm/min; {} clocks a period\n",
             sampling.system.word(),
             sampling.step,
             period * 1e3,
             sampling.step.units() * self.blu_mm * 60.0 / period,
+            sampling.period_clocks(),
         );
         let _ = writeln!(
             text,

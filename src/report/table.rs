@@ -9,7 +9,7 @@ use crate::testbench::{Memory, Observer, ObserverError, Step, Testbench};
 /// Most steps that a textbook table shows.
 pub const TEXTBOOK_STEPS: u64 = 64;
 
-/// Writes the step table as CSV: step, clock, registers, pulses, positions; signed decimal.
+/// Writes the step table as CSV: step, clock, registers, pulses, position counters; signed decimal.
 pub struct CsvTable<W: Write> {
     out: W,
 }
@@ -44,7 +44,7 @@ impl<W: Write> Observer for CsvTable<W> {
         for value in &step.registers {
             write!(self.out, ",{value}")?;
         }
-        for value in step.pulses.iter().chain(&step.position) {
+        for value in step.pulses.iter().chain(&step.counters) {
             write!(self.out, ",{value}")?;
         }
         writeln!(self.out)?;
@@ -58,26 +58,34 @@ pub struct TextbookTable {
     letters: &'static [&'static str],
     ports: Vec<Port>,
     bits: bool,
+    /// Of these registers a row shows what its step used.
+    used: Vec<bool>,
     rows: Vec<Step>,
     complete: bool,
 }
 
 impl TextbookTable {
-    /// A table of a machine's registers, in binary if `bits`.
+    /// A table of a machine's registers, in binary if `bits`. As textbooks print arcs of the DDA if `textbook`: row k
+    /// holds the integrands that step k used, not those after it.
     #[must_use]
-    pub fn new(bench: &Testbench, bits: bool) -> TextbookTable {
+    pub fn new(bench: &Testbench, bits: bool, textbook: bool) -> TextbookTable {
         let letters = bench.hardware().letters();
         let mut heading = vec!["step".to_owned()];
         heading.extend(bench.machine().table.iter().map(|(name, _)| name.clone()));
         heading.push("pulse".to_owned());
         heading.extend(letters.iter().map(|axis| (*axis).to_owned()));
         let ports = bench.machine().table.iter().map(|(_, port)| *port).collect();
-        TextbookTable { heading, letters, ports, bits, rows: Vec::new(), complete: true }
+        let integrand = |(name, _): &(String, Port)| textbook && name.starts_with("jv");
+        let used = bench.machine().table.iter().map(integrand).collect();
+        TextbookTable { heading, letters, ports, bits, used, rows: Vec::new(), complete: true }
     }
 
     fn cells(&self, step: &Step) -> Vec<String> {
         let mut cells = vec![step.number.to_string()];
-        for (value, port) in step.registers.iter().zip(&self.ports) {
+        let registers = step.registers.iter().zip(&step.used).zip(&self.used);
+        // Row 0 is before every step.
+        let shown = registers.map(|((after, before), &used)| if used && step.number > 0 { before } else { after });
+        for (value, port) in shown.zip(&self.ports) {
             let bits = port.reading.bits(port.width, *value);
             cells.push(match bits {
                 Some(bits) if self.bits => bits.to_string(),
@@ -86,7 +94,7 @@ impl TextbookTable {
         }
         let pulses = step.pulses.iter().zip(self.letters).filter(|(pulse, _)| **pulse != 0);
         cells.push(pulses.map(|(pulse, axis)| format!("{pulse:+}{}", axis.to_uppercase()).replace('1', "")).collect());
-        cells.extend(step.position.iter().map(ToString::to_string));
+        cells.extend(step.counters.iter().map(ToString::to_string));
         cells
     }
 

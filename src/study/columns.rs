@@ -93,6 +93,7 @@ impl Layout {
             row.push(if turns { word_of(turn(site)) } else { Value::None });
         }
         row.extend(words.iter().map(|text| word_of(text)));
+        let cut = run.iter().flat_map(|run| &run.cut).map(ToString::to_string).collect::<Vec<String>>();
         match run {
             Err(reason) => {
                 row.push(word_of("refused"));
@@ -102,7 +103,7 @@ impl Layout {
             Ok(run) if run.ending.is_none() => {
                 row.push(word_of(word(None)));
                 row.resize(self.columns.len() - 1, Value::None);
-                row.push(Value::Word(format!("not done after {} clocks", run.clocks)));
+                row.push(Value::Word([vec![format!("not done after {} clocks", run.clocks)], cut].concat().join("; ")));
             }
             Ok(run) => {
                 row.extend([word_of(word(run.ending)), run.clocks.into(), run.steps.into()]);
@@ -114,7 +115,7 @@ impl Layout {
                     let gaps = run.spacing.get(axis).copied().flatten();
                     row.extend([0, 1].map(|end| Value::from(gaps.map(|gaps| gaps[end]))));
                 }
-                row.push(Value::None);
+                row.push(if cut.is_empty() { Value::None } else { Value::Word(cut.join("; ")) });
             }
         }
         row

@@ -25,7 +25,9 @@ pub(super) struct Machine {
 
 impl Machine {
     fn bench(&self, model: &Model) -> Result<&Testbench, &ModelError> {
-        self.bench.get_or_init(|| Testbench::of_hardware(model, self.hardware.clone())).as_ref()
+        self.bench
+            .get_or_init(|| Ok(Testbench::of_hardware(model, self.hardware.clone())?.as_hardware_loads()))
+            .as_ref()
     }
 
     /// The lanes are there already.

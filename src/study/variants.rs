@@ -271,7 +271,7 @@ impl Variants {
     /// The choices of one of them, and the word for each dimension.
     #[must_use]
     pub fn at(&self, mut index: usize) -> (Choices, Vec<&str>) {
-        let (mut choices, mut words) = (Choices::default(), Vec::new());
+        let (mut choices, mut words) = (Choices::at_1_mhz(), Vec::new());
         for dimension in self.0.iter().rev() {
             let count = dimension.values.len().max(1);
             if let Some((word, setting)) = dimension.values.get(index % count) {

@@ -3,7 +3,7 @@
 use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, Quiet};
 use stepwave_kernel::{Net, OnOverflow};
-use stepwave_models::{Machine, Model, ModelError, find};
+use stepwave_models::{Loaded, Machine, Model, ModelError, find};
 use stepwave_nc::Curve;
 
 use super::instruments::Instruments;
@@ -21,7 +21,7 @@ pub struct LaneOutcome {
     pub steps: u64,
     /// Pulses of each axis, in either direction.
     pub pulses: Vec<u64>,
-    /// Machine position of each axis in the last sample, in BLU.
+    /// Where the pulses led, in BLU.
     pub reached: Vec<i64>,
     /// Clocks at which a property did not hold.
     pub overflows: u64,
@@ -35,6 +35,8 @@ pub struct Lanes {
     program: LaneProgram,
     /// Numbers of which an outcome is made; behind them stand those of the instruments.
     own: usize,
+    /// An overflow ends a run, so that the position counters can be believed.
+    trusted: bool,
     instruments: Option<Instruments>,
 }
 
@@ -66,6 +68,11 @@ impl Testbench {
         let traps = if self.hardware.on_overflow == OnOverflow::Trap { never.clone() } else { Vec::new() };
         let mut observe: Vec<Observe> = machine.positions.iter().map(|port| Observe::Last(port.net)).collect();
         observe.extend(pulses.iter().map(|&net| Observe::Count(vec![net])));
+        let trusted = !traps.is_empty() || never.is_empty();
+        if !trusted {
+            // +1 counts as 1 and -1 as 3: with the number of pulses this tells where they led.
+            observe.extend(pulses.iter().map(|&net| Observe::Sum { net, bits: 64 }));
+        }
         observe.push(Observe::Count(vec![machine.stepped.net]));
         if traps.is_empty() {
             observe.push(Observe::Count(never));
@@ -82,7 +89,7 @@ impl Testbench {
             ..LaneWatch::new(machine.done.net)
         };
         let design = instruments.as_ref().map_or(self.design(), Instruments::design);
-        Ok(Lanes { bench: self.clone(), model, program: LaneProgram::new(design, &watch), own, instruments })
+        Ok(Lanes { bench: self.clone(), model, program: LaneProgram::new(design, &watch), own, trusted, instruments })
     }
 
     /// Runs many geometries of this hardware and gives what each came to, in their order, exactly as
@@ -100,12 +107,21 @@ impl Testbench {
 impl Lanes {
     /// Runs geometries on all threads; `sink` gets what each came to, in their order, one at a time. Memory does not
     /// grow with their number.
-    pub fn run<C: std::borrow::Borrow<Curve> + Send>(
+    pub fn run<C: std::borrow::Borrow<Curve> + Clone + Send>(
         &self,
-        curves: impl Iterator<Item = C> + Send,
+        curves: impl Iterator<Item = C> + Clone + Send,
         mut sink: impl FnMut(Result<LaneOutcome, ModelError>) + Send,
     ) {
-        self.program.run(curves, |curve| self.job(curve.borrow()), |end| sink(end.map(|end| self.outcome(&end))));
+        let mut ran = curves.clone();
+        self.program.run(
+            curves,
+            |curve| self.job(curve.borrow()),
+            |end: Result<LaneEnd, ModelError>| {
+                let curve = ran.next();
+                let start = curve.as_ref().map_or(&[][..], |curve| curve.borrow().from());
+                sink(end.map(|end| self.outcome(&end, start)));
+            },
+        );
     }
 
     /// Runs geometries as [`run`](Self::run) and gives what was measured of each, exactly as
@@ -128,8 +144,11 @@ impl Lanes {
         self.program.run(curves, prepare, |end: Result<LaneEnd, ModelError>| {
             let curve = measured.next();
             sink(end.map(|end| {
-                let outcome = self.outcome(&end);
-                self.instruments.as_ref()?.read(curve?.borrow(), outcome, end.values.get(self.own..)?)
+                let (curve, instruments) = (curve?, self.instruments.as_ref()?);
+                let outcome = self.outcome(&end, curve.borrow().from());
+                let measured = instruments.read(curve.borrow(), outcome, end.values.get(self.own..)?)?;
+                let cut = if self.trusted { Vec::new() } else { self.load(curve.borrow()).ok()?.cut };
+                Some(Measured { cut, ..measured })
             }));
         });
     }
@@ -145,13 +164,8 @@ impl Lanes {
     /// # Errors
     /// The hardware does not take it.
     pub fn job(&self, curve: &Curve) -> Result<Job, ModelError> {
-        let (hardware, machine) = (self.bench.hardware(), self.bench.machine());
-        let words = if curve.axes() == hardware.axes { self.model.words(hardware, curve) } else { Vec::new() };
-        if words.is_empty() {
-            let given = format!("a curve of {} axes in hardware for {}", curve.axes(), hardware.axes);
-            return Err(ModelError::Curve { model: self.model.name, takes: self.model.curve.describe(), given });
-        }
-        let mut blocks = machine.encode(hardware, &words)?;
+        let machine = self.bench.machine();
+        let mut blocks = self.load(curve)?.blocks;
         for (index, block) in blocks.iter_mut().enumerate() {
             block.push((machine.load.net, 1));
             block.push((machine.preset_position.net, u64::from(index == 0)));
@@ -159,9 +173,27 @@ impl Lanes {
         Ok(Job { blocks })
     }
 
-    fn outcome(&self, end: &LaneEnd) -> LaneOutcome {
+    /// What the inputs are set to for a geometry.
+    fn load(&self, curve: &Curve) -> Result<Loaded, ModelError> {
+        let hardware = self.bench.hardware();
+        let words = if curve.axes() == hardware.axes { self.model.words(hardware, curve) } else { Vec::new() };
+        if words.is_empty() {
+            let given = format!("a curve of {} axes in hardware for {}", curve.axes(), hardware.axes);
+            return Err(ModelError::Curve { model: self.model.name, takes: self.model.curve.describe(), given });
+        }
+        self.bench.load(&words)
+    }
+
+    fn outcome(&self, end: &LaneEnd, start: &[i64]) -> LaneOutcome {
         let Machine { positions, pulses, .. } = self.bench.machine();
         let (last, counts) = end.values[..self.own].split_at(positions.len());
+        let (pulse_counts, rest) = counts.split_at(pulses.len());
+        let (sums, rest) = rest.split_at(if self.trusted { 0 } else { pulses.len() });
+        let led = |(axis, sum): (usize, &u64)| {
+            let way = pulse_counts[axis].wrapping_mul(2).wrapping_sub(*sum).cast_signed();
+            start.get(axis).copied().unwrap_or(0).saturating_add(way)
+        };
+        let shown = || positions.iter().zip(last).map(|(port, &bits)| to_signed(port.width, bits)).collect();
         let ending = match end.stop {
             LaneStop::Done => Some(Ending::Done),
             LaneStop::Trap(_) => Some(Ending::Trapped),
@@ -171,11 +203,11 @@ impl Lanes {
         LaneOutcome {
             ending,
             clocks: end.clock,
-            steps: counts[pulses.len()],
-            pulses: counts[..pulses.len()].to_vec(),
-            reached: positions.iter().zip(last).map(|(port, &bits)| to_signed(port.width, bits)).collect(),
+            steps: rest[0],
+            pulses: pulse_counts.to_vec(),
+            reached: if self.trusted { shown() } else { sums.iter().enumerate().map(led).collect() },
             // A trap ends the run at the first.
-            overflows: counts.get(pulses.len() + 1).copied().unwrap_or(u64::from(ending == Some(Ending::Trapped))),
+            overflows: rest.get(1).copied().unwrap_or(u64::from(ending == Some(Ending::Trapped))),
         }
     }
 }

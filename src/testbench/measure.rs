@@ -2,12 +2,13 @@
 
 use std::fmt;
 
-use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::lanes::{ROOT_GAP_UNIT, root_gap};
 use stepwave_kernel::engine::{EngineKind, Rows};
+use stepwave_models::CutWord;
 use stepwave_nc::Curve;
 
 use super::instruments::{cross, offset};
+use super::tool::Tool;
 use super::{Ending, LaneOutcome, Observer, ObserverError, Outcome, OverflowWatch, PathWatch, StepColumns, Testbench};
 
 /// What one geometry came to, and how well its path kept to the ideal curve.
@@ -21,7 +22,7 @@ pub struct Measured {
     pub steps: u64,
     /// Pulses of each axis, in either direction.
     pub pulses: Vec<u64>,
-    /// Machine position of each axis in the last sample, in BLU.
+    /// Where the pulses led, in BLU.
     pub reached: Vec<i64>,
     /// Greatest path error behind a step, in BLU: that of [`WorstError`](super::WorstError).
     pub greatest: Option<f64>,
@@ -31,6 +32,8 @@ pub struct Measured {
     pub overflows: u64,
     /// Path of the component of the first.
     pub component: Option<String>,
+    /// Load words that did not fit in their registers, and what these took.
+    pub cut: Vec<CutWord>,
     /// Fewest and most clocks between two pulses of each axis; none where it had no two.
     pub spacing: Vec<Option<[u64; 2]>>,
 }
@@ -50,6 +53,7 @@ impl Measured {
             mean: None,
             overflows: 0,
             component: None,
+            cut: Vec::new(),
             spacing,
         }
     }
@@ -79,8 +83,9 @@ impl Testbench {
                 outcome.clocks < limit || outcome.clocks == limit && !matches!(outcome.ending, Ending::Stalled { .. })
             }),
         };
-        let Some(Outcome { ending, clocks, steps, pulses, reached }) = outcome else {
-            return Ok(Measured::given_up(self.machine().pulses.len(), limit));
+        let Some(Outcome { ending, clocks, steps, pulses, reached, .. }) = outcome else {
+            let given_up = Measured::given_up(self.machine().pulses.len(), limit);
+            return Ok(Measured { cut: self.cut.clone(), ..given_up });
         };
         Ok(Measured {
             ending: Some(ending),
@@ -92,6 +97,7 @@ impl Testbench {
             mean: (steps > 0).then(|| mean.sum() / steps as f64),
             overflows: overflow.count,
             component: overflow.events().first().map(|event| event.component().to_owned()),
+            cut: self.cut.clone(),
             spacing: spacing.axes.iter().map(|axis| axis.seen).collect(),
         })
     }
@@ -126,8 +132,7 @@ impl Observer for Limit {
 struct Mean<'a> {
     curve: &'a Curve,
     columns: StepColumns,
-    widths: Vec<stepwave_kernel::Width>,
-    position: Vec<i64>,
+    tool: Tool,
     /// |d| of a line, or units of a circle: see `instruments`.
     exact: u128,
     /// What has no such number.
@@ -136,13 +141,11 @@ struct Mean<'a> {
 
 impl<'a> Mean<'a> {
     fn new(bench: &Testbench, curve: &'a Curve) -> Mean<'a> {
-        let ports = &bench.machine().positions;
-        let (widths, position) = (ports.iter().map(|port| port.width).collect(), vec![0; ports.len()]);
-        Mean { curve, columns: StepColumns::of(bench), widths, position, exact: 0, rest: 0.0 }
+        Mean { curve, columns: StepColumns::of(bench), tool: Tool::of(bench), exact: 0, rest: 0.0 }
     }
 
     fn add(&mut self) {
-        let plane = <[i64; 2]>::try_from(self.position.as_slice()).ok();
+        let plane = <[i64; 2]>::try_from(self.tool.place.as_slice()).ok();
         let exact = match (self.curve, plane) {
             (Curve::Line(line), Some(at)) => cross(line, at).map(i128::unsigned_abs),
             (Curve::Arc(arc), Some(at)) => {
@@ -153,7 +156,7 @@ impl<'a> Mean<'a> {
         };
         match exact {
             Some(exact) => self.exact = self.exact.saturating_add(exact),
-            None => self.rest += self.curve.deviation(&self.position),
+            None => self.rest += self.curve.deviation(&self.tool.place),
         }
     }
 
@@ -173,11 +176,11 @@ impl Observer for Mean<'_> {
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         for row in 0..rows.len() {
-            if self.columns.completes(rows, row, false) {
-                let columns = self.columns.positions.iter().zip(&self.widths);
-                for (place, (&column, &width)) in self.position.iter_mut().zip(columns) {
-                    *place = to_signed(width, rows.value(column, row));
-                }
+            let completes = self.columns.completes(rows, row, false);
+            if completes || !self.tool.is_trusted() {
+                self.tool.sample(rows, row);
+            }
+            if completes {
                 self.add();
             }
         }

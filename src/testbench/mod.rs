@@ -6,6 +6,7 @@ mod coarse;
 mod columns;
 mod instruments;
 mod lanes;
+mod load;
 mod measure;
 mod overflow;
 mod path;
@@ -14,12 +15,12 @@ mod ranges;
 mod spacing;
 mod steps;
 mod stimulus;
+mod tool;
 mod wave;
 
 use stepwave_kernel::engine::{self, Engine, EngineKind, Rows, Stop, Watch};
 use stepwave_kernel::{Design, Net, OnOverflow};
-use stepwave_models::{Choices, Hardware, Machine, Model, ModelError};
-use stepwave_nc::Curve;
+use stepwave_models::{CutWord, Hardware, Machine, Model, ModelError};
 
 pub use checkpoint::{CheckpointError, Checkpoints, Memory, State};
 pub use coarse::{CoarseError, CoarseWatch};
@@ -116,12 +117,16 @@ pub struct Outcome {
     pub ending: Ending,
     /// Clocks since reset: the clock of the last sample.
     pub clocks: u64,
+    /// Those of them in which blocks were loaded: the others the machine was moving, or had the time to.
+    pub load_clocks: u64,
     /// Steps completed.
     pub steps: u64,
     /// Pulses of each axis, in either direction.
     pub pulses: Vec<u64>,
-    /// Machine position of each axis in the last sample, in BLU.
+    /// Where the pulses led, in BLU.
     pub reached: Vec<i64>,
+    /// What the position counters show in the last sample, in BLU: where one overflowed, not where the pulses led.
+    pub counters: Vec<i64>,
 }
 
 /// A machine with the blocks of one geometry, ready to run.
@@ -130,6 +135,12 @@ pub struct Testbench {
     hardware: Hardware,
     machine: Machine,
     blocks: Vec<Vec<(Net, u64)>>,
+    /// Where the tool is before the first block, in BLU.
+    start: Vec<i64>,
+    /// Load words that do not fit are cut as the hardware cuts them; otherwise they are refused.
+    cuts: bool,
+    /// Those of the blocks that were.
+    cut: Vec<CutWord>,
     columns: Columns,
     /// Every sample is shown, for a wave; otherwise those of a program in which its machine is idle are passed over.
     every_sample: bool,
@@ -138,16 +149,6 @@ pub struct Testbench {
 }
 
 impl Testbench {
-    /// Plans the hardware, builds the machine and encodes the load words.
-    ///
-    /// # Errors
-    /// The model does not take the geometry or a choice, or a value does not fit in its register.
-    pub fn new(model: &Model, curve: &Curve, choices: &Choices) -> Result<Testbench, ModelError> {
-        let mut bench = Testbench::of_hardware(model, model.plan(curve, choices)?)?;
-        bench.blocks = bench.machine.encode(&bench.hardware, &model.words(&bench.hardware, curve))?;
-        Ok(bench)
-    }
-
     /// A machine of this hardware, as yet without blocks: [`of`](Self::of) and [`lanes`](Self::lanes) give it some.
     ///
     /// # Errors
@@ -161,7 +162,9 @@ impl Testbench {
     #[must_use]
     pub fn of_machine(hardware: Hardware, machine: Machine) -> Testbench {
         let columns = Columns::of(&machine);
-        Testbench { hardware, machine, blocks: Vec::new(), columns, every_sample: true, limit: u64::MAX }
+        let (blocks, cut, start) = (Vec::new(), Vec::new(), vec![0; hardware.axes]);
+        let (cuts, every_sample, limit) = (false, true, u64::MAX);
+        Testbench { hardware, machine, blocks, start, cuts, cut, columns, every_sample, limit }
     }
 
     /// The same machine where nobody writes a wave of its programs: much faster, but columns are those of
@@ -169,15 +172,6 @@ impl Testbench {
     #[must_use]
     pub fn without_wave(self) -> Testbench {
         Testbench { columns: Columns::without_wave(&self.machine), every_sample: false, ..self }
-    }
-
-    /// The same hardware with the blocks of another geometry.
-    ///
-    /// # Errors
-    /// A value does not fit in its register.
-    pub fn of(&self, model: &Model, curve: &Curve) -> Result<Testbench, ModelError> {
-        let blocks = self.machine.encode(&self.hardware, &model.words(&self.hardware, curve))?;
-        Ok(Testbench { blocks, ..self.clone() })
     }
 
     /// The same bench, whose runs are given up after so many clocks.
@@ -323,18 +317,21 @@ struct Run<'a, 'o> {
 
 impl Run<'_, '_> {
     fn all_blocks(&mut self) -> Result<Outcome, ObserverError> {
-        let mut ending = Ending::Done;
+        let (mut ending, mut loaded) = (Ending::Done, self.first_block);
         for (index, words) in self.bench.blocks.iter().enumerate().skip(self.first_block) {
             if !std::mem::take(&mut self.goes_on) {
                 self.load(index, words)?;
             }
+            loaded = index + 1;
             ending = self.finish_block(index)?;
             if ending != Ending::Done {
                 break;
             }
         }
         self.drain()?;
-        Ok(self.steps.outcome(ending, self.engine.clock()))
+        // One clock from reset to the first block, and two for each block behind another.
+        let load_clocks = (2 * loaded as u64).saturating_sub(1);
+        Ok(self.steps.outcome(ending, self.engine.clock(), load_clocks))
     }
 
     /// Loads a block: sets the inputs, and does the clock behind which the machine runs.

@@ -8,6 +8,7 @@ use stepwave_models::Port;
 use stepwave_nc::{Curve, Gauge, Screen};
 
 use super::checkpoint::{GREATEST, Memory, recalled};
+use super::tool::Tool;
 use super::{Observer, ObserverError, StepColumns, Testbench};
 
 /// The greatest path error of a run.
@@ -28,8 +29,10 @@ pub struct PathWatch<'a> {
     ports: Vec<Port>,
     /// Rows of the step table so far.
     rows: u64,
-    /// Where the machine stood behind the last of them.
-    position: Vec<i64>,
+    /// The tool behind the last sample.
+    tool: Tool,
+    /// It moved since the last place that was judged.
+    moved: bool,
     /// A step has many pulses, and each is judged.
     every_pulse: bool,
     /// Sorts out blocks of samples in which no greater error is.
@@ -44,13 +47,13 @@ impl<'a> PathWatch<'a> {
     #[must_use]
     pub fn new(bench: &Testbench, curve: &'a Curve) -> PathWatch<'a> {
         let ports = bench.machine().positions.clone();
-        let position = vec![0; ports.len()];
+        let tool = Tool::of(bench);
         let gauge = curve.gauge();
         let widest = ports.iter().map(|port| port.width.get()).max().unwrap_or(64);
-        let screen = gauge.screen(1 << (widest - 1)).filter(|_| ports.len() == 2);
+        let screen = gauge.screen(1 << (widest - 1)).filter(|_| ports.len() == 2 && tool.is_trusted());
         let (columns, level) = (StepColumns::of(bench), Level::new());
         let every_pulse = bench.hardware().sampling.is_some();
-        PathWatch { gauge, every_pulse, columns, ports, rows: 0, position, screen, level, worst: None }
+        PathWatch { gauge, every_pulse, columns, ports, rows: 0, tool, moved: false, screen, level, worst: None }
     }
 
     /// No sample of the block lies farther off than the worst so far.
@@ -64,18 +67,6 @@ impl<'a> PathWatch<'a> {
         let greatest = dispatch!(self.level, _simd => screen.greatest(positions));
         greatest <= worst.error
     }
-
-    /// Reads the position in a sample; true if it is another than before.
-    #[inline]
-    fn moved(&mut self, rows: &Rows, row: usize) -> bool {
-        let mut moved = false;
-        for ((place, &column), port) in self.position.iter_mut().zip(&self.columns.positions).zip(&self.ports) {
-            let now = to_signed(port.width, rows.value(column, row));
-            moved |= now != *place;
-            *place = now;
-        }
-        moved
-    }
 }
 
 /// What a watch writes down: rows, position, and step and position of the worst error.
@@ -88,12 +79,12 @@ impl Observer for PathWatch<'_> {
 
     fn remember(&self, memory: &mut Memory) {
         let worst = self.worst.as_ref().map(|worst| (worst.step, &worst.position));
-        memory.insert("path".to_owned(), json!([self.rows, self.position, worst]));
+        memory.insert("path".to_owned(), json!([self.rows, self.tool.place, worst]));
     }
 
     fn recall(&mut self, memory: &Memory) {
         let gathered: Option<Gathered> = recalled(memory, "path");
-        let axes = self.position.len();
+        let axes = self.tool.place.len();
         let fits = |(rows, position, worst): &Gathered| {
             *rows <= GREATEST && position.len() == axes && worst.as_ref().is_none_or(|(_, at)| at.len() == axes)
         };
@@ -103,7 +94,7 @@ impl Observer for PathWatch<'_> {
                 step,
                 position,
             };
-            (self.rows, self.position, self.worst) = (rows, position, worst.map(known));
+            (self.rows, self.tool.place, self.worst) = (rows, position, worst.map(known));
         }
     }
 
@@ -112,24 +103,33 @@ impl Observer for PathWatch<'_> {
             self.rows += self.columns.count(rows);
             let counts = |&row: &usize| self.every_pulse || self.columns.completes(rows, row, false);
             if let Some(last) = (0..rows.len()).rev().find(counts) {
-                self.moved(rows, last);
+                self.tool.sample(rows, last);
             }
             return Ok(());
         }
         for row in 0..rows.len() {
             let first = self.rows == 0;
             let complete = self.columns.completes(rows, row, first);
+            if !self.tool.is_trusted() {
+                self.moved |= self.tool.sample(rows, row);
+            }
             if !complete && (first || !self.every_pulse) {
                 continue;
             }
             self.rows += u64::from(complete);
-            if !self.moved(rows, row) && !first {
+            if self.tool.is_trusted() {
+                self.moved = self.tool.sample(rows, row);
+            }
+            if !std::mem::take(&mut self.moved) && !first {
                 continue;
             }
-            let error = self.gauge.deviation(&self.position);
+            let error = self.gauge.deviation(&self.tool.place);
             if self.worst.as_ref().is_none_or(|worst| error > worst.error) {
-                self.worst =
-                    Some(WorstError { error, step: self.rows - u64::from(complete), position: self.position.clone() });
+                self.worst = Some(WorstError {
+                    error,
+                    step: self.rows - u64::from(complete),
+                    position: self.tool.place.clone(),
+                });
             }
         }
         Ok(())

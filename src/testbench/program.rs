@@ -5,6 +5,7 @@ use stepwave_kernel::engine::{Engine, EngineKind, Idle, Rows, Stop, Watch};
 use stepwave_kernel::{Net, OnOverflow};
 use stepwave_models::ModelError;
 
+use super::load::CUT_CLOCKS;
 use super::steps::StepColumns;
 use super::{CHUNK, Ending, Observer, ObserverError, Outcome, Testbench};
 
@@ -27,6 +28,11 @@ pub trait Host {
     /// Whatever keeps the control from it; the run ends.
     fn next(&mut self) -> Result<Next, ObserverError>;
 
+    /// Load words so far that did not fit in their registers, of all blocks that were asked for.
+    fn cut_words(&self) -> u64 {
+        0
+    }
+
     /// The machine has begun with the next of the blocks that it was given.
     ///
     /// # Errors
@@ -47,6 +53,7 @@ pub struct Sample<'a> {
     columns: &'a StepColumns,
     rows: &'a Rows,
     row: usize,
+    place: [i64; 3],
 }
 
 impl Sample<'_> {
@@ -62,9 +69,15 @@ impl Sample<'_> {
         self.signed(&self.columns.pulses, 2)
     }
 
-    /// Machine position of x, y and z, in BLU.
+    /// Where the pulses of x, y and z led, in BLU.
     #[must_use]
     pub fn position(&self) -> [i64; 3] {
+        self.place
+    }
+
+    /// What the position counters of x, y and z show, in BLU: where one overflowed, not where the pulses led.
+    #[must_use]
+    pub fn counters(&self) -> [i64; 3] {
         self.signed(&self.columns.positions, 64)
     }
 
@@ -98,7 +111,12 @@ struct Run<'a, 'o> {
     host: &'a mut dyn Host,
     observers: &'a mut [&'o mut dyn Observer],
     pulses: [u64; 3],
+    place: [i64; 3],
     steps: u64,
+    /// Clock at which the run is given up.
+    limit: u64,
+    /// Load words that were cut so far.
+    cut: u64,
 }
 
 impl Testbench {
@@ -136,7 +154,10 @@ impl Testbench {
             host,
             observers,
             pulses: [0; 3],
+            place: [0; 3],
             steps: 0,
+            limit: self.limit,
+            cut: 0,
         };
         let ending = run.whole()?;
         run.drain()?;
@@ -144,9 +165,11 @@ impl Testbench {
         Ok(Outcome {
             ending,
             clocks: run.engine.clock(),
+            load_clocks: 0,
             steps: run.steps,
             pulses: run.pulses.to_vec(),
-            reached: position.map(|port| to_signed(port.width, run.engine.value(port.net))).collect(),
+            reached: run.place.to_vec(),
+            counters: position.map(|port| to_signed(port.width, run.engine.value(port.net))).collect(),
         })
     }
 }
@@ -155,7 +178,7 @@ impl Run<'_, '_> {
     fn whole(&mut self) -> Result<Ending, ObserverError> {
         let machine = self.bench.machine();
         let (load, more) = (machine.load.net, self.more);
-        let mut next = self.host.next()?;
+        let mut next = self.ask()?;
         self.engine.set_input(more, u64::from(matches!(next, Next::Block(_))));
         self.engine.reset(&mut self.rows);
         loop {
@@ -171,7 +194,7 @@ impl Run<'_, '_> {
                     self.engine.set_input(load, 1);
                     self.clock()?;
                     self.engine.set_input(load, 0);
-                    next = self.host.next()?;
+                    next = self.ask()?;
                     self.engine.set_input(more, u64::from(matches!(next, Next::Block(_))));
                     self.clock()?;
                 }
@@ -186,7 +209,7 @@ impl Run<'_, '_> {
                         }
                         self.clock()?;
                     }
-                    next = self.host.next()?;
+                    next = self.ask()?;
                 }
                 Next::End => {
                     self.engine.set_input(more, 0);
@@ -221,9 +244,20 @@ impl Run<'_, '_> {
         }
     }
 
+    /// What the host gives next. A block with a word that was cut need not come to an end: where no limit was given it
+    /// has [`CUT_CLOCKS`].
+    fn ask(&mut self) -> Result<Next, ObserverError> {
+        let next = self.host.next()?;
+        let cut = self.host.cut_words();
+        if self.bench.limit == u64::MAX && cut > self.cut {
+            (self.cut, self.limit) = (cut, self.engine.clock().saturating_add(CUT_CLOCKS));
+        }
+        Ok(next)
+    }
+
     /// Clocks that the run may still take.
     fn left(&self) -> u64 {
-        self.bench.limit.saturating_sub(self.engine.clock())
+        self.limit.saturating_sub(self.engine.clock())
     }
 
     fn trapped(&self) -> bool {
@@ -251,12 +285,15 @@ impl Run<'_, '_> {
             if loaded[row] | stepped[row] == 0 {
                 continue;
             }
-            let sample = Sample { bench: self.bench, columns: &self.columns, rows: &self.rows, row };
+            let mut sample =
+                Sample { bench: self.bench, columns: &self.columns, rows: &self.rows, row, place: self.place };
             if stepped[row] == 1 {
                 self.steps += 1;
-                for (count, pulse) in self.pulses.iter_mut().zip(sample.pulses()) {
+                for ((count, place), pulse) in self.pulses.iter_mut().zip(&mut self.place).zip(sample.pulses()) {
                     *count += pulse.unsigned_abs();
+                    *place = place.saturating_add(pulse);
                 }
+                sample.place = self.place;
                 self.host.stepped(&sample)?;
             }
             if loaded[row] == 1 {

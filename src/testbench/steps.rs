@@ -6,6 +6,7 @@ use stepwave_kernel::engine::Rows;
 use serde_json::json;
 
 use super::checkpoint::{GREATEST, Memory, recalled};
+use super::tool::signed;
 use super::{Ending, Outcome, Testbench};
 
 /// A row of the step table.
@@ -17,10 +18,14 @@ pub struct Step {
     pub clock: u64,
     /// Registers of the machine's table, in its order.
     pub registers: Vec<i128>,
+    /// The same in the sample before: what the step began with, of a machine that takes a step a clock.
+    pub used: Vec<i128>,
     /// Pulses of the step: -1, 0 or +1 of each axis.
     pub pulses: Vec<i64>,
-    /// Machine position of each axis behind the step, in BLU.
+    /// Where the pulses led behind the step, in BLU.
     pub position: Vec<i64>,
+    /// What the position counters show behind the step, in BLU.
+    pub counters: Vec<i64>,
 }
 
 /// Columns of the nets that make the step table.
@@ -67,9 +72,13 @@ pub(super) struct StepReader<'a> {
     rows: u64,
     /// The sample before completed a row: the pulses of the next step are counted anew.
     row_complete: bool,
+    /// Bits of the registers of the table in the sample before.
+    before: Vec<u64>,
     pulses: Vec<u64>,
     pub(super) last_pulse: u64,
+    /// Where the pulses led, and what the counters show.
     position: Vec<i64>,
+    counters: Vec<i64>,
 }
 
 impl<'a> StepReader<'a> {
@@ -80,8 +89,10 @@ impl<'a> StepReader<'a> {
             number: 0,
             clock: 0,
             registers: vec![0; machine.table.len()],
+            used: vec![0; machine.table.len()],
             pulses: vec![0; axes],
             position: vec![0; axes],
+            counters: vec![0; axes],
         };
         StepReader {
             bench,
@@ -89,17 +100,21 @@ impl<'a> StepReader<'a> {
             step,
             rows: 0,
             row_complete: false,
+            before: vec![0; machine.table.len()],
             pulses: vec![0; axes],
             last_pulse: 0,
-            position: vec![0; axes],
+            position: bench.start.clone(),
+            counters: vec![0; axes],
         }
     }
 
     /// Counts what a block of samples holds.
     pub(super) fn count(&mut self, rows: &Rows) {
-        for (pulses, &column) in self.pulses.iter_mut().zip(&self.columns.pulses) {
+        let axes = self.pulses.iter_mut().zip(&mut self.position);
+        for ((pulses, place), &column) in axes.zip(&self.columns.pulses) {
             let values = rows.column(column);
-            *pulses += values.iter().map(|&pulse| u64::from(pulse != 0)).sum::<u64>();
+            *pulses += values.iter().map(|&pulse| pulse & 1).sum::<u64>();
+            *place = place.saturating_add(values.iter().map(|&pulse| signed(pulse)).sum());
             if let Some(last) = values.iter().rposition(|&pulse| pulse != 0) {
                 self.last_pulse = self.last_pulse.max(rows.first_clock() + last as u64);
             }
@@ -112,13 +127,13 @@ impl<'a> StepReader<'a> {
         }
         self.rows += rows.column(self.columns.stepped)[from..].iter().sum::<u64>();
         if !rows.is_empty() {
-            self.place(rows, rows.len() - 1);
+            self.show(rows, rows.len() - 1);
         }
     }
 
-    fn place(&mut self, rows: &Rows, row: usize) {
+    fn show(&mut self, rows: &Rows, row: usize) {
         let ports = &self.bench.machine().positions;
-        for ((place, &column), port) in self.position.iter_mut().zip(&self.columns.positions).zip(ports) {
+        for ((place, &column), port) in self.counters.iter_mut().zip(&self.columns.positions).zip(ports) {
             *place = to_signed(port.width, rows.value(column, row));
         }
     }
@@ -131,25 +146,32 @@ impl<'a> StepReader<'a> {
         }
         let clock = rows.first_clock() + row as u64;
         for (axis, &column) in self.columns.pulses.iter().enumerate() {
-            // Two bits, two's complement: 1 is +1, 3 is -1.
-            let pulse = match rows.value(column, row) {
-                0 => continue,
-                3 => -1,
-                _ => 1,
-            };
+            let pulse = signed(rows.value(column, row));
+            if pulse == 0 {
+                continue;
+            }
             self.step.pulses[axis] += pulse;
+            self.position[axis] = self.position[axis].saturating_add(pulse);
             self.pulses[axis] += 1;
             self.last_pulse = clock;
         }
-        self.place(rows, row);
-        if !self.columns.completes(rows, row, self.rows == 0) {
+        self.show(rows, row);
+        let completes = self.columns.completes(rows, row, self.rows == 0);
+        let table = self.columns.table.iter().zip(&self.bench.machine().table);
+        let values = self.step.registers.iter_mut().zip(&mut self.step.used).zip(&mut self.before);
+        for (((value, used), before), (&column, (_, port))) in values.zip(table) {
+            let bits = rows.value(column, row);
+            if completes {
+                *value = port.reading.number(port.width, bits);
+                *used = port.reading.number(port.width, *before);
+            }
+            *before = bits;
+        }
+        if !completes {
             return false;
         }
-        let table = self.columns.table.iter().zip(&self.bench.machine().table);
-        for (value, (&column, (_, port))) in self.step.registers.iter_mut().zip(table) {
-            *value = port.reading.number(port.width, rows.value(column, row));
-        }
         self.step.position.copy_from_slice(&self.position);
+        self.step.counters.copy_from_slice(&self.counters);
         self.step.number = self.rows;
         self.step.clock = clock;
         self.rows += 1;
@@ -158,26 +180,30 @@ impl<'a> StepReader<'a> {
     }
 
     pub(super) fn remember(&self, memory: &mut Memory) {
-        memory.insert("steps".to_owned(), json!([self.rows, self.pulses, self.last_pulse, self.position]));
+        memory
+            .insert("steps".to_owned(), json!([self.rows, self.pulses, self.last_pulse, self.position, self.counters]));
     }
 
     pub(super) fn recall(&mut self, memory: &Memory) {
-        let gathered: Option<(u64, Vec<u64>, u64, Vec<i64>)> = recalled(memory, "steps");
-        let Some((rows, pulses, last_pulse, position)) = gathered else { return };
+        let gathered: Option<(u64, Vec<u64>, u64, Vec<i64>, Vec<i64>)> = recalled(memory, "steps");
+        let Some((rows, pulses, last_pulse, position, counters)) = gathered else { return };
         let axes = self.pulses.len();
         let counts = pulses.iter().chain([&rows, &last_pulse]).all(|&count| count <= GREATEST);
-        if counts && pulses.len() == axes && position.len() == axes {
-            (self.rows, self.pulses, self.last_pulse, self.position) = (rows, pulses, last_pulse, position);
+        if counts && pulses.len() == axes && position.len() == axes && counters.len() == axes {
+            (self.rows, self.pulses, self.last_pulse) = (rows, pulses, last_pulse);
+            (self.position, self.counters) = (position, counters);
         }
     }
 
-    pub(super) fn outcome(&self, ending: Ending, clocks: u64) -> Outcome {
+    pub(super) fn outcome(&self, ending: Ending, clocks: u64, load_clocks: u64) -> Outcome {
         Outcome {
             ending,
             clocks,
+            load_clocks,
             steps: self.rows.saturating_sub(1),
             pulses: self.pulses.clone(),
             reached: self.position.clone(),
+            counters: self.counters.clone(),
         }
     }
 }

@@ -158,8 +158,8 @@ fn one_beat_makes_a_step_of_each_clock() {
 #[test]
 fn clock_and_blu_scale_the_feed() {
     let feed = |words: &str| report(&format!("ppc-line --to 6,4{words}"))["feed"]["mean_mm_per_min"].as_f64().unwrap();
-    // sqrt(52) BLU of 1 um in 41 clocks of 1 us.
-    let usual = 60.0 * 52f64.sqrt() * 0.001 * 1e6 / 41.0;
+    // sqrt(52) BLU of 1 um in 40 clocks of 1 us: ten steps of four; the clock that loads is none of them.
+    let usual = 60.0 * 52f64.sqrt() * 0.001 * 1e6 / 40.0;
     for (words, factor) in [
         ("", 1.0),
         (" --clock-hz 2e6", 2.0),
@@ -174,6 +174,18 @@ fn clock_and_blu_scale_the_feed() {
 }
 
 #[test]
+fn no_clock_that_loads_counts_in_the_feed() {
+    let feed = |words: &str| report(words)["feed"]["mean_mm_per_min"].as_f64().unwrap();
+    // 10 BLU in 16 iterations of a clock each; and by two axes, once around: 8 blocks of two clocks each less.
+    assert_eq!(feed("dda-line --to 8,6 --width 4"), 37_500.0);
+    let arc = report("dda-arc --from 5,0 --to 5,0 --ccw --width 4");
+    let (clocks, steps) = (&arc["feed"]["clocks"], &arc["steps"]);
+    assert_eq!(clocks, steps);
+    let mean = 60.0 * std::f64::consts::TAU * 5.0 * 1e3 / clocks.as_f64().unwrap();
+    assert!((feed("dda-arc --from 5,0 --to 5,0 --ccw --width 4") - mean).abs() < 1e-9 * mean);
+}
+
+#[test]
 fn the_report_names_the_choices_and_the_engine() {
     let words = "dda-line --to 3,2 --width 4 --preset half --normalize --adder serial --end-point total \
                  --on-overflow wrap --engine gates";
@@ -181,7 +193,7 @@ fn the_report_names_the_choices_and_the_engine() {
     let choices = json!({
         "preset": "half",
         "normalize": "yes",
-        "radix": "2",
+        "radix": 2,
         "adder": "serial",
         "end_point": "total",
         "on_overflow": "wrap",

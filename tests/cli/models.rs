@@ -89,7 +89,7 @@ fn a_line_from_a_start_point_moves_the_machine_from_there() {
 
 #[test]
 fn an_arc_that_comes_to_a_stand_ends_soon_and_says_so() {
-    let ran = Folder::new().run("run dda-arc --from 3,7 --to 0,8 --ccw --width 4");
+    let ran = Folder::new().run("run dda-arc --from 3,7 --to 0,8 --ccw --width 4 --preset zero");
     assert_eq!(ran.code, 1, "{ran:?}");
     let lines: Vec<&str> = ran.err.lines().collect();
     assert!(lines[0].starts_with("stepwave: the motion came to a stand at (0, 7): no pulse for "), "{ran:?}");
@@ -104,6 +104,8 @@ fn an_arc_that_comes_to_a_stand_ends_soon_and_says_so() {
 #[test]
 fn the_preset_that_the_message_advises_brings_that_arc_to_its_end() {
     reaches("dda-arc --from 3,7 --to 0,8 --ccw --width 4 --preset half", "(0, 8)");
+    // It is the default.
+    reaches("dda-arc --from 3,7 --to 0,8 --ccw --width 4", "(0, 8)");
 }
 
 #[test]

@@ -190,3 +190,14 @@ fn a_full_standard_output_is_named() {
         assert_eq!(ran.err.lines().count(), 1, "{words}: {ran:?}");
     }
 }
+
+#[test]
+fn numbers_of_a_report_are_numbers() {
+    let report: Value =
+        serde_json::from_str(&good("run sampled-line --to 30,20 --step 2.5 --fraction 9 --preset 3 --json -")).unwrap();
+    let choices = &report["choices"];
+    assert_eq!((&choices["step"], &choices["fraction"], &choices["preset"]), (&json!(2.5), &json!(9), &json!(3)));
+    assert_eq!((&choices["system"], &choices["on_overflow"]), (&json!("7m"), &json!("trap")));
+    let report: Value = serde_json::from_str(&good("run ppc-line --to 6,4 --json -")).unwrap();
+    assert_eq!(report["choices"]["beats"], 4);
+}

@@ -183,3 +183,83 @@ fn a_run_beyond_its_clocks_is_given_up_there_and_one_within_them_is_not() {
     let ran = folder.run("run ppc-line --to 6,4 --max-clocks 0");
     assert!(ran.code == 2 && ran.err.contains("--max-clocks"), "{ran:?}");
 }
+
+#[test]
+fn pulses_are_counted_apart_from_a_position_counter_that_wraps() {
+    let folder = Folder::new();
+    let ran =
+        folder.run("run ppc-line --to 5,0 --width x=3 --on-overflow wrap --json r.json --plot p.svg --steps s.csv");
+    assert_eq!(ran.code, 1);
+    assert!(ran.out.contains("end point (5, 0) reached exactly"), "{}", ran.out);
+    assert!(ran.err.contains("the counter x shows -3, 5 pulses were given"), "{}", ran.err);
+    let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+    let end = json!({ "wanted": [5, 0], "reached": [5, 0], "exact": true });
+    assert_eq!(report["position_counters"], json!([-3, 0]));
+    assert_eq!((&report["end_point"], &report["path_error"]["greatest"]), (&end, &json!(0.0)));
+    // The table shows the counter, the picture the path.
+    assert_eq!(Csv::parse(&folder.read("s.csv")).column("x"), [0, 1, 2, 3, -4, -3]);
+    assert!(!folder.read("p.svg").contains("(\u{2212}3, 0)"));
+    let ran = folder.run("sweep ppc-line --to 5,0 --width x=3 --on-overflow wrap --csv -");
+    assert!(ran.out.contains(",5,0,true,0"), "{}", ran.out);
+}
+
+#[test]
+fn a_program_counts_pulses_apart_from_its_counters_too() {
+    let folder = Folder::new();
+    folder.write("p.ngc", "G21 G91\nG1 X0.005 F100\nM2\n");
+    for (mode, shown) in [("wrap", -3), ("saturate", 3)] {
+        let ran = folder.run(&format!("program p.ngc --method ppc --width x=3 --on-overflow {mode} --json r.json"));
+        assert_eq!(ran.code, 1, "{}", ran.out);
+        assert!(ran.err.contains(&format!("the counter x shows {shown}, 5 pulses were given")), "{}", ran.err);
+        let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+        assert_eq!((&report["reached"], &report["position_counters"]), (&json!([5, 0, 0]), &json!([shown, 0, 0])));
+        assert_eq!(report["missed_end_points"], 0);
+    }
+}
+
+#[test]
+fn a_load_word_is_cut_as_hardware_cuts_it_and_the_report_says_so() {
+    let folder = Folder::new();
+    for (line, sentence, reached, word) in [
+        (
+            "bresenham --to 300,3 --width e=8 --on-overflow wrap",
+            "e = 300 does not fit in its 8 bits: 44 was loaded",
+            json!([44, 0]),
+            json!({ "register": "e", "block": 0, "value": 300, "loaded": 44, "width": 8 }),
+        ),
+        (
+            "stepgen --to 100,62 --width ratex=7 --on-overflow wrap",
+            "ratex = 100 does not fit in its 7 bits: -28 was loaded",
+            json!([-28, 62]),
+            json!({ "register": "ratex", "block": 0, "value": 100, "loaded": -28, "width": 7 }),
+        ),
+        (
+            "stepgen --to 100,62 --width ratex=7 --on-overflow saturate",
+            "ratex = 100 does not fit in its 7 bits: 63 was loaded",
+            json!([63, 62]),
+            json!({ "register": "ratex", "block": 0, "value": 100, "loaded": 63, "width": 7 }),
+        ),
+    ] {
+        let ran = folder.run(&format!("run {line} --json r.json"));
+        assert_eq!(ran.code, 1, "{line}");
+        assert!(ran.out.contains(sentence), "{line}: {}", ran.out);
+        let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+        assert_eq!((&report["cut_words"], &report["end_point"]["reached"]), (&json!([word]), &reached), "{line}");
+        let ran = folder.run(&format!("sweep {line} --csv -"));
+        assert!(ran.out.lines().nth(1).is_some_and(|row| row.ends_with(sentence)), "{line}: {}", ran.out);
+        let ran = folder.run(&format!("export {line} --verilog m.v"));
+        assert!(ran.code == 0 && ran.out.contains(sentence), "{line}: {ran:?}");
+    }
+    let ran = folder.run("run bresenham --to 300,3 --width e=8");
+    assert_eq!((ran.code, ran.out.as_str()), (2, ""));
+}
+
+#[test]
+fn a_machine_whose_cut_words_never_let_it_end_is_given_up() {
+    let folder = Folder::new();
+    // 1000 in 9 bits is 488, which the long way never comes to: both counters run round and round.
+    let ran =
+        folder.run("run ppc-arc --from 1000,0 --to 0,1000 --ccw --width xi=9 --on-overflow wrap --max-clocks 100000");
+    assert_eq!(ran.code, 1, "{}", ran.out);
+    assert!(ran.out.contains("xi = 1000 does not fit in its 9 bits: 488 was loaded"), "{}", ran.out);
+}

@@ -127,7 +127,7 @@ fn a_run_cut_short_says_how_far_its_ranges_can_be_trusted() {
             "ranges and bits needed are those up to clock 15 alone, where the run was stopped",
         ),
         (
-            "dda-arc --from 3,7 --to 0,8 --ccw --width 4",
+            "dda-arc --from 3,7 --to 0,8 --ccw --width 4 --preset zero",
             "ranges and bits needed are those up to clock 255 alone, where the machine was given up",
         ),
     ] {

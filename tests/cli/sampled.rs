@@ -1,6 +1,6 @@
 //! Data sampling as its users meet it: feeds, reports, refusals.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::{good, run_refused};
 
@@ -55,4 +55,15 @@ fn what_data_sampling_does_not_take_is_refused_with_the_way_out() {
     run_refused("sampled-line --to 9,5 --feed=-1", &["'-1' is no feed"]);
     run_refused("sampled-line --to 9,5 --tolerance 1", &["sampled-line does not take --tolerance"]);
     run_refused("dda-line --to 9,5 --feed 100", &["dda-line does not take --feed; it takes --width"]);
+}
+
+#[test]
+fn a_period_keeps_its_time_so_that_the_feed_asked_for_and_the_feed_reached_agree() {
+    let report = report("sampled-line --to 3000,2000 --feed 600");
+    assert_eq!((&report["sampling"]["period_clocks"], &report["steps"]), (&json!(8000.0), &json!(46)));
+    // 45 whole periods and one that takes what is left: 600 mm/min of 46 · 80 BLU.
+    let mean = report["feed"]["mean_mm_per_min"].as_f64().unwrap();
+    let whole = 600.0 * 3_605.551 / (46.0 * 80.0);
+    assert!((mean - whole).abs() < 0.001 * whole, "{mean} for {whole}");
+    run_refused("sampled-line --to 3000,2000 --feed 600 --clock-hz 1000", &["--clock-hz", "or more", "8 ms"]);
 }

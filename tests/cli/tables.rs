@@ -1,6 +1,6 @@
 //! The worked examples of the textbooks, digit by digit.
 
-use super::{Csv, engines, good};
+use super::{Csv, engines, good, run_refused};
 
 /// The table of a run on every engine, which must be the same.
 fn on_every_engine(words: &str) -> Csv {
@@ -106,7 +106,7 @@ fn dda_line_to_7_5_in_three_bits() {
 
 #[test]
 fn dda_arc_nr1_in_three_bits() {
-    let table = on_every_engine("dda-arc --from 5,0 --to 0,5 --ccw");
+    let table = on_every_engine("dda-arc --from 5,0 --to 0,5 --ccw --preset zero");
     assert_eq!(table.heading.join(","), "step,clock,jvx,jrx,jvy,jry,unit,quad,ex,ey,dx,dy,x,y");
     assert_eq!((table.pulses("x"), table.pulses("y")), (vec![7, 9, 11, 12, 14], vec![2, 4, 5, 7, 9]));
     assert_eq!(table.column("jvx"), [0, 0, 1, 1, 2, 3, 3, 4, 4, 5, 5, 5, 5, 5, 5]);
@@ -115,7 +115,7 @@ fn dda_arc_nr1_in_three_bits() {
 
 #[test]
 fn dda_arc_across_the_negative_x_axis_in_three_bits() {
-    let table = on_every_engine("dda-arc --from -3,-4 --to -4,3 --cw");
+    let table = on_every_engine("dda-arc --from -3,-4 --to -4,3 --cw --preset zero");
     // 8 steps in quadrant 3 to (-5, 0), then 7 in quadrant 2. The row that ends a sector still shows its quadrant.
     assert_eq!(table.column("quad"), [2, 2, 2, 2, 2, 2, 2, 2, 2, 1, 1, 1, 1, 1, 1, 1]);
     assert_eq!((table.pulses("x"), table.pulses("y")), (vec![2, 5, 8 + 7], vec![3, 5, 7, 8, 8 + 2, 8 + 4, 8 + 5]));
@@ -175,7 +175,7 @@ dda-arc: arc (5, 0) to (0, 5) counter-clockwise about (0, 0)
 14 steps in 15 clocks; pulses x 5, y 5
 end point (0, 5) reached exactly
 ";
-    let printed = good("run dda-arc --from 5,0 --to 0,5 --ccw");
+    let printed = good("run dda-arc --from 5,0 --to 0,5 --ccw --preset zero");
     assert!(printed.starts_with(expected), "{printed}");
 }
 
@@ -264,4 +264,28 @@ fn pulse_multiplier_at_35_per_cent() {
     assert_eq!(clocks[1..].iter().map(|clock| clock - 1).collect::<Vec<_>>(), [3, 5, 7, 13, 15, 17, 20, 23]);
     assert_eq!(table.column("o"), [0, 3, 5, 7, 13, 15, 17, 20, 23]);
     assert_eq!((table.pulses("x"), table.pulses("y")), (vec![1, 3, 4, 5, 7], vec![2, 4, 6]));
+}
+
+#[test]
+fn textbooks_print_the_integrands_that_a_step_used() {
+    let words = "dda-arc --from 5,0 --to 0,5 --ccw --preset zero";
+    let column = |text: &str, name: &str| -> Vec<String> {
+        let mut lines = text.lines();
+        let place = lines.next().unwrap().split_whitespace().position(|heading| heading == name).unwrap();
+        let rows = lines.skip(1).take_while(|line| !line.is_empty());
+        rows.map(|row| row.split_whitespace().nth(place).unwrap().to_owned()).collect()
+    };
+    let text = good(&format!("run {words} --textbook"));
+    // The worked table: J_VX is the 0 of the start in the first two steps, and 1 from the third on.
+    let jvx = ["0", "0", "0", "1", "1", "2", "3", "3", "4", "4", "5", "5", "5", "5", "5"];
+    assert_eq!(column(&text, "jvx"), jvx);
+    // All else is after the step as ever.
+    let plain = good(&format!("run {words}"));
+    assert_eq!(column(&text, "jrx"), column(&plain, "jrx"));
+    assert_eq!(column(&text, "ex"), column(&plain, "ex"));
+    // Behind an axis the integrands are those that were loaded: (-5, 0) gives |y| = 0 and |x| = 5.
+    let text = good("run dda-arc --from -3,-4 --to -4,3 --cw --preset zero --textbook");
+    assert_eq!((&column(&text, "jvx")[9], &column(&text, "jvy")[9]), (&"0".to_owned(), &"5".to_owned()));
+    run_refused("dda-line --to 8,6 --textbook", &["--textbook", "dda-arc, dda-conic, dda-helix"]);
+    run_refused("ppc-arc --from 5,0 --to 0,5 --ccw --textbook", &["--textbook", "leave"]);
 }

@@ -55,6 +55,38 @@ fn the_commands_of_the_readme_print_what_it_shows() {
     assert!(compared > 10, "{compared}");
 }
 
+/// The command in the fenced block that ends before each table, and the lines of the table.
+fn tables(text: &str) -> Vec<(String, String)> {
+    let (mut found, mut last, mut lines) = (Vec::new(), String::new(), text.lines().peekable());
+    while let Some(line) = lines.next() {
+        if line == "```sh" {
+            last = lines.by_ref().take_while(|line| *line != "```").map(|line| format!("{line}\n")).collect();
+        } else if line.starts_with('|') {
+            let mut table = format!("{line}\n");
+            while let Some(row) = lines.next_if(|row| row.starts_with('|')) {
+                table += &format!("{row}\n");
+            }
+            found.push((std::mem::take(&mut last), table));
+        } else if !line.is_empty() {
+            last.clear();
+        }
+    }
+    found
+}
+
+#[test]
+fn the_tables_of_the_readme_are_those_that_compare_prints() {
+    let mut compared = 0;
+    for (command, table) in tables(include_str!("../../README.md")) {
+        let Some(arguments) = command.trim().strip_prefix("stepwave compare ") else { continue };
+        let words = ["compare"].into_iter().chain(arguments.split_whitespace());
+        let output = Command::new(env!("CARGO_BIN_EXE_stepwave")).args(words).output().unwrap();
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), table, "{command}");
+        compared += 1;
+    }
+    assert!(compared >= 2, "{compared}");
+}
+
 #[test]
 fn continuous_integration_runs_the_test_command_of_the_readme() {
     let readme = include_str!("../../README.md");

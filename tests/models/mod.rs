@@ -3,6 +3,7 @@
 mod bounds;
 mod cim;
 mod conics;
+mod cut_words;
 mod dda;
 mod dda_conic;
 mod dda_decimal;
@@ -12,6 +13,7 @@ mod dpm;
 mod eight;
 mod modern;
 mod ppc;
+mod promises;
 mod sampled;
 mod spacing;
 mod widths;

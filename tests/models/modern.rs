@@ -17,7 +17,7 @@ fn width(bits: u32) -> Width {
     Width::new(u64::from(bits)).unwrap()
 }
 
-fn widths(given: &[(&str, u32)]) -> Choices {
+pub(super) fn widths(given: &[(&str, u32)]) -> Choices {
     let widths = given.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits)));
     Choices { widths: widths.collect(), ..Choices::default() }
 }

@@ -1,7 +1,7 @@
 //! Data sampling: coarse points in fixed point against formulas in real numbers, and the pulses made of them.
 
 use rayon::prelude::*;
-use stepwave::testbench::{CoarseWatch, Ending};
+use stepwave::testbench::{CoarseWatch, Ending, SpacingWatch};
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::{Choices, Millionths, ModelError, Preset, System, find};
@@ -221,19 +221,89 @@ fn nothing_is_lost_below_the_fraction_of_an_arc_by_the_step_factor() {
     }
 }
 
+/// Clocks of the rows of the step table, from the first period's end on.
+fn ends(model: &str, curve: &Curve, choices: &Choices) -> Vec<i64> {
+    column(&run(model, curve, choices, EngineKind::Compiled), "clock")[1..].to_vec()
+}
+
+fn curves() -> [(&'static str, Curve); 2] {
+    [("sampled-arc", arc([300, 0], [0, 300], [0, 0], false)), ("sampled-line", line(&[0, 0], &[300, 162]))]
+}
+
 #[test]
-fn the_next_period_is_calculated_while_the_fine_stage_draws() {
-    // Bursts of 2^12 clocks are longer than the calculation: one follows another with the clock that takes the buffer.
-    for (system, _) in SYSTEMS {
-        let slow = Choices { width: Some(Width::new(12).unwrap()), ..choices(system, 10, 8_000) };
-        for (model, curve) in
-            [("sampled-arc", arc([100, 0], [0, 100], [0, 0], false)), ("sampled-line", line(&[0, 0], &[100, 62]))]
-        {
-            let clocks = column(&run(model, &curve, &slow, EngineKind::Compiled), "clock");
-            assert!(clocks.len() > 10);
-            assert!(clocks[1..].windows(2).all(|pair| pair[1] - pair[0] == (1 << 12) + 1), "{model}: {clocks:?}");
+fn a_period_takes_t_at_the_clock_given_and_exactly_so_in_the_mean() {
+    for (model, curve) in curves() {
+        for (system, hz, period, of) in [
+            // 8 ms of 1 MHz and of 250 kHz; 10.24 ms of 1 MHz; and clocks that a period is no whole number of.
+            (System::Direction, 1_000_000.0, 8000, 1),
+            (System::Direction, 250_000.0, 2000, 1),
+            (System::Direction, 100_090.0, 80_072, 100),
+            (System::StepFactor, 1_000_000.0, 10_240, 1),
+            (System::StepFactor, 100_001.0, 102_401_024, 100_000),
+        ] {
+            let choices = Choices { clock_hz: Some(Millionths::saturating(hz)), ..choices(system, 10, 8_000) };
+            let clocks = ends(model, &curve, &choices);
+            assert!(clocks.len() > 20, "{model}");
+            let [first, last] = [clocks[0], clocks[clocks.len() - 1]];
+            let periods = clocks.len() as i64 - 1;
+            // Each is a whole number of clocks, and none of the rest is lost.
+            assert!(((last - first) * of - periods * period).abs() < of, "{model} {hz}: {clocks:?}");
+            for pair in clocks.windows(2) {
+                let clocks = pair[1] - pair[0];
+                assert!(clocks == period / of || clocks == period / of + 1, "{model} {hz}: {clocks}");
+            }
         }
     }
+}
+
+#[test]
+fn the_pulses_of_a_period_are_spread_over_it() {
+    // 8 BLU of a long axis in 8000 clocks: a pulse every 1000, to the distance of two additions of 16.
+    let choices = Choices { clock_hz: Some(Millionths::saturating(1e6)), ..choices(System::Direction, 10, 8_000) };
+    let curve = line(&[0, 0], &[400, 0]);
+    let bench = bench("sampled-line", &curve, &choices);
+    let mut spacing = SpacingWatch::new(&bench, &curve);
+    bench.run(EngineKind::Compiled, &mut [&mut spacing]).unwrap();
+    let [least, most] = spacing.finish()[0].spacing.unwrap();
+    assert!(least >= 999 && most <= 1001, "{least} to {most}");
+}
+
+#[test]
+fn the_least_clock_just_leaves_the_coarse_calculation_its_time_and_a_slower_one_is_refused() {
+    for (model, curve) in curves() {
+        for (system, period) in [(System::Direction, 125.0), (System::StepFactor, 97.656_25)] {
+            // Steps of 2 BLU are added in 2^2 additions, so that the calculation is what takes longest.
+            let free = choices(system, 10, 2_000);
+            let least = bench(model, &curve, &free).hardware().sampling.unwrap().clocks;
+            assert_eq!(least[1], 1, "{model}");
+            let clocks = ends(model, &curve, &free);
+            let wanted = i64::try_from(least[0]).unwrap();
+            assert!(clocks.windows(2).all(|pair| pair[1] - pair[0] == wanted), "{model} {system:?}: {clocks:?}");
+            // A slower clock names the least in Hz, and with that it works.
+            let hz = (least[0] as f64 * period).ceil();
+            let at = |hz: f64| Choices { clock_hz: Some(Millionths::saturating(hz)), ..free.clone() };
+            let message = refusal(model, &curve, &at(hz - 1.0));
+            assert!(message.contains(&format!("the coarse calculation takes {}", least[0])), "{message}");
+            assert!(message.contains(&format!("give --clock-hz {hz} or more")), "{message}");
+            let clocks = ends(model, &curve, &at(hz));
+            assert!(clocks.windows(2).all(|pair| (wanted..=wanted + 1).contains(&(pair[1] - pair[0]))), "{model}");
+        }
+    }
+    for hz in [0.0, 1.0, f64::NAN] {
+        let choices = Choices { clock_hz: Some(Millionths::saturating(hz)), ..Choices::default() };
+        assert!(refusal("sampled-line", &line(&[0, 0], &[9, 5]), &choices).contains("give --clock-hz"), "{hz}");
+    }
+}
+
+#[test]
+fn wide_integrators_want_a_clock_for_their_additions() {
+    let choices = Choices { width: Some(Width::new(14).unwrap()), ..Choices::at_1_mhz() };
+    let message = refusal("sampled-line", &line(&[0, 0], &[9, 5]), &choices);
+    // 2^14 additions, two clocks each, in 8 ms.
+    assert!(
+        message.contains("the additions of the fine stage take 32768: give --clock-hz 4096000 or more"),
+        "{message}"
+    );
 }
 
 #[test]

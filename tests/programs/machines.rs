@@ -7,7 +7,7 @@ use stepwave::testbench::{
 };
 use stepwave_kernel::engine::EngineKind;
 use stepwave_models::program::{FAMILIES, Family, Size};
-use stepwave_models::{Choices, Hardware, OnOverflow, Preset};
+use stepwave_models::{Choices, Hardware, OnOverflow, Preset, Promise};
 use stepwave_nc::{
     Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, Side, ToolMove, Way,
 };
@@ -268,7 +268,7 @@ proptest! {
             prop_assert_eq!(reached, end.to_vec(), "{}", family.name);
             for (block, path) in ran.blocks.iter().zip(&ran.paths) {
                 let worst = path.iter().map(|&at| block.deviation(at)).fold(0.0, f64::max);
-                let bound = (family.error_bound)(&ran.hardware, block).unwrap_or(2.5);
+                let bound = family.promise(&ran.hardware, block).map_or(2.5, Promise::bound);
                 prop_assert!(worst <= bound, "{}: {} off {:?}", family.name, worst, block.curve);
             }
         }

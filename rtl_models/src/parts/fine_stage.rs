@@ -1,5 +1,6 @@
 //! The fine stage of data sampling: DDA integrators that draw the way of a period while the next one is calculated.
 
+use stepwave_kernel::Width;
 use stepwave_kernel::dsl::{Register, Scope, Signal};
 
 use super::{Block, Iteration, axis_counter, integrator, magnitude};
@@ -8,11 +9,14 @@ use crate::hardware::names::{JV, POSITION, SIGN};
 
 /// Two integrators whose integrands are double buffered. The coarse stage hands over a point of the curve, with
 /// a fraction, relative to the start or centre of the block; what whole pulses of it are still to be made goes into the
-/// buffer. When the burst before is over, the buffer is taken, and a burst of 2^n clocks makes just those pulses: J_R is
-/// the preset again behind it.
+/// buffer. When the period before is over, the buffer is taken, and a burst of 2^n additions, spread over the clocks of a
+/// period, makes just those pulses: J_R is the preset again behind it.
 ///
 /// - `next_full`, `next_last`, 1 bit each: the buffer holds a period; it is the last one. `last`: of the burst.
-/// - `e`, n+1 bits: clocks of the burst left.
+/// - `e`, n+1 bits: additions of the burst left.
+/// - `phase`: the divider of the clock. 2^n is added each clock and the clocks of a period are taken away at each addition
+///   (both times the denominator, where a period is not a whole number of clocks), so that periods are exact in the mean.
+///   `going`, 1 bit: it runs, from the first period on. `tick`, 1 bit: an addition at this edge.
 /// - Per axis, the buffer `jvx_next`, `sx_next`, `cx_next`, and the burst's `jvx`, `sx`, `cx`: whole pulses, their sign,
 ///   and the coarse point. `tx`: the whole pulses handed over so far, as a position.
 #[derive(Clone, Copy, Debug)]
@@ -55,12 +59,13 @@ impl<'m> FineStage<'m> {
         let burst = m.name("burst", self.e.q.is_nonzero());
         let take = m.name("take", self.full.q & !burst);
         let one = m.lit(self.e.q.bits(), 1);
-        let over = burst & self.e.q.equals(one);
+        let tick = self.ticks(&block, hardware, take) & burst;
+        let over = tick & self.e.q.equals(one);
         let clocks = m.lit(1, 1).concat(m.lit(self.e.q.bits() - 1, 0));
         self.e
             .when(block.load, m.lit(self.e.q.bits(), 0))
             .when(take, clocks)
-            .when(burst, self.e.q.wrapping_sub(one))
+            .when(tick, self.e.q.wrapping_sub(one))
             .else_hold();
         self.full.when(block.load, no).when(hand, yes).when(take, no).else_hold();
         self.next_last.when(hand, last).else_hold();
@@ -101,9 +106,27 @@ impl<'m> FineStage<'m> {
             let drawn = scope.reg_signed(&format!("c{letter}"), point.bits());
             drawn.when(block.load, fine(start)).when(take, next_point.q).else_hold();
 
-            let pulse = integrator(scope, &block, hardware, axis, jv.q, Iteration { add: burst, complete: burst });
+            let pulse = integrator(scope, &block, hardware, axis, jv.q, Iteration { add: tick, complete: tick });
             axis_counter(scope, &block, letter, hardware.bits(letter), pulse, sign.q);
         }
         block.close(block.load, over, self.last.q);
+    }
+
+    /// The divider of the clock, which begins with the first period that is taken (`take` = 1, 1 bit). Returns 1 bit: one of
+    /// the 2^n additions of a period is due at this edge. Two are never next to each other.
+    fn ticks(&self, block: &Block<'m>, hardware: &Hardware, take: Signal<'m>) -> Signal<'m> {
+        let m = self.m;
+        let [clocks, of] = hardware.sampling.map_or([1, 1], |sampling| sampling.clocks);
+        let additions = u128::from(of) << (self.e.q.bits() - 1);
+        let bits = Width::needed_unsigned(u128::from(clocks) + additions);
+        // The plan leaves two clocks for an addition at least, and 60 bits for the clocks.
+        let additions = m.lit(bits, u64::try_from(additions).unwrap_or(u64::MAX));
+        let (going, phase) = (m.reg("going", 1), m.reg("phase", bits));
+        let sum = phase.q.wrapping_add(additions);
+        let all = m.lit(bits, clocks);
+        let tick = m.name("tick", going.q & !sum.less_than(all));
+        going.when(block.load, m.lit(1, 0)).when(take, m.lit(1, 1)).else_hold();
+        phase.when(block.load, m.lit(bits, 0)).when(tick, sum.wrapping_sub(all)).when(going.q, sum).else_hold();
+        tick
     }
 }

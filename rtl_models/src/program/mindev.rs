@@ -30,15 +30,7 @@ pub(super) const FAMILY: Family = Family {
     plan,
     netlist,
     words,
-    error_bound: |_, block| {
-        let on_circle = match &block.curve {
-            Curve::Arc(arc) => arc.ends_on_circle(),
-            Curve::Helix(helix) => helix.arc().ends_on_circle(),
-            Curve::Line(_) | Curve::Conic(_) => true,
-        };
-        // Forced steps lead to an end point beside the circle, which is up to a BLU off it.
-        Some(planar::bound(block, if on_circle { 0.5 } else { 1.5 }))
-    },
+    error_bound: |_, block| Some(planar::bound(block, 0.5)),
 };
 
 fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {

@@ -22,11 +22,13 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
 use crate::model::ChoiceDoc;
+use crate::promise::Promise;
 
 /// What the registers of a machine must hold for all blocks of a program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Size {
-    /// The longest way of an axis in a line, and the largest coordinate of an arc about its centre, in BLU.
+    /// The longest way of an axis in a line, the largest coordinate of an arc about its centre, and the radius of one whose
+    /// end lies off its circle, in BLU.
     pub magnitude: u64,
     /// Least and greatest position of each axis, in BLU.
     pub positions: [[i64; 2]; 3],
@@ -45,7 +47,8 @@ impl Size {
         };
         let ways = (0..3).map(|axis| block.from[axis].abs_diff(block.to[axis]));
         let sectors = arc.map(|arc| arc.sectors(family.crossing)).unwrap_or_default();
-        let magnitude = crate::plan::largest_coordinate(&sectors).max(ways.max().unwrap_or(0));
+        let radius = arc.map_or(0, crate::plan::off_circle_radius);
+        let magnitude = crate::plan::largest_coordinate(&sectors).max(radius).max(ways.max().unwrap_or(0));
         self.magnitude = self.magnitude.max(magnitude);
     }
 }
@@ -86,8 +89,8 @@ pub struct Family {
     plan: fn(&Size, &Choices) -> Result<Hardware, ModelError>,
     netlist: fn(&Hardware) -> Result<Netlist, ModelError>,
     words: fn(&Hardware, &PulseBlock) -> Vec<HardwareBlock>,
-    /// Greatest distance from the curve that the method promises, in BLU, if it promises one.
-    pub error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
+    /// Greatest distance from a curve whose ends lie on it that the method promises, in BLU, if it promises one.
+    error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
 }
 
 /// Every family with a machine.
@@ -127,6 +130,12 @@ impl Family {
         };
         let pairs = sectors.iter().map(|sector| [word(sector, "share"), word(sector, "whole")]);
         pairs.filter(|[share, whole]| share.saturating_mul(2) > *whole).max().unwrap_or_default()
+    }
+
+    /// What the method promises of a block, if it promises anything.
+    #[must_use]
+    pub fn promise(&self, hardware: &Hardware, block: &PulseBlock) -> Option<Promise> {
+        Promise::of((self.error_bound)(hardware, block), &block.curve)
     }
 
     /// What the machine is loaded with for a block of the program, in order.

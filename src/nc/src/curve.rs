@@ -101,6 +101,24 @@ impl Curve {
         }
     }
 
+    /// The greater of the distances of both ends from the ideal curve, in BLU: 0 of a line, and of ends on the curve.
+    ///
+    /// ```
+    /// use stepwave_nc::{Arc, Curve, Direction};
+    ///
+    /// let arc: Curve = Arc::new([4, 0], [1, -3], [0, 0], Direction::Clockwise)?.into();
+    /// assert_eq!(arc.ends_off(), 4.0 - f64::sqrt(10.0));
+    /// # Ok::<(), stepwave_nc::GeometryError>(())
+    /// ```
+    #[must_use]
+    pub fn ends_off(&self) -> f64 {
+        match self {
+            // Both ends make the line.
+            Curve::Line(_) => 0.0,
+            _ => self.deviation(self.from()).max(self.deviation(self.to())),
+        }
+    }
+
     /// Ideal points in the first two axes, in BLU and machine coordinates, for drawing.
     ///
     /// A line gives its two ends, every other curve `max_points` points (two at least, [`OUTLINE_LIMIT`] at most). The

@@ -46,6 +46,30 @@ impl Reading {
         (rest == 0).then(|| Bits::truncated(width, bits))
     }
 
+    /// The bits that a register takes of a number that does not fit: its lowest bits, or of a decimal register its lowest
+    /// digits. A negative number is in two's complement, or in ten's complement.
+    #[must_use]
+    pub fn wrapped(self, width: Width, number: i128) -> Bits {
+        if self == Reading::Decimal {
+            let rest = number.rem_euclid(10_i128.pow(width.get() / 4));
+            return self.bits(width, rest).unwrap_or(Bits::truncated(width, 0));
+        }
+        // The lowest 64 bits, of which the width takes its own.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the lowest bits are meant")]
+        let lowest = number as u64;
+        Bits::truncated(width, lowest)
+    }
+
+    /// The bits of the number nearest to this one that fits.
+    #[must_use]
+    pub fn saturated(self, width: Width, number: i128) -> Bits {
+        let (least, greatest) = match self {
+            Reading::Decimal => (0, 10_i128.pow(width.get() / 4) - 1),
+            _ => width.range(self.is_signed()),
+        };
+        self.bits(width, number.clamp(least, greatest)).unwrap_or(Bits::truncated(width, 0))
+    }
+
     /// Bits that a number needs; a negative one needs a sign in any case, a decimal one whole digits.
     #[must_use]
     pub fn needed(self, number: i128) -> u32 {
@@ -80,6 +104,24 @@ mod tests {
         let greatest = 9_999_999_999_999_999;
         assert_eq!(decimal.number(Width::MAX, decimal.bits(Width::MAX, greatest).unwrap().value()), greatest);
         assert_eq!(decimal.bits(Width::MAX, greatest + 1), None);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_cut_to_the_lowest_bits_or_digits_or_held_at_an_end() {
+        let number = |reading: Reading, bits: Bits| reading.number(bits.width(), bits.value());
+        for (reading, bits, given, wrapped, saturated) in [
+            (Reading::Unsigned, 8, 300, 44, 255),
+            (Reading::Unsigned, 8, -1, 255, 0),
+            (Reading::Signed, 7, 100, -28, 63),
+            (Reading::Signed, 7, -65, 63, -64),
+            (Reading::Signed, 7, -64, -64, -64),
+            (Reading::Decimal, 8, 123, 23, 99),
+            (Reading::Decimal, 8, -1, 99, 0),
+            (Reading::Unsigned, 64, i128::from(u64::MAX) + 6, 5, i128::from(u64::MAX)),
+        ] {
+            assert_eq!(number(reading, reading.wrapped(width(bits), given)), wrapped, "{reading:?} {given}");
+            assert_eq!(number(reading, reading.saturated(width(bits), given)), saturated, "{reading:?} {given}");
+        }
     }
 
     #[test]

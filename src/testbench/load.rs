@@ -1,0 +1,75 @@
+//! The words of a geometry on the inputs of a machine.
+
+use stepwave_models::{Choices, CutWord, Loaded, Model, ModelError, Words};
+use stepwave_nc::Curve;
+
+use super::Testbench;
+
+/// Clocks after which a run with a load word that was cut is given up: such a block need not come to an end.
+pub(super) const CUT_CLOCKS: u64 = 1 << 27;
+
+impl Testbench {
+    /// Plans the hardware, builds the machine and encodes the load words, each of which must fit in its register.
+    ///
+    /// # Errors
+    /// The model does not take the geometry or a choice, or a value does not fit in its register.
+    pub fn new(model: &Model, curve: &Curve, choices: &Choices) -> Result<Testbench, ModelError> {
+        Testbench::of_hardware(model, model.plan(curve, choices)?)?.of(model, curve)
+    }
+
+    /// As [`new`](Self::new), but loads as the hardware does: see [`as_hardware_loads`](Self::as_hardware_loads).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn loading(model: &Model, curve: &Curve, choices: &Choices) -> Result<Testbench, ModelError> {
+        Testbench::of_hardware(model, model.plan(curve, choices)?)?.as_hardware_loads().of(model, curve)
+    }
+
+    /// The same machine, which takes load words that do not fit as its registers take results that do not fit: with
+    /// `--on-overflow wrap` cut, with `saturate` at an end of the range. [`cut_words`](Self::cut_words) lists them. Without
+    /// this such words are refused whatever the hardware, so that no statement about all geometries rests on another one.
+    #[must_use]
+    pub fn as_hardware_loads(self) -> Testbench {
+        Testbench { cuts: true, ..self }
+    }
+
+    /// The same hardware with the blocks of another geometry.
+    ///
+    /// # Errors
+    /// A value does not fit in its register.
+    pub fn of(&self, model: &Model, curve: &Curve) -> Result<Testbench, ModelError> {
+        let loaded = self.load(&model.words(&self.hardware, curve))?;
+        Ok(Testbench { blocks: loaded.blocks, cut: loaded.cut, start: curve.from().to_vec(), ..self.clone() })
+    }
+
+    /// What the inputs are set to for these words.
+    ///
+    /// # Errors
+    /// A value does not fit in its register.
+    pub fn load(&self, words: &[Words]) -> Result<Loaded, ModelError> {
+        if self.cuts {
+            return self.machine.load(&self.hardware, words);
+        }
+        Ok(Loaded { blocks: self.machine.encode(&self.hardware, words)?, cut: Vec::new() })
+    }
+
+    /// The same bench, whose runs are given up after so many clocks; where none are given and a load word was cut, after
+    /// [`CUT_CLOCKS`].
+    #[must_use]
+    pub fn limited_to(self, clocks: Option<u64>) -> Testbench {
+        let most = if self.cut.is_empty() { u64::MAX } else { CUT_CLOCKS };
+        self.limited(clocks.unwrap_or(most))
+    }
+
+    /// Blocks that the geometry is loaded in.
+    #[must_use]
+    pub fn blocks(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// The load words that did not fit in their registers.
+    #[must_use]
+    pub fn cut_words(&self) -> &[CutWord] {
+        &self.cut
+    }
+}

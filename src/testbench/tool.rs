@@ -1,0 +1,65 @@
+//! Where the tool is: at the start, and one BLU farther for each pulse.
+//!
+//! The position counters of a machine say the same as long as none overflows. A counter that wraps or is held shows
+//! another place, though the drive was given every pulse.
+
+use stepwave_kernel::OnOverflow;
+use stepwave_kernel::bits::to_signed;
+use stepwave_kernel::engine::Rows;
+use stepwave_models::Port;
+
+use super::{StepColumns, Testbench};
+
+/// The number that a pulse of two bits means: 0, +1 or -1.
+#[inline]
+pub(super) fn signed(pulse: u64) -> i64 {
+    (pulse & 1).cast_signed() - (pulse & 2).cast_signed()
+}
+
+/// Follows the tool through samples.
+#[derive(Clone, Debug)]
+pub(super) struct Tool {
+    pulses: Vec<usize>,
+    counters: Vec<(usize, Port)>,
+    /// An overflow ends the run, so that the counters can be believed, which is faster.
+    trusted: bool,
+    /// The place behind the last sample, in BLU.
+    pub(super) place: Vec<i64>,
+}
+
+impl Tool {
+    pub(super) fn of(bench: &Testbench) -> Tool {
+        let (columns, ports) = (StepColumns::of(bench), &bench.machine().positions);
+        Tool {
+            counters: columns.positions.into_iter().zip(ports.iter().copied()).collect(),
+            pulses: columns.pulses,
+            trusted: bench.hardware().on_overflow == OnOverflow::Trap,
+            place: bench.start.clone(),
+        }
+    }
+
+    /// The counters of all axes say where the tool is, whatever the run.
+    pub(super) fn is_trusted(&self) -> bool {
+        self.trusted
+    }
+
+    /// Takes a sample, each in its order; true if the place is another than before.
+    #[inline]
+    pub(super) fn sample(&mut self, rows: &Rows, row: usize) -> bool {
+        let mut moved = false;
+        if self.trusted {
+            for (place, &(column, port)) in self.place.iter_mut().zip(&self.counters) {
+                let now = to_signed(port.width, rows.value(column, row));
+                moved |= now != *place;
+                *place = now;
+            }
+            return moved;
+        }
+        for (place, &column) in self.place.iter_mut().zip(&self.pulses) {
+            let pulse = signed(rows.value(column, row));
+            moved |= pulse != 0;
+            *place = place.saturating_add(pulse);
+        }
+        moved
+    }
+}
