@@ -257,7 +257,7 @@ pub(crate) struct HardwareArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Time")]
 pub(crate) struct ClockArgs {
-    /// Clock frequency in Hz, for the time axis and the feed
+    /// Clock frequency in Hz, for the time axis, the feed and the period of data sampling
     #[arg(long, value_name = "HZ", default_value = "1e6", value_parser = parse_clock)]
     pub(crate) clock_hz: f64,
 }
