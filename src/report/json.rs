@@ -178,7 +178,7 @@ impl Report<'_> {
             Ending::Endless { .. } => "endless",
             Ending::Limit => "limit",
         };
-        json!({
+        let mut report = json!({
             "schema": SCHEMA,
             "model": self.model.name,
             "geometry": geometry(self.curve),
@@ -194,12 +194,10 @@ impl Report<'_> {
                 "reached": outcome.reached,
                 "exact": self.end_exact(),
             },
-            "position_counters": outcome.counters,
             "path_error": path_error,
             "sampling": self.sampling(),
             "pulse_spacing": spacing,
             "rate_deviation": rate_deviation,
-            "cut_words": self.cut.iter().map(cut_word).collect::<Vec<_>>(),
             "overflow": {
                 "count": self.overflow_count,
                 "events": self.overflows.iter().map(event).collect::<Vec<_>>(),
@@ -209,7 +207,15 @@ impl Report<'_> {
             "ending": ending,
             "warnings": self.warnings(),
             "failures": self.failures(),
-        })
+        });
+        // Only where the hardware did not do what it was given.
+        if !self.cut.is_empty() {
+            report["cut_words"] = self.cut.iter().map(cut_word).collect();
+        }
+        if outcome.counters != outcome.reached {
+            report["position_counters"] = json!(outcome.counters);
+        }
+        report
     }
 
     /// The coarse stage, and what its fraction costs.
