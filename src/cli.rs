@@ -143,7 +143,7 @@ pub(crate) struct RunArgs {
     stepwave export dda-line --to 8,6 --verilog dda_line.v --testbench dda_line_tb.v\n  \
     stepwave export ppc-arc --from 5,0 --to 0,5 --ccw --width 16 --verilog -\n\
     The wave of the test bench (Icarus Verilog, Verilator) holds the signals of `run --vcd`, so that\n\
-    `stepwave diff` compares them clock by clock.\n\n  \
+    `stepwave diff` compares them clock by clock; --ignore '*.trap.*' leaves out the operands of a trap.\n\n  \
     stepwave export ppc-line --to 6,4 --width f=3 --smt2 line.smt2 && z3 line.smt2\n  \
     stepwave export ppc-line --to 7,7 --any-geometry=xe,ye --smt2 all.smt2 && cvc5 all.smt2\n\
     `sat` says that a property is violated: a register overflows. Clocks and names are those of `run --vcd`. The files\n\

@@ -8,14 +8,19 @@ use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::nc::{Reading, ToolMove};
 use stepwave::program::{Control, MoveReport, Onlooker, Pace, Preparation, Stream, Survey};
 use stepwave::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail};
-use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Sample, Testbench};
+use stepwave::testbench::{
+    Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, RangeWatch, Sample, Testbench,
+};
 
 use super::progress::Progress;
 use super::run::Finished;
-use super::wave::{Sinks, Waves};
+use super::wave::{Sinks, Waves, shows_trap};
 use crate::cli::ProgramArgs;
 use crate::failure::Failure;
 use crate::output::{Outputs, Sink};
+
+/// What the wave of a program begins with: where the machine is, how fast it is to be, and in which block.
+const LEADING: [&str; 5] = ["axis_x.x", "axis_y.y", "program.feed", "program.block", "axis_z.z"];
 
 /// Runs a whole program and writes what was asked for.
 pub(crate) fn program(args: &ProgramArgs) -> Result<(), Failure> {
@@ -28,6 +33,18 @@ pub(crate) fn program(args: &ProgramArgs) -> Result<(), Failure> {
 /// # Errors
 /// Bad input, or an output cannot be written; nothing stands under a final name.
 pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
+    let finished = once(args, outputs, None)?;
+    match &finished.trap {
+        Some(event) if shows_trap(&args.trace, &args.outputs, event) => {
+            *outputs = Outputs::default();
+            once(args, outputs, Some(event))
+        }
+        _ => Ok(finished),
+    }
+}
+
+/// Simulates; the wave shows the operands of a trap that is known.
+fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> Result<Finished, Failure> {
     let family = args.method;
     let file = args.file.display().to_string();
     let told = |error: &dyn std::fmt::Display| Failure::Trouble(format!("{file}: {error}"));
@@ -48,6 +65,7 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
         .as_hardware_loads()
         .limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
     let bench = if args.trace.wanted() { bench } else { bench.without_wave() };
+    let bench = trap.and_then(|event| bench.showing(event)).unwrap_or(bench);
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
     let head = ProgramHead { file: &file, family, hardware: bench.hardware(), engine: args.simulation.engine, pace };
@@ -56,7 +74,8 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
     let sinks = Sinks::open(&args.trace, outputs)?;
     let mut sink = |path: &Option<std::path::PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
     let (steps, json, plot) = (sink(&args.outputs.steps)?, sink(&args.outputs.json)?, sink(&args.outputs.plot)?);
-    let mut waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &head.title())).transpose()?;
+    let waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &head.title())).transpose()?;
+    let mut waves = waves.map(|waves| waves.beginning_with(&LEADING));
     let mut steps = steps.map(|sink| StepTable::new(&bench, sink)).transpose()?;
     let mut json = json.map(|sink| ProgramJson::new(head, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Part::new(&head.headline()), sink));
@@ -102,7 +121,8 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
         sink.write_all(picture.svg().as_bytes())?;
         sink.flush()?;
     }
-    Ok(Finished { text: table.text(&tail), failures })
+    let trap = overflows.first().filter(|_| outcome.ending == Ending::Trapped).cloned();
+    Ok(Finished { text: table.text(&tail), failures, trap })
 }
 
 /// Opens the program; it is read twice.

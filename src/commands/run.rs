@@ -8,13 +8,14 @@ use stepwave::models::find;
 use stepwave::report::plot::Plot;
 use stepwave::report::{self, CsvTable, Report, TEXTBOOK_STEPS, TextbookTable};
 use stepwave::testbench::{
-    CoarseWatch, Observer, ObserverError, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, Step, Testbench,
+    CoarseWatch, Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, PathWatch, RangeWatch, SpacingWatch,
+    Step, Testbench,
 };
 
 use super::geometry::curve;
 use super::progress::RunProgress;
 use super::states::{Begin, States};
-use super::wave::{Sinks, Waves};
+use super::wave::{Sinks, Waves, shows_trap};
 use crate::cli::RunArgs;
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
@@ -34,6 +35,8 @@ pub(crate) struct Finished {
     pub(crate) text: String,
     /// What is wrong with the simulated hardware.
     pub(crate) failures: Vec<String>,
+    /// What stopped the run.
+    pub(crate) trap: Option<OverflowEvent>,
 }
 
 impl Finished {
@@ -56,6 +59,18 @@ impl Finished {
 /// # Errors
 /// Bad input, or an output cannot be written; nothing stands under a final name.
 pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
+    let finished = once(args, outputs, None)?;
+    match &finished.trap {
+        Some(event) if args.checkpoints.is_none() && shows_trap(&args.trace, &args.outputs, event) => {
+            *outputs = Outputs::default();
+            once(args, outputs, Some(event))
+        }
+        _ => Ok(finished),
+    }
+}
+
+/// Simulates; the wave shows the operands of a trap that is known.
+fn once(args: &RunArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> Result<Finished, Failure> {
     let model = find(&args.model)?;
     if args.textbook && !TEXTBOOK_MODELS.contains(&model.name) {
         let (name, models) = (model.name, TEXTBOOK_MODELS.join(", "));
@@ -67,6 +82,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     let bench = Testbench::loading(model, &curve, &args.hardware.choices_at(args.clock.clock_hz))
         .map_err(|error| args.hardware.told(error))?;
     let bench = bench.limited_to(args.simulation.max_clocks);
+    let bench = trap.and_then(|event| bench.showing(event)).unwrap_or(bench);
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);
 
@@ -142,7 +158,8 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     if let Some(clock) = begun {
         text += &format!("begun from the state at clock {clock}; the report is that of the whole run\n");
     }
-    Ok(Finished { text, failures: report.failures() })
+    let trap = report.overflows.first().filter(|_| report.outcome.ending == Ending::Trapped);
+    Ok(Finished { text, failures: report.failures(), trap: trap.cloned() })
 }
 
 fn title_of_picture(report: &Report<'_>) -> String {

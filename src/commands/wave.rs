@@ -3,15 +3,16 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
+use stepwave::kernel::netlist::Format;
 use stepwave::kernel::trace::fst::{FstBody, FstHeader};
 use stepwave::kernel::trace::gtkw::{View, side_files};
 use stepwave::kernel::trace::probe::{Probe, Selection};
 use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::kernel::trace::vcd::{Background, VcdBody, VcdHeader};
-use stepwave::kernel::{Net, did_you_mean};
-use stepwave::testbench::{Observer, OverflowEvent, Testbench, Trigger, WaveBody, WaveWriter, Window};
+use stepwave::kernel::{Net, Width, did_you_mean};
+use stepwave::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window};
 
-use crate::cli::TraceArgs;
+use crate::cli::{OutputArgs, TraceArgs};
 use crate::failure::Failure;
 use crate::output::{self, Outputs, SeekSink, Sink};
 
@@ -33,6 +34,14 @@ impl<'a> Sinks<'a> {
     }
 }
 
+/// A second run shows the operands of the cell that stopped the first: its wave then holds them as signals. Not where
+/// an output has gone to a stream already, nor where the window leaves the trap out.
+pub(super) fn shows_trap(args: &TraceArgs, outputs: &OutputArgs, event: &OverflowEvent) -> bool {
+    let files = [&args.vcd, &args.fst, &outputs.steps, &outputs.json, &outputs.plot];
+    let window = args.trace_from..=args.trace_to.unwrap_or(u64::MAX);
+    args.wanted() && window.contains(&event.clock()) && !files.into_iter().flatten().any(|path| output::is_stream(path))
+}
+
 /// Waves that are being written: the same samples of the same signals.
 pub(super) struct Waves<'a> {
     vcd: Option<Wave<'a, VcdBody<Background<Sink>>>>,
@@ -40,6 +49,7 @@ pub(super) struct Waves<'a> {
     probes: Vec<Probe>,
     clk: bool,
     time: ClockTime,
+    leading: &'static [&'static str],
 }
 
 /// One of them.
@@ -69,21 +79,34 @@ impl<'a> Waves<'a> {
         };
         let window = Window { from: args.trace_from, to: args.trace_to, trigger };
         let clk = !args.no_clk;
+        let curves: Vec<(usize, Width)> = probes
+            .iter()
+            .filter(|probe| probe.format == Format::Analog)
+            .map(|probe| (probe.column, probe.width))
+            .collect();
         let vcd = match sinks.vcd {
             Some((path, sink)) => {
                 let header = VcdHeader { comment: title, probes: &probes, time, clk };
-                Some(Wave { path, writer: WaveWriter::new(header.write(Background::new(sink))?, window) })
+                Some(Wave {
+                    path,
+                    writer: WaveWriter::new(header.write(Background::new(sink))?, window).looking_at(curves.clone()),
+                })
             }
             None => None,
         };
         let fst = match sinks.fst {
             Some((path, sink)) => {
                 let header = FstHeader { probes: &probes, time, clk };
-                Some(Wave { path, writer: WaveWriter::new(header.write(sink)?, window) })
+                Some(Wave { path, writer: WaveWriter::new(header.write(sink)?, window).looking_at(curves) })
             }
             None => None,
         };
-        Ok(Waves { vcd, fst, probes, clk, time })
+        Ok(Waves { vcd, fst, probes, clk, time, leading: &[] })
+    }
+
+    /// The same with rows that come first: their paths without the design's name.
+    pub(super) fn beginning_with(self, leading: &'static [&'static str]) -> Waves<'a> {
+        Waves { leading, ..self }
     }
 
     /// What takes the samples.
@@ -124,7 +147,7 @@ impl<'a> Waves<'a> {
         &self,
         path: &Path,
         stem: Option<&OsStr>,
-        (first_clock, last_clock): (u64, u64),
+        Written { clocks: (first_clock, last_clock), taken }: Written,
         overflows: &[OverflowEvent],
         outputs: &mut Outputs,
     ) -> Result<(), Failure> {
@@ -138,13 +161,22 @@ impl<'a> Waves<'a> {
             .take(1)
             .map(|event| (event.clock(), "overflow".to_owned()))
             .collect();
+        // At reset a position counter is not yet where the machine is.
+        let jumps = taken.iter().any(|taken| taken.reset.zip(taken.first).is_some_and(|(reset, first)| reset != first));
+        let behind = |taken: &Taken| taken.range.map(|range| (taken.column, range));
+        let ranges: Vec<(usize, [i64; 2])> = taken.iter().filter_map(behind).collect();
         let view = View {
             dump_name: &text(path.file_name()),
             stem: &text(stem),
             probes: &self.probes,
             clk: self.clk,
             time: self.time,
+            first_clock: if jumps { 1 } else { first_clock },
             last_clock,
+            ranges: &ranges,
+            scaled_in_view: jumps,
+            leading: self.leading,
+            flagged: !marks.is_empty(),
             marks: &marks,
         };
         for file in side_files(&view) {
@@ -154,14 +186,23 @@ impl<'a> Waves<'a> {
     }
 }
 
-/// Ends a wave; tells its first and last clock.
-fn finish<B: WaveBody>(writer: WaveWriter<B>, clocks: u64) -> Result<((u64, u64), B::Output), Failure> {
+/// What a wave holds.
+struct Written {
+    /// First and last.
+    clocks: (u64, u64),
+    /// What its curves took.
+    taken: Vec<Taken>,
+}
+
+/// Ends a wave; tells what it holds.
+fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Failure> {
     let Some(written) = writer.written else {
         return Err(Failure::Trouble(format!(
             "the wave would be empty: no clock from 0 to {clocks} of this run falls into its window"
         )));
     };
-    Ok((written, writer.finish()?))
+    let taken = std::mem::take(&mut writer.taken);
+    Ok((Written { clocks: written, taken }, writer.finish()?))
 }
 
 /// Column of the 1-bit net of this name, path, or end of a path.

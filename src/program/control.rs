@@ -6,7 +6,7 @@ use std::io::BufRead;
 use stepwave_models::program::Family;
 use stepwave_nc::{PulseBlock, ToolMove};
 
-use super::feed::{Pace, commanded, frequency, rate};
+use super::feed::{Pace, commanded, frequency, rate, shown_feed};
 use super::stream::{Item, Stream};
 use super::tally::{MoveReport, Totals};
 use crate::testbench::{Host, Next, ObserverError, Sample, Testbench};
@@ -139,8 +139,11 @@ impl<'a, R: BufRead> Control<'a, R> {
             let mut length = block.curve.length();
             for part in self.family.words(self.bench.hardware(), &block) {
                 let rate = rate(self.pace, self.family, &block, &part, self.speed);
+                let source_hz = frequency(self.pace, rate.word);
+                let feed = shown_feed(self.pace, self.speed, &part, source_hz);
+                let number = of.place.number.unwrap_or(of.place.line);
                 let mut words = part.words;
-                words.push(("rate", rate.word.into()));
+                words.extend([("rate", rate.word.into()), ("block", number.into()), ("feed", feed.into())]);
                 let loaded = self.bench.load(&[words])?;
                 self.totals.cut(of.place.line, &loaded.cut);
                 let given = Given {
@@ -148,7 +151,7 @@ impl<'a, R: BufRead> Control<'a, R> {
                     of,
                     block: block.clone(),
                     commanded: self.speed,
-                    source_hz: frequency(self.pace, rate.word),
+                    source_hz,
                     limited: rate.limited,
                     length: std::mem::take(&mut length),
                 };

@@ -60,6 +60,18 @@ pub(super) fn frequency(pace: Pace, word: u64) -> f64 {
     word as f64 / 2f64.powi(RATE_BITS.cast_signed()) * pace.clock_hz
 }
 
+/// The feed that the control shows of a block of the machine, in whole mm/min: the commanded one, in BLU per second, or else
+/// what the pulse source gives.
+#[must_use]
+pub(super) fn shown_feed(pace: Pace, speed: Option<f64>, part: &HardwareBlock, source_hz: f64) -> u64 {
+    let own = part.length * source_hz / part.steps;
+    let feed = (speed.unwrap_or(own) * 60.0 * pace.blu_mm).round();
+    // 0 for what is no number, the greatest for what is beyond.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let feed = feed as u64;
+    feed.min(u32::MAX.into())
+}
+
 /// Pulses over which a speed is measured.
 const WINDOW: u64 = 32;
 

@@ -34,7 +34,7 @@ pub use ranges::{RangeWatch, RegisterRange, StuckBits};
 pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
 pub use steps::Step;
 use steps::{StepColumns, StepReader};
-pub use wave::{Trigger, WaveBody, WaveWriter, Window};
+pub use wave::{Taken, Trigger, WaveBody, WaveWriter, Window};
 
 /// Samples held between engine and observers.
 const CHUNK: usize = 256;

@@ -7,10 +7,11 @@ use serde_json::json;
 use stepwave_kernel::bits;
 use stepwave_kernel::engine::Rows;
 use stepwave_kernel::netlist::{Arithmetic, Claim, Property};
-use stepwave_kernel::{OnOverflow, Width};
+use stepwave_kernel::{OnOverflow, Width, elaborate};
+use stepwave_models::Machine;
 
 use super::checkpoint::{GREATEST, Memory, recalled};
-use super::{Observer, ObserverError, Testbench};
+use super::{Columns, Observer, ObserverError, Testbench};
 
 /// Events kept in full; further ones are counted.
 const KEPT: usize = 100;
@@ -92,6 +93,24 @@ impl fmt::Display for OverflowEvent {
         } else {
             write!(f, "{needed} bits would hold it")
         }
+    }
+}
+
+impl Testbench {
+    /// The same bench with a scope `trap` in its waves that shows the operands and the exact result of the cell that an
+    /// event is about; `None` where they cannot be shown.
+    #[must_use]
+    pub fn showing(&self, event: &OverflowEvent) -> Option<Testbench> {
+        let OverflowEvent::Overflow { component, operation: wanted, .. } = event else { return None };
+        let netlist = self.design().netlist();
+        let of_event = |property: &&Property| {
+            property.name == *component
+                && matches!(property.claim, Claim::NoOverflow { operation, .. } if operation == *wanted)
+        };
+        let shown = netlist.showing_operands(netlist.properties.iter().find(of_event)?)?;
+        let machine = Machine { design: elaborate(shown).ok()?, ..self.machine().clone() };
+        let columns = Columns::of(&machine);
+        Some(Testbench { machine, columns, ..self.clone() })
     }
 }
 

@@ -3,6 +3,8 @@
 use std::io::{self, Seek, Write};
 use std::ops::Range;
 
+use stepwave_kernel::Width;
+use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::Rows;
 use stepwave_kernel::trace::fst::FstBody;
 use stepwave_kernel::trace::vcd::VcdBody;
@@ -85,11 +87,47 @@ impl<W: Write + Seek> WaveBody for FstBody<W> {
     }
 }
 
+/// What a column of signed numbers took in the samples that were written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Taken {
+    /// The column.
+    pub column: usize,
+    width: Width,
+    /// Its value at reset, where that was written.
+    pub reset: Option<i64>,
+    /// Its value in the first sample behind the reset.
+    pub first: Option<i64>,
+    /// Least and greatest value in the samples behind the reset.
+    pub range: Option<[i64; 2]>,
+}
+
+impl Taken {
+    /// Nothing yet.
+    #[must_use]
+    pub fn nothing(column: usize, width: Width) -> Taken {
+        Taken { column, width, reset: None, first: None, range: None }
+    }
+
+    fn take(&mut self, rows: &Rows, range: Range<usize>) {
+        let mut values = rows.column(self.column)[range.clone()].iter().map(|&value| to_signed(self.width, value));
+        if rows.first_clock() + range.start as u64 == 0 {
+            self.reset = values.next();
+        }
+        for value in values {
+            self.first.get_or_insert(value);
+            let [least, greatest] = self.range.get_or_insert([value; 2]);
+            (*least, *greatest) = ((*least).min(value), (*greatest).max(value));
+        }
+    }
+}
+
 /// A wave file that is being written.
 pub struct WaveWriter<B> {
     body: B,
     window: Window,
     open: bool,
+    /// What the columns took that are looked at.
+    pub taken: Vec<Taken>,
     /// First and last clock written.
     pub written: Option<(u64, u64)>,
 }
@@ -99,7 +137,14 @@ impl<B: WaveBody> WaveWriter<B> {
     #[must_use]
     pub fn new(body: B, window: Window) -> WaveWriter<B> {
         let open = window.trigger == Trigger::Immediately;
-        WaveWriter { body, window, open, written: None }
+        WaveWriter { body, window, open, taken: Vec::new(), written: None }
+    }
+
+    /// Looks at what these columns take, too.
+    #[must_use]
+    pub fn looking_at(self, columns: impl IntoIterator<Item = (usize, Width)>) -> WaveWriter<B> {
+        let taken = columns.into_iter().map(|(column, width)| Taken::nothing(column, width)).collect();
+        WaveWriter { taken, ..self }
     }
 
     /// Ends the wave.
@@ -130,6 +175,7 @@ impl<B: WaveBody> Observer for WaveWriter<B> {
         self.open = true;
         let clock = |index: usize| rows.first_clock() + index as u64;
         let (first, last) = (clock(range.start), clock(range.end - 1));
+        self.taken.iter_mut().for_each(|taken| taken.take(rows, range.clone()));
         self.body.rows(rows, range)?;
         self.written = Some((self.written.map_or(first, |(first, _)| first), last));
         Ok(())

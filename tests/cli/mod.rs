@@ -106,7 +106,7 @@ impl Folder {
         fs::create_dir(self.path(name)).expect("a folder");
     }
 
-    fn write(&self, name: &str, text: &str) {
+    pub(crate) fn write(&self, name: &str, text: &str) {
         fs::write(self.path(name), text).expect("a file");
     }
 }

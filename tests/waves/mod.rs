@@ -4,6 +4,7 @@ mod cases;
 mod fst;
 mod header;
 mod own_designs;
+mod pane;
 mod save_file;
 mod second_reader;
 mod window;

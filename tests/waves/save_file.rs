@@ -36,6 +36,8 @@ struct SaveFile {
 
 const GROUP_OPEN: u32 = 0x80_0200;
 const GROUP_CLOSE: u32 = 0x100_0200;
+const SHUT_OPEN: u32 = 0xc0_0200;
+const SHUT_CLOSE: u32 = 0x140_1200;
 const HEIGHT: u32 = 0x2_0200;
 const TRANSLATED: u32 = 0x2000;
 
@@ -55,8 +57,8 @@ fn parse(text: &str) -> SaveFile {
             states = Some(name.to_owned());
         } else if let Some(title) = line.strip_prefix('-') {
             match flags.expect("flags") {
-                GROUP_OPEN => groups.push(title.to_owned()),
-                GROUP_CLOSE => assert_eq!(groups.pop().as_deref(), Some(title), "{text}"),
+                GROUP_OPEN | SHUT_OPEN => groups.push(title.to_owned()),
+                GROUP_CLOSE | SHUT_CLOSE => assert_eq!(groups.pop().as_deref(), Some(title), "{text}"),
                 HEIGHT => {
                     assert!(title.is_empty() && file.rows.last().is_some_and(|row| row.flags & 0x8000 != 0), "{text}")
                 }

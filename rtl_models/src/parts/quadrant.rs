@@ -39,10 +39,33 @@ impl<'m> Kind<'m> {
     /// by its textbook name in the wave.
     #[must_use]
     pub fn decode(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Kind<'m> {
-        let (low, high) = (quadrant.bit(0), quadrant.bit(1));
+        Kind::show(m, counter_clockwise.concat(quadrant), &[]);
+        Kind::of(m, quadrant, counter_clockwise)
+    }
+
+    /// As [`decode`](Kind::decode), of a machine of arcs and lines: on an arc the first of `modes` (1 bit each) is 1, on a line
+    /// the second, before the first block none. The wave says which.
+    #[must_use]
+    pub fn decode_in_modes(
+        m: Scope<'m>,
+        quadrant: Signal<'m>,
+        counter_clockwise: Signal<'m>,
+        [arc, line]: [Signal<'m>; 2],
+    ) -> Kind<'m> {
+        let of_arc = counter_clockwise.concat(quadrant).extend(4);
+        let kind = arc.mux(of_arc, line.mux(m.lit(4, 8), m.lit(4, 9)));
+        Kind::show(m, kind, &["LINE", "NONE"]);
+        Kind::of(m, quadrant, counter_clockwise)
+    }
+
+    fn show(m: Scope<'m>, kind: Signal<'m>, others: &[&str]) {
         let names = ["SR1", "SR2", "SR3", "SR4", "NR1", "NR2", "NR3", "NR4"];
-        let states = (0..).zip(names).map(|(value, name)| (value, name.to_owned())).collect();
-        m.show("kind", counter_clockwise.concat(quadrant), Format::States(states));
+        let states = (0..).zip(names.iter().chain(others)).map(|(value, name)| (value, (*name).to_owned())).collect();
+        m.show("kind", kind, Format::States(states));
+    }
+
+    fn of(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Kind<'m> {
+        let (low, high) = (quadrant.bit(0), quadrant.bit(1));
         Kind {
             x_grows: m.name("x_grows", x_grows(quadrant, counter_clockwise)),
             // Clockwise x falls in the lower half, Q3 and Q4.

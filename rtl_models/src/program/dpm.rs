@@ -13,6 +13,7 @@ use stepwave_kernel::Netlist;
 use stepwave_kernel::dsl::Module;
 use stepwave_nc::{Crossing, PulseBlock};
 
+use super::frame::program_words;
 use super::{Family, HardwareBlock, Size, planar};
 use crate::choices::{Choices, EndPoint, Radix};
 use crate::error::ModelError;
@@ -61,6 +62,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let buffer = Buffer::new(m);
     let block = buffer.block(m.lit(1, 0));
     let step = m.name("step", pulse_source(m, &block, buffer.full()) & block.busy);
+    program_words(m, &block);
     let units = Units { radix: Radix::Binary, bits, count: 1 };
     let counter = RateMultiplier::new(m.scope("counter"), &block, "q", units, step);
     for (axis, letter) in hardware.letters().iter().enumerate() {

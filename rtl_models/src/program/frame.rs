@@ -3,6 +3,7 @@
 use stepwave_kernel::dsl::{Module, Register, Scope, Signal};
 use stepwave_kernel::netlist::Format;
 
+use super::PROGRAM_WORDS;
 use crate::hardware::Hardware;
 use crate::parts::{
     Block, Buffer, DownCounter, Kind, Motion, distributor, follower, pulse_source, quadrant_register, up_down_counter,
@@ -33,6 +34,7 @@ impl<'m> Frame<'m> {
     pub(super) fn new(m: Scope<'m>, hardware: &Hardware, buffer: Buffer<'m>, wait: Signal<'m>) -> Frame<'m> {
         let block = buffer.block(wait);
         let step = pulse_source(m, &block, buffer.full() & !wait);
+        program_words(m, &block);
         // One bit each, as viewers show no text for a single bit.
         let modes = [(0, "NONE"), (1, "LINE"), (2, "ARC")].map(|(value, name)| (value, name.to_owned()));
         let mode = m.reg("mode", 2).shown(Format::States(modes.to_vec()));
@@ -40,7 +42,8 @@ impl<'m> Frame<'m> {
         let arc = mode.q.bit(1);
         let quad = quadrant_register(m);
         quad.when(block.load, block.word("quad", 2)).else_hold();
-        let kind = Kind::decode(m.scope("quadrant"), quad.q, block.held(m, "ccw", 1));
+        let ccw = block.held(m, "ccw", 1);
+        let kind = Kind::decode_in_modes(m.scope("quadrant"), quad.q, ccw, [arc, mode.q.bit(0)]);
         // A line into Q2 or Q3 has negative x, one into Q3 or Q4 negative y.
         let (low, high) = (quad.q.bit(0), quad.q.bit(1));
         let negative = [arc.mux(kind.x_negative, low ^ high), arc.mux(kind.y_negative, high)];
@@ -83,6 +86,17 @@ impl<'m> Frame<'m> {
         distributor(m, &block, hardware, [first, second, Motion { pulse: third, negative: third_negative }]);
         let last = ex.count(step & taken[0]) & ey.count(step & taken[1]);
         block.close(block.load, step, last);
+    }
+}
+
+/// What the control shows of the block that runs, in the scope `program`; nothing else takes it.
+///
+/// - `block`, 41 bits: its N number, or its line where it has none.
+/// - `feed`, 32 bits: the speed that it is to have, in whole mm/min.
+pub(super) fn program_words<'m>(m: Scope<'m>, block: &Block<'m>) {
+    let m = m.scope("program");
+    for (name, bits) in PROGRAM_WORDS {
+        let _ = block.held(m, name, bits);
     }
 }
 

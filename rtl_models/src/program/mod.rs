@@ -24,6 +24,10 @@ use crate::machine::{Machine, Words};
 use crate::model::ChoiceDoc;
 use crate::promise::Promise;
 
+/// Words of every machine that only people read, and their bits: the number of the block, which a program has up to 2^40,
+/// and its feed in mm/min.
+pub const PROGRAM_WORDS: [(&str, u32); 2] = [("block", 41), ("feed", 32)];
+
 /// What the registers of a machine must hold for all blocks of a program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Size {

@@ -310,6 +310,46 @@ impl Netlist {
         (0..u32::try_from(self.cells.len()).unwrap_or(u32::MAX)).map(Net)
     }
 
+    /// The same netlist with a further scope `trap` that shows the operands of a strict cell, `left` and `right`, and the
+    /// exact result, `exact`, at every clock; `None` where the property is of no strict cell, or the result of operands of
+    /// 63 bits and more would need more than 64. The nets that were there keep their numbers.
+    #[must_use]
+    pub fn showing_operands(&self, property: &Property) -> Option<Netlist> {
+        let Claim::NoOverflow { operation, left, right } = property.claim else { return None };
+        // A bit for the carry, and one for the sign of a difference.
+        let bits = self.width(left.net).max(self.width(right.net)).get() + 2;
+        let width = Width::new(u64::from(bits)).ok()?;
+        let mut netlist = self.clone();
+        let mut add = |op: Op, width: Width| {
+            netlist.cells.push(Cell { op, width });
+            netlist.sources.push(None);
+            u32::try_from(netlist.cells.len() - 1).ok().map(Net)
+        };
+        let mut wide = |operand: Operand| {
+            add(if operand.signed { Op::SignExtend(operand.net) } else { Op::ZeroExtend(operand.net) }, width)
+        };
+        let (a, b) = (wide(left)?, wide(right)?);
+        let exact = match operation {
+            Arithmetic::Add => Op::Add(a, b),
+            Arithmetic::Sub => Op::Sub(a, b),
+        };
+        let exact = add(exact, width)?;
+        // Nets of their own: a register keeps the one name that reports know it by.
+        let mut copy = |of: Net| add(Op::ZeroExtend(of), self.width(of));
+        let (left_shown, right_shown) = (copy(left.net)?, copy(right.net)?);
+        let scope = ScopeId(u32::try_from(netlist.scopes.len()).ok()?);
+        netlist.scopes.push(ScopeData { parent: Some(ScopeId::TOP), name: "trap".to_owned() });
+        let shown = |signed: bool| if signed { Format::Signed } else { Format::Unsigned };
+        let names = [("left", left_shown, left.signed), ("right", right_shown, right.signed), ("exact", exact, true)];
+        netlist.names.extend(names.map(|(name, net, signed)| NamedNet {
+            net,
+            scope,
+            name: name.to_owned(),
+            format: shown(signed),
+        }));
+        Some(netlist)
+    }
+
     /// Dotted path of a scope, beginning with the netlist's name.
     #[must_use]
     pub fn scope_path(&self, scope: ScopeId) -> String {

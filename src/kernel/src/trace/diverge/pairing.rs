@@ -2,8 +2,8 @@
 
 use super::frame::Frames;
 use super::{CompareError, Options};
-use crate::trace::pattern::glob;
 use crate::nearest::did_you_mean;
+use crate::trace::pattern::glob;
 use crate::trace::read::{Signal, Wave};
 use globset::GlobMatcher;
 use std::collections::{HashMap, HashSet};
