@@ -1,57 +1,114 @@
 //! Joining the parts of a sweep to the file that the whole sweep would have written, byte for byte.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::StudyError;
 use super::parquet::{ParquetPart, ParquetTable, is_parquet};
-use super::parts::{PartHead, rows_of};
+use super::parts::{Check, PartHead, Remark};
 use super::table::{Column, Row, Value, heading, read_line, write_line};
+
+/// Most bytes of a line of a part.
+const LONGEST: u64 = 1 << 24;
+
+/// The lines of a text, one at a time.
+struct Lines {
+    text: BufReader<File>,
+    /// The last that was read, with its line feed.
+    line: String,
+    /// Its number, from 1.
+    number: u64,
+}
+
+impl Lines {
+    /// Reads the next line; gives whether there is one.
+    fn read(&mut self) -> Result<bool, String> {
+        self.line.clear();
+        self.number += 1;
+        let read = (&mut self.text).take(LONGEST).read_line(&mut self.line);
+        match read.map_err(|error| format!("line {} cannot be read: {error}", self.number))? {
+            0 => Ok(false),
+            _ if self.line.len() as u64 == LONGEST => {
+                Err(format!("line {} has more than {LONGEST} bytes", self.number))
+            }
+            _ => Ok(true),
+        }
+    }
+}
 
 /// A part in CSV being read.
 struct CsvPart {
     head: PartHead,
     columns: Vec<Column>,
-    lines: std::io::Lines<BufReader<File>>,
+    lines: Lines,
     rows: u64,
     ended: bool,
+    /// Of the lines from this number on.
+    check: Check,
+    since: u64,
 }
 
 impl CsvPart {
     fn open(path: &Path) -> Result<CsvPart, String> {
         let file = File::open(path).map_err(|error| error.to_string())?;
-        let mut lines = BufReader::with_capacity(1 << 16, file).lines();
-        let mut line = || lines.next().unwrap_or_else(|| Ok(String::new())).map_err(|error| error.to_string());
-        let head = PartHead::of_line(&line()?).ok_or("it is no part of a sweep: --shard makes them")?;
-        let columns = head.columns().ok_or("its columns are not told")?;
-        if line()? != heading(&columns) {
-            return Err("its heading does not name its columns".to_owned());
+        let mut lines = Lines { text: BufReader::with_capacity(1 << 16, file), line: String::new(), number: 0 };
+        let mut check = Check::default();
+        lines.read()?;
+        let head = PartHead::of_line(&lines.line).ok_or("it is no part of a sweep: --shard makes them")?;
+        check.add(lines.line.as_bytes());
+        let columns = head.columns().ok_or("its columns are not named")?;
+        lines.read()?;
+        check.add(lines.line.as_bytes());
+        if lines.line.trim_end() != heading(&columns) {
+            return Err("line 2, its heading, does not name its columns".to_owned());
         }
-        Ok(CsvPart { head, columns, lines, rows: 0, ended: false })
+        Ok(CsvPart { head, columns, lines, rows: 0, ended: false, check, since: 1 })
     }
 
     fn next(&mut self) -> Option<Result<Row, String>> {
-        let cut = || Some(Err("its end is missing: copy it anew, or do this part again".to_owned()));
-        let line = match self.lines.next() {
-            None if self.ended => return None,
-            None => return cut(),
-            Some(Err(error)) => return Some(Err(error.to_string())),
-            Some(Ok(line)) => line,
-        };
-        if let Some(rows) = rows_of(&line) {
-            if rows != self.rows {
-                return Some(Err(format!("it has {} of its {rows} rows", self.rows)));
+        self.try_next().transpose()
+    }
+
+    fn try_next(&mut self) -> Result<Option<Row>, String> {
+        loop {
+            match (self.lines.read()?, self.ended) {
+                (false, true) => return Ok(None),
+                (true, true) => return Err(format!("line {} follows its end", self.lines.number)),
+                (false, false) => return Err("its end is missing: copy it anew, or do this part again".to_owned()),
+                (true, false) => {}
             }
-            self.ended = true;
-            return self.lines.next().map(|_| Err("something stands behind its end".to_owned()));
+            match Remark::of(&self.lines.line) {
+                None => break,
+                Some(Remark::Check(check)) => self.compare(&check)?,
+                Some(Remark::End(rows, _)) if rows != self.rows => {
+                    return Err(format!("it has {} of its {rows} rows", self.rows));
+                }
+                Some(Remark::End(_, check)) => {
+                    self.compare(&check)?;
+                    self.ended = true;
+                }
+            }
         }
         self.rows += 1;
-        match read_line(&self.columns, &line) {
-            Some(row) => Some(Ok(row)),
-            // The last line of a file that was cut.
-            None => Some(Err(format!("its row {} cannot be read", self.rows))),
+        self.check.add(self.lines.line.as_bytes());
+        let row = read_line(&self.columns, self.lines.line.trim_end_matches('\n'));
+        // The last line of a file that was cut, or one that was changed.
+        row.map(Some).ok_or_else(|| format!("line {} is not as it was written", self.lines.number))
+    }
+
+    /// Compares the lines since the last check with what was written.
+    fn compare(&mut self, written: &str) -> Result<(), String> {
+        let (first, last) = (self.since, self.lines.number - 1);
+        self.since = self.lines.number + 1;
+        if self.check.take() == written {
+            return Ok(());
         }
+        Err(format!(
+            "lines {first} to {last} are not as they were written, or line {}, which holds their check: copy the file \
+             anew, or do this part again",
+            self.lines.number
+        ))
     }
 }
 

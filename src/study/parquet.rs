@@ -17,8 +17,8 @@ use parquet::schema::types::Type;
 
 use stepwave_kernel::guard::guarded;
 
-use super::parts::PartHead;
-use super::table::{Column, Kind, Row, Value};
+use super::parts::{Check, PartHead};
+use super::table::{Column, Kind, Row, Value, write_line};
 use super::{StudyError, Sweep};
 
 /// Rows of a group.
@@ -52,6 +52,19 @@ pub struct ParquetTable<W: Write + Send> {
     rows: Vec<Row>,
     total: u64,
     part: Option<PartHead>,
+    /// Of the groups of a part.
+    checks: Vec<String>,
+}
+
+/// The check of rows, which is that of their lines in CSV.
+fn check(rows: &[Row]) -> String {
+    let (mut check, mut line) = (Check::default(), String::new());
+    for row in rows {
+        line.clear();
+        write_line(row, &mut line);
+        check.add(line.as_bytes());
+    }
+    check.take()
 }
 
 fn failed(error: impl ToString) -> StudyError {
@@ -72,7 +85,7 @@ impl<W: Write + Send> ParquetTable<W> {
         let properties = WriterProperties::builder().set_created_by("stepwave".to_owned()).build();
         let schema = Arc::new(schema(&columns).map_err(failed)?);
         let writer = SerializedFileWriter::new(sink, schema, Arc::new(properties)).map_err(failed)?;
-        Ok(ParquetTable { writer, columns, rows: Vec::new(), total: 0, part })
+        Ok(ParquetTable { writer, columns, rows: Vec::new(), total: 0, part, checks: Vec::new() })
     }
 
     /// Appends a row.
@@ -87,6 +100,9 @@ impl<W: Write + Send> ParquetTable<W> {
 
     fn write_group(&mut self) -> Result<(), ParquetError> {
         let rows = std::mem::take(&mut self.rows);
+        if self.part.is_some() {
+            self.checks.push(check(&rows));
+        }
         let mut group = self.writer.next_row_group()?;
         for (place, column) in self.columns.iter().enumerate() {
             let values = rows.iter().map(|row| row.get(place).unwrap_or(&Value::None));
@@ -123,7 +139,8 @@ impl<W: Write + Send> ParquetTable<W> {
             self.write_group().map_err(failed)?;
         }
         if let Some(part) = self.part {
-            let text = serde_json::json!({ "head": part.text(), "rows": self.total }).to_string();
+            let text =
+                serde_json::json!({ "head": part.text(), "rows": self.total, "checks": self.checks }).to_string();
             self.writer.append_key_value_metadata(KeyValue::new(PART.to_owned(), text));
         }
         self.writer.into_inner().map_err(failed)
@@ -151,8 +168,11 @@ fn broken(reason: &str) -> String {
 /// A part in Parquet being read.
 pub(super) struct ParquetPart {
     pub(super) head: PartHead,
-    columns: Vec<Column>,
     rows: RowIter<'static>,
+    checks: Vec<String>,
+    /// Rows of the group so far, and those of the groups before.
+    group: Vec<Row>,
+    before: u64,
 }
 
 impl ParquetPart {
@@ -169,7 +189,9 @@ impl ParquetPart {
         let told = told.and_then(|pair| serde_json::from_str::<serde_json::Value>(pair.value.as_deref()?).ok());
         let head = told.as_ref().and_then(|told| PartHead::read(told.get("head")?.as_str()?));
         let count = told.as_ref().and_then(|told| told.get("rows")?.as_u64());
-        let (Some(head), Some(count)) = (head, count) else {
+        let checks: Option<Vec<String>> =
+            told.as_ref().and_then(|told| serde_json::from_value(told.get("checks")?.clone()).ok());
+        let (Some(head), Some(count), Some(checks)) = (head, count, checks) else {
             return Err("it is no part of a sweep: --shard makes them".to_owned());
         };
         let rows = u64::try_from(file.num_rows()).unwrap_or(0);
@@ -177,8 +199,12 @@ impl ParquetPart {
             return Err(format!("it has {rows} of its {count} rows"));
         }
         let columns = head.columns().ok_or("its columns are not told")?;
+        let names = file.schema_descr().columns().iter().map(|column| column.name());
+        if names.ne(columns.iter().map(|column| column.name.as_str())) {
+            return Err("its columns are not those of its sweep".to_owned());
+        }
         let rows = RowIter::from_file_into(Box::new(reader));
-        Ok(ParquetPart { head, columns, rows })
+        Ok(ParquetPart { head, rows, checks, group: Vec::new(), before: 0 })
     }
 
     /// The next row. After one that cannot be read there is none.
@@ -187,18 +213,39 @@ impl ParquetPart {
     }
 
     fn step(&mut self) -> Option<Result<Row, String>> {
-        let row = match self.rows.next()? {
-            Ok(row) => row,
-            Err(error) => return Some(Err(error.to_string())),
-        };
-        let value = |(field, _): (&Field, &Column)| match field {
-            Field::Long(number) => Value::Whole(*number),
-            Field::Double(number) => Value::Real(*number),
-            Field::Bool(flag) => Value::Flag(*flag),
-            Field::Str(word) => Value::Word(word.clone()),
-            _ => Value::None,
-        };
-        Some(Ok(row.get_column_iter().map(|(_, field)| field).zip(&self.columns).map(value).collect()))
+        match self.rows.next() {
+            Some(Ok(row)) => {
+                let row: Row = row.get_column_iter().map(|(_, field)| field).map(value).collect();
+                self.group.push(row.clone());
+                let whole = self.group.len() == GROUP;
+                Some(if whole { self.compare().map(|()| row) } else { Ok(row) })
+            }
+            Some(Err(error)) => Some(Err(error.to_string())),
+            None if self.group.is_empty() => None,
+            None => self.compare().err().map(Err),
+        }
+    }
+
+    /// Compares a group of rows with what was written.
+    fn compare(&mut self) -> Result<(), String> {
+        let rows = std::mem::take(&mut self.group);
+        let place = usize::try_from(self.before).unwrap_or(usize::MAX) / GROUP;
+        let (first, last) = (self.before + 1, self.before + rows.len() as u64);
+        self.before = last;
+        if self.checks.get(place) == Some(&check(&rows)) {
+            return Ok(());
+        }
+        Err(format!("rows {first} to {last} are not as they were written: copy the file anew, or do this part again"))
+    }
+}
+
+fn value(field: &Field) -> Value {
+    match field {
+        Field::Long(number) => Value::Whole(*number),
+        Field::Double(number) => Value::Real(*number),
+        Field::Bool(flag) => Value::Flag(*flag),
+        Field::Str(word) => Value::Word(word.clone()),
+        _ => Value::None,
     }
 }
 

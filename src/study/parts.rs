@@ -1,7 +1,10 @@
-//! Parts of a sweep as files: a part tells in itself what it is part of, and whether it is whole.
+//! Parts of a sweep as files: a part says in itself what it is part of, whether it is whole, and whether it is as it was
+//! written.
 //!
-//! In CSV a part begins with a line `# part of a stepwave sweep: {…}` and ends with `# end of the part: N rows`; in
-//! Parquet both stand in the metadata. A whole sweep has neither.
+//! In CSV a part begins with a line `# part of a stepwave sweep: {…}`; a line `# check of the lines since the last: …`
+//! follows each block of rows, and `# end of the part: N rows, check …` the last. The checks are CRC-32 of the bytes of
+//! all lines from the beginning, or from the check before. In Parquet all of that is in the metadata. A whole sweep has
+//! none of it.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
@@ -13,8 +16,12 @@ use super::table::Column;
 const HEAD: &str = "# part of a stepwave sweep: ";
 /// Beginning of a part's last line.
 const END: &str = "# end of the part: ";
+/// Beginning of the line after a block of rows.
+const CHECK: &str = "# check of the lines since the last: ";
+/// Rows of a block in CSV.
+pub(super) const BLOCK: u64 = 1000;
 /// Form of what is written; a change of meaning raises it.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 /// What a part says of itself.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -43,6 +50,11 @@ impl PartHead {
         serde_json::from_str(text).ok().filter(|head: &PartHead| head.schema == SCHEMA)
     }
 
+    /// A text is one, of whatever version.
+    pub(super) fn is_one(text: &str) -> bool {
+        serde_json::from_str::<PartHead>(text).is_ok()
+    }
+
     /// The first line of a CSV part.
     pub(super) fn line(&self) -> String {
         format!("{HEAD}{}\n", self.text())
@@ -59,12 +71,68 @@ impl PartHead {
     }
 }
 
-/// The last line of a CSV part.
-pub(super) fn end_line(rows: u64) -> String {
-    format!("{END}{rows} rows\n")
+/// A checksum of what passes.
+#[derive(Clone, Default)]
+pub(super) struct Check(crc32fast::Hasher);
+
+impl Check {
+    pub(super) fn add(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// Of all so far, as text.
+    pub(super) fn text(&self) -> String {
+        format!("{:08x}", self.0.clone().finalize())
+    }
+
+    /// Of all since the last, as text; begins anew.
+    pub(super) fn take(&mut self) -> String {
+        std::mem::take(self).text()
+    }
 }
 
-/// Rows that the last line of a CSV part tells.
-pub(super) fn rows_of(line: &str) -> Option<u64> {
-    line.trim_end().strip_prefix(END)?.strip_suffix(" rows")?.parse().ok()
+/// The lines of a CSV part with their checks, as they are written or read.
+#[derive(Default)]
+pub(super) struct Blocks {
+    check: Check,
+    rows: u64,
+}
+
+impl Blocks {
+    /// Takes a line, with its line feed.
+    pub(super) fn line(&mut self, line: &[u8]) {
+        self.check.add(line);
+    }
+
+    /// Takes a row, with its line feed; gives the line that follows where a block ends.
+    pub(super) fn row(&mut self, line: &[u8]) -> Option<String> {
+        self.check.add(line);
+        self.rows += 1;
+        self.rows.is_multiple_of(BLOCK).then(|| format!("{CHECK}{}\n", self.check.take()))
+    }
+
+    /// The last line of a CSV part.
+    pub(super) fn end_line(&mut self) -> String {
+        format!("{END}{} rows, check {}\n", self.rows, self.check.take())
+    }
+}
+
+/// What a line that begins with `#` says in a CSV part.
+pub(super) enum Remark {
+    /// The check of the lines before it.
+    Check(String),
+    /// The number of all rows, and the check of the last lines.
+    End(u64, String),
+}
+
+impl Remark {
+    /// From a line.
+    pub(super) fn of(line: &str) -> Option<Remark> {
+        let line = line.trim_end();
+        if let Some(check) = line.strip_prefix(CHECK) {
+            return Some(Remark::Check(check.to_owned()));
+        }
+        let (rows, check) = line.strip_prefix(END)?.split_once(" rows, check ")?;
+        Some(Remark::End(rows.parse().ok()?, check.to_owned()))
+    }
 }
