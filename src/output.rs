@@ -1,13 +1,20 @@
-//! Files that appear whole or not at all: written under another name beside the final one and renamed at the end.
+//! Files that appear whole or not at all: written under another name next to the final one and renamed at the end. No
+//! output replaces what the command reads.
+
+pub(crate) mod identity;
+pub(crate) mod temporary;
 
 use std::borrow::Cow;
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempPath;
-
+use self::identity::{Identity, folder_of, is_shareable, numbers, resolved};
+use self::temporary::Temporary;
 use crate::failure::Failure;
+use crate::stop;
+
+pub(crate) use self::identity::is_stream;
 
 /// An open output.
 pub(crate) type Sink = BufWriter<Box<dyn Write + Send>>;
@@ -18,8 +25,10 @@ pub(crate) type SeekSink = BufWriter<Named>;
 /// Outputs of one command.
 #[derive(Default)]
 pub(crate) struct Outputs {
-    staged: Vec<(TempPath, PathBuf)>,
-    named: Vec<PathBuf>,
+    /// Files that the command reads.
+    inputs: Vec<(Identity, PathBuf)>,
+    staged: Vec<(Temporary, PathBuf)>,
+    named: Vec<(Identity, PathBuf)>,
     stdout: bool,
 }
 
@@ -27,35 +36,29 @@ fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::Trouble(format!("cannot write {}: {error}", path.display()))
 }
 
-/// The file that a path means: links are followed, so that a link is kept and what it points to is replaced. A file that
-/// does not exist yet is named by its folder.
-fn resolved(path: &Path) -> PathBuf {
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    path.canonicalize().unwrap_or_else(|_| match (folder.canonicalize(), path.file_name()) {
-        (Ok(folder), Some(name)) => folder.join(name),
-        _ => path.to_owned(),
-    })
-}
-
-/// Standard output, a pipe or a device: no other files belong beside it.
-pub(crate) fn is_stream(path: &Path) -> bool {
-    path == Path::new("-") || path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir())
-}
-
 impl Outputs {
+    /// Of a command that reads these files.
+    pub(crate) fn reading(inputs: impl IntoIterator<Item = impl AsRef<Path>>) -> Outputs {
+        let input = |path: &Path| (Identity::of(path), path.to_owned());
+        let inputs = inputs.into_iter().map(|path| input(path.as_ref())).collect();
+        Outputs { inputs, ..Outputs::default() }
+    }
+
     /// Opens an output; `-` is standard output.
     ///
     /// # Errors
-    /// The file cannot be created, or another output goes there already.
+    /// The file cannot be created, the command reads it, or another output goes there already.
     pub(crate) fn open(&mut self, path: &Path) -> Result<Sink, Failure> {
         if path == Path::new("-") {
             if std::mem::replace(&mut self.stdout, true) {
                 return Err(Failure::Trouble("two outputs cannot both go to standard output: name a file".to_owned()));
             }
-            return Ok(BufWriter::new(Box::new(QuietPipe(io::stdout()))));
+            if let Some(found) = metadata_of_stdout().filter(|found| !is_shareable(found))
+                && let Some(identity) = numbers(&found)
+            {
+                self.reserve(identity, path)?;
+            }
+            return Ok(BufWriter::new(Box::new(Stdout(io::stdout()))));
         }
         Ok(BufWriter::with_capacity(1 << 16, Box::new(self.file(path)?)))
     }
@@ -63,7 +66,7 @@ impl Outputs {
     /// Opens an output that is not written from the beginning to the end.
     ///
     /// # Errors
-    /// The file cannot be created, it is no file, or another output goes there already.
+    /// The file cannot be created, it is no file, the command reads it, or another output goes there already.
     pub(crate) fn open_seekable(&mut self, path: &Path) -> Result<SeekSink, Failure> {
         if is_stream(path) {
             return Err(Failure::Trouble(format!(
@@ -80,7 +83,14 @@ impl Outputs {
     /// # Errors
     /// The file cannot be created, or another output goes there already.
     pub(crate) fn claim(&mut self, path: &Path) -> Result<PathBuf, Failure> {
-        if path != Path::new("-") {
+        if path == Path::new("-") {
+            self.open(path)?;
+        } else if is_stream(path) {
+            // Opened once only: the reader of a pipe takes its closing for the end.
+            if !path.metadata().as_ref().is_ok_and(is_shareable) {
+                self.keep_free(path)?;
+            }
+        } else {
             self.file(path)?;
             // The temporary file goes with its name.
             self.staged.clear();
@@ -88,17 +98,50 @@ impl Outputs {
         Ok(resolved(path))
     }
 
+    /// Keeps the name of a file that something else writes.
+    ///
+    /// # Errors
+    /// The command reads it, or an output goes there already.
+    pub(crate) fn keep_free(&mut self, path: &Path) -> Result<(), Failure> {
+        self.reserve(Identity::of(path), path)
+    }
+
+    /// Takes a file for an output.
+    fn reserve(&mut self, identity: Identity, path: &Path) -> Result<(), Failure> {
+        let name = |path: &Path| match path == Path::new("-") {
+            true => "standard output".to_owned(),
+            false => path.display().to_string(),
+        };
+        if let Some((_, input)) = self.inputs.iter().find(|(input, _)| *input == identity) {
+            return Err(Failure::Trouble(format!(
+                "cannot write {}: it is the file {}, which this command reads and would destroy: name another file for the \
+                 output",
+                name(path),
+                input.display()
+            )));
+        }
+        let same = |other: &Identity| *other == identity || (identity.differs_in_case(other) && folds_case(path));
+        if let Some((_, other)) = self.named.iter().find(|(other, _)| same(other)) {
+            let also = if other == path { String::new() } else { format!(", also named {}", name(other)) };
+            return Err(Failure::Trouble(format!(
+                "two outputs would go to {}{also}: give each its own file",
+                name(path)
+            )));
+        }
+        self.named.push((identity, path.to_owned()));
+        Ok(())
+    }
+
     fn file(&mut self, path: &Path) -> Result<Named, Failure> {
         if path.as_os_str().as_encoded_bytes().ends_with(b"/") && !path.is_dir() {
             return Err(Failure::Trouble(format!("cannot write {}: there is no such folder", path.display())));
         }
         let target = resolved(path);
-        if self.named.contains(&target) {
-            let message = format!("two outputs would go to {}: give each its own file", path.display());
-            return Err(Failure::Trouble(message));
+        let found = target.metadata();
+        if !found.as_ref().is_ok_and(is_shareable) {
+            self.reserve(Identity::of(&target), path)?;
         }
-        self.named.push(target.clone());
-        match target.metadata() {
+        match found {
             Ok(found) if found.is_dir() => {
                 Err(Failure::Trouble(format!("cannot write {}: it is a folder", path.display())))
             }
@@ -109,27 +152,19 @@ impl Outputs {
             }
             // Such as a name that is too long: better said now than when other files have their final names already.
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(cannot_write(path, &error)),
-            _ => {
+            found => {
                 let file = self.stage(path, &target)?;
+                if let Ok(found) = found {
+                    keep_owner_and_mode(&file, &found);
+                }
                 Ok(Named { path: path.to_owned(), file })
             }
         }
     }
 
     fn stage(&mut self, path: &Path, target: &Path) -> Result<File, Failure> {
-        let folder = match target.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".stepwave-").suffix(".part");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // As any new file: what the user's mask leaves.
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let staged = builder.tempfile_in(folder).map_err(|error| match error.kind() {
+        let folder = folder_of(target);
+        let (temporary, file) = Temporary::new(folder).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => {
                 let folder = folder.display();
                 Failure::Trouble(format!("cannot write {}: the folder {folder} does not exist", path.display()))
@@ -137,7 +172,6 @@ impl Outputs {
             // The temporary file's own name would only confuse.
             kind => cannot_write(path, &io::Error::from(kind)),
         })?;
-        let (file, temporary) = staged.into_parts();
         self.staged.push((temporary, target.to_owned()));
         Ok(file)
     }
@@ -170,11 +204,46 @@ impl Outputs {
     /// # Errors
     /// A file cannot be renamed.
     pub(crate) fn commit_all(&mut self) -> Result<(), Failure> {
-        for (temporary, target) in self.staged.drain(..) {
-            temporary.persist(&target).map_err(|error| cannot_write(&target, &error.error))?;
-        }
-        Ok(())
+        temporary::persist(&mut self.staged).map_err(|(target, error)| cannot_write(&target, &error))
     }
+}
+
+/// Of what standard output is, where the system says so.
+#[cfg(unix)]
+fn metadata_of_stdout() -> Option<Metadata> {
+    use std::os::fd::AsFd;
+    File::from(io::stdout().as_fd().try_clone_to_owned().ok()?).metadata().ok()
+}
+
+#[cfg(not(unix))]
+fn metadata_of_stdout() -> Option<Metadata> {
+    None
+}
+
+/// A file that replaces another is as that was, as far as this user may.
+#[cfg(unix)]
+fn keep_owner_and_mode(file: &File, replaced: &Metadata) {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+    let (user, group) = (Some(replaced.uid()), Some(replaced.gid()));
+    if let Ok(own) = file.metadata()
+        && (own.uid(), own.gid()) != (replaced.uid(), replaced.gid())
+        && fchown(file, user, group).is_err()
+    {
+        // The group may be another of the user's own.
+        let _ = fchown(file, None, group);
+    }
+    // Some file systems have no modes.
+    let _ = file.set_permissions(std::fs::Permissions::from_mode(replaced.mode() & 0o777));
+}
+
+#[cfg(not(unix))]
+fn keep_owner_and_mode(_: &File, _: &Metadata) {}
+
+/// Names in the folder of this file that differ in the case of their letters only mean one file.
+fn folds_case(path: &Path) -> bool {
+    let Ok((temporary, _)) = Temporary::new(folder_of(&resolved(path))) else { return false };
+    let name = temporary.path().file_name().unwrap_or_default().to_string_lossy().to_uppercase();
+    temporary.path().with_file_name(name).exists()
 }
 
 /// A file whose errors bear its name.
@@ -185,7 +254,10 @@ pub(crate) struct Named {
 
 impl Named {
     fn named<T>(&self, result: io::Result<T>) -> io::Result<T> {
-        result.map_err(|error| io::Error::new(error.kind(), format!("cannot write {}: {error}", self.path.display())))
+        result.map_err(|error| match error.kind() {
+            io::ErrorKind::BrokenPipe => stop::reader_left(),
+            kind => io::Error::new(kind, format!("cannot write {}: {error}", self.path.display())),
+        })
     }
 }
 
@@ -208,23 +280,23 @@ impl Seek for Named {
     }
 }
 
-/// Standard output whose reader may leave early, as `head` does: that is no failure.
-struct QuietPipe(io::Stdout);
+/// Standard output. A reader that leaves, as `head` does, ends the process.
+struct Stdout(io::Stdout);
 
-fn unless_closed<T>(result: io::Result<T>, closed: T) -> io::Result<T> {
-    result.or_else(|error| match error.kind() {
-        io::ErrorKind::BrokenPipe => Ok(closed),
-        kind => Err(io::Error::new(kind, format!("cannot write standard output: {error}"))),
+fn unless_left<T>(result: io::Result<T>) -> io::Result<T> {
+    result.map_err(|error| match error.kind() {
+        io::ErrorKind::BrokenPipe => stop::reader_left(),
+        kind => io::Error::new(kind, format!("cannot write standard output: {error}")),
     })
 }
 
-impl Write for QuietPipe {
+impl Write for Stdout {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
-        unless_closed(self.0.write(buffer), buffer.len())
+        unless_left(self.0.write(buffer))
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        unless_closed(self.0.flush(), ())
+        unless_left(self.0.flush())
     }
 }
 
@@ -242,7 +314,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 /// # Errors
 /// Standard output cannot be written.
 pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
-    let mut out = QuietPipe(io::stdout());
+    let mut out = Stdout(io::stdout());
     out.write_all(text.as_bytes())?;
     Ok(out.flush()?)
 }

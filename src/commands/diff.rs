@@ -117,7 +117,7 @@ pub(crate) fn run(args: &DiffArgs) -> Result<(), Failure> {
     let (a, b) = (a?, b?);
 
     let comparison = diverge::compare(&a, &b, &options)?;
-    let mut outputs = Outputs::default();
+    let mut outputs = Outputs::reading([&args.a, &args.b]);
     if let Some(path) = &args.merged {
         let mut sink = outputs.open(path)?;
         write_merged(&a, &b, &options, &mut sink)?;

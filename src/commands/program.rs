@@ -24,7 +24,7 @@ const LEADING: [&str; 5] = ["axis_x.x", "axis_y.y", "program.feed", "program.blo
 
 /// Runs a whole program and writes what was asked for.
 pub(crate) fn program(args: &ProgramArgs) -> Result<(), Failure> {
-    let mut outputs = Outputs::default();
+    let mut outputs = Outputs::reading([&args.file]);
     simulate(args, &mut outputs)?.tell(outputs)
 }
 

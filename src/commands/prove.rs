@@ -110,6 +110,9 @@ impl CertificateOutput<'_> {
 fn attempt(args: &ProveArgs) -> Result<(), Failure> {
     let model = find(args.model.as_deref().unwrap_or_default())?;
     let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
+    // Whichever is written in the end, both are tried before anything is attempted.
+    let mut both = Outputs::default();
+    args.certificate.iter().chain(&args.vcd).try_for_each(|path| both.claim(path).map(drop))?;
     let narrower = args.narrower.iter().flat_map(|list| list.0.iter().cloned()).collect();
     let job = Job { args, model, claims, choices: args.hardware.choices(), narrower };
     let counted = !claims.counted.is_empty();

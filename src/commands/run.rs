@@ -25,7 +25,8 @@ const TEXTBOOK_MODELS: [&str; 3] = ["dda-arc", "dda-conic", "dda-helix"];
 
 /// Runs a model and writes what was asked for.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Failure> {
-    let mut outputs = Outputs::default();
+    // States that exist are read; else they are an output.
+    let mut outputs = Outputs::reading(args.checkpoints.iter().filter(|path| path.exists()));
     simulate(args, &mut outputs)?.tell(outputs)
 }
 

@@ -14,10 +14,13 @@ use stepwave::study::{
     Sweep, Variants, write_line,
 };
 
+mod kept;
+
+use self::kept::Kept;
 use super::progress::Progress;
 use crate::cli::{Point, SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs, known_register};
 use crate::failure::Failure;
-use crate::output::{self, Outputs, Sink, is_stream};
+use crate::output::{self, Outputs, Sink, is_stream, temporary};
 
 /// Geometries of the first chunk, and most of any.
 const FIRST: u64 = 1 << 12;
@@ -39,8 +42,13 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Failure> {
         names.try_for_each(|name| known_register(model, choice, name))?;
     }
     let sweep = Sweep::new(model, space, variants(&args.variants)?, Part { number, of }, args.outputs.max_clocks)?;
-    let mut outputs = Outputs::default();
-    let text = write(&sweep, &args.outputs, &mut outputs)?;
+    let inputs: Vec<&PathBuf> = args.space.file.iter().collect();
+    let mut outputs = Outputs::reading(&inputs);
+    let written = write(&sweep, &args.outputs, Outputs::reading(&inputs), &mut outputs);
+    let text = written.map_err(|failure| match (failure, temporary::kept()) {
+        (Failure::Trouble(sentence), Some(kept)) => Failure::Trouble(format!("{sentence}; {kept}")),
+        (failure, _) => failure,
+    })?;
     if outputs.uses_stdout() { Ok(()) } else { output::print(&text) }
 }
 
@@ -262,7 +270,7 @@ struct Picture {
 
 /// Where the rows of a sweep go.
 struct Tables {
-    stage: Option<Stage>,
+    stage: Option<Kept>,
     stream: Option<Sink>,
     summary: Summary,
     heat: Option<Heat>,
@@ -307,34 +315,43 @@ impl Tables {
             }
             Ok::<(), Failure>(())
         })?;
-        let [geometries, _] = stage.done();
+        let geometries = stage.done();
         self.stage = Some(stage);
         Ok(geometries)
     }
 }
 
-/// Does all runs and writes every output; gives the summary.
-fn write(sweep: &Sweep, args: &TableArgs, outputs: &mut Outputs) -> Result<String, Failure> {
+/// Tries all outputs before the first run, though some are written at the end only; gives the file of the CSV, if it is
+/// one, and the file next to which the rows are on their way.
+fn tried(args: &TableArgs, mut claims: Outputs) -> Result<[Option<PathBuf>; 2], Failure> {
+    if args.parquet.as_deref().is_some_and(is_stream) {
+        return trouble("Parquet rows are gathered next to their file before they are written: name a file".to_owned());
+    }
+    let mut claim = |path: &Option<PathBuf>| path.as_deref().map(|path| claims.claim(path)).transpose();
+    let csv = claim(&args.csv)?.filter(|_| !args.csv.as_deref().is_some_and(is_stream));
+    let parquet = claim(&args.parquet)?;
+    args.plot.iter().try_for_each(|path| claims.claim(path).map(drop))?;
+    let stage = csv.clone().or(parquet);
+    match &stage {
+        Some(target) => Stage::files(target).iter().try_for_each(|path| claims.keep_free(path))?,
+        None if args.resume => {
+            return trouble("--resume goes on next to the final file: give --csv FILE or --parquet FILE".to_owned());
+        }
+        None => {}
+    }
+    Ok([csv, stage])
+}
+
+/// Does all runs and writes every output; gives the summary. `claims` are the outputs that are written at the end.
+fn write(sweep: &Sweep, args: &TableArgs, claims: Outputs, outputs: &mut Outputs) -> Result<String, Failure> {
     let heat = (!args.plot.is_empty()).then(|| Heat::new(sweep, args.heat.as_deref().unwrap_or("error_max")));
     let heat = heat.transpose()?;
-    if args.parquet.as_deref().is_some_and(is_stream) {
-        return trouble("Parquet rows are gathered beside their file before they are written: name a file".to_owned());
-    }
-    // All are tried before the first run, though some are written at the end only.
-    let streamed = args.csv.as_deref().is_some_and(is_stream);
-    let mut claims = Outputs::default();
-    let mut claim = |path: &Option<PathBuf>| path.as_deref().map(|path| claims.claim(path)).transpose();
-    let csv = if streamed { None } else { claim(&args.csv)? };
-    let parquet = claim(&args.parquet)?;
-    args.plot.iter().try_for_each(|path| claims.claim(path).map(|_| ()))?;
-    let stage = csv.as_ref().or(parquet.as_ref());
-    if args.resume && stage.is_none() {
-        return trouble("--resume goes on beside the final file: give --csv FILE or --parquet FILE".to_owned());
-    }
+    let [csv, stage] = tried(args, claims)?;
+    let streamed = args.csv.is_some() && csv.is_none();
     let mut stream = args.csv.as_deref().filter(|_| streamed).map(|path| outputs.open(path)).transpose()?;
     let to_stdout = args.plot.iter().filter(|path| *path == Path::new("-"));
     let mut to_stdout = to_stdout.map(|path| outputs.open(path)).collect::<Result<Vec<_>, _>>()?;
-    let stage = stage.map(|target| Stage::open(target, sweep, args.resume)).transpose()?;
+    let stage = stage.map(|target| Kept::open(&target, sweep, args.resume)).transpose()?;
     if let Some(stream) = &mut stream {
         writeln!(stream, "{}", study::heading(sweep.columns()))?;
     }
@@ -345,7 +362,7 @@ fn write(sweep: &Sweep, args: &TableArgs, outputs: &mut Outputs) -> Result<Strin
 
     let Tables { mut stage, stream, summary, heat } = tables;
     if summary.rows() == 0 && sweep.part() == Part::WHOLE {
-        stage.map(Stage::discard).transpose()?;
+        stage.map(Kept::discard).transpose()?;
         return trouble("no point of the grid lies within 1 BLU of such a curve: give another grid".to_owned());
     }
     let mut text = summary.text(sweep.model(), sweep.columns());
@@ -407,7 +424,7 @@ fn all_rows(sweep: &Sweep, begun: u64, tables: &mut Tables) -> Result<(), Failur
 
 /// Joins parts.
 fn merge(out: &Path, parts: &[PathBuf]) -> Result<(), Failure> {
-    let mut outputs = Outputs::default();
+    let mut outputs = Outputs::reading(parts);
     let as_parquet = out.extension().is_some_and(|extension| extension == "parquet");
     let rows = study::merge(parts, outputs.open(out)?, as_parquet)?;
     let quiet = outputs.uses_stdout();

@@ -90,6 +90,34 @@ fn a_file_gets_the_permissions_of_any_new_file() {
 }
 
 #[test]
+fn a_file_that_is_replaced_keeps_its_mode() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::new();
+    for (name, mode) in [("s.csv", 0o600), ("r.json", 0o664), ("w.vcd", 0o755), ("w.gtkw", 0o400)] {
+        folder.write(name, "old\n");
+        fs::set_permissions(folder.path(name), fs::Permissions::from_mode(mode)).unwrap();
+    }
+    folder.good("run ppc-line --to 2,1 --steps s.csv --json r.json --vcd w.vcd");
+    for (name, mode) in [("s.csv", 0o600), ("r.json", 0o664), ("w.vcd", 0o755), ("w.gtkw", 0o400)] {
+        assert_eq!(folder.path(name).metadata().unwrap().permissions().mode() & 0o777, mode, "{name}");
+        assert_ne!(folder.read(name), "old\n", "{name}");
+    }
+}
+
+#[test]
+fn several_outputs_may_go_to_a_device_but_not_into_one_pipe() {
+    let folder = Folder::new();
+    folder.good("run ppc-line --to 2,1 --vcd /dev/null --steps /dev/null --json /dev/null --plot /dev/zero");
+    folder.good("sweep ppc-line --to-grid 0..5x0..5 --plot /dev/null --plot /dev/null");
+    assert!(std::process::Command::new("mkfifo").arg(folder.path("pipe")).status().unwrap().success());
+    // A reader, so that the first output does not wait for one.
+    let pipe = fs::File::options().read(true).write(true).open(folder.path("pipe")).unwrap();
+    let ran = folder.run("run ppc-line --to 2,1 --steps pipe --json ./pipe");
+    assert!(ran.code == 2 && ran.err.contains("two outputs would go to ./pipe"), "{ran:?}");
+    drop(pipe);
+}
+
+#[test]
 fn a_name_with_blanks_and_unusual_letters_is_a_name_like_any_other() {
     let folder = Folder::new();
     let ran = folder.run_words(&["run", "ppc-line", "--to", "2,1", "--vcd", "eine Gerade 直线.vcd"]);

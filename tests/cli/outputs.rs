@@ -1,8 +1,5 @@
 //! What goes to standard output, and what the outputs hold.
 
-use std::io::{BufRead, BufReader};
-use std::process::Stdio;
-
 use serde_json::{Value, json};
 
 use super::{Csv, Folder, Ran, good, refused};
@@ -150,32 +147,6 @@ fn sixty_four_steps_are_printed_and_one_more_is_a_hint() {
     let hint = good("run ppc-line --to 33,32");
     assert!(hint.starts_with("more than 64 steps: --steps FILE"), "{hint}");
     assert!(hint.contains("65 steps in") && !hint.contains("step  xe"), "{hint}");
-}
-
-#[test]
-fn a_closed_standard_output_is_no_failure() {
-    let folder = Folder::new();
-    for words in
-        ["list", "list --json", "run ppc-line --to 6,4", "run ppc-line --to 6,4 --vcd -", "completions bash", "--help"]
-    {
-        let (reader, writer) = std::io::pipe().unwrap();
-        drop(reader);
-        let ran = Ran::new(folder.command().args(words.split(' ')).stdout(writer).output().unwrap());
-        assert_eq!((ran.code, ran.err.as_str()), (0, ""), "{words}");
-    }
-}
-
-#[test]
-fn a_reader_that_leaves_early_ends_the_run_without_a_word() {
-    let folder = Folder::new();
-    let mut command = folder.command();
-    command.args("run ppc-line --to 20000,15000 --beats 1 --steps -".split(' '));
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let mut first = String::new();
-    BufReader::with_capacity(64, child.stdout.take().unwrap()).read_line(&mut first).unwrap();
-    assert_eq!(first, "step,clock,xe,ye,f,e,dx,dy,x,y\n");
-    let ran = Ran::new(child.wait_with_output().unwrap());
-    assert_eq!((ran.code, ran.err.as_str()), (0, ""));
 }
 
 #[test]
