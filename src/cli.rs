@@ -98,11 +98,33 @@ pub(crate) enum GoldenCommand {
     Record(GoldenArgs),
 }
 
+/// The form of cases.toml.
+const CASES: &str = "cases.toml lists the cases, each of them so:\n\n  \
+    [[case]]\n  \
+    name = \"line\"                      # of its files: line.vcd, line.gtkw, line.*.states, line.csv\n  \
+    args = [\"ppc-line\", \"--to\", \"6,4\"]  # of `stepwave run`, without outputs\n  \
+    source = \"where it comes from\"     # for readers; may be left out\n  \
+    exit = 1                           # the exit code of the run, if not 0\n\n  \
+    [[case]]\n  \
+    name = \"part\"\n  \
+    program = \"part.ngc\"               # an NC program in the folder\n  \
+    args = [\"--method\", \"ppc\"]        # of `stepwave program`\n\n\
+    Examples:\n  \
+    stepwave golden record waves\n  \
+    stepwave golden check waves line part";
+
 #[derive(Debug, Args)]
+#[command(after_help = CASES)]
 pub(crate) struct GoldenArgs {
     /// Folder with cases.toml and the recorded waves
     #[arg(default_value = "waves")]
     pub(crate) dir: PathBuf,
+    /// Only these cases
+    #[arg(value_name = "CASE")]
+    pub(crate) cases: Vec<String>,
+    /// Only this case, without naming the folder before it (may be repeated)
+    #[arg(long, value_name = "NAME")]
+    pub(crate) case: Vec<String>,
 }
 
 #[derive(Debug, Args)]

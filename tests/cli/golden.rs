@@ -21,7 +21,9 @@ fn recorded(cases: &str) -> Folder {
 #[test]
 fn what_was_recorded_is_found_the_same() {
     let folder = folder(LINE);
-    assert_eq!(folder.good("golden record w"), "1 cases recorded, from 3 engines\n");
+    let files = "line.beat.states, line.csv, line.gtkw, line.vcd";
+    assert_eq!(folder.good("golden record w"), format!("line: new {files}\n1 cases recorded, from 3 engines\n"));
+    assert_eq!(folder.good("golden record w"), format!("line: same {files}\n1 cases recorded, from 3 engines\n"));
     assert_eq!(folder.good("golden check w"), "1 cases same, bit by bit, from 3 engines\n");
     for file in ["line.vcd", "line.gtkw", "line.beat.states", "line.csv"] {
         assert!(folder.path("w").join(file).is_file(), "{file}");
@@ -66,6 +68,7 @@ fn a_changed_table_and_a_wave_of_no_case_are_differences() {
     let ran = folder.run("golden check w");
     assert_eq!(ran.code, 1, "{ran:?}");
     assert!(ran.err.contains("line.csv differs: line 3: recorded '1,6,"), "{ran:?}");
+    assert!(ran.err.contains("; step 1: column clock: recorded 6, simulated 5"), "{ran:?}");
     assert!(ran.err.contains("w/old.vcd belongs to no case"), "{ran:?}");
 }
 
@@ -120,7 +123,7 @@ fn a_case_may_be_a_program_that_lies_beside_it() {
         "[[case]]\nname = \"two\"\nsource = \"by hand\"\nprogram = \"two.nc\"\nargs = [\"--method\", \"cim\"]\n",
     );
     folder.write("w/two.nc", "G01 X0.004 Y0.003 F600\nG02 X0.008 Y-0.001 I0 J-0.004\n");
-    assert_eq!(folder.good("golden record w"), "1 cases recorded, from 3 engines\n");
+    assert!(folder.good("golden record w").ends_with("\n1 cases recorded, from 3 engines\n"));
     folder.good("program w/two.nc --method cim --vcd two.vcd --steps two.csv");
     for file in ["two.vcd", "two.csv"] {
         assert_eq!(folder.read(file), folder.read(&format!("w/{file}")));
@@ -130,4 +133,102 @@ fn a_case_may_be_a_program_that_lies_beside_it() {
     let ran = folder.run("golden check w");
     assert_eq!(ran.code, 1, "{ran:?}");
     assert!(ran.err.contains("case two on gates: two.vcd differs: recorded is A"), "{ran:?}");
+}
+
+#[test]
+fn the_source_of_a_case_may_be_left_out() {
+    let folder = folder(&LINE.replace("source = \"by hand\"\n", ""));
+    folder.good("golden record w");
+    folder.good("golden check w");
+}
+
+#[test]
+fn single_cases_are_checked_and_recorded_by_their_names() {
+    let other = LINE.replace("\"line\"", "\"other\"").replace("6,4", "5,3");
+    let folder = folder(&format!("{LINE}{other}"));
+    folder.good("golden record w other");
+    assert!(folder.path("w/other.vcd").exists() && !folder.path("w/line.vcd").exists());
+    assert_eq!(folder.good("golden check w other"), "1 cases same, bit by bit, from 3 engines\n");
+    assert_eq!(folder.good("golden check w --case other"), "1 cases same, bit by bit, from 3 engines\n");
+    assert_eq!(folder.run("golden check w line").code, 2);
+    folder.good("golden record w line other");
+    folder.write("w/other.csv", "");
+    assert_eq!((folder.run("golden check w line").code, folder.run("golden check w").code), (0, 1));
+    let ran = folder.run("golden check w lime");
+    assert!(ran.code == 2 && ran.err.contains("has no case 'lime': its cases are line, other"), "{ran:?}");
+}
+
+#[test]
+fn record_says_what_is_new_changed_removed_and_the_same() {
+    let folder = recorded(LINE);
+    folder.write("w/line.csv", "");
+    folder.write("w/line.old.states", "");
+    // Of another case, by its longer name.
+    folder.write("w/line-2.old.states", "");
+    std::fs::remove_file(folder.path("w/line.gtkw")).unwrap();
+    let ran = folder.run("golden check w");
+    assert_eq!(ran.code, 2, "{ran:?}");
+    let text = folder.good("golden record w");
+    let line = "line: new line.gtkw; changed line.csv; removed line.old.states; same line.beat.states, line.vcd";
+    assert_eq!(text.lines().next(), Some(line));
+    assert!(!folder.path("w/line.old.states").exists() && folder.path("w/line-2.old.states").exists());
+    folder.write("w/line.old.states", "");
+    let ran = folder.run("golden check w");
+    assert!(ran.code == 1 && ran.err.contains("case line no longer makes line.old.states"), "{ran:?}");
+}
+
+#[test]
+fn differences_of_tables_name_the_columns_and_the_step() {
+    let folder = recorded(LINE);
+    let good = folder.read("w/line.csv");
+    let lines: Vec<&str> = good.lines().collect();
+    for (text, hints) in [
+        (
+            good.replacen(lines[4], &lines[4].replacen(",0,", ",9,", 1), 1),
+            vec!["line 5: recorded", "; step 3: column "],
+        ),
+        (good.replacen("clock", "cycle", 1), vec!["columns only recorded: cycle, only simulated: clock"]),
+        (lines[..8].join("\n"), vec!["line 9: recorded 'the end of the file'", "recorded are 7 rows, simulated 11"]),
+    ] {
+        assert_ne!(text, good);
+        folder.write("w/line.csv", &text);
+        let ran = folder.run("golden check w");
+        assert_eq!(ran.code, 1, "{ran:?}");
+        hints.iter().for_each(|hint| assert!(ran.err.contains(hint), "{hint}: {ran:?}"));
+    }
+}
+
+#[test]
+fn a_case_stays_in_its_folder() {
+    let program =
+        |name: &str| format!("[[case]]\nname = \"two\"\nprogram = {name:?}\nargs = [\"--method\", \"cim\"]\n");
+    let folder = folder(LINE);
+    folder.write("two.nc", "G01 X0.004 Y0.003 F600\n");
+    std::os::unix::fs::symlink("../two.nc", folder.path("w/link.nc")).unwrap();
+    let outside = folder.path("two.nc").display().to_string();
+    for (name, hint) in [
+        ("../two.nc", "the program ../two.nc is not in the folder w"),
+        (outside.as_str(), "is not in the folder w"),
+        ("link.nc", "the program link.nc is a link out of the folder w"),
+    ] {
+        folder.write("w/cases.toml", &program(name));
+        let ran = folder.run("golden record w");
+        assert!(ran.code == 2 && ran.err.contains(hint), "{name}: {ran:?}");
+    }
+    // A recorded file that leads elsewhere, and one that is the program.
+    folder.write("w/cases.toml", LINE);
+    folder.good("golden record w");
+    std::fs::remove_file(folder.path("w/line.csv")).unwrap();
+    folder.write("mine.csv", "mine\n");
+    std::os::unix::fs::symlink("../mine.csv", folder.path("w/line.csv")).unwrap();
+    for command in ["record", "check"] {
+        let ran = folder.run(&format!("golden {command} w"));
+        assert!(ran.code == 2 && ran.err.contains("w/line.csv is a link"), "{command}: {ran:?}");
+    }
+    assert_eq!(folder.read("mine.csv"), "mine\n");
+    folder.write("w/two.csv", "G01 X0.004 Y0.003 F600\n");
+    folder.write("w/cases.toml", &program("two.csv"));
+    let ran = folder.run("golden record w");
+    assert!(ran.code == 2 && ran.err.contains("two.csv, which this command reads"), "{ran:?}");
+    assert_eq!(folder.read("w/two.csv"), "G01 X0.004 Y0.003 F600\n");
 }
