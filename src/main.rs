@@ -14,8 +14,8 @@ use clap::Parser;
 use crate::cli::Cli;
 use crate::failure::Failure;
 
-/// Most threads of a computation.
-const MOST_THREADS: usize = 256;
+/// Most threads of a computation for each core.
+const MOST_THREADS_A_CORE: usize = 8;
 
 fn main() -> ExitCode {
     match run() {
@@ -38,13 +38,13 @@ fn run() -> Result<(), Failure> {
     }
 }
 
-/// More threads than MOST_THREADS that RAYON_NUM_THREADS asks for are not made: each costs memory, and beyond the number
-/// of cores none makes anything faster.
+/// More threads than MOST_THREADS_A_CORE that RAYON_NUM_THREADS asks for are not made: each costs memory, and more than
+/// one for each core make nothing faster.
 fn bound_threads() -> Result<(), Failure> {
-    let asked = std::env::var("RAYON_NUM_THREADS").ok().filter(|word| word.bytes().all(|c| c.is_ascii_digit()));
-    let many = asked.is_some_and(|word| word.parse().is_ok_and(|threads: u128| threads > MOST_THREADS as u128));
-    if many {
-        rayon::ThreadPoolBuilder::new().num_threads(MOST_THREADS).build_global()?;
+    let most = MOST_THREADS_A_CORE * std::thread::available_parallelism().map_or(1, usize::from);
+    let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|word| word.parse().ok());
+    if asked.is_some_and(|threads: u128| threads > most as u128) {
+        rayon::ThreadPoolBuilder::new().num_threads(most).build_global()?;
     }
     Ok(())
 }

@@ -121,7 +121,7 @@ fn stopped(folder: &Folder, words: &str) -> [String; 2] {
 fn a_changed_digit_in_a_stage_is_noticed_and_the_sweep_begins_anew_when_told() {
     for shard in ["", " --shard 1/2"] {
         let folder = Folder::new();
-        let words = format!("sweep dda-line --to-grid 0..127x0..127 --width 12{shard}");
+        let words = format!("sweep dda-line --to-grid 0..127x0..127 --width 11{shard}");
         folder.good(&format!("{words} --csv whole.csv"));
         let [part, journal] = stopped(&folder, &format!("{words} --csv s.csv"));
         let restore = || {
@@ -137,7 +137,7 @@ fn a_changed_digit_in_a_stage_is_noticed_and_the_sweep_begins_anew_when_told() {
             assert!(!folder.path("s.csv").exists());
         };
         refused(".s.csv.sweep.part", changed(&part, 5), "lines 1 to ");
-        refused(".s.csv.sweep.part", part.replacen('\n', "", 1), "lines 1 to ");
+        refused(".s.csv.sweep.part", part.replacen('\n', " ", 1), "lines 1 to ");
         for digit in ["geometries\":", "rows\":", "bytes\":"] {
             let (before, after) = journal.split_once(digit).unwrap();
             let first = if after.starts_with('9') { "8" } else { "9" };
@@ -160,11 +160,11 @@ fn a_changed_digit_in_a_stage_is_noticed_and_the_sweep_begins_anew_when_told() {
 #[test]
 fn a_stage_of_another_user_is_left_alone() {
     let folder = Folder::new();
-    stopped(&folder, "sweep dda-line --to-grid 0..127x0..127 --width 12 --csv s.csv");
+    stopped(&folder, "sweep dda-line --to-grid 0..127x0..127 --width 11 --csv s.csv");
     // Only root can give files away.
     let given = Command::new("chown").args(["12345", ".s.csv.sweep.journal"]).current_dir(folder.path("")).status();
     if given.is_ok_and(|status| status.success()) {
-        let ran = folder.run("sweep dda-line --to-grid 0..127x0..127 --width 12 --csv s.csv --resume");
+        let ran = folder.run("sweep dda-line --to-grid 0..127x0..127 --width 11 --csv s.csv --resume");
         assert!(ran.code == 2 && ran.err.contains("it is another user's"), "{ran:?}");
     }
 }
