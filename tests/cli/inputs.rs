@@ -12,8 +12,10 @@ const PART: &str = "G01 X0.004 Y0.003 F600\n";
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.write("p.csv", POINTS);
+    folder.write("points", POINTS);
+    folder.write(".o.parquet.sweep.part", POINTS);
     folder.write(".o.csv.sweep.part", POINTS);
-    folder.write("part.ngc", PART);
+    folder.write("part", PART);
     folder.write("part.gtkw", PART);
     folder.good("run ppc-line --to 5,3 --vcd a.vcd");
     folder.good("run ppc-line --to 5,2 --vcd b.vcd --checkpoints states");
@@ -21,7 +23,7 @@ fn folder() -> Folder {
         folder.good(&format!("sweep ppc-line --to-grid 0..5x0..5 --shard {part}/2 --csv {part}.csv"));
     }
     folder.make("sub");
-    for name in ["p.csv", "part.ngc", "a.vcd", "1.csv"] {
+    for name in ["p.csv", "points", "part", "a.vcd", "1.csv"] {
         symlink(name, folder.path(&format!("link-{name}"))).unwrap();
         fs::hard_link(folder.path(name), folder.path(&format!("hard-{name}"))).unwrap();
     }
@@ -55,18 +57,18 @@ fn an_output_that_is_an_input_is_refused_and_the_input_stays() {
         ("p.csv --csv link-p.csv", ["link-p.csv", "p.csv"]),
         ("link-p.csv --csv p.csv", ["link-p.csv", "p.csv"]),
         ("hard-p.csv --csv p.csv", ["hard-p.csv", "p.csv"]),
-        ("p.csv --parquet p.csv", ["p.csv"; 2]),
+        ("points --parquet points", ["points"; 2]),
         (".o.csv.sweep.part --csv o.csv", [".o.csv.sweep.part"; 2]),
-        (".o.csv.sweep.part --parquet o.csv", [".o.csv.sweep.part"; 2]),
+        (".o.parquet.sweep.part --parquet o.parquet", [".o.parquet.sweep.part"; 2]),
     ] {
         let ran = folder.run(&format!("{sweep} {words}"));
         assert_kept(&folder, &before, words, &ran, &names);
     }
     for (words, names) in [
-        ("program part.ngc --method ppc --json part.ngc", ["part.ngc"; 2]),
-        ("program part.ngc --method ppc --vcd ./part.ngc", ["./part.ngc", "part.ngc"]),
-        ("program part.ngc --method ppc --steps hard-part.ngc", ["hard-part.ngc", "part.ngc"]),
-        ("program part.ngc --method ppc --plot link-part.ngc", ["link-part.ngc", "part.ngc"]),
+        ("program part --method ppc --json part", ["part"; 2]),
+        ("program part --method ppc --vcd ./part", ["./part", "part"]),
+        ("program part --method ppc --steps hard-part", ["hard-part", "part"]),
+        ("program part --method ppc --plot link-part", ["link-part", "part"]),
         // The viewer's file next to the wave.
         ("program part.gtkw --method ppc --vcd part.vcd", ["part.gtkw"; 2]),
         ("diff a.vcd b.vcd --merged a.vcd", ["a.vcd"; 2]),
@@ -88,7 +90,7 @@ fn standard_output_that_is_an_input_is_refused() {
     let folder = folder();
     let before = contents(&folder);
     for (words, input) in [
-        ("program part.ngc --method ppc --json -", "part.ngc"),
+        ("program part --method ppc --json -", "part"),
         ("sweep ppc-line --file p.csv --csv -", "p.csv"),
         ("sweep ppc-line --file p.csv --csv /dev/stdout", "p.csv"),
         ("diff a.vcd b.vcd --merged -", "b.vcd"),
@@ -104,7 +106,7 @@ fn standard_output_that_is_an_input_is_refused() {
 fn two_names_of_one_file_are_one_output() {
     let folder = folder();
     let before = contents(&folder);
-    for words in ["--steps p.csv --json hard-p.csv", "--vcd link-p.csv --plot p.csv"] {
+    for words in ["--steps points --json hard-points", "--vcd link-points --plot points"] {
         let ran = folder.run(&format!("run ppc-line --to 5,3 {words}"));
         assert!(ran.code == 2 && ran.err.contains("two outputs would go to "), "{words}: {ran:?}");
         assert!(contents(&folder) == before, "{words}");
@@ -120,10 +122,10 @@ fn two_names_of_one_file_are_one_output() {
 fn a_link_to_where_nothing_is_yet_is_kept() {
     let folder = Folder::new();
     folder.make("sub");
-    symlink("sub/there.csv", folder.path("here.csv")).unwrap();
-    let ran = folder.run("run ppc-line --to 2,1 --steps here.csv --json sub/there.csv");
+    symlink("sub/there", folder.path("here")).unwrap();
+    let ran = folder.run("run ppc-line --to 2,1 --steps here --json sub/there");
     assert!(ran.code == 2 && ran.err.contains("two outputs would go to "), "{ran:?}");
-    folder.good("run ppc-line --to 2,1 --steps here.csv");
-    assert!(folder.path("here.csv").is_symlink());
-    assert!(folder.read("sub/there.csv").starts_with("step,clock"));
+    folder.good("run ppc-line --to 2,1 --steps here");
+    assert!(folder.path("here").is_symlink());
+    assert!(folder.read("sub/there").starts_with("step,clock"));
 }
