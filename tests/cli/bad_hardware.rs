@@ -285,7 +285,10 @@ fn a_subcommand_or_option_that_does_not_exist_is_refused_with_the_way_to_the_hel
 fn a_message_is_one_line_whatever_the_words_that_it_quotes() {
     refused_words(&["run", "a\nb\u{1b}[31m", "--to", "6,4"], &["there is no model 'a b\\x1b[31m'"]);
     refused_words(&["run", "ppc-line", "--to", "6\n7,4"], &["is no coordinate"]);
-    refused_words(&["run", "ppc-line", "--to", "6,4", "--vcd", "w.vcd", "--trace", "x\ny"], &["keep 'x y'"]);
+    refused_words(
+        &["run", "ppc-line", "--to", "6,4", "--vcd", "w.vcd", "--trace", "x\ny"],
+        &["no signal is called 'x y'"],
+    );
     refused_words(&["fr\nob"], &["unrecognized subcommand"]);
 }
 
