@@ -181,7 +181,10 @@ fn leading_place(view: &View<'_>, probe: &Probe) -> Option<usize> {
 
 /// Pixels that names and values take: values begin in one column, right of the longest name.
 fn signals_width(view: &View<'_>) -> usize {
-    let names = view.probes.iter().map(|probe| shown_name(&probe.name, probe).len()).max().unwrap_or(0);
+    // Titles of groups count too: `TITLE {`.
+    let title = |probe: &Probe| probe.scopes[1..].join(" ").len() + 2;
+    let name = |probe: &Probe| shown_name(&probe.name, probe).len().max(title(probe));
+    let names = view.probes.iter().map(name).max().unwrap_or(0);
     let values = view.probes.iter().map(longest_value).max().unwrap_or(0);
     (names + 1 + values) * LETTER + NAME_FRAME
 }
