@@ -160,7 +160,10 @@ fn a_map_renames_scopes_and_signals_of_a() {
     let rules = [("dda_line.y.parity", "dda_line.x.odd"), ("dda_line.y", "dda_line.x")];
     assert_eq!(report(&a, &b, &map(&rules)), "same: 4 signals over 12 cycles");
     let unused = compare(&a, &b, &map(&[("dda_line.z", "q")])).expect_err("a rule without effect").to_string();
-    assert_eq!(unused, "the map renames `dda_line.z`, but the first wave has no such signal or scope (did you mean 'dda_line.y'?)");
+    assert_eq!(
+        unused,
+        "the map renames `dda_line.z`, but the first wave has no such signal or scope (did you mean 'dda_line.y'?)"
+    );
     let collision = compare(&a, &b, &map(&[("dda_line.y.e", "run")]));
     assert!(matches!(collision, Err(CompareError::MapCollision { name }) if name == "run"));
 }
