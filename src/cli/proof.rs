@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use stepwave::study::Extent;
+use stepwave::study::proof::symmetric_box;
 
 use super::HardwareArgs;
 use super::endings::{Format, file_of};
@@ -12,12 +14,18 @@ use super::values::{Narrower, parse_narrower};
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(
-    after_help = "Verdicts: PROVED for all k, or at the k that are named; COUNTEREXAMPLE, replayed by the simulator, with the command that shows\n\
-    it; NOT INDUCTIVE, with a step from a state that the invariants allow and that may be unreachable; UNKNOWN, with what\n\
-    was tried. Exit code 0 only where everything is proved.\n\n\
+    after_help = "Of hardware as it is by default, or so many bits narrower (--narrower), the verdict is about every k, the bits of\n\
+    coordinates. With --width, --box or --travel it is about one hardware and the geometries of one box.\n\n\
+    Verdicts: PROVED for all k, at the k that are named, or at these widths, there also by simulating every geometry of the\n\
+    box (exhausted); COUNTEREXAMPLE, replayed by the simulator, with the command that shows it; NOT INDUCTIVE, with a step\n\
+    from a state that the invariants allow and that may be unreachable; UNKNOWN, with what was tried. Where an overflow is\n\
+    not excluded, nothing is called proved that holds only without one.\n\n\
+    Exit codes: 0 all that the model claims is proved; 1 it is refuted, or a part is not proved; 2 bad input. What a model\n\
+    does not claim is named and changes nothing. `prove check` ends likewise: 1 also for a certificate of a part.\n\n\
     Examples:\n  \
     stepwave prove ppc-line\n  \
     stepwave prove ppc-line --narrower f=1 --vcd trap.vcd\n  \
+    stepwave prove ppc-line --width 12,f=14 --travel 1000,600\n  \
     stepwave prove dda-line --preset half --certificate line.cert\n  \
     stepwave prove dpm-line --bits 12\n  \
     stepwave prove check line.cert"
@@ -34,9 +42,20 @@ pub(crate) struct ProveArgs {
     #[arg(long, value_name = "REGISTER=BITS,…", hide_possible_values = true)]
     #[arg(value_parser = listed(parse_narrower, all_widths()))]
     pub(crate) narrower: Vec<Narrower>,
+    /// The geometries: those of coordinates of so many bits, or with ends in a range for each axis, as `stepwave widths` has
+    /// them [default: those of --width N, else of every number of bits]
+    #[arg(long = "box", value_name = "BITS|RANGExRANGE", allow_hyphen_values = true)]
+    pub(crate) extent: Option<Extent>,
+    /// The geometries: those with ends within ±X and ±Y (default: X), in whole BLU
+    #[arg(long, value_name = "X[,Y]", conflicts_with = "extent", allow_hyphen_values = true, value_parser = parse_travel)]
+    pub(crate) travel: Option<Travel>,
     /// Ask an SMT solver too, which reads SMT-LIB 2 from its input, about every geometry of --bits (default 2): 'z3 -in'
     #[arg(long, value_name = "COMMAND")]
     pub(crate) solver: Option<String>,
+    /// Seconds after which the solver is stopped
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, requires = "solver")]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    pub(crate) solver_seconds: u64,
     /// Bits of coordinates, for --solver and for models that are proved at one width at a time (default: 1 to 16)
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=20))]
     pub(crate) bits: Option<u32>,
@@ -52,6 +71,20 @@ pub(crate) struct ProveArgs {
     /// Tell the invariants that were proved, and the paths on which something could not be shown
     #[arg(long)]
     pub(crate) details: bool,
+}
+
+/// The box of `--travel`.
+#[derive(Clone, Debug)]
+pub(crate) struct Travel(pub(crate) Extent);
+
+fn parse_travel(text: &str) -> Result<Travel, String> {
+    let number = |word: &str| {
+        let word = word.trim();
+        word.parse::<i64>().map_err(|_| format!("'{word}' is no travel: give whole BLU, such as 100 or 100,62"))
+    };
+    let (x, y) = text.split_once(',').unwrap_or((text, text));
+    let travel = symmetric_box([number(x)?, number(y)?]);
+    travel.map(Travel).map_err(|error| error.to_string())
 }
 
 #[derive(Debug, Subcommand)]

@@ -1,21 +1,26 @@
 //! `stepwave prove`: proofs over all geometries and widths, and counterexamples.
 
+mod at_widths;
 mod check;
 mod counted;
 mod every_width;
 mod replay;
+mod simulated;
 mod verdict;
 
 use std::io::Write as _;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use stepwave::kernel::prove::Certificate;
 use stepwave::models::{Choices, Claims, Model, find};
+use stepwave::study::Extent;
 use stepwave::study::proof::{
-    Answer, CertificateFile, Counterexample, Fault, Narrower, ProofError, ask, question, search,
+    Answer, CertificateFile, Fault, Fixed, Narrower, ProofError, SolverError, Subject, Survey, ask, question, search,
 };
 
+use self::verdict::hardware_in_words;
 use crate::cli::{ProveArgs, ProveCommand};
 use crate::failure::Failure;
 use crate::output::{self, Outputs, Sink};
@@ -48,13 +53,78 @@ struct Job<'a> {
     narrower: Narrower,
 }
 
-impl Job<'_> {
-    /// The first geometry that refutes the claims on hardware of these choices, of coordinates of so many bits.
-    fn counterexample(&self, choices: &Choices, ks: RangeInclusive<u32>) -> Option<Counterexample> {
-        // A word that does not fit refutes a narrower register; else it tells that a choice, such as a preset, needs more
+impl<'a> Job<'a> {
+    fn new(args: &'a ProveArgs, narrower: Narrower) -> Result<Job<'a>, Failure> {
+        let model = find(args.model.as_deref().unwrap_or_default())?;
+        let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
+        Ok(Job { args, model, claims, choices: args.hardware.choices(), narrower })
+    }
+
+    /// The box that is given, or what coordinates of the width that is given for all registers hold.
+    fn extent(&self) -> Option<Extent> {
+        let of_width = || self.choices.width.map(|width| Extent::Bits(width.get()));
+        self.args.extent.clone().or_else(|| self.args.travel.clone().map(|travel| travel.0)).or_else(of_width)
+    }
+
+    /// It is about one hardware, and not about one for every k.
+    fn is_fixed(&self) -> bool {
+        self.extent().is_some() || !self.choices.widths.is_empty()
+    }
+
+    fn fixed(&self, extent: Extent) -> Result<Fixed, Failure> {
+        let told = |error| self.args.hardware.told_of_study(error);
+        Fixed::new(self.model, &self.choices, extent).map_err(told)
+    }
+
+    /// Refuses options that are about one width at a time, or about every one, where the widths are given.
+    fn check_fixed(&self) -> Result<(), Failure> {
+        let ProveArgs { narrower, solver, bits, any_preset, .. } = self.args;
+        let given = [
+            (!narrower.is_empty(), "--narrower"),
+            (solver.is_some(), "--solver"),
+            (bits.is_some(), "--bits"),
+            (*any_preset, "--any-preset"),
+        ];
+        match given.into_iter().find(|(given, _)| *given) {
+            Some((_, option)) => Err(Failure::Trouble(format!(
+                "{option} is for hardware of every k, but --width, --box or --travel choose one: leave one of them out"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// The hardware in words.
+    fn hardware(&self) -> String {
+        hardware_in_words(self.model, &self.options(), &self.narrower)
+    }
+
+    /// The hardware of every width.
+    fn subject(&self) -> Result<Subject, Failure> {
+        let told = |error| self.args.hardware.told_of_study(error);
+        let subject = Subject::new(self.model, &self.choices, &self.narrower).map_err(told)?;
+        Ok(if self.args.any_preset { subject.with_any_preset() } else { subject })
+    }
+
+    /// Simulates until a geometry refutes the claims on hardware of these choices, of coordinates of so many bits.
+    fn search(&self, choices: &Choices, ks: RangeInclusive<u32>) -> Survey {
+        // A word that does not fit refutes a narrower register; else it says that a choice, such as a preset, needs more
         // bits.
         let refutes = |fault| fault != Fault::Refused || !self.narrower.is_empty();
         search(self.model, &self.claims, choices, &self.narrower, ks, refutes)
+    }
+
+    /// The options of the hardware, for a certificate.
+    fn options(&self) -> Vec<String> {
+        let any = self.args.any_preset.then(|| "--any-preset".to_owned());
+        let extent = self.extent().filter(|_| self.args.extent.is_some() || self.args.travel.is_some());
+        let extent = extent.into_iter().flat_map(|extent| {
+            let extent = match extent {
+                Extent::Bits(bits) => bits.to_string(),
+                Extent::Grid(grid) => grid.to_string(),
+            };
+            ["--box".to_owned(), extent]
+        });
+        self.choices.options().into_iter().chain(any).chain(extent).collect()
     }
 
     /// Opens the file of the certificate, if one is wanted, before anything is attempted.
@@ -64,12 +134,18 @@ impl Job<'_> {
         Ok(CertificateOutput { job: self, outputs, sink })
     }
 
-    /// What a solver says of every geometry of some bits.
-    fn asked(&self, command: &str) -> Result<Answer, Failure> {
+    /// What a solver says of every geometry of some bits; `None` where it says nothing in time.
+    fn asked(&self, command: &str) -> Result<Option<Answer>, Failure> {
         let k = self.args.bits.unwrap_or(ASKED);
         let question = question(self.model, &self.claims, &self.choices, &self.narrower, k)
             .map_err(|error| self.args.hardware.told_of_study(error))?;
-        let answer = ask(command, &question.script)?;
+        let answer = match ask(command, &question.script, Duration::from_secs(self.args.solver_seconds)) {
+            Err(late @ SolverError::Late { .. }) => {
+                tell(self.args, &format!("{late}\n"))?;
+                return Ok(None);
+            }
+            answer => answer?,
+        };
         let (word, what) = match answer {
             Answer::Sat => ("sat", "a register overflows or an end point is missed"),
             Answer::Unsat => ("unsat", "no register overflows, and every end point is reached"),
@@ -78,7 +154,7 @@ impl Job<'_> {
         let text =
             format!("{command} says {word} of {geometries} geometries of {k} bits within {clocks} clocks: {what}\n");
         tell(self.args, &text)?;
-        Ok(answer)
+        Ok(Some(answer))
     }
 }
 
@@ -108,19 +184,21 @@ impl CertificateOutput<'_> {
 }
 
 fn attempt(args: &ProveArgs) -> Result<(), Failure> {
-    let model = find(args.model.as_deref().unwrap_or_default())?;
-    let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
     // Whichever is written in the end, both are tried before anything is attempted.
     let mut both = Outputs::default();
     args.certificate.iter().chain(&args.vcd).try_for_each(|path| both.claim(path).map(drop))?;
-    let narrower = args.narrower.iter().flat_map(|list| list.0.iter().cloned()).collect();
-    let job = Job { args, model, claims, choices: args.hardware.choices(), narrower };
-    let counted = !claims.counted.is_empty();
+    let job = Job::new(args, args.narrower.iter().flat_map(|list| list.0.iter().cloned()).collect())?;
+    let model = job.model;
+    if job.is_fixed() {
+        job.check_fixed()?;
+        return at_widths::attempt(&job);
+    }
+    let counted = !job.claims.counted.is_empty();
     if args.bits.is_some() && !counted && args.solver.is_none() {
         let model = model.name;
         return Err(Failure::Trouble(format!("{model} is proved for all k at once: leave --bits out")));
     }
-    let second = args.solver.as_deref().map(|command| job.asked(command)).transpose()?;
+    let second = args.solver.as_deref().map(|command| job.asked(command)).transpose()?.flatten();
     let own = if counted { counted::attempt(&job) } else { every_width::attempt(&job) };
     match (&own, second) {
         (Ok(()), Some(Answer::Sat)) => Err(Failure::Check(vec![format!(

@@ -41,14 +41,26 @@ fn one_bit_narrower_is_refuted_with_a_command_and_a_wave() {
 }
 
 #[test]
-fn what_is_not_proved_is_said_with_exit_code_1_and_leaves_no_certificate() {
+fn what_is_not_proved_is_said_with_exit_code_1_and_nothing_proved_has_no_certificate() {
     let folder = Folder::new();
-    let ran = folder.run("prove dda-arc --certificate arc.cert");
+    let ran = folder.run("prove dda-line --normalize --certificate line.cert");
     assert_eq!(ran.code, 1);
-    assert!(ran.out.contains("PROVED for all k: no register overflows\n"), "{ran:?}");
-    assert!(ran.out.contains("not proved: every block ends (for none of 8 kinds of geometry)\n"), "{ran:?}");
-    assert!(ran.err.starts_with("stepwave: not proved: every block ends; no counterexample"), "{ran:?}");
+    assert!(ran.out.contains("not proved: every block ends (for none of 4 kinds of geometry)\n"), "{ran:?}");
+    assert!(ran.out.contains("no certificate: nothing is proved\n"), "{ran:?}");
+    assert!(ran.err.starts_with("stepwave: not proved: no register overflows, "), "{ran:?}");
     assert_eq!(folder.files(), [""; 0]);
+}
+
+#[test]
+fn what_was_refused_is_not_claimed_to_be_simulated() {
+    // 12 has four bits: of fewer there is no such preset.
+    let told = Folder::new().good("prove dda-line --preset 12");
+    assert!(told.contains("PROVED for k = 4 to 52: no register overflows\n") && !told.contains("for all k"), "{told}");
+    for (geometries, bits) in [(8, "1 bit"), (48, "2 bits"), (224, "3 bits")] {
+        let line = format!("nothing claimed: every one of {geometries} geometries of {bits} is refused: ");
+        assert!(told.contains(&line), "{told}");
+    }
+    assert!(!told.contains("simulated"), "{told}");
 }
 
 #[test]
@@ -167,6 +179,11 @@ fn a_solver_that_contradicts_a_proof_or_talks_nonsense_is_told() {
     let ran = folder.run("prove ppc-line --solver there/is/no/such/solver");
     assert_eq!(ran.code, 2);
     assert!(ran.err.contains("cannot be run"), "{ran:?}");
+    // One that says nothing is stopped, and the proof is had all the same.
+    let start = std::time::Instant::now();
+    let ran = folder.run_words(&["prove", "ppc-line", "--solver", "sleep 300", "--solver-seconds", "1"]);
+    assert!(ran.out.starts_with("the solver 'sleep 300' was stopped after 1 s without an answer"), "{ran:?}");
+    assert!(ran.code == 0 && ran.out.contains("PROVED for all k") && start.elapsed().as_secs() < 100, "{ran:?}");
     // One that talks without end and never listens.
     let ran = folder.run("prove ppc-line --solver yes");
     assert_eq!(ran.code, 2);

@@ -1,10 +1,13 @@
 //! Proofs for all widths at once: what must be proved is, what is false is not, and what was proved holds where it was
 //! not learnt from.
 
+mod certificates;
 mod command;
 mod counted;
+mod fixed;
 mod induction;
 mod invariants;
+mod truth;
 mod widths;
 
 use std::collections::BTreeMap;
@@ -133,7 +136,7 @@ fn narrower(register: &str) -> Narrower {
 fn refuted(model: &str, choices: &Choices, narrower: &Narrower) -> Option<Counterexample> {
     let model = find(model).unwrap();
     let claims = model.claims.unwrap();
-    search(model, &claims, choices, narrower, 2..=5, |_| true)
+    search(model, &claims, choices, narrower, 2..=5, |_| true).found
 }
 
 #[test]
@@ -147,7 +150,7 @@ fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
     assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow));
     let gt = Choices { compare: Some(stepwave_models::Compare::Greater), ..Choices::default() };
     let model = find("bresenham").unwrap();
-    let found = search(model, &model.claims.unwrap(), &gt, &Narrower::new(), 1..=2, |_| true).unwrap();
+    let found = search(model, &model.claims.unwrap(), &gt, &Narrower::new(), 1..=2, |_| true).found.unwrap();
     assert_eq!((found.fault, found.curve.to()), (Fault::Missed, &[0, 1][..]));
     let signed = Choices { form: Some(Form::Signed), ..Choices::default() };
     let longest = Choices { end_point: Some(EndPoint::Longest), ..signed.clone() };
@@ -247,7 +250,7 @@ fn unequal_presets_bring_an_arc_to_a_stand() {
     let model = find("dda-arc").unwrap();
     let example =
         search(model, &model.claims.unwrap(), &choices, &Narrower::new(), 4..=4, |fault| fault == Fault::Endless);
-    let example = example.unwrap();
+    let example = example.found.unwrap();
     assert_eq!(example.k, 4);
     // The one of the literature is among them, by the simulator.
     let arc = crate::models::arc([3, 4], [0, 5], [0, 0], false);

@@ -8,8 +8,9 @@ use stepwave::models::{Choices, Model};
 use stepwave::study::proof::{Block, Narrower, ProofError, Way, blocks};
 
 use super::replay::refuted;
-use super::verdict::Claim;
+use super::verdict::{Claim, Scope};
 use super::{Job, SEARCHED, tell};
+use crate::commands::progress::Progress;
 use crate::failure::Failure;
 
 /// Bits of coordinates at which a model is proved unless the user says otherwise.
@@ -24,7 +25,12 @@ pub(super) fn followed(
     way: Way,
 ) -> Result<Vec<Block>, ProofError> {
     let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-    let each = ks.into_par_iter().map(|k| blocks(model, &claims, choices, narrower, k, way));
+    let progress = Progress::of(ks.len() as u64, "widths");
+    let each = ks.into_par_iter().map(|k| {
+        let blocks = blocks(model, &claims, choices, narrower, k, way);
+        progress.add(1);
+        blocks
+    });
     Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
@@ -38,25 +44,29 @@ pub(super) fn unfollowed(error: ProofError, told: impl Fn(ProofError) -> Failure
     }
 }
 
-/// What blocks that were followed show, in words; fails where one of them does not end as it should.
-pub(super) fn judge(model: &Model, blocks: &[Block], what: &str) -> Result<String, Failure> {
-    let about = model.claims.map_or("", |claims| claims.geometries.describe());
+/// What blocks that were followed are about: a hardware for each of these widths.
+pub(super) fn scope(job: &Job<'_>, blocks: &[Block]) -> Scope {
     let mut ks: Vec<u32> = blocks.iter().map(|block| block.k).collect();
     ks.dedup();
     let k = match ks[..] {
-        [] => return Err(Failure::Check(vec![format!("{what} are none: nothing is proved")])),
         [k] => format!("k = {k}"),
         [first, .., last] if ks.iter().copied().eq(first..=last) => format!("k = {first} to {last}"),
         _ => format!("k = {}", ks.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")),
     };
+    let about = format!("{}: {}, at {k}", job.hardware(), job.claims.geometries.describe());
+    Scope { about, widths: format!("at {k}") }
+}
+
+/// What they show, in words; fails where one of them does not end as it should.
+pub(super) fn judge(scope: &Scope, blocks: &[Block]) -> Result<String, Failure> {
     let wrong: Vec<String> = blocks.iter().filter(|block| !block.is_exact()).map(Block::to_string).collect();
     if !wrong.is_empty() {
         return Err(Failure::Check(vec![format!("not proved: {}: {}", Claim::Exact.name(), wrong.join("; "))]));
     }
-    let mut text = format!("{}: {about}, at {k}\n", model.name);
+    let mut text = format!("{}\n", scope.about);
     for claim in Claim::ALL {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "PROVED at {k}: {}", claim.name());
+        let _ = writeln!(text, "PROVED {}: {}", scope.widths, claim.name());
     }
     let clocks: u64 = blocks.iter().map(|block| block.clocks).sum();
     let _ = writeln!(text, "{} blocks followed for {clocks} clocks with unknown coefficients", blocks.len());
@@ -73,7 +83,7 @@ pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
     let ks: Vec<u32> = args.bits.map_or(PROVED, |k| k..=k).collect();
     let found = followed(model, choices, narrower, ks.clone(), Way::Follow);
     if !found.as_ref().is_ok_and(|blocks| blocks.iter().all(Block::is_exact))
-        && let Some(example) = job.counterexample(choices, args.bits.map_or(SEARCHED, |k| k..=k))
+        && let Some(example) = job.search(choices, args.bits.map_or(SEARCHED, |k| k..=k)).found
     {
         return refuted(args, model, &example);
     }
@@ -84,7 +94,7 @@ pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
         let model = model.name;
         return Err(Failure::Check(vec![format!("not proved: {model} pulse by pulse comes to something else")]));
     }
-    let text = judge(model, &blocks, "the blocks that were followed")?;
-    certificate.write(choices.options(), Vec::new(), blocks.iter().map(Block::to_string).collect())?;
+    let text = judge(&scope(job, &blocks), &blocks)?;
+    certificate.write(job.options(), Vec::new(), blocks.iter().map(Block::to_string).collect())?;
     tell(args, &text)
 }

@@ -1,64 +1,77 @@
 //! Proofs for every width at once.
 
-use std::ops::RangeInclusive;
-
 use rayon::prelude::*;
 use stepwave::models::{Choices, Preset};
 use stepwave::study::proof::{INDUCTION_KS, ProofError, Subject, choices_at};
 
 use super::replay::{not_inductive, refuted};
-use super::verdict::{Attempt, Claim, told, unproved};
-use super::{Job, SEARCHED, tell};
+use super::simulated::simulated;
+use super::verdict::{Attempt, Claim, Scope, names, proved, told, unproved};
+use super::{CertificateOutput, Job, SEARCHED, tell};
+use crate::commands::progress::Progress;
 use crate::failure::Failure;
-
-/// `1, 2`
-fn list(numbers: RangeInclusive<u32>) -> String {
-    numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(" and ")
-}
 
 /// Attempts a proof of every kind of geometry.
 pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
-    let Job { args, model, choices, narrower, .. } = job;
+    let Job { args, model, choices, .. } = job;
     let certificate = job.certificate()?;
     // What a simulation refutes needs no attempt.
-    if let Some(example) = job.counterexample(choices, SEARCHED) {
+    let survey = job.search(choices, SEARCHED);
+    if let Some(example) = survey.found {
         return refuted(args, model, &example);
     }
-    let subject = Subject::new(model, choices, narrower).map_err(|error| args.hardware.told_of_study(error))?;
-    let subject = if args.any_preset { subject.with_any_preset() } else { subject };
-    let attempts: Vec<Attempt> = subject
-        .kinds()
-        .into_par_iter()
-        .map(|kind| {
-            let (proof, certificate) = subject.prove(&kind)?;
-            // The search is not believed: what counts is what the checker finds in the certificate.
-            let proof = if proof.holds() { subject.check(&kind, &certificate)? } else { proof };
-            Ok((kind, proof, certificate))
-        })
-        .collect::<Result<_, ProofError>>()?;
-    let mut text = told(model, &subject, &attempts, args.details);
+    let subject = job.subject()?;
+    let attempts = attempts(&subject)?;
+    let scope = Scope::of_family(&job.hardware(), &subject);
+    let mut text = told(&scope, &attempts, args.details);
+    let least = subject.ks().0;
+    let below: Vec<_> = survey.tried.into_iter().filter(|tried| tried.k < least).collect();
+    text += &simulated(&below);
     if !unproved(&attempts).is_empty() {
-        return undecided(job, &subject, &attempts, text);
+        return undecided(job, &subject, attempts, text, certificate);
     }
-    text += &format!("simulated: the same for every geometry of {} bits\n", list(1..=subject.ks().0 - 1));
-    let kinds = attempts.into_iter().map(|(kind, _, certificate)| (kind.name, certificate)).collect();
-    let any = args.any_preset.then(|| "--any-preset".to_owned());
-    certificate.write(choices.options().into_iter().chain(any).collect(), kinds, Vec::new())?;
+    keep(job, certificate, attempts)?;
     tell(args, &text)
 }
 
-/// Looks for what keeps a proof from being one, and tells it behind what was proved.
-fn undecided(job: &Job<'_>, subject: &Subject, attempts: &[Attempt], mut text: String) -> Result<(), Failure> {
+/// An attempt at every kind of geometry.
+pub(super) fn attempts(subject: &Subject) -> Result<Vec<Attempt>, ProofError> {
+    let kinds = subject.kinds();
+    let progress = Progress::of(kinds.len() as u64, "kinds of geometry");
+    let attempt = |kind| {
+        let (proof, certificate) = subject.prove(&kind)?;
+        // The search is not believed: what counts is what the checker finds in the certificate.
+        let proof = if proof.holds() { subject.check(&kind, &certificate)? } else { proof };
+        progress.add(1);
+        Ok((kind, proof, certificate))
+    };
+    kinds.into_par_iter().map(attempt).collect()
+}
+
+/// Writes the certificate of these attempts.
+pub(super) fn keep(job: &Job<'_>, certificate: CertificateOutput<'_>, attempts: Vec<Attempt>) -> Result<(), Failure> {
+    let kinds = attempts.into_iter().map(|(kind, _, certificate)| (kind.name, certificate)).collect();
+    certificate.write(job.options(), kinds, Vec::new())
+}
+
+/// Looks for what keeps a proof from being one, and tells it after what was proved.
+fn undecided(
+    job: &Job<'_>,
+    subject: &Subject,
+    attempts: Vec<Attempt>,
+    mut text: String,
+    certificate: CertificateOutput<'_>,
+) -> Result<(), Failure> {
     let Job { args, model, claims, choices, narrower } = job;
     let remainders = subject.presets();
     let mut presets = extreme_presets(choices, &remainders);
-    if let Some(example) = presets.find_map(|own| job.counterexample(&own, SEARCHED)) {
+    if let Some(example) = presets.find_map(|own| job.search(&own, SEARCHED).found) {
         return refuted(args, model, &example);
     }
-    let names: Vec<&str> = unproved(attempts).iter().map(|claim| claim.name()).collect();
+    let open = unproved(&attempts);
     let mut failure = format!(
         "not proved: {}; no counterexample among the geometries of up to {} bits that were tried",
-        names.join(", "),
+        names(&open),
         SEARCHED.end()
     );
     let failed = attempts.iter().filter(|(_, proof, _)| Claim::may_fail_induction(proof));
@@ -68,14 +81,21 @@ fn undecided(job: &Job<'_>, subject: &Subject, attempts: &[Attempt], mut text: S
         let own = choices_at(model, claims, choices, narrower, step.k)?;
         text += &not_inductive(args, model, step, &own)?;
         failure += "; a step from a state that may be unreachable shows why";
-    } else if failed.is_empty() {
-        text += "UNKNOWN: whether every block ends; no number is stated that every step makes less\n";
     } else {
         let [first, last] = INDUCTION_KS;
         let tried = looked.tried;
         text += &format!(
             "UNKNOWN: no step from {tried} states at k = {first} and {last} that the invariants allow shows why\n"
         );
+    }
+    let shown = proved(&attempts);
+    if args.certificate.is_some() {
+        text += &if shown.is_empty() {
+            "no certificate: nothing is proved\n".to_owned()
+        } else {
+            keep(job, certificate, attempts)?;
+            format!("the certificate proves a part: {}\n", names(&shown))
+        };
     }
     tell(args, &text)?;
     Err(Failure::Check(vec![failure]))

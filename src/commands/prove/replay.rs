@@ -9,7 +9,7 @@ use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::models::{Choices, Model};
 use stepwave::nc::Curve;
 use stepwave::report::{self, run_command};
-use stepwave::study::proof::{Counterexample, CounterexampleToInduction};
+use stepwave::study::proof::{Counterexample, CounterexampleToInduction, Fault};
 use stepwave::testbench::{Observer, OverflowWatch, Testbench};
 
 use super::super::run::{Finished, simulate};
@@ -42,10 +42,27 @@ fn replayed(
 
 /// Runs a counterexample as its command does, with its wave if one is wanted, and tells it.
 pub(super) fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample) -> Result<(), Failure> {
-    let Counterexample { k, curve, choices, .. } = example;
+    refuted_with(args, model, example, "")
+}
+
+/// The same, with a note after what it shows.
+pub(super) fn refuted_with(
+    args: &ProveArgs,
+    model: &Model,
+    example: &Counterexample,
+    note: &str,
+) -> Result<(), Failure> {
+    let Counterexample { k, curve, choices, fault } = example;
     let (command, run) = replayed(args, model, curve, choices)?;
     let mut outputs = Outputs::default();
     let shown = match simulate(&run, &mut outputs) {
+        // With wrap and saturate a run goes on after an overflow or a load word that was cut, and may reach its end all the
+        // same.
+        Ok(Finished { failures, text, .. })
+            if failures.is_empty() && matches!(fault, Fault::Overflow | Fault::Refused) =>
+        {
+            text.lines().filter_map(|line| line.strip_prefix("warning: ")).collect::<Vec<_>>().join("; ")
+        }
         Ok(Finished { failures, .. }) => failures.join("; "),
         Err(refused) => refused.to_string().trim_start_matches("stepwave: ").to_owned(),
     };
@@ -54,7 +71,7 @@ pub(super) fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample)
     }
     outputs.commit()?;
     tell(args, &format!("COUNTEREXAMPLE at k = {k}: {command}\n"))?;
-    Err(Failure::Check(vec![format!("refuted at k = {k}: {shown}")]))
+    Err(Failure::Check(vec![format!("refuted at k = {k}: {shown}{note}")]))
 }
 
 /// Shows a step that keeps a proof from being one, with its wave if one is wanted, and tells it.

@@ -7,6 +7,11 @@ use stepwave_kernel::prove::{Certificate, CertificateError};
 /// First line of a file of certificates.
 const TITLE: &str = "stepwave certificate 1";
 
+/// Kinds of geometry in a file, at most.
+const MOST_KINDS: usize = 64;
+/// Bytes of a file, at most.
+pub const MOST_BYTES: u64 = 1 << 22;
+
 /// What a file of certificates holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CertificateFile {
@@ -35,6 +40,12 @@ pub enum FileError {
         line: usize,
         /// The line.
         text: String,
+    },
+    /// There are two of one kind, or too many.
+    #[error("kind {kind} is one too many: a certificate has each kind once, and at most {MOST_KINDS}")]
+    Kind {
+        /// The kind of geometry.
+        kind: String,
     },
     /// A certificate cannot be read.
     #[error("kind {kind}: {error}")]
@@ -81,11 +92,14 @@ impl std::str::FromStr for CertificateFile {
         for (index, line) in parts.next().unwrap_or_default().lines().enumerate().filter(|(_, line)| !line.is_empty()) {
             let wrong = || FileError::Head { line: index + 1, text: line.chars().take(60).collect() };
             match line.split_once(' ').ok_or_else(wrong)? {
-                ("model", name) => name.clone_into(&mut file.model),
+                ("model", name) if file.model.is_empty() => name.clone_into(&mut file.model),
                 ("counted", block) => file.counted.push(block.to_owned()),
                 ("option", option) => file.options.push(option.to_owned()),
                 ("narrower", pair) => {
                     let (bits, register) = pair.split_once(' ').ok_or_else(wrong)?;
+                    if file.narrower.iter().any(|(other, _)| other == register) {
+                        return Err(wrong());
+                    }
                     file.narrower.push((register.to_owned(), bits.parse().map_err(|_| wrong())?));
                 }
                 _ => return Err(wrong()),
@@ -93,6 +107,9 @@ impl std::str::FromStr for CertificateFile {
         }
         for part in parts {
             let (kind, body) = part.split_once('\n').unwrap_or((part, ""));
+            if file.kinds.len() == MOST_KINDS || file.kinds.iter().any(|(other, _)| other == kind) {
+                return Err(FileError::Kind { kind: kind.chars().take(60).collect() });
+            }
             let certificate = body.parse().map_err(|error| FileError::Certificate { kind: kind.to_owned(), error })?;
             file.kinds.push((kind.to_owned(), certificate));
         }

@@ -8,7 +8,8 @@ use stepwave_kernel::prove::{Certificate, InvariantStates, Row};
 use stepwave_models::{Hardware, Kind, Machine};
 use stepwave_nc::Curve;
 
-use super::{ProofError, Subject, number, rows};
+use super::learning::rows;
+use super::{ProofError, Subject, number};
 use crate::testbench::Start;
 
 /// A step that keeps a proof from being one.

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use stepwave_kernel::export::{Checking, smt2_asking};
 use stepwave_kernel::{Net, Width};
@@ -50,6 +51,16 @@ pub enum SolverError {
         command: String,
         /// Why.
         error: std::io::Error,
+    },
+    /// It says nothing in time.
+    #[error(
+        "the solver '{command}' was stopped after {seconds} s without an answer: give more --solver-seconds, or fewer --bits"
+    )]
+    Late {
+        /// The command.
+        command: String,
+        /// The limit.
+        seconds: u64,
     },
     /// It says something else.
     #[error(
@@ -151,11 +162,12 @@ pub fn question(
     Ok(Question { script, geometries, clocks })
 }
 
-/// Asks a solver: its command, whose words stand apart by blanks, gets the script on its input.
+/// Asks a solver: its command, whose words stand apart by blanks, gets the script on its input. After the `limit` it is
+/// killed, and gives no answer.
 ///
 /// # Errors
-/// It cannot be run, or says neither `sat` nor `unsat`.
-pub fn ask(command: &str, script: &str) -> Result<Answer, SolverError> {
+/// It cannot be run, or says neither `sat` nor `unsat`, or nothing in time.
+pub fn ask(command: &str, script: &str, limit: Duration) -> Result<Answer, SolverError> {
     let failed = |error| SolverError::Start { command: command.to_owned(), error };
     let mut words = command.split_whitespace();
     let program = words.next().unwrap_or_default();
@@ -166,19 +178,26 @@ pub fn ask(command: &str, script: &str) -> Result<Answer, SolverError> {
         .stderr(Stdio::null())
         .spawn()
         .map_err(failed)?;
-    let input = child.stdin.take();
-    let output = child.stdout.take();
-    let mut said = String::new();
-    // One that talks before it has read all would wait for a reader, as this would for it.
-    let read = std::thread::scope(|scope| {
-        // One that answers before it has read all closes its input.
-        scope.spawn(move || input.map(|mut input| input.write_all(script.as_bytes())));
+    let (input, output) = (child.stdin.take(), child.stdout.take());
+    // The two threads are not waited for: children of the solver may hold its input and output open for ever.
+    let owned = script.to_owned();
+    // One that talks before it has read all would wait for a reader, as this would for it; one that answers before closes
+    // its input.
+    std::thread::spawn(move || input.map(|mut input| input.write_all(owned.as_bytes())));
+    let (sender, receiver) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        let mut said = String::new();
         let read = output.map_or(Ok(0), |output| BufReader::new(output).take(1 << 12).read_line(&mut said));
-        // The first line is the answer.
-        let ended = child.kill().and_then(|()| child.wait());
-        read.and(ended)
+        // Nobody listens any more after the limit.
+        let _ = sender.send(read.map(|_| said));
     });
-    read.map_err(failed)?;
+    // The first line is the answer.
+    let said = receiver.recv_timeout(limit);
+    let ended = child.kill().and_then(|()| child.wait());
+    let Ok(said) = said else {
+        return Err(SolverError::Late { command: command.to_owned(), seconds: limit.as_secs() });
+    };
+    let said = said.and_then(|said| ended.map(|_| said)).map_err(failed)?;
     match said.lines().next().map(str::trim) {
         Some("sat") => Ok(Answer::Sat),
         Some("unsat") => Ok(Answer::Unsat),

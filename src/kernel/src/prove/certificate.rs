@@ -101,7 +101,7 @@ impl FromStr for Certificate {
             if line.trim().is_empty() {
                 continue;
             }
-            let read = certificate.read(line.trim());
+            let read = (line.len() <= LONGEST_LINE).then(|| certificate.read(line.trim())).flatten();
             read.ok_or_else(|| CertificateError { line: index + 1, text: line.chars().take(60).collect() })?;
         }
         Ok(certificate)
@@ -114,15 +114,23 @@ impl Certificate {
         match word {
             "modes" => {
                 let modes: Option<Vec<i128>> = rest.split_whitespace().map(|mode| mode.parse().ok()).collect();
-                self.invariants.push(Invariants { modes: modes?, ..Invariants::default() });
+                let modes = modes.filter(|_| self.invariants.len() < MOST)?;
+                self.invariants.push(Invariants { modes, ..Invariants::default() });
             }
             "equal" => {
                 let (var, poly) = rest.split_once(' ')?;
-                self.invariants.last_mut()?.equalities.push((read_variable(var)?, read_poly(poly)?));
+                let own = &mut self.invariants.last_mut()?.equalities;
+                // Each variable equals one thing.
+                let var = read_variable(var)?;
+                let is_new = own.len() < MOST && own.iter().all(|(other, _)| *other != var);
+                is_new.then_some(())?;
+                own.push((var, read_poly(poly)?));
             }
             "clause" => {
                 let any: Option<Vec<Poly>> = rest.split('|').map(read_poly).collect();
-                self.invariants.last_mut()?.clauses.push(any?);
+                let own = &mut self.invariants.last_mut()?.clauses;
+                let any = any.filter(|any| any.len() <= MOST && own.len() < MOST)?;
+                own.push(any);
             }
             "answer" if rest == "-" => self.answers.push(None),
             "answer" => {
@@ -149,8 +157,18 @@ fn read_variable(text: &str) -> Option<Var> {
     text.strip_prefix('v')?.parse().ok().filter(|number| *number < u16::MAX).map(Var)
 }
 
+/// Letters of a line, at most: of the models here the longest has some hundreds.
+const LONGEST_LINE: usize = 1 << 14;
+/// Terms of a polynomial, parts of a sum, alternatives and invariants of one combination of modes, at most.
+const MOST: usize = 256;
+/// Digits of a number, at most.
+const MOST_DIGITS: usize = 60;
+
 fn read_poly(text: &str) -> Option<Poly> {
     let formula = Formula::parse(text)?;
+    if formula.terms().take(MOST + 1).count() > MOST {
+        return None;
+    }
     let mut sum = Poly::from(0);
     for (product, coefficient) in formula.terms() {
         let mut term = Poly::from(coefficient);
@@ -170,7 +188,8 @@ fn read_answer(text: &mut &str, depth: usize) -> Option<Refutation> {
     if let Some(rest) = text.strip_prefix('(') {
         let (parts, rest) = rest.split_once(')')?;
         *text = rest;
-        return parts.split_whitespace().map(read_part).collect::<Option<_>>().map(Refutation::Sum);
+        let parts: Vec<Part> = parts.split_whitespace().map(read_part).collect::<Option<_>>()?;
+        return (parts.len() <= MOST).then_some(Refutation::Sum(parts));
     }
     let rest = text.strip_prefix('[').filter(|_| depth < DEEPEST)?;
     let end = rest.find([' ', ']'])?;
@@ -190,6 +209,9 @@ fn read_part(text: &str) -> Option<Part> {
     let mut words = text.split('*');
     let factor = words.next()?;
     let (above, below) = factor.split_once('/').unwrap_or((factor, "1"));
+    if above.len().max(below.len()) > MOST_DIGITS {
+        return None;
+    }
     let (above, below): (BigInt, BigInt) = (above.parse().ok()?, below.parse().ok()?);
     if below <= BigInt::from(0) {
         return None;
@@ -210,6 +232,14 @@ mod tests {
         let certificate: Certificate = text.parse().unwrap();
         assert_eq!(certificate.to_string(), text);
         assert!(certificate.fits(10) && !certificate.fits(9));
+        let twice = "modes 0\nequal v1 2\nequal v1 2";
+        let many = format!("modes 0\nclause {}", vec!["v1"; 300].join(" | "));
+        let long = format!("answer ({})", vec!["1*3"; 300].join(" "));
+        let huge = format!("answer (1{}*3)", "0".repeat(100));
+        let deep = format!("answer (1/1{}*3)", "0".repeat(100));
+        for wrong in [twice, &many, &long, &huge, &deep] {
+            assert!(wrong.parse::<Certificate>().is_err(), "{wrong}");
+        }
         for wrong in
             ["equal v1 v2", "modes x", "answer", "answer (1*2", "answer [1 (1*2)", "answer (1/0*2)", "clause", "x"]
         {

@@ -16,6 +16,8 @@ pub(crate) enum Stop {
     Unsupported(String),
     /// There are too many paths, or unknowns.
     TooLarge,
+    /// An invariant is not kept, after which nothing else is of interest.
+    Broken,
 }
 
 /// Shows contradictions: looks for them, or plays back those that were found.
@@ -23,6 +25,11 @@ pub(crate) trait Oracle {
     /// The conditions `rows`, all 0 or more, of which those from `own` on matter most, and one alternative of each clause
     /// cannot hold together; checked in exact arithmetic.
     fn refutes(&mut self, rows: &[Poly], own: usize, clauses: &[Vec<Poly>], effort: Effort) -> bool;
+
+    /// Nothing that it says counts any more.
+    fn is_over(&self) -> bool {
+        false
+    }
 }
 
 /// The paths of one exploration.
@@ -52,7 +59,7 @@ impl<'o> Decisions<'o> {
     /// Goes through all paths; `walk` takes each from its beginning.
     pub(crate) fn explore(&mut self, mut walk: impl FnMut(&mut Self) -> Result<(), Stop>) -> Result<usize, Stop> {
         let mut paths = 0;
-        while let Some(script) = self.open.pop() {
+        while let Some(script) = self.open.pop().filter(|_| !self.oracle.is_over()) {
             paths += 1;
             if paths > MOST_PATHS {
                 return Err(Stop::TooLarge);

@@ -48,15 +48,16 @@ pub(crate) fn product(rows: &[Poly], row: usize, by: Option<usize>) -> Option<Po
 }
 
 /// The refutation shows that `rows`, all of them 0 or more, cannot hold together with one alternative of every clause.
-pub(crate) fn holds(refutation: &Refutation, rows: &mut Vec<Poly>, clauses: &[Vec<Poly>]) -> bool {
+/// Each multiplication is taken off the `effort` that may still be made; where none is left, it shows nothing.
+pub(crate) fn holds(refutation: &Refutation, rows: &mut Vec<Poly>, clauses: &[Vec<Poly>], effort: &mut usize) -> bool {
     match refutation {
-        Refutation::Sum(parts) => is_negative(rows, parts),
+        Refutation::Sum(parts) => is_negative(rows, parts, effort),
         Refutation::Cases { clause, each } => {
             let Some(clause) = clauses.get(*clause) else { return false };
             clause.len() == each.len()
                 && clause.iter().zip(each).all(|(alternative, refutation)| {
                     rows.push(alternative.clone());
-                    let held = holds(refutation, rows, clauses);
+                    let held = holds(refutation, rows, clauses, effort);
                     rows.pop();
                     held
                 })
@@ -64,16 +65,23 @@ pub(crate) fn holds(refutation: &Refutation, rows: &mut Vec<Poly>, clauses: &[Ve
     }
 }
 
-fn is_negative(rows: &[Poly], parts: &[Part]) -> bool {
+fn is_negative(rows: &[Poly], parts: &[Part], effort: &mut usize) -> bool {
     let mut sum: BTreeMap<Monomial, BigRational> = BTreeMap::new();
     for part in parts {
+        let terms = |row| rows.get(row).map_or(1, |row: &Poly| row.terms().len());
+        let Some(left) = effort.checked_sub(terms(part.row) * part.by.map_or(1, terms)) else { return false };
+        *effort = left;
         if part.factor.is_negative() {
             return false;
         }
         let Some(product) = product(rows, part.row, part.by) else { return false };
         for (monomial, coefficient) in product.terms() {
-            *sum.entry(*monomial).or_insert_with(BigRational::zero) +=
-                &part.factor * BigRational::from(BigInt::from(*coefficient));
+            let own = sum.entry(*monomial).or_insert_with(BigRational::zero);
+            // To bring two fractions to one denominator takes about the square of its bits.
+            let bits = usize::try_from(own.denom().bits() + part.factor.denom().bits()).unwrap_or(usize::MAX);
+            let Some(left) = effort.checked_sub(bits.saturating_mul(bits) / 2048) else { return false };
+            *effort = left;
+            *own += &part.factor * BigRational::from(BigInt::from(*coefficient));
         }
     }
     sum.retain(|_, coefficient| !coefficient.is_zero());
@@ -102,17 +110,18 @@ mod tests {
     fn a_sum_that_comes_to_a_negative_number_is_a_contradiction() {
         // (x - 1)(y - 2) + (1 - x*y) + 2 (x - 1) + (y - 2) = -1
         let right = vec![part(0, Some(1), 1), part(2, None, 1), part(0, None, 2), part(1, None, 1)];
-        assert!(holds(&Refutation::Sum(right.clone()), &mut rows(), &[]));
+        assert!(holds(&Refutation::Sum(right.clone()), &mut rows(), &[], &mut 1000));
         for place in 0..right.len() {
             let mut wrong = right.clone();
             wrong[place].factor += BigRational::from(BigInt::from(1));
-            assert!(!holds(&Refutation::Sum(wrong), &mut rows(), &[]));
+            assert!(!holds(&Refutation::Sum(wrong), &mut rows(), &[], &mut 1000));
             let mut wrong = right.clone();
             wrong[place].factor = -wrong[place].factor.clone();
-            assert!(!holds(&Refutation::Sum(wrong), &mut rows(), &[]));
+            assert!(!holds(&Refutation::Sum(wrong), &mut rows(), &[], &mut 1000));
         }
-        assert!(!holds(&Refutation::Sum(vec![part(7, None, 1)]), &mut rows(), &[]));
-        assert!(!holds(&Refutation::Sum(Vec::new()), &mut rows(), &[]));
+        assert!(!holds(&Refutation::Sum(right.clone()), &mut rows(), &[], &mut 5), "too much to multiply");
+        assert!(!holds(&Refutation::Sum(vec![part(7, None, 1)]), &mut rows(), &[], &mut 1000));
+        assert!(!holds(&Refutation::Sum(Vec::new()), &mut rows(), &[], &mut 1000));
     }
 
     #[test]
@@ -125,9 +134,9 @@ mod tests {
             Refutation::Sum(vec![part(0, None, 1), part(2, None, 1)]),
         ];
         let whole = Refutation::Cases { clause: 0, each: each.clone() };
-        assert!(holds(&whole, &mut within.clone(), &clauses));
+        assert!(holds(&whole, &mut within.clone(), &clauses, &mut 1000));
         let half = Refutation::Cases { clause: 0, each: each[..1].to_vec() };
-        assert!(!holds(&half, &mut within.clone(), &clauses));
-        assert!(!holds(&Refutation::Cases { clause: 1, each }, &mut within.clone(), &clauses));
+        assert!(!holds(&half, &mut within.clone(), &clauses, &mut 1000));
+        assert!(!holds(&Refutation::Cases { clause: 1, each }, &mut within.clone(), &clauses, &mut 1000));
     }
 }

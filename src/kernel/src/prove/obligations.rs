@@ -34,16 +34,27 @@ pub(crate) struct Findings {
     pub(crate) astray: Option<String>,
     /// Paths gone through.
     pub(crate) paths: usize,
+    /// The first broken invariant ends it all: a certificate has none.
+    pub(crate) strict: bool,
+}
+
+impl Findings {
+    fn is_broken(&self) -> bool {
+        !self.broken_equalities.is_empty() || !self.broken_clauses.is_empty()
+    }
 }
 
 /// Clocks of a step at most.
 const LONGEST_STEP: usize = 8;
 
-/// Goes through the load and one step from every combination of modes.
-pub(crate) fn check(system: &System<'_>, all: &[Invariants], oracle: &mut dyn Oracle) -> Findings {
-    let mut findings = Findings::default();
+/// Goes through the load and one step from every combination of modes; if `strict`, to the first invariant that is broken.
+pub(crate) fn check(system: &System<'_>, all: &[Invariants], oracle: &mut dyn Oracle, strict: bool) -> Findings {
+    let mut findings = Findings { strict, ..Findings::default() };
     load(system, all, oracle, &mut findings);
     for place in 0..all.len() {
+        if strict && (findings.is_broken() || findings.astray.is_some()) {
+            break;
+        }
         step(system, all, place, oracle, &mut findings);
     }
     findings
@@ -111,6 +122,8 @@ fn count(explored: Result<usize, Stop>, findings: &mut Findings) {
         Ok(paths) => findings.paths += paths,
         Err(Stop::Unsupported(what)) => findings.astray = Some(format!("not followed: {what}")),
         Err(Stop::TooLarge) => findings.astray = Some("there are too many paths".to_owned()),
+        // It is among what was found.
+        Err(Stop::Broken) => {}
         Err(Stop::Impossible | Stop::Undecided) => findings.astray = Some("a path lost its way".to_owned()),
     }
 }
@@ -193,6 +206,7 @@ fn row(
             || contradicts(path, &[gap.plus_number(-1)]) && contradicts(path, &[gap.negated().plus_number(-1)]);
         if !kept && !findings.broken_equalities.contains(&(place, *var)) {
             findings.broken_equalities.push((place, *var));
+            stop_if_strict(findings)?;
         }
     }
     for (number, clause) in all[place].clauses.iter().enumerate() {
@@ -201,9 +215,14 @@ fn row(
         }
         if !follows(path, &clause.iter().map(|poly| poly.replaced(value)).collect::<Vec<_>>()) {
             findings.broken_clauses.push((place, number));
+            stop_if_strict(findings)?;
         }
     }
     Ok(())
+}
+
+fn stop_if_strict(findings: &Findings) -> Result<(), Stop> {
+    if findings.strict { Err(Stop::Broken) } else { Ok(()) }
 }
 
 /// The goals hold in the last row.

@@ -25,7 +25,8 @@ pub struct Row {
     pub steps: i128,
 }
 
-/// What came of an attempt at a proof. Every sentence names what it could not show.
+/// What came of an attempt at a proof. Every sentence names what it could not show. Paths end at their first violated
+/// claim: where `violated` names one, goals and the end of blocks are shown up to the first violation alone.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Proof {
     /// The invariants that hold in every row, in words.
@@ -73,7 +74,7 @@ struct Search<'b> {
 impl Oracle for Search<'_> {
     fn refutes(&mut self, rows: &[Poly], own: usize, clauses: &[Vec<Poly>], effort: Effort) -> bool {
         let found = refute::refute(rows, own, clauses, effort, self.budget);
-        let held = found.as_ref().is_some_and(|found| holds(found, &mut rows.to_vec(), clauses));
+        let held = found.as_ref().is_some_and(|found| holds(found, &mut rows.to_vec(), clauses, &mut { EFFORT }));
         self.answers.push(found.filter(|_| held));
         held
     }
@@ -82,7 +83,11 @@ impl Oracle for Search<'_> {
 /// Plays recorded contradictions back, each checked.
 struct Playback<'c> {
     answers: std::slice::Iter<'c, Option<Refutation>>,
-    /// An answer did not show what it should: nothing counts any more.
+    /// Multiplications that may still be made.
+    effort: usize,
+    /// Answers that may still leave a question open.
+    open: usize,
+    /// An answer did not show what it should, or there was none: nothing counts any more.
     wrong: bool,
 }
 
@@ -92,14 +97,33 @@ impl Oracle for Playback<'_> {
         if self.wrong {
             return true;
         }
-        let Some(Some(refutation)) = self.answers.next() else { return false };
-        self.wrong = !holds(refutation, &mut rows.to_vec(), clauses);
-        !self.wrong
+        match self.answers.next() {
+            Some(Some(refutation)) => {
+                self.wrong = !holds(refutation, &mut rows.to_vec(), clauses, &mut self.effort);
+                true
+            }
+            Some(None) if self.open > 0 => {
+                self.open -= 1;
+                false
+            }
+            _ => {
+                self.wrong = true;
+                true
+            }
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        self.wrong
     }
 }
 
 /// Sums of products that are looked for in one attempt; then it counts as failed.
 const BUDGET: usize = 30_000;
+/// Multiplications that the certificate of one kind of geometry may take: those of the models here take a hundredth.
+const EFFORT: usize = 50_000_000;
+/// Questions that a certificate may leave open, each of which is a path more: those of the models here leave a hundred.
+const MOST_OPEN: usize = 2_000;
 /// Rounds of dropping what is not inductive, at most.
 const MOST_ROUNDS: usize = 12;
 
@@ -113,7 +137,7 @@ pub fn prove(family: &Family, strobes: Strobes, case: &Case, rows: &[Row]) -> Re
     let (mut given_up, mut budget) = (Vec::new(), BUDGET);
     for _ in 0..MOST_ROUNDS {
         let mut search = Search { answers: Vec::new(), budget: &mut budget };
-        let findings = obligations::check(&system, &invariants, &mut search);
+        let findings = obligations::check(&system, &invariants, &mut search, false);
         if findings.broken_equalities.is_empty() && findings.broken_clauses.is_empty() {
             let certificate = Certificate { invariants, answers: search.answers };
             return Ok((proof(&system, &findings, &certificate, given_up), certificate));
@@ -131,12 +155,19 @@ pub fn prove(family: &Family, strobes: Strobes, case: &Case, rows: &[Row]) -> Re
 /// The case does not fit the netlist.
 pub fn check(family: &Family, strobes: Strobes, case: &Case, certificate: &Certificate) -> Result<Proof, CaseError> {
     let system = System::new(family, strobes, case)?;
-    if !certificate.fits(system.variables.len()) {
-        let astray = Some("the certificate speaks of variables that the case does not have".to_owned());
+    let all = &certificate.invariants;
+    let is_alone = |(place, own): (usize, &Invariants)| all[..place].iter().all(|other| other.modes != own.modes);
+    let fits = certificate.fits(system.variables.len())
+        && all.iter().all(|own| own.modes.len() == system.modes.len())
+        && all.iter().enumerate().all(is_alone);
+    if !fits {
+        let astray =
+            Some("the certificate has variables or modes that the case does not have, or modes twice".to_owned());
         return Ok(Proof { astray, ..Proof::default() });
     }
-    let mut playback = Playback { answers: certificate.answers.iter(), wrong: false };
-    let findings = obligations::check(&system, &certificate.invariants, &mut playback);
+    let answers = certificate.answers.iter();
+    let mut playback = Playback { answers, effort: EFFORT, open: MOST_OPEN, wrong: false };
+    let findings = obligations::check(&system, &certificate.invariants, &mut playback, true);
     let mut proof = proof(&system, &findings, certificate, Vec::new());
     if playback.wrong {
         proof.astray = Some("a step of the certificate does not show what it should".to_owned());

@@ -180,7 +180,7 @@ fn sum(rows: &[Poly], candidates: &[Product]) -> Option<Refutation> {
         Part { row, by, factor }
     });
     let found = Refutation::Sum(parts.collect());
-    holds(&found, &mut rows.to_vec(), &[]).then_some(found)
+    holds(&found, &mut rows.to_vec(), &[], &mut { usize::MAX }).then_some(found)
 }
 
 /// Takes out what has a product that nothing can take away again: of one sign in all columns.
@@ -267,7 +267,7 @@ mod tests {
         let rows = [var(1).plus_number(-1), var(2).plus_number(-2), Poly::from(1).minus(&var(1).times(&var(2)))];
         assert_eq!(refute(&rows, 0, &[], Effort::Sums, &mut 9), None);
         let found = refute(&rows, 0, &[], Effort::All, &mut 9).unwrap();
-        assert!(holds(&found, &mut rows.to_vec(), &[]));
+        assert!(holds(&found, &mut rows.to_vec(), &[], &mut { usize::MAX }));
         // x*y <= 2 can be.
         let rows = [var(1).plus_number(-1), var(2).plus_number(-2), Poly::from(2).minus(&var(1).times(&var(2)))];
         assert_eq!(refute(&rows, 0, &[], Effort::All, &mut 9), None);
@@ -294,7 +294,7 @@ mod tests {
         rows.extend([x.minus(&xt), y.minus(&yt).plus_number(-1), y.minus(&x).plus_number(-1)]);
         rows.push(y.minus(&f).minus(&h.times_number(4)).plus_number(-1));
         let found = refute(&rows, own, &[], Effort::All, &mut 1).unwrap();
-        assert!(holds(&found, &mut rows.clone(), &[]));
+        assert!(holds(&found, &mut rows.clone(), &[], &mut { usize::MAX }));
         // Without the circle f may be anything.
         rows.retain(|row| *row != circle && *row != circle.negated());
         assert_eq!(refute(&rows, own - 2, &[], Effort::All, &mut 1), None);
@@ -306,7 +306,7 @@ mod tests {
         let clauses = [vec![x.plus_number(-3), x.negated().plus_number(-3)]];
         let within = [x.plus_number(2), Poly::from(2).minus(&x)];
         let found = refute(&within, 0, &clauses, Effort::All, &mut 9).unwrap();
-        assert!(holds(&found, &mut within.to_vec(), &clauses));
+        assert!(holds(&found, &mut within.to_vec(), &clauses, &mut { usize::MAX }));
         assert_eq!(refute(&within[..1], 0, &clauses, Effort::All, &mut 9), None);
     }
 }

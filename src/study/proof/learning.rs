@@ -1,0 +1,130 @@
+//! What is learnt from runs: the words of the loader as formulas of the geometry, and rows to guess invariants from.
+
+use std::collections::BTreeMap;
+
+use stepwave_kernel::Net;
+use stepwave_kernel::formula::{self, Formula};
+use stepwave_kernel::prove::{self, Case, Row, Symbol};
+use stepwave_models::{Kind, Machine};
+use stepwave_nc::Curve;
+
+use super::{ProofError, State, Subject, states};
+
+/// Words of the loader, and what the symbols of the geometry are.
+type Loaded = (Vec<(Net, u64)>, Vec<i128>);
+
+/// The k that are simulated to learn from, with how many curves of each kind.
+const LEARNED: [(u32, usize); 4] = [(3, 60), (4, 40), (5, 30), (6, 12)];
+
+/// The rows of one run.
+pub(super) fn rows(k: u32, symbols: &[i128], machine: &Machine, words: &[(Net, u64)]) -> Vec<Row> {
+    let row = |(steps, state): (i128, &State)| {
+        let registers = machine.design.registers().iter().map(|register| state.number(machine, *register));
+        Row { k, symbols: symbols.to_vec(), registers: registers.collect(), steps }
+    };
+    (0..).zip(&states(machine, words)).map(row).collect()
+}
+
+impl Subject {
+    /// The kind with the words of its loader, and rows of recorded runs.
+    pub(super) fn case(&self, kind: &Kind) -> Result<(Case, Vec<Row>), ProofError> {
+        let curves = self.curves(kind);
+        let presets = self.presets();
+        let mut rows = Vec::new();
+        for (place, (member, curve, symbols)) in curves.iter().enumerate() {
+            let Some((words, symbols)) = self.loaded(place, *member, curve, symbols)? else { continue };
+            let (k, _, machine) = &self.members[*member];
+            rows.extend(self::rows(*k, &symbols, machine, &words));
+        }
+        let any = |register: &String| Symbol {
+            name: format!("preset {register}"),
+            least: formula::number(0),
+            greatest: formula::name("2^k") - 1,
+        };
+        let mut words = self.words(kind, &curves)?;
+        for register in &presets {
+            words.retain(|(input, _)| *input != format!("{register}_in"));
+            words.push((format!("{register}_in"), formula::name(&format!("preset {register}"))));
+        }
+        let guesses = (self.claims.guesses)(&self.members[0].1);
+        let case = Case {
+            name: kind.name.clone(),
+            symbols: kind.symbols.iter().cloned().chain(presets.iter().map(any)).collect(),
+            constants: kind.constants.clone(),
+            premises: kind.premises.clone(),
+            words,
+            goals: kind.goals.clone(),
+            rank: (self.claims.rank)(&self.members[0].1),
+            modes: self.claims.modes.iter().map(|mode| (*mode).to_owned()).collect(),
+            bitwise: self.claims.bitwise.iter().map(|register| (*register).to_owned()).collect(),
+            steps: (!guesses.is_empty()).then(|| "steps".to_owned()),
+            guesses,
+        };
+        Ok((case, rows))
+    }
+
+    /// The words of the loader for a curve, and its symbols with the presets that were chosen for it by its `place` among
+    /// others; `None` where there is nothing to load.
+    pub(super) fn loaded(
+        &self,
+        place: usize,
+        member: usize,
+        curve: &Curve,
+        symbols: &[i128],
+    ) -> Result<Option<Loaded>, ProofError> {
+        let (_, hardware, machine) = &self.members[member];
+        let blocks = machine.encode(hardware, &self.model.words(hardware, curve))?;
+        // Several blocks are several loads; the first alone is that of the kind.
+        let Some(mut words) = blocks.into_iter().next() else { return Ok(None) };
+        let mut symbols = symbols.to_vec();
+        for (number, register) in self.presets().iter().enumerate() {
+            let port = machine.inputs[register];
+            // Any values, spread over the register.
+            let value = (place as u64 * 7919 + number as u64 * 104_729) & port.width.mask();
+            words.retain(|(net, _)| *net != port.net);
+            words.push((port.net, value));
+            symbols.push(i128::from(value));
+        }
+        Ok(Some((words, symbols)))
+    }
+
+    /// Curves of a kind to learn from: place of the member, curve, symbols.
+    pub(super) fn curves(&self, kind: &Kind) -> Vec<(usize, Curve, Vec<i128>)> {
+        let mut curves = Vec::new();
+        for (k, most) in LEARNED {
+            let Some(member) = self.members.iter().position(|(other, ..)| *other == k) else { continue };
+            let all = self.claims.geometries.curves(k, 4000);
+            let own = all.into_iter().filter_map(|curve| {
+                let symbols = self.claims.geometries.symbols(kind, &curve)?;
+                Some((member, curve, symbols))
+            });
+            curves.extend(own.take(most));
+        }
+        curves
+    }
+
+    /// What the loader puts on each input, as a formula of the geometry: learnt from its words, and compared with every
+    /// one of them.
+    fn words(&self, kind: &Kind, curves: &[(usize, Curve, Vec<i128>)]) -> Result<Vec<(String, Formula)>, ProofError> {
+        let names: Vec<&str> =
+            ["2^(k-1)"].into_iter().chain(kind.symbols.iter().map(|symbol| symbol.name.as_str())).collect();
+        let mut samples: BTreeMap<&str, Vec<Vec<i128>>> = BTreeMap::new();
+        for (member, curve, symbols) in curves {
+            let (k, hardware, _) = &self.members[*member];
+            let Some(words) = self.model.words(hardware, curve).into_iter().next() else { continue };
+            for (register, value) in words {
+                let row = [&[1_i128 << (k - 1)][..], symbols, &[value]].concat();
+                samples.entry(register).or_default().push(row);
+            }
+        }
+        if samples.is_empty() {
+            return Err(ProofError::NoCurves { kind: kind.name.clone() });
+        }
+        let formula = |(register, rows): (&str, Vec<Vec<i128>>)| {
+            let formula = prove::fit(&names, &rows)
+                .ok_or_else(|| ProofError::Word { word: register.to_owned(), kind: kind.name.clone() })?;
+            Ok((format!("{register}_in"), formula))
+        };
+        samples.into_iter().map(formula).collect()
+    }
+}

@@ -1,0 +1,86 @@
+//! The hardware of a model for each k.
+
+use std::collections::BTreeMap;
+
+use stepwave_kernel::{Width, did_you_mean};
+use stepwave_models::{AXES, Choices, Claims, Hardware, Model, ModelError};
+use stepwave_nc::Curve;
+
+/// Bits by which registers are narrower than by default, by name.
+pub type Narrower = BTreeMap<String, u32>;
+
+/// Bits by which registers are wider than by default (narrower below 0), by name.
+pub(super) type Offsets = BTreeMap<String, i64>;
+
+pub(super) fn offsets(narrower: &Narrower) -> Offsets {
+    narrower.iter().map(|(register, bits)| (register.clone(), -i64::from(*bits))).collect()
+}
+
+/// The choices that make hardware for k-bit coordinates, some registers narrower than by default.
+///
+/// # Errors
+/// There are no such geometries, or a register cannot be so narrow.
+pub fn choices_at(
+    model: &Model,
+    claims: &Claims,
+    choices: &Choices,
+    narrower: &Narrower,
+    k: u32,
+) -> Result<Choices, ModelError> {
+    choices_with(model, claims, choices, &offsets(narrower), k)
+}
+
+/// As [`choices_at`], some registers narrower or wider.
+pub(super) fn choices_with(
+    model: &Model,
+    claims: &Claims,
+    choices: &Choices,
+    offsets: &Offsets,
+    k: u32,
+) -> Result<Choices, ModelError> {
+    let wide = Choices { width: Width::new(u64::from(k)).ok(), ..choices.clone() };
+    if offsets.is_empty() {
+        return Ok(wide);
+    }
+    let default = model.plan(&largest(claims, k)?, &wide)?;
+    let mut widths = wide.widths.clone();
+    for (given, bits) in offsets {
+        for (register, own) in registers_named(model, &default, given)? {
+            let other = u64::try_from(i64::from(own.get()) + bits).ok().and_then(|bits| Width::new(bits).ok());
+            let other = other.ok_or_else(|| {
+                let (bits, how) = (bits.unsigned_abs(), if *bits < 0 { "narrower" } else { "wider" });
+                ModelError::Widths(format!("{}: {register} of {own} cannot be {bits} bits {how}", model.name))
+            })?;
+            widths.insert(register, other);
+        }
+    }
+    Ok(Choices { widths, ..wide })
+}
+
+/// The registers of this name with their widths: one, or those of each axis (`jr` for `jrx`, `jry`, …).
+pub(super) fn registers_named(
+    model: &Model,
+    hardware: &Hardware,
+    name: &str,
+) -> Result<Vec<(String, Width)>, ModelError> {
+    let of_axis = |register: &str| AXES.iter().any(|axis| register.strip_suffix(axis) == Some(name));
+    let exact = hardware.widths.contains_key(name);
+    let meant =
+        hardware.widths.iter().filter(|(register, _)| if exact { *register == name } else { of_axis(register) });
+    let meant: Vec<_> = meant.map(|(register, width)| (register.clone(), *width)).collect();
+    if meant.is_empty() {
+        let known: Vec<&str> = hardware.widths.keys().map(String::as_str).collect();
+        return Err(ModelError::Widths(format!(
+            "{} has no register {name} with a width to choose{}: give one of {}",
+            model.name,
+            did_you_mean(name, known.iter().copied()),
+            known.join(", ")
+        )));
+    }
+    Ok(meant)
+}
+
+/// The geometry of k-bit coordinates that needs the widest registers.
+pub(super) fn largest(claims: &Claims, k: u32) -> Result<Curve, ModelError> {
+    claims.geometries.largest(k).ok_or_else(|| ModelError::Widths(format!("there are no geometries of {k} bits")))
+}

@@ -1,0 +1,157 @@
+//! The family of a model's netlists, and attempts at proofs of it.
+
+use stepwave_kernel::Design;
+use stepwave_kernel::prove::{self, Certificate, Family, Proof, Strobes};
+use stepwave_models::{Choices, Claims, Hardware, Kind, Machine, Model, ModelError};
+
+use super::ProofError;
+use super::learning::rows;
+use super::members::{Narrower, Offsets, choices_with, largest, offsets};
+
+/// One hardware for every width.
+#[derive(Debug)]
+pub struct Subject {
+    pub(super) model: &'static Model,
+    pub(super) claims: Claims,
+    pub(super) family: Family,
+    pub(super) strobes: Strobes,
+    /// Remainders start from any value.
+    any_preset: bool,
+    is_whole: bool,
+    /// The machine of each k, in ascending order.
+    pub(super) members: Vec<(u32, Hardware, Machine)>,
+}
+
+/// Least k of a family: below, netlists lose cells.
+const LEAST_K: u32 = 3;
+/// The k whose netlists are all checked to be of one family.
+const GREATEST_K: u32 = 52;
+impl Subject {
+    /// The hardware of a model for every k, with these choices beside the widths.
+    ///
+    /// # Errors
+    /// The model claims nothing, a choice is impossible, or the netlists of several k differ in more than widths.
+    pub fn new(model: &'static Model, choices: &Choices, narrower: &Narrower) -> Result<Subject, ProofError> {
+        Subject::with(model, choices, &offsets(narrower))
+    }
+
+    /// As [`new`](Subject::new), some registers narrower or wider.
+    pub(super) fn with(model: &'static Model, choices: &Choices, offsets: &Offsets) -> Result<Subject, ProofError> {
+        let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
+        let member = |k| -> Result<_, ModelError> {
+            let curve = largest(&claims, k)?;
+            let hardware = model.plan(&curve, &choices_with(model, &claims, choices, offsets, k)?)?;
+            let machine = model.machine(&hardware)?;
+            machine.encode(&hardware, &model.words(&hardware, &curve))?;
+            Ok((k, hardware, machine))
+        };
+        let mut members: Vec<(u32, Hardware, Machine)> = Vec::new();
+        for k in LEAST_K..=GREATEST_K {
+            match member(k) {
+                Ok(member) => members.push(member),
+                // A fixed choice, such as a preset, may need more bits than the least k has; the widest may not be built.
+                Err(ModelError::DoesNotFit { .. }) if members.is_empty() && k < LEAST_K + 8 => {}
+                Err(_) if members.len() > 1 => break,
+                Err(error) => return Err(error.into()),
+            }
+        }
+        let designs: Vec<(u32, Design)> = members.iter().map(|(k, _, machine)| (*k, machine.design.clone())).collect();
+        let family = Family::of(&designs)?;
+        let machine = &members[0].2;
+        let strobes = machine.strobes();
+        let claims = claims.of_hardware(&members[0].1);
+        let is_whole = family.ks().iter().copied().eq(LEAST_K..=GREATEST_K) && (1..LEAST_K).all(|k| member(k).is_ok());
+        Ok(Subject { model, claims, family, strobes, any_preset: false, is_whole, members })
+    }
+
+    /// The family is of every k that coordinates have, but for the least, for which there is such hardware too.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.is_whole
+    }
+
+    /// The same with remainder registers that start from any value: one more number of the geometry for each.
+    #[must_use]
+    pub fn with_any_preset(self) -> Subject {
+        Subject { any_preset: true, ..self }
+    }
+
+    /// Remainder registers that start from any value; their load words are numbers of the geometry themselves.
+    #[must_use]
+    pub fn presets(&self) -> Vec<String> {
+        let machine = &self.members[0].2;
+        let remainders = machine.inputs.keys().filter(|register| register.starts_with("jr"));
+        if self.any_preset { remainders.cloned().collect() } else { Vec::new() }
+    }
+
+    /// The least and the greatest k of the family.
+    #[must_use]
+    pub fn ks(&self) -> (u32, u32) {
+        let all = self.family.ks();
+        (all.first().copied().unwrap_or(0), all.last().copied().unwrap_or(0))
+    }
+
+    /// The box in words.
+    #[must_use]
+    pub fn about(&self) -> &'static str {
+        self.claims.geometries.describe()
+    }
+
+    /// The kinds of geometry that together are the box.
+    #[must_use]
+    pub fn kinds(&self) -> Vec<Kind> {
+        self.claims.geometries.kinds()
+    }
+
+    /// Claims of no overflow by number: the component that each is about.
+    #[must_use]
+    pub fn claim(&self, number: usize) -> &str {
+        self.family.design().netlist().properties.get(number).map_or("", |property| &property.name)
+    }
+
+    /// Attempts a proof for one kind of geometry.
+    ///
+    /// # Errors
+    /// See [`ProofError`].
+    pub fn prove(&self, kind: &Kind) -> Result<(Proof, Certificate), ProofError> {
+        let (case, rows) = self.case(kind)?;
+        Ok(prove::prove(&self.family, self.strobes, &case, &rows)?)
+    }
+
+    /// Checks the certificate of a kind of geometry.
+    ///
+    /// # Errors
+    /// See [`ProofError`].
+    pub fn check(&self, kind: &Kind, certificate: &Certificate) -> Result<Proof, ProofError> {
+        let (case, _) = self.case(kind)?;
+        Ok(prove::check(&self.family, self.strobes, &case, certificate)?)
+    }
+
+    /// Whether the invariants of a certificate hold in runs of up to `most` curves of k-bit coordinates; gives how many
+    /// rows were looked at.
+    ///
+    /// # Errors
+    /// See [`ProofError`].
+    pub fn holds_in_runs(
+        &self,
+        kind: &Kind,
+        certificate: &Certificate,
+        k: u32,
+        most: usize,
+    ) -> Result<usize, ProofError> {
+        let (case, _) = self.case(kind)?;
+        let all = self.claims.geometries.curves(k, 4000);
+        let own = all.iter().filter_map(|curve| Some((curve, self.claims.geometries.symbols(kind, curve)?)));
+        let mut rows = Vec::new();
+        for (curve, symbols) in own.take(most) {
+            let Some((_, hardware, machine)) = self.members.iter().find(|(other, ..)| *other == k) else { continue };
+            let blocks = machine.encode(hardware, &self.model.words(hardware, curve))?;
+            let words = blocks.into_iter().next().unwrap_or_default();
+            rows.extend(self::rows(k, &symbols, machine, &words));
+        }
+        match prove::violated(&self.family, self.strobes, &case, certificate, &rows)? {
+            Some(invariant) => Err(ProofError::Untrue { kind: kind.name.clone(), invariant }),
+            None => Ok(rows.len()),
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Files of certificates: what they are about, what they prove, and files that are made to take long.
+
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+use crate::cli::{Folder, Ran};
+
+#[test]
+fn what_is_not_claimed_is_no_failure_and_what_is_proved_has_its_certificate() {
+    let folder = Folder::new();
+    let told = folder.good("prove dda-arc --certificate arc.cert");
+    assert!(told.contains("PROVED for all k: no register overflows\n"), "{told}");
+    // Of blocks that never end nothing is proved.
+    assert!(told.contains("PROVED for all k: the end point is reached exactly by every block that ends\n"), "{told}");
+    assert!(told.contains("not claimed: every block ends\n"), "{told}");
+    let checked = folder.good("prove check arc.cert");
+    assert!(checked.contains("not claimed: every block ends\n"), "{checked}");
+}
+
+#[test]
+fn a_certificate_without_one_kind_of_geometry_proves_nothing_of_the_box() {
+    let folder = Folder::new();
+    folder.good("prove ppc-line --certificate line.cert");
+    // Without the last kind nothing is proved of the box; the others are checked all the same.
+    let text = folder.read("line.cert");
+    let (before, _) = text.split_once("kind Q4\n").unwrap();
+    std::fs::write(folder.path("part.cert"), before).unwrap();
+    let ran = folder.run("prove check part.cert");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert!(ran.out.contains("not proved: no register overflows (not for 1 of 4 kinds of geometry)\n"), "{ran:?}");
+    assert!(ran.err.contains("part.cert does not prove: no register overflows, "), "{ran:?}");
+}
+
+#[test]
+fn a_check_names_the_hardware_its_options_and_narrower_registers() {
+    let folder = Folder::new();
+    folder.good("prove ppc-line --beats 1 --on-overflow wrap --narrower x=1,y=1 --certificate line.cert");
+    let checked = folder.good("prove check line.cert");
+    let hardware = "ppc-line --beats 1 --on-overflow wrap with x 1 bit narrower and with y 1 bit narrower: every line ";
+    assert!(checked.starts_with(hardware), "{checked}");
+}
+
+/// A check, and how long it took.
+fn timed(folder: &Folder, text: &str) -> (Ran, Duration) {
+    std::fs::write(folder.path("own.cert"), text).unwrap();
+    let start = Instant::now();
+    let ran = folder.run("prove check own.cert");
+    (ran, start.elapsed())
+}
+
+#[test]
+fn a_wrong_line_is_refused_about_as_fast_as_a_good_file_is_accepted() {
+    let folder = Folder::new();
+    folder.good("prove ppc-line --certificate line.cert");
+    let text = folder.read("line.cert");
+    let (good, usual) = timed(&folder, &text);
+    assert_eq!(good.code, 0);
+    let limit = 4 * usual + Duration::from_secs(2);
+    let lines: Vec<&str> = text.lines().collect();
+    let kind = lines.iter().position(|line| *line == "kind Q2").unwrap();
+    let answers: Vec<usize> = (kind..lines.len()).filter(|place| lines[*place].starts_with("answer")).collect();
+    for place in [answers[0], answers[20], answers[45]] {
+        for wrong in ["modes", "answer -", "answer (1*0)", "modes 0", "clause v12", "equal v4 1"] {
+            let mut changed = lines.clone();
+            changed.insert(place, wrong);
+            let (ran, took) = timed(&folder, &(changed.join("\n") + "\n"));
+            assert!((1..=2).contains(&ran.code) && !ran.out.contains("PROVED"), "{wrong} at {place}: {ran:?}");
+            assert!(took < limit, "{wrong} at {place}: {took:?}, a good one {usual:?}");
+        }
+    }
+}
+
+#[test]
+fn small_files_that_are_made_to_take_long_are_refused_in_time() {
+    let folder = Folder::new();
+    folder.good("prove ppc-line --certificate line.cert");
+    let text = folder.read("line.cert");
+    let head = text.split_once("kind Q1\n").unwrap().0.to_owned();
+    let first = text.split_once("answer").unwrap().0.to_owned();
+    let many = |line: &str, count: usize| vec![line; count].join("\n") + "\n";
+    let mut fractions = format!("{first}answer (");
+    for place in 0..200 {
+        let _ = write!(fractions, "1/{}7*{} ", 10_u64.pow(17) + 2 * place, place % 9);
+    }
+    fractions += ")\n";
+    let digits = format!("{first}answer ({}*1)\n", "9".repeat(10_000));
+    for (what, text, hint) in [
+        ("open questions", format!("{first}{}", many("answer -", 400_000)), "does not prove"),
+        ("fractions", fractions, "does not prove"),
+        ("digits", digits, "cannot be read"),
+        ("equalities", format!("{head}kind Q1\nmodes\n{}", many("equal v4 v4", 100_000)), "cannot be read"),
+        ("clauses", format!("{head}kind Q1\nmodes\n{}", many("clause v4", 100_000)), "cannot be read"),
+        ("modes", format!("{head}kind Q1\n{}", many("modes", 100_000)), "cannot be read"),
+        ("kinds", format!("{head}{}", many("kind Q1", 100_000)), "is one too many"),
+        ("strange kinds", format!("{head}kind Q9\n"), "has no kind Q9"),
+        ("powers", format!("{first}answer -\nmodes\nclause {}\n", vec!["v4"; 4000].join("*")), "cannot be read"),
+        ("brackets", format!("{first}answer {}\n", "[0 ".repeat(2000)), "cannot be read"),
+        ("size", format!("{first}{}", many("answer -", 600_000)), "MiB"),
+        (
+            "options",
+            text.replacen("model ppc-line\n", "model ppc-line\noption --details\n", 1),
+            "is not hardware alone",
+        ),
+        ("models", text.replacen("model ppc-line\n", "model ppc-line\nmodel ppc-arc\n", 1), "cannot be read"),
+        (
+            "blocks",
+            format!("stepwave certificate 1\nmodel dpm-line\n{}", many("counted 16 Q1\ncounted 15 Q1", 50_000)),
+            "does not say",
+        ),
+    ] {
+        let (ran, took) = timed(&folder, &text);
+        assert!((1..=2).contains(&ran.code) && ran.err.contains(hint), "{what}: {ran:?}");
+        assert!(took < Duration::from_secs(20), "{what}: {took:?}");
+    }
+}
