@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::StringValueParser;
 use clap::{Args, Parser, Subcommand};
+use stepwave::models::Millionths;
 use stepwave::nc::Opens;
 
 use crate::commands::diff::DiffArgs;
@@ -85,6 +86,16 @@ pub(crate) struct ListArgs {
 pub(crate) struct CompareArgs {
     #[command(flatten)]
     pub(crate) geometry: GeometryArgs,
+    /// How far an end point may leave an arc: its radius may differ from that of the start by so many BLU more than
+    /// rounding makes
+    #[arg(long, value_name = "BLU", value_parser = values::parse_millionths)]
+    pub(crate) tolerance: Option<Millionths>,
+    /// A run that is not done after so many clocks is given up, and its row says so
+    #[arg(long, value_name = "CLOCKS", default_value = "1000000000", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) max_clocks: u64,
+    /// A run that takes longer is given up, and its row says so
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) max_seconds: u64,
     /// As a Markdown table
     #[arg(long)]
     pub(crate) markdown: bool,
@@ -271,6 +282,12 @@ pub(crate) struct TraceArgs {
     /// Do not dump the clock (saves about 15 bytes a cycle)
     #[arg(long, requires = "wave")]
     pub(crate) no_clk: bool,
+    /// Dump one sample a step, and those behind which a block is loaded, instead of every clock
+    #[arg(long, requires = "wave")]
+    pub(crate) trace_steps: bool,
+    /// Write a wave of more than 1 GB
+    #[arg(long, requires = "wave")]
+    pub(crate) large: bool,
 }
 
 impl TraceArgs {

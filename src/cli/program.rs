@@ -22,7 +22,36 @@ fn parse_tool(text: &str) -> Result<Tool, String> {
     let way_out = || format!("'{text}' is no tool: give its D number and radius, such as 1=4mm");
     let (number, radius) = text.split_once('=').ok_or_else(way_out)?;
     let number = number.trim().trim_start_matches(['D', 'd']).parse().map_err(|_| way_out())?;
-    Ok(Tool { number, radius: parse_blu(radius.trim()).map_err(|_| way_out())? })
+    let radius = parse_length(radius.trim()).filter(|radius| *radius >= 0.0).ok_or_else(way_out)?;
+    Ok(Tool { number, radius })
+}
+
+/// Where the machine's zero is in the program, in mm; none where G28 and G53 do not move.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Home(pub(crate) Option<[f64; 3]>);
+
+fn parse_home(text: &str) -> Result<Home, String> {
+    let way_out = || format!("'{text}' is not a home: give X,Y,Z such as 0,0,50mm, or ignore");
+    if text == "ignore" {
+        return Ok(Home(None));
+    }
+    let coordinates = text.split(',').map(|word| parse_length(word.trim()).ok_or_else(way_out));
+    let coordinates = coordinates.collect::<Result<Vec<f64>, String>>()?;
+    coordinates.try_into().map(|home| Home(Some(home))).map_err(|_| way_out())
+}
+
+/// A length in mm of either sign or 0, with its unit or, in mm, without one.
+fn parse_length(text: &str) -> Option<f64> {
+    if let Ok(length) = text.parse::<f64>() {
+        return length.is_finite().then_some(length);
+    }
+    let size = text.strip_prefix('-');
+    let number = size.unwrap_or(text).trim_end_matches(|c: char| !c.is_ascii_digit() && c != '.');
+    if number.parse() == Ok(0.0) && parse_blu(&format!("1{}", &size.unwrap_or(text)[number.len()..])).is_ok() {
+        return Some(0.0);
+    }
+    let length = parse_blu(size.unwrap_or(text)).ok()?;
+    Some(if size.is_some() { -length } else { length })
 }
 
 fn parse_feed(text: &str) -> Result<f64, String> {
@@ -69,10 +98,14 @@ pub(crate) struct ProgramArgs {
     #[arg(long, default_value = "units",
         value_parser = one_of(&[("units", Integers::Units), ("pulses", Integers::Pulses)]))]
     pub(crate) integers: Integers,
+    /// Where the machine's zero is in the program, to which G28 and G53 move, or ignore: they do not move
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = parse_home)]
+    pub(crate) home: Home,
     /// Feed of G00 in mm/min [default: a pulse of the source every second clock]
     #[arg(long, value_name = "MM/MIN", value_parser = parse_feed)]
     pub(crate) rapid: Option<f64>,
-    /// How far a chord may be off its arc, in BLU, for machines that draw lines only
+    /// How far a chord may be off its arc, in BLU, for machines that draw lines only, and for helices whose third axis is too
+    /// steep for others
     #[arg(long, value_name = "BLU", default_value = "0.5", value_parser = parse_chords)]
     pub(crate) chords: f64,
     #[command(flatten)]

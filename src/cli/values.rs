@@ -242,7 +242,8 @@ pub(crate) struct HardwareArgs {
     /// Feed in mm/min, which with --system and --blu gives the way of a period
     #[arg(long, value_name = "MM/MIN", value_parser = parse_feed)]
     feed: Option<f64>,
-    /// Greatest distance of the chords of a coarse stage from an arc, in BLU
+    /// How far an arc may be left, in BLU: by the chords of a coarse stage, and by an end point, whose radius may differ from
+    /// that of the start by so much more than rounding makes
     #[arg(long, value_name = "BLU", value_parser = parse_millionths)]
     tolerance: Option<Millionths>,
     /// Length of one BLU, which gives --feed its way, and lengths of the report theirs
@@ -310,6 +311,11 @@ impl HardwareArgs {
     /// The choices made, for a clock of this frequency in Hz.
     pub(crate) fn choices_at(&self, clock_hz: f64) -> Choices {
         Choices { clock_hz: Some(Millionths::saturating(clock_hz)), ..self.choices() }
+    }
+
+    /// How far the two radii of an arc may differ beyond what rounding makes, in BLU.
+    pub(crate) fn radii(&self) -> f64 {
+        self.tolerance.map_or(0.0, Millionths::units)
     }
 
     /// The choices made.

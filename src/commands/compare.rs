@@ -1,9 +1,13 @@
 //! `stepwave compare`: every method on one curve, side by side.
 
-use stepwave::kernel::engine::EngineKind;
-use stepwave::models::{Adder, Beats, Choice, Choices, CurveKind, Model, ModelError, Preset, Radix, System, catalogue};
+use std::time::Instant;
+
+use stepwave::kernel::engine::{EngineKind, Rows};
+use stepwave::models::{
+    Adder, Beats, Choice, Choices, CurveKind, Millionths, Model, ModelError, Preset, Radix, System, catalogue,
+};
 use stepwave::nc::Curve;
-use stepwave::testbench::{Ending, Observer, PathWatch, Testbench};
+use stepwave::testbench::{Ending, Observer, ObserverError, PathWatch, Step, Testbench};
 
 use super::geometry;
 use super::progress::Progress;
@@ -24,7 +28,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     } else {
         CurveKind::Arc
     };
-    let curve = geometry::curve("compare", kind, geometry)?;
+    let curve = geometry::curve("compare", kind, geometry, args.tolerance.map_or(0.0, Millionths::units))?;
     let mut rows = vec![HEADING.map(str::to_owned)];
     let models = catalogue().iter().filter(|model| model.curve.fits(&curve));
     let runs: Vec<_> =
@@ -32,15 +36,16 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     let progress = Progress::of(runs.len() as u64, "machines");
     let mut left_out = Vec::new();
     for (model, (form, choices)) in runs {
-        match row(model, &form, &curve, &choices)? {
+        match row(model, &form, &curve, &choices, args)? {
             Ok(row) => rows.push(row),
             Err(reason) => left_out.push(format!("\nLeft out: {}{form}: {reason}\n", model.name)),
         }
         progress.add(1);
     }
     progress.finish();
+    let note = geometry::moved_center(&curve, geometry).unwrap_or_default();
     let table = if args.markdown { markdown(&rows) } else { aligned(&rows) };
-    output::print(&(table + &left_out.concat()))
+    output::print(&(note + &table + &left_out.concat()))
 }
 
 const HEADING: [&str; 6] = ["model", "steps", "clocks", "greatest error (BLU)", "widest register", "end point"];
@@ -81,21 +86,30 @@ fn row(
     form: &str,
     curve: &Curve,
     choices: &Choices,
+    args: &CompareArgs,
 ) -> Result<Result<[String; 6], ModelError>, Failure> {
     let bench = match Testbench::new(model, curve, choices) {
-        Ok(bench) => bench,
+        Ok(bench) => bench.limited(args.max_clocks),
         Err(error @ (ModelError::TooWide { .. } | ModelError::Widths(_))) => return Ok(Err(error)),
         Err(error) => return Err(error.into()),
     };
     let mut path = PathWatch::new(&bench, curve);
-    let mut observers: [&mut dyn Observer; 1] = [&mut path];
-    let outcome = bench.run(EngineKind::Compiled, &mut observers)?;
-    let end = match outcome.ending {
-        Ending::Done if outcome.reached == curve.to() => "exact",
-        Ending::Done => "missed",
-        Ending::Trapped => "overflow",
-        Ending::Stalled { .. } => "came to a stand",
-        Ending::Endless { .. } | Ending::Limit => "endless",
+    let mut deadline = Deadline { begun: Instant::now(), seconds: args.max_seconds, clocks: 0, steps: 0 };
+    let mut observers: [&mut dyn Observer; 2] = [&mut path, &mut deadline];
+    let (steps, clocks, end) = match bench.run(EngineKind::Compiled, &mut observers) {
+        Ok(outcome) => {
+            let end = match outcome.ending {
+                Ending::Done if outcome.reached == curve.to() => "exact",
+                Ending::Done => "missed",
+                Ending::Trapped => "overflow",
+                Ending::Stalled { .. } => "came to a stand",
+                Ending::Endless { .. } => "endless",
+                Ending::Limit => "given up at --max-clocks",
+            };
+            (outcome.steps, outcome.clocks, end)
+        }
+        Err(error) if error.is::<OutOfTime>() => (deadline.steps, deadline.clocks, "given up at --max-seconds"),
+        Err(error) => return Err(error.into()),
     };
     // Positions are as wide as the way, whatever the method.
     let hardware = bench.hardware();
@@ -103,12 +117,37 @@ fn row(
     let widest = own.max_by_key(|(name, width)| (width.get(), std::cmp::Reverse(*name)));
     Ok(Ok([
         format!("{}{form}", model.name),
-        outcome.steps.to_string(),
-        outcome.clocks.to_string(),
+        steps.to_string(),
+        clocks.to_string(),
         path.worst.map_or_else(String::new, |worst| format!("{:.3}", worst.error)),
         widest.map_or_else(String::new, |(name, width)| format!("{name} {width}")),
         end.to_owned(),
     ]))
+}
+
+/// Ends a run that takes too long.
+struct Deadline {
+    begun: Instant,
+    seconds: u64,
+    clocks: u64,
+    steps: u64,
+}
+
+/// The run took too long.
+#[derive(Debug, thiserror::Error)]
+#[error("out of time")]
+struct OutOfTime;
+
+impl Observer for Deadline {
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        self.steps = step.number;
+        Ok(())
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        self.clocks = rows.first_clock() + (rows.len() as u64).saturating_sub(1);
+        if self.begun.elapsed().as_secs() >= self.seconds { Err(OutOfTime.into()) } else { Ok(()) }
+    }
 }
 
 fn markdown(rows: &[[String; 6]]) -> String {

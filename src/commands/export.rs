@@ -9,7 +9,7 @@ use stepwave::models::find;
 use stepwave::report;
 use stepwave::testbench::Testbench;
 
-use super::geometry::curve;
+use super::geometry::{self, curve};
 use crate::cli::ExportArgs;
 use crate::failure::Failure;
 use crate::output::{self, Outputs};
@@ -20,9 +20,9 @@ const DEEPEST: u64 = 1000;
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
-    let curve = curve(model.name, model.curve, &args.geometry)?;
-    let bench = Testbench::loading(model, &curve, &args.hardware.choices_at(args.clock.clock_hz))
-        .map_err(|error| args.hardware.told(error))?;
+    let curve = curve(model.name, model.curve, &args.geometry, args.hardware.radii())?;
+    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
+    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let comment = [
         report::title(model, bench.hardware(), &curve),
@@ -43,7 +43,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     if let Some(path) = &args.btor2 {
         files.write(path, &export::btor2(&design, &checking))?;
     }
-    let mut text = summary(&bench);
+    let mut text = geometry::moved_center(&curve, &args.geometry).unwrap_or_default() + &summary(&bench);
     for word in bench.cut_words() {
         text += &format!("warning: {word}\n");
     }

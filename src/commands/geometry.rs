@@ -1,16 +1,17 @@
 //! The curve that the options of several commands give.
 
-use stepwave::models::CurveKind;
+use stepwave::models::{Choice, Choices, CurveKind, Model};
 use stepwave::nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
-use crate::cli::{GeometryArgs, Point};
+use crate::cli::{GeometryArgs, HardwareArgs, Point};
 use crate::failure::Failure;
 
-/// The curve of this kind that the options give, for a model or a command.
+/// The curve of this kind that the options give, for a model or a command; the radii of an arc may differ by so many BLU
+/// beyond what rounding makes.
 ///
 /// # Errors
 /// Something is missing, or the model does not interpolate such a curve.
-pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs) -> Result<Curve, Failure> {
+pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64) -> Result<Curve, Failure> {
     let Some(to) = &args.to else {
         return trouble(format!("the end point is missing: {} takes {}", who, kind.describe()));
     };
@@ -40,11 +41,13 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs) -> Result<C
         }
         CurveKind::Arc => {
             let direction = direction()?;
-            Arc::new(point(what, "--from", from)?, point(what, "--to", Some(to))?, center()?, direction)?.into()
+            let (from, to) = (point(what, "--from", from)?, point(what, "--to", Some(to))?);
+            Arc::within(from, to, center()?, direction, radii)?.into()
         }
         CurveKind::Helix => {
             let direction = direction()?;
-            Helix::new(point(what, "--from", from)?, point(what, "--to", Some(to))?, center()?, direction)?.into()
+            let (from, to) = (point(what, "--from", from)?, point(what, "--to", Some(to))?);
+            Helix::within(from, to, center()?, direction, radii)?.into()
         }
         CurveKind::Conic => {
             let (from, to, center) = (point(what, "--from", from)?, point(what, "--to", Some(to))?, center()?);
@@ -88,6 +91,32 @@ fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Resul
     <[i64; N]>::try_from(point.as_slice()).or_else(|_| {
         let form = if N == 2 { "X,Y" } else { "X,Y,Z" };
         trouble(format!("{name} of {what} has {} coordinates: give {form}", point.len()))
+    })
+}
+
+/// The choices made for a model and a clock in Hz: the tolerance counts for the radii of an arc alone where the model itself
+/// takes none.
+pub(crate) fn choices(model: &Model, curve: &Curve, hardware: &HardwareArgs, clock_hz: f64) -> Choices {
+    let of_radii = matches!(curve, Curve::Arc(_) | Curve::Helix(_));
+    let taken = model.choices.iter().any(|doc| doc.choice == Choice::Tolerance);
+    let choices = hardware.choices_at(clock_hz);
+    Choices { tolerance: choices.tolerance.filter(|_| taken || !of_radii), ..choices }
+}
+
+/// What is to be reported where the radii of an arc are so different that its centre has moved.
+pub(crate) fn moved_center(curve: &Curve, args: &GeometryArgs) -> Option<String> {
+    let center = match curve {
+        Curve::Arc(arc) => arc.center(),
+        Curve::Helix(helix) => helix.arc().center(),
+        Curve::Line(_) | Curve::Conic(_) => return None,
+    };
+    let given: [i64; 2] = point("an arc", "--center", args.center.as_ref()).ok()?;
+    (center != given).then(|| {
+        let ([x, y], [to_x, to_y]) = (given, center);
+        format!(
+            "the two radii about ({x}, {y}) differ by more than 1 BLU: both ends stay, and the centre has moved to the whole \
+             point ({to_x}, {to_y}), whose arc is nearest\n"
+        )
     })
 }
 

@@ -11,6 +11,7 @@ mod program;
 mod progress;
 mod prove;
 mod run;
+mod size;
 mod states;
 mod sweep;
 mod wave;

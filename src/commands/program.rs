@@ -5,8 +5,9 @@ use std::io::{BufReader, Write};
 use std::path::Path;
 
 use stepwave::kernel::trace::timescale::ClockTime;
+use stepwave::models::Choices;
 use stepwave::nc::{Reading, ToolMove};
-use stepwave::program::{Control, MoveReport, Onlooker, Pace, Preparation, Stream, Survey};
+use stepwave::program::{Control, Estimate, MoveReport, Onlooker, Pace, Preparation, Stream, Survey};
 use stepwave::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail};
 use stepwave::testbench::{
     Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, RangeWatch, Sample, Testbench,
@@ -14,6 +15,7 @@ use stepwave::testbench::{
 
 use super::progress::Progress;
 use super::run::Finished;
+use super::size::Size;
 use super::wave::{Sinks, Waves, shows_trap};
 use crate::cli::ProgramArgs;
 use crate::failure::Failure;
@@ -53,13 +55,17 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
             blu: args.hardware.blu,
             integers: args.integers,
             tools: args.tool.iter().map(|tool| (tool.number, tool.radius)).collect(),
+            tolerance: args.hardware.radii(),
+            home: args.home.0,
         },
         scheme: args.compensation,
         corner: args.corner,
         chords: args.chords,
     };
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
-    let hardware = family.plan(&survey.size, &args.hardware.choices()).map_err(|error| args.hardware.told(error))?;
+    // How far the radii of an arc may differ is not the machine's concern.
+    let choices = Choices { tolerance: None, ..args.hardware.choices() };
+    let hardware = family.plan(&survey.size, &choices).map_err(|error| args.hardware.told(error))?;
     let machine = family.machine(&hardware)?;
     let bench = Testbench::of_machine(hardware, machine)
         .as_hardware_loads()
@@ -70,6 +76,12 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
     let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
     let head = ProgramHead { file: &file, family, hardware: bench.hardware(), engine: args.simulation.engine, pace };
 
+    if args.trace.wanted() {
+        let text = open(&args.file)?;
+        let estimate =
+            Estimate::of(text, family, &preparation, bench.hardware(), pace).map_err(|error| told(&error))?;
+        Size::of(&bench, &args.trace, time)?.check(&args.trace, args.simulation.max_clocks, &estimate)?;
+    }
     // All are opened before the first is written: where one is refused, nothing stands on standard output.
     let sinks = Sinks::open(&args.trace, outputs)?;
     let mut sink = |path: &Option<std::path::PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();

@@ -12,7 +12,7 @@ use stepwave::testbench::{
     Step, Testbench,
 };
 
-use super::geometry::curve;
+use super::geometry::{self, curve};
 use super::progress::RunProgress;
 use super::states::{Begin, States};
 use super::wave::{Sinks, Waves, shows_trap};
@@ -79,9 +79,9 @@ fn once(args: &RunArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> 
             "textbooks print the registers of {name} as the step table does: leave --textbook out; it is for {models}"
         )));
     }
-    let curve = curve(model.name, model.curve, &args.geometry)?;
-    let bench = Testbench::loading(model, &curve, &args.hardware.choices_at(args.clock.clock_hz))
-        .map_err(|error| args.hardware.told(error))?;
+    let curve = curve(model.name, model.curve, &args.geometry, args.hardware.radii())?;
+    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
+    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
     let bench = bench.limited_to(args.simulation.max_clocks);
     let bench = trap.and_then(|event| bench.showing(event)).unwrap_or(bench);
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
@@ -156,6 +156,7 @@ fn once(args: &RunArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> 
         sink.flush()?;
     }
     let mut text = text(&report, &table);
+    text += &geometry::moved_center(&curve, &args.geometry).unwrap_or_default();
     if let Some(clock) = begun {
         text += &format!("begun from the state at clock {clock}; the report is that of the whole run\n");
     }

@@ -12,6 +12,7 @@ use stepwave::kernel::trace::vcd::{Background, VcdBody, VcdHeader};
 use stepwave::kernel::{Net, Width, did_you_mean};
 use stepwave::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window};
 
+use super::size::Limited;
 use crate::cli::{OutputArgs, TraceArgs};
 use crate::failure::Failure;
 use crate::output::{self, Outputs, SeekSink, Sink};
@@ -44,8 +45,8 @@ pub(super) fn shows_trap(args: &TraceArgs, outputs: &OutputArgs, event: &Overflo
 
 /// Waves that are being written: the same samples of the same signals.
 pub(super) struct Waves<'a> {
-    vcd: Option<Wave<'a, VcdBody<Background<Sink>>>>,
-    fst: Option<Wave<'a, FstBody<SeekSink>>>,
+    vcd: Option<Wave<'a, VcdBody<Background<Limited<Sink>>>>>,
+    fst: Option<Wave<'a, FstBody<Limited<SeekSink>>>>,
     probes: Vec<Probe>,
     clk: bool,
     time: ClockTime,
@@ -70,14 +71,15 @@ impl<'a> Waves<'a> {
         time: ClockTime,
         title: &str,
     ) -> Result<Waves<'a>, Failure> {
-        let depth = args.trace_depth.map(|depth| usize::try_from(depth).unwrap_or(usize::MAX));
-        let selection = Selection::new(&args.trace, &args.trace_exclude, depth)?;
-        let probes = selection.probes(bench.design(), bench.columns().nets())?;
+        let probes = probes(bench, args)?;
         let trigger = match &args.trace_on {
             Some(name) => Trigger::Column(flag_column(bench, name)?),
             None => Trigger::Immediately,
         };
-        let window = Window { from: args.trace_from, to: args.trace_to, trigger };
+        let machine = bench.machine();
+        let of_steps = || [machine.stepped.net, machine.loaded.net].map(|net| bench.columns().index(net));
+        let steps = args.trace_steps.then(of_steps);
+        let window = Window { from: args.trace_from, to: args.trace_to, trigger, steps };
         let clk = !args.no_clk;
         let curves: Vec<(usize, Width)> = probes
             .iter()
@@ -89,7 +91,8 @@ impl<'a> Waves<'a> {
                 let header = VcdHeader { comment: title, probes: &probes, time, clk };
                 Some(Wave {
                     path,
-                    writer: WaveWriter::new(header.write(Background::new(sink))?, window).looking_at(curves.clone()),
+                    writer: WaveWriter::new(header.write(Background::new(Limited::new(sink, args.large)))?, window)
+                        .looking_at(curves.clone()),
                 })
             }
             None => None,
@@ -97,7 +100,10 @@ impl<'a> Waves<'a> {
         let fst = match sinks.fst {
             Some((path, sink)) => {
                 let header = FstHeader { probes: &probes, time, clk };
-                Some(Wave { path, writer: WaveWriter::new(header.write(sink)?, window).looking_at(curves) })
+                Some(Wave {
+                    path,
+                    writer: WaveWriter::new(header.write(Limited::new(sink, args.large))?, window).looking_at(curves),
+                })
             }
             None => None,
         };
@@ -203,6 +209,16 @@ fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Writte
     };
     let taken = std::mem::take(&mut writer.taken);
     Ok((Written { clocks: written, taken }, writer.finish()?))
+}
+
+/// The signals that the options choose.
+///
+/// # Errors
+/// They name none.
+pub(super) fn probes(bench: &Testbench, args: &TraceArgs) -> Result<Vec<Probe>, Failure> {
+    let depth = args.trace_depth.map(|depth| usize::try_from(depth).unwrap_or(usize::MAX));
+    let selection = Selection::new(&args.trace, &args.trace_exclude, depth)?;
+    Ok(selection.probes(bench.design(), bench.columns().nets())?)
 }
 
 /// Column of the 1-bit net of this name, path, or end of a path.

@@ -118,6 +118,7 @@ impl<'a, R: BufRead> Control<'a, R> {
         match self.stream.next().transpose()? {
             None => self.ready.push_back((Next::End, None)),
             Some(Item::Stop(_)) => {}
+            Some(Item::LeftOut(of, apart)) => self.totals.leave_out(apart, of.place.line),
             Some(Item::Dwell(_, seconds)) => {
                 // Beyond all that can be simulated the cast saturates.
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -196,10 +197,8 @@ impl<R: BufRead> Host for Control<'_, R> {
         report.commanded = given.commanded;
         report.source_hz = report.source_hz.max(given.source_hz);
         report.limited |= given.limited;
-        report.promise = match (self.family.promise(self.bench.hardware(), &given.block), report.promise) {
-            (Some(promise), Some(before)) => Some(promise.or_wider(before)),
-            (promise, _) => promise,
-        };
+        let promise = self.family.promise(self.bench.hardware(), &given.block);
+        report.keep(&given.block, promise, self.stream.chord_limit());
         if !goes_on {
             for onlooker in &mut self.onlookers {
                 onlooker.row(&given.of, 0, sample)?;

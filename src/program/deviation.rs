@@ -1,20 +1,39 @@
 //! How far a place of the tool lies off a contour in real numbers.
 
-use stepwave_nc::{Cause, Point, Segment, Side, ToolMove, Way};
+use stepwave_nc::{Cause, Point, Segment, Side, ToolMove, Way, swept};
 
 /// The distance of a place from the infinite line or the whole circle of a segment, in BLU: of an arc in its plane.
 #[must_use]
 pub(super) fn off_segment(segment: &Segment, at: Point) -> f64 {
     match segment.way {
         Way::Line => off_line(segment.from, segment.to, at),
-        Way::Arc { plane, center, .. } => {
-            let [start, place] = [segment.from, at].map(|point| {
+        Way::Arc { plane, center, direction } => {
+            let radius = |point: Point| {
                 let [u, v, _] = plane.of(point);
                 f64::hypot(u - center[0], v - center[1])
-            });
-            (place - start).abs()
+            };
+            let (start, end) = (radius(segment.from), radius(segment.to));
+            let off = |wanted: f64| (radius(at) - wanted).abs();
+            if (start - end).abs() < 1e-6 {
+                return off(start);
+            }
+            // The radius goes evenly from that of the start to that of the end.
+            let to_place = Segment { to: at, ..*segment };
+            let part = swept(&to_place, plane, center, direction) / swept(segment, plane, center, direction);
+            if part <= 1.0 { off(start + (end - start) * part) } else { off(start).min(off(end)) }
         }
     }
+}
+
+/// How far the two radii of an arc are apart, in BLU; 0 of a line.
+#[must_use]
+pub(super) fn radii_apart(segment: &Segment) -> f64 {
+    let Way::Arc { plane, center, .. } = segment.way else { return 0.0 };
+    let [start, end] = [segment.from, segment.to].map(|point| {
+        let [u, v, _] = plane.of(point);
+        f64::hypot(u - center[0], v - center[1])
+    });
+    (end - start).abs()
 }
 
 /// The distance from a line through two points, or from the point that both are.

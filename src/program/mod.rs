@@ -6,6 +6,7 @@
 
 mod control;
 mod deviation;
+mod estimate;
 mod feed;
 mod stream;
 mod survey;
@@ -15,6 +16,7 @@ use stepwave_models::ModelError;
 use stepwave_nc::{CompensationError, GeometryError, ProgramError, ReadingError};
 
 pub use control::{Control, Onlooker, Place3};
+pub use estimate::Estimate;
 pub use feed::{Pace, Ripple};
 pub use stream::{Item, Preparation, Stream};
 pub use survey::Survey;
@@ -39,21 +41,6 @@ pub enum ProgramFailure {
         line: u64,
         /// What is wrong.
         error: GeometryError,
-    },
-    /// A third axis cannot follow.
-    #[error(
-        "line {line}: the helix needs {share} pulses of its third axis to {whole} in its plane, but the machine of {family} \
-         gives it at most half as many: make it less steep, or break it into lines"
-    )]
-    Steep {
-        /// The family of the machine.
-        family: &'static str,
-        /// The line of the program.
-        line: u64,
-        /// Pulses of the third axis.
-        share: u64,
-        /// Pulses in the plane.
-        whole: u64,
     },
     /// Nothing moves.
     #[error("no block of the program moves an axis by as much as one BLU: choose a smaller --blu")]

@@ -17,7 +17,7 @@ pub struct Preparation {
     pub scheme: Scheme,
     /// How an outside corner is gone round.
     pub corner: Corner,
-    /// How far a chord may be off its arc, in BLU, where the machine draws lines only.
+    /// How far a chord may be off its arc, in BLU, where the machine draws lines only or cannot follow a steep helix.
     pub chords: f64,
 }
 
@@ -26,6 +26,8 @@ pub struct Preparation {
 pub enum Item {
     /// It moves; one or more blocks of one move.
     Move(ToolMove, Vec<PulseBlock>),
+    /// A move to which standing still is nearer than any pulse, and how far it goes from there, in BLU.
+    LeftOut(ToolMove, f64),
     /// It stands for so many seconds.
     Dwell(Place, f64),
     /// It stands until the operator starts it again: M00 or M01, which a simulation goes on behind at once.
@@ -37,6 +39,8 @@ pub struct Stream<R> {
     program: Program<R>,
     compensator: Compensator,
     rounder: Rounder,
+    family: &'static Family,
+    chords: f64,
     moves: Vec<ToolMove>,
     items: VecDeque<Item>,
     ended: bool,
@@ -47,16 +51,23 @@ impl<R: BufRead> Stream<R> {
     ///
     /// # Errors
     /// The BLU or a tool is no length.
-    pub fn new(text: R, family: &Family, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
+    pub fn new(text: R, family: &'static Family, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
         let chords = (!family.arcs).then_some(preparation.chords);
         Ok(Stream {
             program: Program::new(text, preparation.reading.clone())?,
             compensator: Compensator::new(preparation.scheme, preparation.corner),
             rounder: Rounder::new(chords),
+            family,
+            chords: preparation.chords,
             moves: Vec::new(),
             items: VecDeque::new(),
             ended: false,
         })
+    }
+
+    /// How far a chord may be off its arc, in BLU.
+    pub(super) fn chord_limit(&self) -> f64 {
+        self.chords
     }
 
     /// Reads on until something is to be done.
@@ -94,10 +105,15 @@ impl<R: BufRead> Stream<R> {
         for of in self.moves.drain(..) {
             let mut blocks = Vec::new();
             let line = of.place.line;
-            self.rounder.blocks(&of, &mut blocks).map_err(|error| ProgramFailure::Geometry { line, error })?;
-            if !blocks.is_empty() {
-                self.items.push_back(Item::Move(of, blocks));
+            let told = |error| ProgramFailure::Geometry { line, error };
+            let before = self.rounder.clone();
+            let mut apart = self.rounder.blocks(&of, &mut blocks).map_err(told)?;
+            if blocks.iter().any(|block| self.family.too_steep(block)) {
+                self.rounder = before;
+                blocks.clear();
+                apart = self.rounder.chords(&of, self.chords, &mut blocks).map_err(told)?;
             }
+            self.items.push_back(if blocks.is_empty() { Item::LeftOut(of, apart) } else { Item::Move(of, blocks) });
         }
         Ok(())
     }

@@ -21,17 +21,16 @@ impl Survey {
     ///
     /// # Errors
     /// The program is wrong, or nothing in it moves the machine.
-    pub fn of<R: BufRead>(text: R, family: &Family, preparation: &Preparation) -> Result<Survey, ProgramFailure> {
+    pub fn of<R: BufRead>(
+        text: R,
+        family: &'static Family,
+        preparation: &Preparation,
+    ) -> Result<Survey, ProgramFailure> {
         let mut survey = Survey::default();
         for item in Stream::new(text, family, preparation)? {
-            let Item::Move(of, blocks) = item? else { continue };
+            let Item::Move(_, blocks) = item? else { continue };
             survey.moves += 1;
             for block in &blocks {
-                let [share, whole] = family.too_steep(block);
-                if share > 0 {
-                    let line = of.place.line;
-                    return Err(ProgramFailure::Steep { family: family.name, line, share, whole });
-                }
                 survey.size.add(family, block);
             }
         }

@@ -1,9 +1,9 @@
 //! What a machine made of one move of the tool, and of all of them.
 
 use stepwave_models::{CutWord, Promise};
-use stepwave_nc::{Cause, Feed, PulseBlock, ToolMove, Way};
+use stepwave_nc::{Cause, Curve, Feed, PulseBlock, ROUNDING_LIMIT, ToolMove, Way};
 
-use super::deviation::{off_programmed, off_segment};
+use super::deviation::{off_programmed, off_segment, radii_apart};
 use super::feed::Ripple;
 
 /// What a machine made of one move.
@@ -37,6 +37,8 @@ pub struct MoveReport {
     pub promise: Option<Promise>,
     /// Greatest distance of the tool's centre from the compensated contour, in BLU.
     pub off_compensated: f64,
+    /// What the method, the rounding to pulses and chords promise of that together, in BLU.
+    pub contour_bound: Option<f64>,
     /// Greatest distance of the tool's edge from the programmed contour, in BLU.
     pub off_programmed: Option<f64>,
     /// How evenly it went.
@@ -62,6 +64,7 @@ impl MoveReport {
             error: 0.0,
             promise: None,
             off_compensated: 0.0,
+            contour_bound: None,
             off_programmed: None,
             ripple: Ripple::new(from, begun),
         }
@@ -100,6 +103,22 @@ impl MoveReport {
     #[must_use]
     pub fn within_bound(&self) -> bool {
         self.promise.is_none_or(|promise| promise.is_kept(self.error))
+    }
+
+    /// The contour is as near as it is promised.
+    #[must_use]
+    pub fn within_contour(&self) -> bool {
+        self.contour_bound.is_none_or(|bound| self.off_compensated <= bound + 1e-9)
+    }
+
+    /// Takes what the method promises of a block of the machine; `chords` is what a chord of an arc may be off it.
+    pub(super) fn keep(&mut self, block: &PulseBlock, promise: Option<Promise>, chords: f64) {
+        let Some(promise) = promise else { return };
+        self.promise = Some(self.promise.map_or(promise, |before| promise.or_wider(before)));
+        let drawn = matches!((&block.curve, self.of.segment.way), (Curve::Line(_), Way::Arc { .. }));
+        let allowed = ROUNDING_LIMIT + radii_apart(&self.of.segment) + if drawn { chords } else { 0.0 };
+        let bound = promise.bound() + allowed;
+        self.contour_bound = Some(self.contour_bound.map_or(bound, |before| before.max(bound)));
     }
 
     /// Mean speed in BLU per second.
@@ -153,8 +172,12 @@ pub struct Totals {
     pub pulses: [u64; 3],
     /// Moves that did not end at their end point.
     pub missed: u64,
-    /// Moves whose path error was beyond what the method promises.
+    /// Moves whose path error, or distance from the compensated contour, was beyond what is promised.
     pub beyond: u64,
+    /// Moves to which standing still was nearer than any pulse.
+    pub left_out: u64,
+    /// The farthest that such a move goes from there, in BLU.
+    pub off_left_out: Greatest,
     /// Greatest distance from the curve that the machine was told, in BLU.
     pub error: Greatest,
     /// Greatest distance from the compensated contour, in BLU.
@@ -182,6 +205,11 @@ impl Totals {
         self.cut_words += words.len() as u64;
         let room = CUT_WORDS.saturating_sub(self.cut.len());
         self.cut.extend(words.iter().take(room).map(|word| (line, *word)));
+    }
+
+    pub(super) fn leave_out(&mut self, apart: f64, line: u64) {
+        self.left_out += 1;
+        self.off_left_out.take(apart, line);
     }
 
     pub(super) fn add(&mut self, report: &MoveReport) {
@@ -215,6 +243,13 @@ impl Totals {
             let error = report.error;
             fail(format!(
                 "line {line}: the path is {error:.3} BLU off its curve, where the method promises at most {promise}"
+            ));
+        } else if let (false, Some(bound)) = (report.within_contour(), report.contour_bound) {
+            self.beyond += 1;
+            let off = report.off_compensated;
+            fail(format!(
+                "line {line}: the tool's centre is {off:.3} BLU off the contour, where method and rounding promise \
+                 {bound:.3} BLU: choose a smaller --blu"
             ));
         }
     }

@@ -159,6 +159,7 @@ impl<'a, W: Write> ProgramJson<'a, W> {
             "position_counters": outcome.counters,
             "missed_end_points": totals.missed,
             "beyond_bound": totals.beyond,
+            "left_out": { "moves": totals.left_out, "blu": totals.off_left_out.value, "line": totals.off_left_out.line },
             "path_error": greatest(totals.error),
             "compensated_contour_error": greatest(totals.off_compensated),
             "programmed_contour_error": greatest(totals.off_programmed),
@@ -218,6 +219,7 @@ impl<W: Write> Onlooker for ProgramJson<'_, W> {
             },
             "path_error": { "greatest": report.error, "bound": report.promise.map(Promise::bound), "within_bound": report.within_bound() },
             "compensated_contour_error": report.off_compensated,
+            "compensated_contour_bound": report.contour_bound,
             "programmed_contour_error": report.off_programmed,
             "feed": {
                 "commanded_mm_per_min": report.commanded.map(|speed| head.feed(speed)),
@@ -318,18 +320,31 @@ impl<'a> ProgramTable<'a> {
                 let _ = writeln!(text, "greatest {what}: {value:.3} BLU ({:.3} µm), line {line}", value * um);
             }
         }
-        if totals.limited > 0 {
-            let _ = writeln!(
-                text,
-                "warning: {} moves asked the pulse source for more than a pulse every second clock, or for less than its \
-                 least: choose another --clock-hz, or --normalize where the method has it",
-                totals.limited
-            );
-        }
+        notes(&mut text, totals);
         let chosen = tail.ranges.iter().filter(|range| self.head.hardware.widths.contains_key(&range.name));
         let spare = chosen.map(|range| format!("{} {}/{}", range.name, range.needed(), range.width.get()));
         let _ = writeln!(text, "bits needed/given: {}", spare.collect::<Vec<_>>().join(", "));
         text
+    }
+}
+
+/// What is to be said of moves that were left out, and of feeds that were not reached.
+fn notes(text: &mut String, totals: &Totals) {
+    if totals.left_out > 0 {
+        let (moves, Greatest { value, line }) = (totals.left_out, totals.off_left_out);
+        let _ = writeln!(
+            text,
+            "left out: {moves} moves to which standing still is nearer than any pulse; the farthest goes {value:.3} BLU, \
+             line {line}"
+        );
+    }
+    if totals.limited > 0 {
+        let _ = writeln!(
+            text,
+            "warning: {} moves asked the pulse source for more than a pulse every second clock, or for less than its \
+             least: choose another --clock-hz, or --normalize where the method has it",
+            totals.limited
+        );
     }
 }
 

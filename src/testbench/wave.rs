@@ -30,6 +30,8 @@ pub struct Window {
     pub to: Option<u64>,
     /// What opens it.
     pub trigger: Trigger,
+    /// Columns of which one is 1 in a sample that is written; `None` for every sample. The first of all is always written.
+    pub steps: Option<[usize; 2]>,
 }
 
 impl Window {
@@ -147,6 +149,15 @@ impl<B: WaveBody> WaveWriter<B> {
         WaveWriter { taken, ..self }
     }
 
+    fn write(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
+        let clock = |index: usize| rows.first_clock() + index as u64;
+        let (first, last) = (clock(range.start), clock(range.end - 1));
+        self.taken.iter_mut().for_each(|taken| taken.take(rows, range.clone()));
+        self.body.rows(rows, range)?;
+        self.written = Some((self.written.map_or(first, |(first, _)| first), last));
+        Ok(())
+    }
+
     /// Ends the wave.
     ///
     /// # Errors
@@ -173,11 +184,17 @@ impl<B: WaveBody> Observer for WaveWriter<B> {
             return Ok(());
         }
         self.open = true;
-        let clock = |index: usize| rows.first_clock() + index as u64;
-        let (first, last) = (clock(range.start), clock(range.end - 1));
-        self.taken.iter_mut().for_each(|taken| taken.take(rows, range.clone()));
-        self.body.rows(rows, range)?;
-        self.written = Some((self.written.map_or(first, |(first, _)| first), last));
+        let Some(columns) = self.window.steps else {
+            return self.write(rows, range).map_err(Into::into);
+        };
+        let begun = self.written.is_none().then_some(range.start);
+        let wanted = |row: usize| Some(row) == begun || columns.iter().any(|&column| rows.value(column, row) == 1);
+        let mut row = range.start;
+        while let Some(start) = (row..range.end).find(|&row| wanted(row)) {
+            let end = (start..range.end).find(|&row| !wanted(row)).unwrap_or(range.end);
+            self.write(rows, start..end)?;
+            row = end;
+        }
         Ok(())
     }
 }

@@ -25,6 +25,7 @@ mod stops;
 mod sweep;
 mod tables;
 mod terminal;
+mod tolerance;
 mod waves;
 
 use std::fs;

@@ -7,13 +7,13 @@ use serde_json::Value;
 use crate::cli::Folder;
 
 /// Runs a program and gives its report.
-fn report(folder: &Folder, text: &str, options: &str) -> Value {
+pub(super) fn report(folder: &Folder, text: &str, options: &str) -> Value {
     fs::write(folder.path("p.ngc"), text).unwrap();
     folder.good(&format!("program p.ngc {options} --json r.json"));
     serde_json::from_str(&fs::read_to_string(folder.path("r.json")).unwrap()).unwrap()
 }
 
-fn number(value: &Value) -> f64 {
+pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("no number: {value}"))
 }
 
@@ -151,7 +151,7 @@ fn bad_programs_end_with_line_and_column_and_leave_nothing() {
         (b"G01 X1\n", "line 1, column"),
         (b"G01 X99999999999999999999 F1\n", "line 1, column 5"),
         (b"\x00\xff\x13junk", "line 1, column 2"),
-        (b"G01 X1 F100\nG91 G28 Z0\n", "line 2, column 5"),
+        (b"G01 X1 F100\nG91 G30 Z0\n", "line 2, column 5"),
         (b"G41 D1 G01 X50 F100\nX60\nY10\nX55\nY9\nX70\nG40 X90\n", "too large"),
         (b"", "line 1"),
     ];

@@ -70,7 +70,9 @@ fn family(name: &str) -> &'static Family {
 fn run(family: &Family, moves: &[ToolMove], choices: &Choices, engine: EngineKind) -> Ran {
     let mut rounder = Rounder::new((!family.arcs).then_some(0.5));
     let mut blocks = Vec::new();
-    moves.iter().for_each(|of| rounder.blocks(of, &mut blocks).unwrap());
+    moves.iter().for_each(|of| {
+        rounder.blocks(of, &mut blocks).unwrap();
+    });
     run_blocks(family, blocks, choices, engine)
 }
 
@@ -162,7 +164,9 @@ struct Reports {
 fn reports(family: &Family, moves: &[ToolMove], choices: &Choices, slow: u32, every_sample: bool) -> Reports {
     let (mut rounder, mut blocks, mut size) =
         (Rounder::new((!family.arcs).then_some(0.5)), Vec::new(), Size::default());
-    moves.iter().for_each(|of| rounder.blocks(of, &mut blocks).unwrap());
+    moves.iter().for_each(|of| {
+        rounder.blocks(of, &mut blocks).unwrap();
+    });
     blocks.iter().for_each(|block| size.add(family, block));
     let hardware = family.plan(&size, choices).unwrap();
     let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware).unwrap()).limited(1 << 20);

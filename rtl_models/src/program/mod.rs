@@ -122,18 +122,16 @@ impl Family {
         Machine::new((self.netlist)(hardware)?, hardware)
     }
 
-    /// Pulses of the third axis and of the plane in the steepest sector of a helix, where the third axis cannot follow
-    /// because it has more than half of them; 0 where it can.
+    /// Whether a helix is so steep that its third axis cannot follow: in one of its sectors it has more than half as many
+    /// pulses as the plane.
     #[must_use]
-    pub fn too_steep(&self, block: &PulseBlock) -> [u64; 2] {
-        let Curve::Helix(_) = block.curve else { return [0; 2] };
-        let sectors = planar::blocks(self, block, |_| (Words::new(), 0.0));
+    pub fn too_steep(&self, block: &PulseBlock) -> bool {
+        let Curve::Helix(_) = block.curve else { return false };
         let word = |sector: &HardwareBlock, wanted: &str| {
-            let found = sector.words.iter().find(|(name, _)| *name == wanted).map_or(0, |(_, value)| *value);
-            u64::try_from(found).unwrap_or(u64::MAX)
+            sector.words.iter().find(|(name, _)| *name == wanted).map_or(0, |(_, value)| *value)
         };
-        let pairs = sectors.iter().map(|sector| [word(sector, "share"), word(sector, "whole")]);
-        pairs.filter(|[share, whole]| share.saturating_mul(2) > *whole).max().unwrap_or_default()
+        let sectors = planar::blocks(self, block, |_| (Words::new(), 0.0));
+        sectors.iter().any(|sector| 2 * word(sector, "share") > word(sector, "whole"))
     }
 
     /// What the method promises of a block, if it promises anything.

@@ -45,12 +45,50 @@ impl Arc {
         let [start_squared, end_squared] = [from, to].map(|point| norm_squared(between(center, point)));
         if !roots_within_one(start_squared, end_squared) {
             let [start_radius, end_radius] = [start_squared, end_squared].map(|squared| (squared as f64).sqrt());
-            return Err(GeometryError::EndOffCircle { start_radius, end_radius });
+            return Err(GeometryError::EndOffCircle { start_radius, end_radius, tolerance: 0.0 });
         }
         if to == center {
             return Err(GeometryError::EndAtCenter { center });
         }
         Ok(Arc { from, to, center, direction })
+    }
+
+    /// The arc between two points about a centre, whose two radii may differ by so many BLU beyond the one that
+    /// [`new`](Arc::new) allows. Where they do, both ends stay and the centre moves: to the whole point about which an arc
+    /// between the ends is nearest to the one wanted, whose radius goes evenly from that of the start to that of the end.
+    ///
+    /// # Errors
+    /// As [`new`](Arc::new); also where the radii differ by more than half of the first.
+    ///
+    /// ```
+    /// use stepwave_nc::{Arc, Direction};
+    ///
+    /// // The radii are 538.516 and 540.754 BLU.
+    /// let [from, to, center] = [[0, 0], [-702, 299], [-200, 500]];
+    /// assert!(Arc::new(from, to, center, Direction::Clockwise).is_err());
+    /// let arc = Arc::within(from, to, center, Direction::Clockwise, 2.0)?;
+    /// assert_eq!((arc.from(), arc.to()), (from, to));
+    /// # Ok::<(), stepwave_nc::GeometryError>(())
+    /// ```
+    pub fn within(
+        from: [i64; 2],
+        to: [i64; 2],
+        center: [i64; 2],
+        direction: Direction,
+        tolerance: f64,
+    ) -> Result<Arc, GeometryError> {
+        let refused = match Arc::new(from, to, center, direction) {
+            Err(GeometryError::EndOffCircle { start_radius, end_radius, .. }) => {
+                GeometryError::EndOffCircle { start_radius, end_radius, tolerance }
+            }
+            other => return other,
+        };
+        let GeometryError::EndOffCircle { start_radius, end_radius, .. } = refused else { return Err(refused) };
+        let apart = (end_radius - start_radius).abs();
+        if apart > (1.0 + tolerance).min(start_radius / 2.0) {
+            return Err(refused);
+        }
+        crate::pulses::arc_between(from, to, center, direction).ok_or(refused)
     }
 
     /// The start point in machine coordinates, in BLU.

@@ -64,13 +64,16 @@ pub enum GeometryError {
     /// The end point of an arc lies more than one BLU off the circle through the start point.
     #[error(
         "the radius is {start_radius:.3} BLU at the start point but {end_radius:.3} BLU at the \
-         end point, and they may differ by at most 1 BLU: correct the centre or the end point"
+         end point, and they may differ by at most 1 BLU{}: correct the centre or the end point{}",
+        beyond(*.tolerance), accepted(*.start_radius, *.end_radius)
     )]
     EndOffCircle {
         /// Distance of the start point from the centre, in BLU.
         start_radius: f64,
         /// Distance of the end point from the centre, in BLU.
         end_radius: f64,
+        /// What they may differ by beyond the one BLU, in BLU.
+        tolerance: f64,
     },
     /// A semi-axis or a parameter of a conic is zero or negative.
     #[error(
@@ -226,7 +229,20 @@ mod tests {
         assert_eq!(
             message(arc([5, 0], [0, 7], [0, 0])),
             "the radius is 5.000 BLU at the start point but 7.000 BLU at the end point, and they may differ by \
-             at most 1 BLU: correct the centre or the end point"
+             at most 1 BLU: correct the centre or the end point, or accept it with --tolerance 1"
         );
     }
+}
+
+fn beyond(tolerance: f64) -> String {
+    if tolerance > 0.0 { format!(" and the --tolerance of {tolerance} BLU beyond") } else { String::new() }
+}
+
+/// The tolerance that would accept an arc with these radii, where one may.
+fn accepted(start: f64, end: f64) -> String {
+    let apart = (end - start).abs();
+    if apart > start / 2.0 {
+        return String::new();
+    }
+    format!(", or accept it with --tolerance {}", ((apart - 1.0) * 1000.0).ceil() / 1000.0)
 }

@@ -48,6 +48,21 @@ impl Helix {
         Ok(Helix { arc, from, to })
     }
 
+    /// As [`new`](Helix::new), where the radii of the arc may differ by so many BLU more: see [`Arc::within`].
+    ///
+    /// # Errors
+    /// As [`new`](Helix::new), and as [`Arc::within`].
+    pub fn within(
+        from: [i64; 3],
+        to: [i64; 3],
+        center: [i64; 2],
+        direction: Direction,
+        tolerance: f64,
+    ) -> Result<Helix, GeometryError> {
+        let arc = Arc::within([from[0], from[1]], [to[0], to[1]], center, direction, tolerance)?;
+        Helix::new(from, to, arc.center(), direction)
+    }
+
     /// The arc in x and y.
     #[must_use]
     pub fn arc(&self) -> &Arc {

@@ -51,6 +51,6 @@ pub use program::{
     Auxiliary, Coolant, Event, Integers, PROGRAM_LIMIT, Program, ProgramError, ProgramErrorKind, Reading, ReadingError,
     Spindle,
 };
-pub use pulses::{PulseBlock, Rounder, swept};
+pub use pulses::{PulseBlock, ROUNDING_LIMIT, Rounder, swept};
 pub use quadrant::{Direction, Quadrant};
 pub use sector::{Crossing, Sector};

@@ -2,9 +2,16 @@
 
 use std::f64::consts::{PI, TAU};
 
+use bow::Bow;
+use nearest::{Nearest, nearest};
+
 use crate::{
     Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, Place, Plane, Point, Segment, ToolMove, Way,
 };
+
+/// How far the curve that a machine is told is off the move in real numbers at most, in BLU, both ways: of a tiny circle,
+/// whose start and centre both round. The radii of an arc may differ by more, and it is off by as much more.
+pub const ROUNDING_LIMIT: f64 = 1.5;
 
 /// A block as a machine gets it: one curve in whole BLU.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,44 +89,61 @@ impl Rounder {
         Rounder { at: [0; 3], chords }
     }
 
-    /// The blocks of a move: none where it is shorter than a pulse.
+    /// The blocks of a move, none where no pulse is nearest to it; and how far they and the move are apart, in BLU: the
+    /// two-sided distance, of which a chord's own distance from its arc is no part.
     ///
     /// # Errors
     /// A coordinate is beyond [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT).
-    pub fn blocks(&mut self, of: &ToolMove, out: &mut Vec<PulseBlock>) -> Result<(), GeometryError> {
+    pub fn blocks(&mut self, of: &ToolMove, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
         let Way::Arc { plane, center, direction } = of.segment.way else {
             return self.line(of, of.segment.to, out);
         };
         if let Some(tolerance) = self.chords {
-            for point in chords(&of.segment, plane, center, direction, tolerance) {
-                self.line(of, point, out)?;
-            }
-            return Ok(());
+            return self.chords(of, tolerance, out);
         }
         let angle = swept(&of.segment, plane, center, direction);
         let climb = plane.of(of.segment.to)[2] - plane.of(of.segment.from)[2];
         let parts = pieces(angle, climb);
-        let mut from = of.segment.from;
+        let (mut from, mut apart) = (of.segment.from, 0.0_f64);
         for part in 1..=parts {
             let to = on_arc(&of.segment, plane, center, direction, [part, parts]);
             let segment = Segment { from, to, way: of.segment.way };
             let ends = [self.at, rounded(to)?];
-            match arc(&segment, plane, center, direction, ends) {
+            let (curve, off) = arc(&segment, plane, center, direction, ends);
+            apart = apart.max(off);
+            match curve {
                 Some(curve) => {
                     out.push(PulseBlock { of: *of, plane, curve, from: ends[0], to: ends[1] });
                     self.at = ends[1];
                 }
-                None => self.line(of, to, out)?,
+                None => apart = apart.max(self.line(of, to, out)?),
             }
             from = to;
         }
-        Ok(())
+        Ok(apart)
     }
 
-    fn line(&mut self, of: &ToolMove, to: Point, out: &mut Vec<PulseBlock>) -> Result<(), GeometryError> {
-        let (from, to) = (self.at, rounded(to)?);
+    /// The blocks of a move whose arc becomes chords that are at most so many BLU off it, as [`blocks`](Self::blocks).
+    ///
+    /// # Errors
+    /// As [`blocks`](Self::blocks).
+    pub fn chords(&mut self, of: &ToolMove, tolerance: f64, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
+        let Way::Arc { plane, center, direction } = of.segment.way else {
+            return self.line(of, of.segment.to, out);
+        };
+        let mut apart = 0.0_f64;
+        for point in chords(&of.segment, plane, center, direction, tolerance) {
+            apart = apart.max(self.line(of, point, out)?);
+        }
+        Ok(apart)
+    }
+
+    /// A straight way; tells how far its end is off the one wanted.
+    fn line(&mut self, of: &ToolMove, end: Point, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
+        let (from, to) = (self.at, rounded(end)?);
+        let off = [0, 1, 2].map(|axis| (end[axis] - to[axis] as f64).powi(2)).iter().sum::<f64>().sqrt();
         if from == to {
-            return Ok(());
+            return Ok(off);
         }
         // The plane of the two longest ways: the third axis follows them.
         let way = |axis: usize| from[axis].abs_diff(to[axis]);
@@ -129,7 +153,7 @@ impl Rounder {
         let curve = Curve::Line(Line::new(along(from), along(to))?);
         out.push(PulseBlock { of: *of, plane, curve, from, to });
         self.at = to;
-        Ok(())
+        Ok(off)
     }
 }
 
@@ -142,43 +166,45 @@ fn rounded(point: Point) -> Result<[i64; 3], GeometryError> {
     Ok(whole)
 }
 
-/// The arc about the whole centre whose circle both ends and the arc between them are nearest to; `None` where pulses are
-/// too coarse for it.
-fn arc(segment: &Segment, plane: Plane, center: [f64; 2], direction: Direction, ends: [[i64; 3]; 2]) -> Option<Curve> {
+/// The arc or helix in whole BLU that is nearest to a segment, and the two-sided distance between them in the plane, in
+/// BLU; no curve where the straight way between the ends is nearer.
+fn arc(
+    segment: &Segment,
+    plane: Plane,
+    center: [f64; 2],
+    direction: Direction,
+    ends: [[i64; 3]; 2],
+) -> (Option<Curve>, f64) {
     let along = |point: [i64; 3]| plane.axes().map(|axis| point[axis]);
     let [from, to] = ends.map(along);
-    let [start, end] = [[from[0], from[1]], [to[0], to[1]]];
-    let angle = swept(segment, plane, center, direction);
-    // Pulses do not tell a way of less than a BLU from none, nor a turn of almost a whole one from a whole one.
-    if start == end && angle < PI {
-        return None;
-    }
-    let between = [1, 2, 3].map(|part| plane.of(on_arc(segment, plane, center, direction, [part, 4])));
-    let mut best: Option<(f64, Arc)> = None;
+    let flat = [[from[0], from[1]], [to[0], to[1]]];
+    let real = [segment.from, segment.to].map(|point| {
+        let [u, v, _] = plane.of(point);
+        [u, v]
+    });
+    let ideal = Bow::spiral(real, center, swept(segment, plane, center, direction), direction);
     // Of a short arc the ends say where the centre is, of a longer one the programmed centre does.
-    for near in [center, through(segment, plane, center, direction, [start, end])] {
-        #[allow(clippy::cast_possible_truncation)]
-        let middle = near.map(|c| c.round() as i64);
-        for (dx, dy) in (-2..=2).flat_map(|dx| (-2..=2).map(move |dy| (dx, dy))) {
-            let at = [middle[0].checked_add(dx)?, middle[1].checked_add(dy)?];
-            let Ok(arc) = Arc::new(start, end, at, direction) else { continue };
-            if (arc.sweep() - angle).abs() > PI {
-                continue;
-            }
-            let radius = |u: f64, v: f64| f64::hypot(u - at[0] as f64, v - at[1] as f64);
-            let off = between.map(|[u, v, _]| (radius(u, v) - arc.radius()).abs()).into_iter().fold(0.0, f64::max);
-            let cost = (radius(end[0] as f64, end[1] as f64) - arc.radius()).abs() + off;
-            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                best = Some((cost, arc));
-            }
-        }
+    let seeds = [center, through(segment, plane, center, direction, flat)];
+    let Nearest { arc, apart } = nearest(&ideal, seeds, flat, direction);
+    let curve = arc.and_then(|arc| match from[2] == to[2] {
+        true => Some(Curve::Arc(arc)),
+        false => Helix::new(from, to, arc.center(), direction).ok().map(Curve::Helix),
+    });
+    (curve, apart)
+}
+
+/// The arc between two whole points that is nearest to one about a centre with another radius at its end than at its start.
+pub(crate) fn arc_between(from: [i64; 2], to: [i64; 2], center: [i64; 2], direction: Direction) -> Option<Arc> {
+    // Within 2^53, as every coordinate is.
+    let real = |[x, y]: [i64; 2]| [x as f64, y as f64, 0.0];
+    let [x, y, _] = real(center);
+    let way = Way::Arc { plane: Plane::Xy, center: [x, y], direction };
+    let segment = Segment { from: real(from), to: real(to), way };
+    let ends = [from, to].map(|[x, y]| [x, y, 0]);
+    match arc(&segment, Plane::Xy, [x, y], direction, ends) {
+        (Some(Curve::Arc(arc)), _) => Some(arc),
+        _ => None,
     }
-    let (_, arc) = best?;
-    if from[2] == to[2] {
-        return Some(Curve::Arc(arc));
-    }
-    let [cx, cy] = arc.center();
-    Helix::new(from, to, [cx, cy], direction).ok().map(Curve::Helix)
 }
 
 /// The centre of an arc of the programmed radius through both rounded ends: on the perpendicular bisector of their chord,
@@ -262,5 +288,7 @@ fn on_arc(segment: &Segment, plane: Plane, center: [f64; 2], direction: Directio
     plane.point([center[0] + x * scale, center[1] + y * scale, from + (to - from) * part])
 }
 
+mod bow;
+mod nearest;
 #[cfg(test)]
 mod tests;

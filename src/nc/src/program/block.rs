@@ -68,7 +68,12 @@ pub(super) struct Block<'l> {
     /// Millimetres in a unit.
     pub(super) unit: Slot<'l, f64>,
     pub(super) compensation: Slot<'l, Compensation>,
-    pub(super) length_offset: Slot<'l, ()>,
+    /// G43 and G49; true under G43.
+    pub(super) length_offset: Slot<'l, bool>,
+    /// G53.
+    pub(super) machine: Slot<'l, ()>,
+    /// G28.
+    pub(super) home: Slot<'l, ()>,
     pub(super) coordinates: Slot<'l, ()>,
     pub(super) path_control: Slot<'l, bool>,
     pub(super) distance: Slot<'l, Distance>,
@@ -110,7 +115,7 @@ impl<'l> Block<'l> {
                 'O' => return Err(word.fault(|word| ProgramErrorKind::FlowControl { word })),
                 'G' => block.g(word)?,
                 'M' => block.m(word)?,
-                'D' | 'F' | 'I' | 'J' | 'K' | 'P' | 'Q' | 'R' | 'S' | 'T' | 'X' | 'Y' | 'Z' => {
+                'D' | 'F' | 'H' | 'I' | 'J' | 'K' | 'P' | 'Q' | 'R' | 'S' | 'T' | 'X' | 'Y' | 'Z' => {
                     let slot = &mut block.letters[place(word.letter)];
                     if let Some(first) = slot {
                         let first = first.name();
@@ -155,7 +160,10 @@ impl<'l> Block<'l> {
             Some(420) => put(&mut self.compensation, Compensation::Tool(Right), word),
             Some(411) => put(&mut self.compensation, Compensation::Diameter(Left), word),
             Some(421) => put(&mut self.compensation, Compensation::Diameter(Right), word),
-            Some(490) => put(&mut self.length_offset, (), word),
+            Some(280) => put(&mut self.home, (), word),
+            Some(430) => put(&mut self.length_offset, true, word),
+            Some(490) => put(&mut self.length_offset, false, word),
+            Some(530) => put(&mut self.machine, (), word),
             Some(540) => put(&mut self.coordinates, (), word),
             Some(610 | 611) => put(&mut self.path_control, false, word),
             Some(640) => put(&mut self.path_control, true, word),
@@ -186,13 +194,18 @@ impl<'l> Block<'l> {
         }
     }
 
-    /// Checks that D, P and Q belong to something in the block; I, J, K and R are up to the motion in force.
+    /// Whether P belongs to G04 or G64, and not to an arc.
+    pub(super) fn times(&self) -> bool {
+        self.dwell.is_some() || matches!(self.path_control, Some((true, _)))
+    }
+
+    /// Checks that D, H and Q belong to something in the block; I, J, K, P and R are up to the motion in force.
     fn check_owners(&self) -> Result<(), Fault> {
         let blends = matches!(self.path_control, Some((true, _)));
         let compensates = self.compensation.is_some_and(|(compensation, _)| compensation != Compensation::Off);
         for (letter, used, owner) in [
             ('D', compensates, "G41 or G42"),
-            ('P', blends || self.dwell.is_some(), "G04 or G64"),
+            ('H', matches!(self.length_offset, Some((true, _))), "G43"),
             ('Q', blends, "G64"),
         ] {
             if let (Some(word), false) = (self.word(letter), used) {

@@ -3,7 +3,7 @@
 use std::io;
 
 use super::words::{DIGITS_LIMIT, LINE_LIMIT};
-use super::{CENTER_TOLERANCE, PROGRAM_LIMIT};
+use super::{CENTER_TOLERANCE, PROGRAM_LIMIT, TURNS_LIMIT};
 
 /// Why a program cannot be read, and where.
 #[derive(Debug, thiserror::Error)]
@@ -55,6 +55,14 @@ pub enum ProgramErrorKind {
     NumberExpected {
         /// The letter.
         letter: char,
+    },
+    /// A number has an exponent.
+    #[error("exponents are not part of RS-274: write {plain}")]
+    Exponent {
+        /// The word.
+        word: String,
+        /// The word without exponent.
+        plain: String,
     },
     /// A number has too many digits.
     #[error("the number of {letter} has more than {DIGITS_LIMIT} digits: round it")]
@@ -128,6 +136,30 @@ pub enum ProgramErrorKind {
         word: String,
         /// The words that it may belong to.
         owner: &'static str,
+    },
+    /// The number of turns of an arc is not one.
+    #[error(
+        "{word} is the number of turns of the arc, of which the last may be a part: give a whole number from 1 to {TURNS_LIMIT}"
+    )]
+    Turns {
+        /// The word.
+        word: String,
+    },
+    /// A move to the machine's home under compensation.
+    #[error(
+        "{word} moves by the machine's zero while tool radius compensation is on: write G40 into a block in front of it"
+    )]
+    HomeUnderCompensation {
+        /// The word.
+        word: String,
+    },
+    /// G53 without a straight motion.
+    #[error(
+        "{word} moves in a straight line, and no G00 or G01 is in force: write the one that is meant into the block"
+    )]
+    MachineMove {
+        /// The word.
+        word: String,
     },
     /// A coordinate is given and no motion is in force.
     #[error("{word} is given, but no G00, G01, G02 or G03 is in force: write the one that is meant into the block")]
@@ -235,7 +267,7 @@ pub enum ProgramErrorKind {
     /// The radius of an arc does not reach from its start to its end.
     #[error(
         "the radius {radius:.3} BLU is less than half of the chord, {half:.3} BLU, by more than {tolerance:.3} BLU: \
-         give a larger R or a nearer end point"
+         give a larger R or a nearer end point{}", accepted(.half - .radius - .tolerance, *.more)
     )]
     RadiusTooSmall {
         /// The radius given, in BLU.
@@ -244,11 +276,14 @@ pub enum ProgramErrorKind {
         half: f64,
         /// The difference allowed, in BLU.
         tolerance: f64,
+        /// What `--tolerance` is, and may be at most, in BLU.
+        more: [f64; 2],
     },
     /// The end of an arc is not on its circle.
     #[error(
         "the radius is {start:.3} BLU at the start point but {end:.3} BLU at the end point, and they may differ by at \
-         most {tolerance:.3} BLU ({CENTER_TOLERANCE}): correct the centre or the end point"
+         most {tolerance:.3} BLU ({CENTER_TOLERANCE}): correct the centre or the end point{}",
+        accepted((.end - .start).abs() - .tolerance, *.more)
     )]
     EndOffCircle {
         /// Distance of the start point from the centre, in BLU.
@@ -257,6 +292,8 @@ pub enum ProgramErrorKind {
         end: f64,
         /// The difference allowed, in BLU.
         tolerance: f64,
+        /// What `--tolerance` is, and may be at most, in BLU.
+        more: [f64; 2],
     },
     /// No block of the program moves.
     #[error("the program ends and no block of it moved the tool: give it one with G00 to G03 and a coordinate")]
@@ -271,6 +308,18 @@ pub enum ReadingError {
     Blu {
         /// The BLU given, in mm.
         blu: f64,
+    },
+    /// The tolerance of radii is not a length.
+    #[error("a tolerance of {tolerance} BLU is invalid: give at least 0")]
+    Tolerance {
+        /// The tolerance given, in BLU.
+        tolerance: f64,
+    },
+    /// A coordinate of the home is not a place.
+    #[error("the home {home:?} mm is invalid: give three coordinates that a program may have")]
+    Home {
+        /// The home given, in mm.
+        home: [f64; 3],
     },
     /// A tool radius is not a length.
     #[error("tool {number} has a radius of {radius} mm, but at least 0 is needed: give the other side by G41 or G42")]
@@ -287,6 +336,12 @@ pub enum ReadingError {
 pub(super) struct Fault {
     pub(super) column: u64,
     pub(super) kind: ProgramErrorKind,
+}
+
+/// The tolerance that would accept an arc whose radii differ by so much too much, where one may.
+fn accepted(excess: f64, [given, most]: [f64; 2]) -> String {
+    let wanted = ((given + excess) * 1000.0).ceil() / 1000.0;
+    if wanted > most { String::new() } else { format!(", or accept it with --tolerance {wanted}") }
 }
 
 fn letter(word: &str) -> &str {

@@ -8,6 +8,9 @@
 //! |---|---|
 //! | G00, G01, G02, G03 | rapid move, line, arc with the clock, arc against it; in force until the next of them |
 //! | G04 P | dwell, in seconds |
+//! | G28 X Y Z | rapid move over the place given to the machine's home, along the axes given; without any along all |
+//! | G53 X Y Z | with G00 or G01: move to a place in the machine's own coordinates |
+//! | G43 H | tool length: the path is that of the tool's tip, whatever its length |
 //! | G17, G18, G19 | plane: xy, zx, yz |
 //! | G20, G21 | inch (25.4 mm), mm |
 //! | G40, G41 D, G42 D | tool radius compensation: off, left, right by the radius of tool D; D0 is radius 0 |
@@ -17,6 +20,7 @@
 //! | G93, G94 | F is the inverse of the block's time in minutes, or a feed in units per minute; a change clears F |
 //! | F, S, T, N | feed, spindle speed, tool, number of the block (the first word of it) |
 //! | X Y Z, I J K, R | end point, centre of an arc, radius of an arc (negative: more than half a turn) |
+//! | P of an arc | turns of which the last may be a part, 1 without it; each is a move of its own |
 //! | M00, M01 | stop, optional stop |
 //! | M02, M30 | end; what follows in the file is not read |
 //! | M03 to M09 | spindle with the clock, against it, off; tool change; mist, flood, coolant off |
@@ -29,7 +33,7 @@
 //!
 //! | words | reason |
 //! |---|---|
-//! | G49 | there are no tool length offsets (G43 is an error) to be taken back |
+//! | G49 | the path is that of the tool's tip before and after |
 //! | G54 | the first coordinate system, and the only one: its zero is the zero of the program |
 //! | G61, G61.1 | every block is run exactly to its end |
 //! | G64 P Q | allows the path to be left by P, which is a permission and not a duty |
@@ -45,7 +49,10 @@
 //!
 //! An arc whose end is not on its circle, or whose R is less than half of its chord, is allowed within 2 BLU, 0.005 mm
 //! (what rounding to 0.001 mm or 0.0001 inch makes) or 0.1 % of its radius, whichever is most, the last at most 0.5 mm;
-//! but never by more than half of its radius. Such an R makes half a turn about the middle of the chord.
+//! but never by more than half of its radius; [`Reading::tolerance`] allows more. Such an R makes half a turn about the
+//! middle of the chord. The third of the words I, J and K may be given as 0.
+//!
+//! What is in comments may be text of any code; outside of them it is UTF-8.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{BufRead, Read};
@@ -62,6 +69,7 @@ pub use error::{ProgramError, ProgramErrorKind, ReadingError};
 mod arc;
 mod block;
 mod error;
+mod home;
 mod modal;
 #[cfg(test)]
 mod tests;
@@ -70,6 +78,9 @@ mod words;
 /// The largest magnitude of a coordinate, a centre or a radius in a program, in BLU, and of every other number that is
 /// not a code.
 pub const PROGRAM_LIMIT: i64 = 1 << 40;
+
+/// The most turns of an arc: each is a move of its own.
+const TURNS_LIMIT: u64 = 10_000;
 
 /// How the tolerance of radii is told to people.
 const CENTER_TOLERANCE: &str = "the largest of 2 BLU, 0.005 mm and 0.1 % of the radius, the last at most 0.5 mm";
@@ -94,6 +105,10 @@ pub struct Reading {
     /// The radius of the tool of every D number, in mm, at least 0. Tool tables of RS-274 machines hold the diameter,
     /// twice as much.
     pub tools: BTreeMap<u64, f64>,
+    /// How far the radii of the two ends of an arc may differ beyond what is always allowed, in BLU, at least 0.
+    pub tolerance: f64,
+    /// Where the machine's zero is in the program, in mm, which G28 and G53 move by; `None` where they do not move.
+    pub home: Option<[f64; 3]>,
 }
 
 /// What the spindle does.
@@ -173,7 +188,7 @@ pub enum Event {
 /// ```
 /// use stepwave_nc::{Event, Integers, Program, Reading};
 ///
-/// let reading = Reading { blu: 0.001, integers: Integers::Units, tools: Default::default() };
+/// let reading = Reading { blu: 0.001, integers: Integers::Units, tools: Default::default(), tolerance: 0.0, home: None };
 /// let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?;
 /// let Some(Ok(Event::Move(first))) = program.next() else { panic!() };
 /// assert_eq!(first.segment.to, [1500.0, 0.0, 0.0]);
@@ -205,7 +220,7 @@ impl<R: BufRead> Program<R> {
     ///
     /// # Errors
     ///
-    /// If the BLU or the radius of a tool is no length.
+    /// If the BLU, the tolerance or the radius of a tool is no length, or the home is beyond all coordinates.
     pub fn new(text: R, reading: Reading) -> Result<Program<R>, ReadingError> {
         let blu = reading.blu;
         if !(blu.is_finite() && blu > 0.0) {
@@ -215,6 +230,13 @@ impl<R: BufRead> Program<R> {
             reading.tools.iter().find(|&(_, &radius)| !(radius.is_finite() && radius >= 0.0))
         {
             return Err(ReadingError::ToolRadius { number, radius });
+        }
+        if !(reading.tolerance.is_finite() && reading.tolerance >= 0.0) {
+            return Err(ReadingError::Tolerance { tolerance: reading.tolerance });
+        }
+        let far = |c: &f64| !(c.abs() / blu <= PROGRAM_LIMIT as f64);
+        if let Some(home) = reading.home.filter(|home| home.iter().any(far)) {
+            return Err(ReadingError::Home { home });
         }
         Ok(Program {
             text,
@@ -255,7 +277,7 @@ impl<R: BufRead> Program<R> {
         }
         let mark = if self.lines == 1 { "\u{feff}".as_bytes() } else { &[] };
         let line = words::text(self.line.strip_prefix(mark).unwrap_or(&self.line))?;
-        let mut words = Words::new(line);
+        let mut words = Words::new(&line);
         if words.sign('%') {
             if let Some(column) = words.left()? {
                 return Err(Fault { column, kind: ProgramErrorKind::PercentInBlock });

@@ -12,17 +12,17 @@ use crate::{Direction, Feed, Move, Place, Plane, Point, Segment, Side, Way};
 /// The words that stay in force, and where the tool is.
 #[derive(Debug)]
 pub(super) struct Modal {
-    position: Point,
-    plane: Plane,
+    pub(super) position: Point,
+    pub(super) plane: Plane,
     /// Millimetres in a unit.
     unit: f64,
-    distance: Distance,
+    pub(super) distance: Distance,
     centers: Distance,
     feed_mode: FeedMode,
     /// In mm/min; none under G93.
     feed: Option<f64>,
-    side: Side,
-    motion: Option<Motion>,
+    pub(super) side: Side,
+    pub(super) motion: Option<Motion>,
 }
 
 impl Default for Modal {
@@ -43,7 +43,7 @@ impl Default for Modal {
 }
 
 /// The letters of axes and of the centre, axis by axis.
-const AXES: [char; 3] = ['X', 'Y', 'Z'];
+pub(super) const AXES: [char; 3] = ['X', 'Y', 'Z'];
 const CENTERS: [char; 3] = ['I', 'J', 'K'];
 
 /// Ends of a way that lie no further apart along the axes are one point: rounding of increments and inches has parted
@@ -59,7 +59,7 @@ fn center_words(plane: Plane) -> (&'static str, &'static str) {
     }
 }
 
-fn within(value: f64, column: u64, name: impl FnOnce() -> String) -> Result<f64, Fault> {
+pub(super) fn within(value: f64, column: u64, name: impl FnOnce() -> String) -> Result<f64, Fault> {
     if value.abs() <= PROGRAM_LIMIT as f64 {
         Ok(value)
     } else {
@@ -77,22 +77,7 @@ impl Modal {
         events: &mut VecDeque<Event>,
     ) -> Result<bool, Fault> {
         let feed = self.feed(block)?;
-        let mut auxiliary = |function| events.push_back(Event::Auxiliary { place, function });
-        if let Some(word) = block.word('S') {
-            auxiliary(Auxiliary::Speed(not_negative(word)?));
-        }
-        if let Some(word) = block.word('T') {
-            auxiliary(Auxiliary::Tool(word.count()?));
-        }
-        if block.tool_change.is_some() {
-            auxiliary(Auxiliary::ToolChange);
-        }
-        if let Some((spindle, _)) = block.spindle {
-            auxiliary(Auxiliary::Spindle(spindle));
-        }
-        if let Some((coolant, _)) = block.coolant {
-            auxiliary(Auxiliary::Coolant(coolant));
-        }
+        auxiliaries(block, place, events)?;
         if let Some(((), word)) = block.dwell {
             let Some(time) = block.word('P') else {
                 return Err(word.fault(|word| ProgramErrorKind::NoDwellTime { word }));
@@ -116,12 +101,17 @@ impl Modal {
             (None, Some(_)) => None,
             (None, None) => self.motion,
         };
-        if let Some(segment) = self.segment(block, reading)? {
+        if block.home.is_some() {
+            self.go_home(block, place, reading, events)?;
+        } else if let Some(segment) = self.segment(block, reading)? {
+            let turns = self.turns(block)?;
             let feed = self.feed_of_move(block, feed)?;
-            self.position = segment.to;
-            if segment.from != segment.to || matches!(segment.way, Way::Arc { .. }) {
-                events.push_back(Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side }));
+            if block.machine.is_none() || reading.home.is_some() {
+                self.position = segment.to;
+                self.moves(segment, turns, feed, place, events);
             }
+        } else if let Some(word) = block.word('P').filter(|_| !block.times()) {
+            return Err(word.fault(|word| ProgramErrorKind::Unused { word, owner: arc::TURNS_OWNER }));
         }
         match block.halt {
             None => {}
@@ -130,6 +120,31 @@ impl Modal {
             Some((Halt::End, _)) => return Ok(true),
         }
         Ok(false)
+    }
+
+    /// The turns that an arc takes, 1 where nothing is said.
+    fn turns(&self, block: &Block<'_>) -> Result<u64, Fault> {
+        match (block.word('P').filter(|_| !block.times()), self.motion) {
+            (None, _) => Ok(1),
+            (Some(word), Some(Motion::Arc(_))) => {
+                let turns = word.count().unwrap_or(0);
+                let right = (1..=super::TURNS_LIMIT).contains(&turns);
+                if right { Ok(turns) } else { Err(word.fault(|word| ProgramErrorKind::Turns { word })) }
+            }
+            (Some(word), _) => Err(word.fault(|word| ProgramErrorKind::Unused { word, owner: arc::TURNS_OWNER })),
+        }
+    }
+
+    /// The moves of a segment: one, but of an arc of several turns each turn is one.
+    fn moves(&self, segment: Segment, turns: u64, feed: Feed, place: Place, events: &mut VecDeque<Event>) {
+        if segment.from == segment.to && segment.way == Way::Line {
+            return;
+        }
+        let of = |(segment, share): (Segment, f64)| {
+            let feed = if let Feed::Inverse(number) = feed { Feed::Inverse(number / share) } else { feed };
+            Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side })
+        };
+        events.extend(arc::turns(segment, turns).map(of));
     }
 
     /// Takes the feed mode and the F word, and returns the block's own F number.
@@ -194,7 +209,7 @@ impl Modal {
     }
 
     /// A length word in BLU.
-    fn length(&self, word: Word<'_>, reading: &Reading) -> Result<f64, Fault> {
+    pub(super) fn length(&self, word: Word<'_>, reading: &Reading) -> Result<f64, Fault> {
         let value = match reading.integers {
             Integers::Pulses if word.integer => word.value,
             _ => word.value * self.unit / reading.blu,
@@ -210,12 +225,15 @@ impl Modal {
         let Some(motion) = self.motion else {
             return Err(first.fault(|word| ProgramErrorKind::NoMotion { word }));
         };
+        if let Some(((), word)) = block.machine {
+            self.by_machine(word)?;
+        }
         let from = self.position;
         let mut to = from;
         for (coordinate, letter) in to.iter_mut().zip(AXES) {
             if let Some(word) = block.word(letter) {
                 let length = self.length(word, reading)?;
-                let start = if self.distance == Distance::Absolute { 0.0 } else { *coordinate };
+                let start = self.origin(block, letter, *coordinate, reading);
                 *coordinate = within(start + length, word.column, || letter.to_string())?;
             }
         }
@@ -254,7 +272,7 @@ impl Modal {
         let [start_first, start_second, _] = plane.of(from);
         let [end_first, end_second, _] = plane.of(to);
         let (start, end) = ([start_first, start_second], [end_first, end_second]);
-        if let Some(word) = block.word(CENTERS[third]) {
+        if let Some(word) = block.word(CENTERS[third]).filter(|word| word.value != 0.0) {
             return Err(word.fault(|word| ProgramErrorKind::CenterOffPlane { word, plane: name, words }));
         }
         // Where the arc as a whole is wrong: the first word that says so.
@@ -271,7 +289,7 @@ impl Modal {
                 if start == end {
                     return Err(word.fault(|word| ProgramErrorKind::CircleByRadius { word }));
                 }
-                arc::center(start, end, radius, direction, reading.blu).map_err(fault)?
+                arc::center(start, end, radius, direction, reading).map_err(fault)?
             }
             (Some(word), _) => return Err(word.fault(|word| ProgramErrorKind::RadiusAndCenter { word })),
             (None, [None, None]) => return Err(fault(ProgramErrorKind::NoCenter { words })),
@@ -285,7 +303,7 @@ impl Modal {
                         (Distance::Absolute, None) => return Err(fault(ProgramErrorKind::HalfCenter { words })),
                     };
                 }
-                arc::check(start, end, center, reading.blu).map_err(fault)?;
+                arc::check(start, end, center, reading).map_err(fault)?;
                 center
             }
         };
@@ -299,4 +317,25 @@ impl Modal {
 fn not_negative(word: Word<'_>) -> Result<f64, Fault> {
     let value = word.limited()?;
     if value < 0.0 { Err(word.fault(|word| ProgramErrorKind::Negative { word })) } else { Ok(value) }
+}
+
+/// What a block switches next to the motion, in the order of RS-274.
+fn auxiliaries(block: &Block<'_>, place: Place, events: &mut VecDeque<Event>) -> Result<(), Fault> {
+    let mut auxiliary = |function| events.push_back(Event::Auxiliary { place, function });
+    if let Some(word) = block.word('S') {
+        auxiliary(Auxiliary::Speed(not_negative(word)?));
+    }
+    if let Some(word) = block.word('T') {
+        auxiliary(Auxiliary::Tool(word.count()?));
+    }
+    if block.tool_change.is_some() {
+        auxiliary(Auxiliary::ToolChange);
+    }
+    if let Some((spindle, _)) = block.spindle {
+        auxiliary(Auxiliary::Spindle(spindle));
+    }
+    if let Some((coolant, _)) = block.coolant {
+        auxiliary(Auxiliary::Coolant(coolant));
+    }
+    Ok(())
 }

@@ -4,12 +4,19 @@ use crate::{Direction, Feed, Place, Plane, Point, Side, Way};
 mod arcs;
 mod blocks;
 mod faults;
+mod home;
 mod language;
 mod random;
 
 /// A BLU of 0.01 mm, tool 1 of 4 mm and tool 2 of 2.5 mm.
 fn reading() -> Reading {
-    Reading { blu: 0.01, integers: Integers::Units, tools: BTreeMap::from([(1, 4.0), (2, 2.5)]) }
+    Reading {
+        blu: 0.01,
+        integers: Integers::Units,
+        tools: BTreeMap::from([(1, 4.0), (2, 2.5)]),
+        tolerance: 0.0,
+        home: Some([0.0; 3]),
+    }
 }
 
 fn run_with(text: impl AsRef<[u8]>, reading: Reading) -> Result<Vec<Event>, ProgramError> {

@@ -3,6 +3,8 @@
 //! Written here and not taken from the crate `gcode` (0.7.0), because that keeps every number as `f32`, which cannot
 //! tell 16,777,217 pulses from 16,777,216.
 
+use std::borrow::Cow;
+
 use super::error::{Fault, ProgramErrorKind};
 
 /// The longest line, in bytes before its line end.
@@ -62,18 +64,47 @@ impl Word<'_> {
     }
 }
 
-/// Checks that a line is text, and returns it.
-pub(super) fn text(line: &[u8]) -> Result<&str, Fault> {
-    let column = |before: &[u8]| 1 + String::from_utf8_lossy(before).chars().count() as u64;
-    let text = std::str::from_utf8(line).map_err(|error| {
-        let (valid, rest) = line.split_at(error.valid_up_to());
-        let byte = rest.first().copied().unwrap_or_default();
-        Fault { column: column(valid), kind: ProgramErrorKind::InvalidUtf8 { byte } }
-    })?;
+/// A line as text. What is in comments says nothing and may be of any code; outside of them it is UTF-8 without control
+/// characters.
+pub(super) fn text(line: &[u8]) -> Result<Cow<'_, str>, Fault> {
+    // No code that is in use for NC programs (Latin-1, GBK, Shift-JIS) has ; ( or ) as part of another character.
+    let mut comments: Vec<(usize, usize)> = Vec::new();
+    let mut at = 0;
+    while let Some(start) = line[at..].iter().position(|byte| matches!(byte, b';' | b'(')).map(|start| at + start) {
+        let end = match line[start] {
+            b';' => line.len(),
+            _ => line[start..].iter().position(|&byte| byte == b')').map_or(line.len(), |end| start + end + 1),
+        };
+        comments.push((start, end));
+        at = end;
+    }
+    let mut whole = Cow::Borrowed("");
+    let mut done = 0;
+    for (start, end) in comments.into_iter().chain([(line.len(), line.len())]) {
+        whole += words_alone(&line[done..start], &whole)?;
+        whole += String::from_utf8_lossy(&line[start..end]);
+        done = end;
+    }
+    Ok(whole)
+}
+
+/// The part of a line between two comments, which follows a text.
+fn words_alone<'l>(part: &'l [u8], before: &str) -> Result<&'l str, Fault> {
+    let column = |valid: &str| 1 + (before.chars().count() + valid.chars().count()) as u64;
+    let (text, wrong) = match std::str::from_utf8(part) {
+        Ok(text) => (text, None),
+        Err(error) => {
+            let (valid, rest) = part.split_at(error.valid_up_to());
+            (std::str::from_utf8(valid).unwrap_or_default(), rest.first())
+        }
+    };
+    if let Some(&byte) = wrong {
+        return Err(Fault { column: column(text), kind: ProgramErrorKind::InvalidUtf8 { byte } });
+    }
     match text.char_indices().find(|&(_, character)| character.is_control() && character != '\t') {
         None => Ok(text),
         Some((at, character)) => {
-            Err(Fault { column: column(&line[..at]), kind: ProgramErrorKind::UnexpectedCharacter { character } })
+            Err(Fault { column: column(&text[..at]), kind: ProgramErrorKind::UnexpectedCharacter { character } })
         }
     }
 }
@@ -174,6 +205,9 @@ impl<'l> Words<'l> {
             }
             after => match digits.parse() {
                 Ok(value) => {
+                    if let Some(plain) = self.exponent(letter, value, &start[..start.len() - self.rest.len()]) {
+                        return Err(Fault { column, kind: plain });
+                    }
                     let text = start[..start.len() - self.rest.len()].trim_end();
                     return Ok(Some(Word { letter, value, integer: !digits.contains('.'), column, text }));
                 }
@@ -184,6 +218,25 @@ impl<'l> Words<'l> {
             },
         };
         Err(Fault { column, kind })
+    }
+
+    /// What is wrong if an exponent follows directly after the number that a word ends with.
+    fn exponent(&self, letter: char, mantissa: f64, word: &str) -> Option<ProgramErrorKind> {
+        let power = self.rest.strip_prefix(['e', 'E'])?;
+        let unsigned = power.strip_prefix(['+', '-']).unwrap_or(power);
+        let digits = unsigned.len() - unsigned.trim_start_matches(|digit: char| digit.is_ascii_digit()).len();
+        let behind = unsigned[digits..].trim_start_matches([' ', '\t']);
+        // What has a fraction itself, or is beyond all floating-point numbers, is a word with the letter E.
+        if !(1..=3).contains(&digits) || behind.starts_with(['.', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9']) {
+            return None;
+        }
+        if word.ends_with([' ', '\t']) {
+            return None;
+        }
+        let power = &power[..power.len() - unsigned.len() + digits];
+        // Shortest decimals, so that it is what was written.
+        let value = format!("{mantissa}e{power}").parse().unwrap_or(f64::INFINITY);
+        Some(ProgramErrorKind::Exponent { word: format!("{word}e{power}"), plain: plain(letter, value) })
     }
 
     /// The characters of a number without the blanks between them; at most one digit more than allowed is kept.
@@ -209,4 +262,19 @@ impl<'l> Words<'l> {
             }
         }
     }
+}
+
+/// A number without exponent: to six decimals, and in full where that is not the same.
+fn plain(letter: char, value: f64) -> String {
+    if value.abs() > super::PROGRAM_LIMIT as f64 {
+        return format!("a number within \u{b1}{}", super::PROGRAM_LIMIT);
+    }
+    let rounded = format!("{value:.6}");
+    let rounded = rounded.trim_end_matches('0').trim_end_matches('.');
+    let rounded = if rounded == "-0" { "0" } else { rounded };
+    if rounded.parse() == Ok(value) {
+        return format!("{letter}{rounded}");
+    }
+    let exact = if value.abs() < 1e-30 { "nearly 0".to_owned() } else { value.to_string() };
+    format!("{letter}{rounded} ({exact} to six decimals)")
 }

@@ -1,6 +1,8 @@
 use super::*;
 use crate::Side;
 
+mod tiny;
+
 fn moved(from: Point, to: Point, way: Way) -> ToolMove {
     let segment = Segment { from, to, way };
     let place = Place { line: 1, number: None };
@@ -9,7 +11,9 @@ fn moved(from: Point, to: Point, way: Way) -> ToolMove {
 
 fn blocks(moves: &[ToolMove], chords: Option<f64>) -> Vec<PulseBlock> {
     let (mut rounder, mut out) = (Rounder::new(chords), Vec::new());
-    moves.iter().for_each(|of| rounder.blocks(of, &mut out).unwrap_or_else(|error| panic!("{error}")));
+    moves.iter().for_each(|of| {
+        rounder.blocks(of, &mut out).unwrap_or_else(|error| panic!("{error}"));
+    });
     out
 }
 

@@ -27,6 +27,66 @@ fn centres_are_relative_to_the_start_of_the_arc_and_absolute_under_g90_1() {
 }
 
 #[test]
+fn the_third_word_of_a_centre_may_be_0() {
+    assert_eq!(ways("G17 G2 X1 Y1 I1 K0.000")[0], arc(Plane::Xy, [100.0, 0.0], Clockwise));
+    assert_eq!(ways("G18 G2 Z1 X1 K1 J0")[0], arc(Plane::Zx, [100.0, 0.0], Clockwise));
+    assert_eq!(ways("G19 G2 Y1 Z1 J1 I-0.0")[0], arc(Plane::Yz, [100.0, 0.0], Clockwise));
+    assert!(fault("F1 G17 G2 X1 Y1 I1 K0.001").2.starts_with("K0.001 is no centre word of the plane G17"));
+    assert!(fault("F1 G17 G2 X1 Y1 K0").2.starts_with("the arc has no centre"));
+}
+
+#[test]
+fn p_counts_the_turns_of_an_arc_and_its_third_axis_goes_evenly_over_all() {
+    // LinuxCNC: the last of the turns is the arc as it would be without P.
+    let of = |text: &str| {
+        let ends = moves(&format!("F100\n{text}"));
+        ends.iter().map(|one| (one.segment.from.map(rounded), one.segment.to.map(rounded))).collect::<Vec<_>>()
+    };
+    let at = |x, y, z| [x, y, z];
+    assert_eq!(
+        of("G0 Y8\nG2 Z-6 I0 J-8 P2")[1..],
+        [(at(0.0, 800.0, 0.0), at(0.0, 800.0, -300.0)), (at(0.0, 800.0, -300.0), at(0.0, 800.0, -600.0))]
+    );
+    // A quarter, and one and two whole turns before it: Z goes 1/5 and 1/9 of its way in the quarter.
+    assert_eq!(
+        of("G3 X1 Y1 Z5 I0 J1 P2"),
+        [(at(0.0, 0.0, 0.0), at(0.0, 0.0, 400.0)), (at(0.0, 0.0, 400.0), at(100.0, 100.0, 500.0))]
+    );
+    assert_eq!(of("G3 X1 Y1 Z9 R1 P3").iter().map(|(_, to)| to[2]).collect::<Vec<_>>(), [400.0, 800.0, 900.0]);
+    assert_eq!(of("G2 X1 Y1 I1 P1"), of("G2 X1 Y1 I1"));
+    for (text, word) in [("P0", "P0"), ("P-1", "P-1"), ("P1.5", "P1.5"), ("P10001", "P10001")] {
+        let message = fault(format!("F1 G2 X1 Y1 I1 {text}")).2;
+        let wanted =
+            format!("{word} is the number of turns of the arc, of which the last may be a part: give a whole number");
+        assert!(message.starts_with(&wanted), "{message}");
+    }
+    // The time of the block is shared out by the way of its turns, of a quarter and one turn 4 : 1.
+    let feeds = moves("G93 G3 X1 Y1 I0 J1 P2 F6").iter().map(|one| one.feed).collect::<Vec<_>>();
+    let [Feed::Inverse(whole), Feed::Inverse(quarter)] = feeds[..] else { panic!("{feeds:?}") };
+    assert!((whole - 7.5).abs() < 1e-9 && (quarter - 30.0).abs() < 1e-9, "{feeds:?}");
+    // Of a dwell P is the time.
+    assert_eq!(moves("F1 G4 P3 G2 X1 Y1 I1").len(), 1);
+}
+
+#[test]
+fn radii_may_differ_by_the_tolerance_beyond_what_rounding_makes() {
+    // At 0.01 mm 2 BLU are always allowed. The radii are 100 and 104 BLU.
+    let text = "F1 G2 X2.04 Y0 I1 J0";
+    let message = fault(text).2;
+    assert!(
+        message.contains("100.000 BLU at the start point but 104.000")
+            && message.ends_with("or accept it with --tolerance 2"),
+        "{message}"
+    );
+    let with = |tolerance| run_with(text, Reading { tolerance, ..reading() });
+    assert!(with(2.0).is_ok());
+    let message = with(1.5).unwrap_err().to_string();
+    assert!(message.ends_with("or accept it with --tolerance 2"), "{message}");
+    // Never by more than half of the radius, and then no tolerance is named.
+    assert!(!fault("F1 G2 X2.6 Y0 I1 J0").2.contains("--tolerance"));
+}
+
+#[test]
 fn arcs_turn_in_the_plane_that_is_chosen() {
     // In xy, zx and yz, counted along the first and second axis of the plane.
     assert_eq!(ways("G17 G2 X1 Y1 I1")[0], arc(Plane::Xy, [100.0, 0.0], Clockwise));
@@ -65,7 +125,7 @@ fn a_radius_a_little_too_small_is_half_a_turn() {
     assert_eq!(
         message,
         "the radius 997.000 BLU is less than half of the chord, 1000.000 BLU, by more than 2.000 BLU: \
-         give a larger R or a nearer end point"
+         give a larger R or a nearer end point, or accept it with --tolerance 1"
     );
     // 0.1 % of a radius of 10,000 BLU.
     assert_eq!(ways("G2 X200 R99.91"), [arc(Plane::Xy, [10_000.0, 0.0], Clockwise)]);
@@ -131,9 +191,9 @@ fn what_is_no_arc_is_an_error_at_its_word() {
             "K1 is no centre word of the plane G17, which has I and J: choose the plane of the arc or correct the word",
         ),
         (
-            "G19 F1 G2 Y2 J1 I0",
+            "G19 F1 G2 Y2 J1 I2",
             17,
-            "I0 is no centre word of the plane G19, which has J and K: choose the plane of the arc or correct the word",
+            "I2 is no centre word of the plane G19, which has J and K: choose the plane of the arc or correct the word",
         ),
         ("F1 G3 X2 I1 R1", 13, "the arc has both R1 and a centre by I, J or K: keep one of them"),
         ("F1 G3 X2 I0 J0", 10, "the arc has radius 0 and must have more: correct the centre or the R word"),

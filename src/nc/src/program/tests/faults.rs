@@ -7,8 +7,8 @@ use super::*;
 fn every_message_tells_what_is_wrong_and_the_way_out() {
     let unsupported = "is not supported: rewrite the block with G00 to G03 in X, Y and Z, or remove the word if it does not matter here";
     for (text, line, column, message) in [
-        ("G0 X1 G43 H1", 1, 7, format!("G43 {unsupported}")),
-        ("g0 x1\n g 28", 2, 2, format!("g28 {unsupported}")),
+        ("G0 X1 G43.1 Z1", 1, 7, format!("G43.1 {unsupported}")),
+        ("g0 x1\n g 30", 2, 2, format!("g30 {unsupported}")),
         ("G92 X0", 1, 1, format!("G92 {unsupported}")),
         ("G55", 1, 1, format!("G55 {unsupported}")),
         ("G1.5", 1, 1, format!("G1.5 {unsupported}")),
@@ -39,7 +39,32 @@ fn every_message_tells_what_is_wrong_and_the_way_out() {
         ("G0 X1 é", 1, 7, "'é' does not belong here, only words such as X12.5 and comments do: remove it".into()),
         ("G0 X1\0", 1, 6, "'\\0' does not belong here, only words such as X12.5 and comments do: remove it".into()),
         ("G0 / X1", 1, 4, "'/' does not belong here, only words such as X12.5 and comments do: remove it".into()),
-        ("G0 X1\n(a\x07)", 2, 3, "'\\u{7}' does not belong here, only words such as X12.5 and comments do: remove it".into()),
+        ("G0 X1\n(a)\x07", 2, 4, "'\\u{7}' does not belong here, only words such as X12.5 and comments do: remove it".into()),
+        ("G0 X1 H2", 1, 7, "H2 has nothing that uses it in this block: it belongs to G43, give that too or remove the word".into()),
+        (
+            "G41 D1\nG28",
+            2,
+            1,
+            "G28 moves by the machine's zero while tool radius compensation is on: write G40 into a block in front of it".into(),
+        ),
+        (
+            "G0 X1 G41 D1\nG53 Z0",
+            2,
+            1,
+            "G53 moves by the machine's zero while tool radius compensation is on: write G40 into a block in front of it".into(),
+        ),
+        (
+            "G53 Z0",
+            1,
+            5,
+            "Z0 is given, but no G00, G01, G02 or G03 is in force: write the one that is meant into the block".into(),
+        ),
+        (
+            "F1 G2 X1 I0.5\nG53 X2",
+            2,
+            1,
+            "G53 moves in a straight line, and no G00 or G01 is in force: write the one that is meant into the block".into(),
+        ),
         ("G0 (x", 1, 4, "the comment that begins here is not closed in its line: put a ) behind it".into()),
         ("G0 (x(y))", 1, 6, "a ( inside a comment would begin a second one, which RS-274 does not allow: remove it".into()),
         (
@@ -88,7 +113,7 @@ fn every_message_tells_what_is_wrong_and_the_way_out() {
             "P1",
             1,
             1,
-            "P1 has nothing that uses it in this block: it belongs to G04 or G64, give that too or remove the word".into(),
+            "P1 has nothing that uses it in this block: it belongs to G02, G03, G04 or G64, give that too or remove the word".into(),
         ),
         ("G17 Y1", 1, 5, "Y1 is given, but no G00, G01, G02 or G03 is in force: write the one that is meant into the block".into()),
         (
@@ -148,7 +173,37 @@ fn an_error_displays_its_line_and_column_in_front() {
 #[test]
 fn bytes_that_are_not_text_are_told_by_place_and_value() {
     let message = "the byte \\xff is not UTF-8 text: save the program as UTF-8 or ASCII";
-    assert_eq!(fault(b"G0 X1\n(\xc3\xa4 \xff)".as_slice()), (2, 4, message.into()));
+    assert_eq!(fault(b"G0 X1\n(\xc3\xa4)\xff".as_slice()), (2, 4, message.into()));
+    assert_eq!(fault(b"G0 \xff(\xff)".as_slice()), (1, 4, message.into()));
+}
+
+#[test]
+fn a_column_behind_a_comment_counts_its_characters() {
+    assert_eq!(fault("(größe)X#1").1, 8);
+    // Latin-1: a character is a byte.
+    assert_eq!(fault(b"(gr\xf6\xdfe)X#1".as_slice()).1, 8);
+}
+
+#[test]
+fn an_exponent_is_named_as_such_with_the_number_written_out() {
+    for (text, line, column, plain) in [
+        ("G0 X-2 Y-59\nG2 F10 I-1.28e-07 J2.0 X-2.0 Y-55.0", 2, 8, "I0 (-0.000000128 to six decimals)"),
+        ("G1 X1e-05 Y2.5 F100", 1, 4, "X0.00001"),
+        ("G1 X1.5E+2 F100", 1, 4, "X150"),
+        ("G1 Y-2.5e0 F100", 1, 4, "Y-2.5"),
+        ("G1 Y.25e1 F100", 1, 4, "Y2.5"),
+        ("G1 Y1.0000005e0 F100", 1, 4, "Y1 (1.0000005 to six decimals)"),
+        ("G0 X1e300", 1, 4, "a number within ±1099511627776"),
+    ] {
+        let message = format!("exponents are not part of RS-274: write {plain}");
+        let (at_line, at_column, found) = fault(text);
+        // Half a unit of the last of six decimals may go either way.
+        assert!(found == message || text.contains("0000005"), "{text}: {found}");
+        assert_eq!((at_line, at_column), (line, column), "{text}");
+    }
+    // Not directly after the number it is a letter.
+    assert!(fault("G0 X1 E5").2.starts_with("E5 is not supported"));
+    assert!(fault("G0 X1e").2.starts_with("e has no number") || fault("G0 X1e").2.starts_with("E has no number"));
 }
 
 struct Broken;

@@ -1,0 +1,137 @@
+//! How large a wave becomes: estimated before a program runs, and counted while any wave is written.
+
+use std::io::{self, Seek, SeekFrom, Write};
+
+use stepwave::kernel::trace::timescale::ClockTime;
+use stepwave::models::parts::RATE_BITS;
+use stepwave::program::Estimate;
+use stepwave::testbench::Testbench;
+
+use super::wave::probes;
+use crate::cli::TraceArgs;
+use crate::failure::Failure;
+
+/// Bytes above which a wave wants `--large`.
+pub(super) const LARGE: u64 = 1_000_000_000;
+/// Bytes above which a program reports the size of its wave before it writes it.
+const NOTED: f64 = 1e8;
+
+const REMEDIES: &str = "make it small by --trace-steps (one sample a step), --no-clk, a window (--trace-from, --trace-to), \
+    fewer signals (--trace) or --fst; or give --large";
+
+/// Bytes of VCD that a bit of a vector takes at a step on the average, as measured on machines of every family.
+const BIT: f64 = 0.18;
+/// Bytes of the three flags that come and go with each step.
+const FLAGS: f64 = 18.0;
+/// Bytes of FST that a clock takes where the pulse source is shown, and a step as a part of those of VCD, as measured.
+const FST_CLOCK: f64 = 10.0;
+const FST_STEP: f64 = 0.25;
+
+/// What the samples of a wave take, in bytes.
+pub(super) struct Size {
+    /// Signals that change with every clock: the pulse source adds to its phase.
+    clock: f64,
+    /// What changes at a step.
+    step: f64,
+    ticks: f64,
+}
+
+impl Size {
+    /// Of a machine that runs programs, with the signals chosen.
+    ///
+    /// # Errors
+    /// The options name no signal.
+    pub(super) fn of(bench: &Testbench, args: &TraceArgs, time: ClockTime) -> Result<Size, Failure> {
+        let mut probes = probes(bench, args)?;
+        probes.sort_by_key(|probe| probe.column);
+        probes.dedup_by_key(|probe| probe.column);
+        let (mut clock, mut step) = (0.0, FLAGS);
+        for probe in probes {
+            let width = f64::from(probe.width.get());
+            let of_source = matches!(probe.name.as_str(), "phase" | "sum") && probe.width.get() >= RATE_BITS;
+            if of_source {
+                // A b, a blank, a name of one character and the end of the line.
+                clock += width + 4.0;
+            } else if width > 1.0 {
+                step += width * BIT;
+            }
+        }
+        Ok(Size { clock, step, ticks: time.ticks() as f64 })
+    }
+
+    /// Bytes of the VCD and of the FST that are asked for, 0 where they are not.
+    fn bytes(&self, args: &TraceArgs, limit: Option<u64>, estimate: &Estimate) -> [f64; 2] {
+        let clocks = limit.map_or(estimate.clocks, |limit| estimate.clocks.min(limit as f64));
+        let end = args.trace_to.map_or(clocks, |to| clocks.min(to as f64 + 1.0));
+        let shown = (end - args.trace_from as f64).max(0.0);
+        let steps = estimate.steps * shown / estimate.clocks.max(1.0);
+        let samples = if args.trace_steps { steps } else { shown };
+        // A #, the time and the end of the line.
+        let stamp = 2.0 + (end * self.ticks).max(1.0).log10().floor() + 1.0;
+        let edges = if args.no_clk { stamp } else { 2.0 * stamp + 6.0 };
+        let edges = if args.no_clk && self.clock == 0.0 { edges * steps } else { edges * samples };
+        let vcd = edges + self.clock * samples + self.step * steps;
+        let fst = if self.clock > 0.0 { FST_CLOCK * samples } else { 0.0 } + FST_STEP * self.step * steps;
+        [(&args.vcd, vcd), (&args.fst, fst)].map(|(path, bytes)| if path.is_some() { bytes } else { 0.0 })
+    }
+
+    /// Reports a large wave of a program before it is written.
+    ///
+    /// # Errors
+    /// It would have more than 1 GB, and `--large` is not given.
+    pub(super) fn check(&self, args: &TraceArgs, limit: Option<u64>, estimate: &Estimate) -> Result<(), Failure> {
+        let most = self.bytes(args, limit, estimate).into_iter().fold(0.0, f64::max);
+        let (size, clocks) = (readable(most), estimate.clocks);
+        // Where a signal opens the window nobody knows how much of the run is left.
+        if most > LARGE as f64 && !args.large && args.trace_on.is_none() {
+            return Err(Failure::Trouble(format!(
+                "the wave would have about {size}, as the program runs for about {clocks:.0} clocks: {REMEDIES}"
+            )));
+        }
+        if most > NOTED {
+            // Where nobody listens, the wave is written all the same.
+            let _ = writeln!(
+                io::stderr(),
+                "stepwave: the wave will have about {size}; --trace-steps, --no-clk, a window or --fst make it small"
+            );
+        }
+        Ok(())
+    }
+}
+
+fn readable(bytes: f64) -> String {
+    if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
+}
+
+/// An output that takes no more than 1 GB, unless more is wanted.
+pub(super) struct Limited<W> {
+    out: W,
+    left: u64,
+}
+
+impl<W> Limited<W> {
+    pub(super) fn new(out: W, large: bool) -> Limited<W> {
+        Limited { out, left: if large { u64::MAX } else { LARGE } }
+    }
+}
+
+impl<W: Write> Write for Limited<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if bytes.len() as u64 > self.left {
+            return Err(io::Error::other(format!("the wave has come to 1 GB and was given up: {REMEDIES}")));
+        }
+        let written = self.out.write(bytes)?;
+        self.left -= written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W: Seek> Seek for Limited<W> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.out.seek(to)
+    }
+}

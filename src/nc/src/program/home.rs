@@ -1,0 +1,90 @@
+//! Moves by the machine's own zero: G28 and G53.
+
+use std::collections::VecDeque;
+
+use super::block::{Block, Distance, Motion};
+use super::error::{Fault, ProgramErrorKind};
+use super::modal::{AXES, Modal, within};
+use super::words::Word;
+use super::{Event, Reading};
+use crate::{Feed, Move, Place, Segment, Side, Way};
+
+impl Modal {
+    /// What a coordinate counts from, in BLU.
+    pub(super) fn origin(&self, block: &Block<'_>, letter: char, at: f64, reading: &Reading) -> f64 {
+        match (block.machine, self.distance) {
+            (Some(_), _) => AXES.iter().position(|axis| *axis == letter).map_or(0.0, |axis| zero(reading)[axis]),
+            (None, Distance::Absolute) => 0.0,
+            (None, Distance::Incremental) => at,
+        }
+    }
+
+    /// Checks that G53 may move.
+    pub(super) fn by_machine(&self, word: Word<'_>) -> Result<(), Fault> {
+        if self.side != Side::On {
+            return Err(word.fault(|word| ProgramErrorKind::HomeUnderCompensation { word }));
+        }
+        match self.motion {
+            Some(Motion::Rapid | Motion::Line) => Ok(()),
+            _ => Err(word.fault(|word| ProgramErrorKind::MachineMove { word })),
+        }
+    }
+
+    /// G28: a rapid move to the place given, and from there along the same axes to the machine's zero.
+    pub(super) fn go_home(
+        &mut self,
+        block: &Block<'_>,
+        place: Place,
+        reading: &Reading,
+        events: &mut VecDeque<Event>,
+    ) -> Result<(), Fault> {
+        let Some(((), word)) = block.home else { return Ok(()) };
+        if self.side != Side::On {
+            return Err(word.fault(|word| ProgramErrorKind::HomeUnderCompensation { word }));
+        }
+        if let Some(((), machine)) = block.machine {
+            let first = word.name();
+            return Err(machine.fault(|word| ProgramErrorKind::SameGroup { word, first }));
+        }
+        let others = if block.times() { "IJKR" } else { "IJKRP" };
+        if let Some(other) = block.any(others) {
+            return Err(other.fault(|word| ProgramErrorKind::Unused { word, owner: "G02 or G03" }));
+        }
+        let all = block.any("XYZ").is_none();
+        let (mut over, mut home) = (self.position, self.position);
+        for (axis, letter) in AXES.into_iter().enumerate() {
+            let word = block.word(letter);
+            if let Some(word) = word {
+                let length = self.length(word, reading)?;
+                let to = self.origin(block, letter, over[axis], reading) + length;
+                over[axis] = within(to, word.column, || letter.to_string())?;
+                home[axis] = over[axis];
+            }
+            if all || word.is_some() {
+                home[axis] = zero(reading)[axis];
+            }
+        }
+        if reading.home.is_none() {
+            return Ok(());
+        }
+        for to in [over, home] {
+            if to != self.position {
+                let segment = Segment { from: self.position, to, way: Way::Line };
+                events.push_back(Event::Move(Move {
+                    place,
+                    segment,
+                    feed: Feed::Rapid,
+                    plane: self.plane,
+                    side: self.side,
+                }));
+                self.position = to;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The machine's zero in the program, in BLU.
+fn zero(reading: &Reading) -> [f64; 3] {
+    reading.home.unwrap_or_default().map(|c| c / reading.blu)
+}

@@ -1,0 +1,57 @@
+//! How long a program will run, before it does.
+
+use std::io::BufRead;
+
+use stepwave_models::Hardware;
+use stepwave_models::program::Family;
+
+use super::ProgramFailure;
+use super::feed::{Pace, commanded, frequency, rate};
+use super::stream::{Item, Preparation, Stream};
+
+/// What a run of a program comes to, from its feeds and lengths.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Estimate {
+    /// Clocks, dwells among them.
+    pub clocks: f64,
+    /// Steps of the interpolator.
+    pub steps: f64,
+}
+
+impl Estimate {
+    /// Reads the program once more, for this hardware and pace.
+    ///
+    /// # Errors
+    /// The program is wrong.
+    pub fn of<R: BufRead>(
+        text: R,
+        family: &'static Family,
+        preparation: &Preparation,
+        hardware: &Hardware,
+        pace: Pace,
+    ) -> Result<Estimate, ProgramFailure> {
+        let mut estimate = Estimate::default();
+        let mut speed = None;
+        for item in Stream::new(text, family, preparation)? {
+            match item? {
+                Item::Dwell(_, seconds) => estimate.clocks += (seconds * pace.clock_hz).round(),
+                Item::Stop(_) | Item::LeftOut(..) => {}
+                Item::Move(_, blocks) => {
+                    let whole: f64 = blocks.iter().map(|block| block.curve.length()).sum();
+                    if let Some(first) = blocks.first() {
+                        speed = commanded(pace, first, whole, speed);
+                    }
+                    for block in &blocks {
+                        for part in family.words(hardware, block) {
+                            let source_hz = frequency(pace, rate(pace, family, block, &part, speed).word);
+                            estimate.steps += part.steps;
+                            // The next block is taken over in one clock.
+                            estimate.clocks += part.steps * pace.clock_hz / source_hz + 1.0;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(estimate)
+    }
+}
