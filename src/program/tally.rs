@@ -39,6 +39,8 @@ pub struct MoveReport {
     pub off_compensated: f64,
     /// What the method, the rounding to pulses and chords promise of that together, in BLU.
     pub contour_bound: Option<f64>,
+    /// The method promises nothing of one of its blocks.
+    free: bool,
     /// Greatest distance of the tool's edge from the programmed contour, in BLU.
     pub off_programmed: Option<f64>,
     /// How evenly it went.
@@ -65,6 +67,7 @@ impl MoveReport {
             promise: None,
             off_compensated: 0.0,
             contour_bound: None,
+            free: false,
             off_programmed: None,
             ripple: Ripple::new(from, begun),
         }
@@ -113,7 +116,11 @@ impl MoveReport {
 
     /// Takes what the method promises of a block of the machine; `chords` is what a chord of an arc may be off it.
     pub(super) fn keep(&mut self, block: &PulseBlock, promise: Option<Promise>, chords: f64) {
-        let Some(promise) = promise else { return };
+        let Some(promise) = promise.filter(|_| !self.free) else {
+            // One block without a promise leaves the move without one.
+            (self.free, self.promise, self.contour_bound) = (true, None, None);
+            return;
+        };
         self.promise = Some(self.promise.map_or(promise, |before| promise.or_wider(before)));
         let drawn = matches!((&block.curve, self.of.segment.way), (Curve::Line(_), Way::Arc { .. }));
         let allowed = ROUNDING_LIMIT + radii_apart(&self.of.segment) + if drawn { chords } else { 0.0 };

@@ -187,6 +187,19 @@ impl fmt::Display for End {
     }
 }
 
+fn beyond(tolerance: f64) -> String {
+    if tolerance > 0.0 { format!(" and the --tolerance of {tolerance} BLU beyond") } else { String::new() }
+}
+
+/// The tolerance that would accept an arc with these radii, where one may.
+fn accepted(start: f64, end: f64) -> String {
+    let apart = (end - start).abs();
+    if apart > start / 2.0 {
+        return String::new();
+    }
+    format!(", or accept it with --tolerance {}", ((apart - 1.0) * 1000.0).ceil() / 1000.0)
+}
+
 #[cfg(test)]
 mod tests {
     use crate::{Arc, Direction, GeometryError, Line};
@@ -232,17 +245,4 @@ mod tests {
              at most 1 BLU: correct the centre or the end point, or accept it with --tolerance 1"
         );
     }
-}
-
-fn beyond(tolerance: f64) -> String {
-    if tolerance > 0.0 { format!(" and the --tolerance of {tolerance} BLU beyond") } else { String::new() }
-}
-
-/// The tolerance that would accept an arc with these radii, where one may.
-fn accepted(start: f64, end: f64) -> String {
-    let apart = (end - start).abs();
-    if apart > start / 2.0 {
-        return String::new();
-    }
-    format!(", or accept it with --tolerance {}", ((apart - 1.0) * 1000.0).ceil() / 1000.0)
 }

@@ -234,7 +234,7 @@ impl<R: BufRead> Program<R> {
         if !(reading.tolerance.is_finite() && reading.tolerance >= 0.0) {
             return Err(ReadingError::Tolerance { tolerance: reading.tolerance });
         }
-        let far = |c: &f64| !(c.abs() / blu <= PROGRAM_LIMIT as f64);
+        let far = |c: &f64| !c.is_finite() || c.abs() / blu > PROGRAM_LIMIT as f64;
         if let Some(home) = reading.home.filter(|home| home.iter().any(far)) {
             return Err(ReadingError::Home { home });
         }
