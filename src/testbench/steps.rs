@@ -63,6 +63,9 @@ impl StepColumns {
     }
 }
 
+/// What is written down: rows, pulses, clock of the last, where they led, and what the counters show.
+type Gathered = (u64, Vec<u64>, u64, Vec<i64>, Vec<i64>);
+
 /// Counts steps and pulses, and makes the rows of the table where somebody wants them.
 pub(super) struct StepReader<'a> {
     bench: &'a Testbench,
@@ -185,7 +188,7 @@ impl<'a> StepReader<'a> {
     }
 
     pub(super) fn recall(&mut self, memory: &Memory) {
-        let gathered: Option<(u64, Vec<u64>, u64, Vec<i64>, Vec<i64>)> = recalled(memory, "steps");
+        let gathered: Option<Gathered> = recalled(memory, "steps");
         let Some((rows, pulses, last_pulse, position, counters)) = gathered else { return };
         let axes = self.pulses.len();
         let counts = pulses.iter().chain([&rows, &last_pulse]).all(|&count| count <= GREATEST);
