@@ -64,6 +64,8 @@ proptest! {
     fn nor_are_great_ones(x in -900i64..900, y in -900i64..900, turn in 0.0f64..6.2, aside in -0.99f64..0.99, ccw: bool) {
         let radius = (x as f64).hypot(y as f64);
         let place = turn + (y as f64).atan2(x as f64);
+        // Within a thousand.
+        #[allow(clippy::cast_possible_truncation)]
         let to = [(radius + aside) * place.cos(), (radius + aside) * place.sin()].map(|c| c.round() as i64);
         let direction = if ccw { Direction::CounterClockwise } else { Direction::Clockwise };
         let Ok(arc) = Arc::new([x, y], to, [0, 0], direction) else { return Ok(()) };
