@@ -54,7 +54,7 @@ impl Testbench {
     }
 
     /// The same bench, whose runs are given up after so many clocks; where none are given and a load word was cut, after
-    /// [`CUT_CLOCKS`].
+    /// 2^27 clocks.
     #[must_use]
     pub fn limited_to(self, clocks: Option<u64>) -> Testbench {
         let most = if self.cut.is_empty() { u64::MAX } else { CUT_CLOCKS };

@@ -63,7 +63,7 @@ impl Extent {
     /// Bits of the coordinates in it.
     ///
     /// # Errors
-    /// A coordinate needs more than [`MOST_BITS`].
+    /// A coordinate needs more than 52 bits.
     pub fn bits(&self) -> Result<u32, ProofError> {
         let Grid(ranges) = match self {
             Extent::Bits(bits) => return Ok(*bits),
