@@ -32,7 +32,7 @@
 //! that their J_V is that of row k-1. `run --textbook` prints the table as they do. Their tables begin with remainders of
 //! 0: `--preset zero`.
 //!
-//! The arc NR1 from (5, 0) to (0, 5) in 3 bits with `--preset zero`, from the golden file `waves/dda-arc-nr1.csv`; the wave stands beside it:
+//! The arc NR1 from (5, 0) to (0, 5) in 3 bits with `--preset zero`, from the golden file `waves/dda-arc-nr1.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../../waves/dda-arc-nr1.csv")]

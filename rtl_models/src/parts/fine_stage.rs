@@ -10,7 +10,7 @@ use crate::hardware::names::{JV, POSITION, SIGN};
 /// Two integrators whose integrands are double buffered. The coarse stage hands over a point of the curve, with
 /// a fraction, relative to the start or centre of the block; what whole pulses of it are still to be made goes into the
 /// buffer. When the period before is over, the buffer is taken, and a burst of 2^n additions, spread over the clocks of a
-/// period, makes just those pulses: J_R is the preset again behind it.
+/// period, makes just those pulses: J_R is the preset again after it.
 ///
 /// - `next_full`, `next_last`, 1 bit each: the buffer holds a period; it is the last one. `last`: of the burst.
 /// - `e`, n+1 bits: additions of the burst left.
