@@ -55,7 +55,7 @@ impl CsvPart {
         let mut lines = Lines { text: BufReader::with_capacity(1 << 16, file), line: String::new(), number: 0 };
         let mut check = Check::default();
         lines.read()?;
-        let head = PartHead::of_line(&lines.line).ok_or("it is no part of a sweep: --shard makes them")?;
+        let head = PartHead::of_line(&lines.line)?;
         check.add(lines.line.as_bytes());
         let columns = head.columns().ok_or("its columns are not named")?;
         lines.read()?;

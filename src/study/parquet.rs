@@ -17,7 +17,7 @@ use parquet::schema::types::Type;
 
 use stepwave_kernel::guard::guarded;
 
-use super::parts::{Check, PartHead};
+use super::parts::{Check, NOT_A_PART, PartHead};
 use super::table::{Column, Kind, Row, Value, write_line};
 use super::{StudyError, Sweep};
 
@@ -187,12 +187,13 @@ impl ParquetPart {
         let file = reader.metadata().file_metadata();
         let told = file.key_value_metadata().into_iter().flatten().find(|pair| pair.key == PART);
         let told = told.and_then(|pair| serde_json::from_str::<serde_json::Value>(pair.value.as_deref()?).ok());
-        let head = told.as_ref().and_then(|told| PartHead::read(told.get("head")?.as_str()?));
+        let head = told.as_ref().and_then(|told| told.get("head")?.as_str()).ok_or(NOT_A_PART)?;
+        let head = PartHead::read(head)?;
         let count = told.as_ref().and_then(|told| told.get("rows")?.as_u64());
         let checks: Option<Vec<String>> =
             told.as_ref().and_then(|told| serde_json::from_value(told.get("checks")?.clone()).ok());
-        let (Some(head), Some(count), Some(checks)) = (head, count, checks) else {
-            return Err("it is no part of a sweep: --shard makes them".to_owned());
+        let (Some(count), Some(checks)) = (count, checks) else {
+            return Err(NOT_A_PART.to_owned());
         };
         let rows = u64::try_from(file.num_rows()).unwrap_or(0);
         if rows != count {

@@ -20,6 +20,8 @@ const END: &str = "# end of the part: ";
 const CHECK: &str = "# check of the lines since the last: ";
 /// Rows of a block in CSV.
 pub(super) const BLOCK: u64 = 1000;
+/// Why a file cannot be merged.
+pub(super) const NOT_A_PART: &str = "it is not a part of a sweep: --shard makes them";
 /// Form of what is written; a change of meaning raises it.
 const SCHEMA: u32 = 2;
 
@@ -46,8 +48,15 @@ impl PartHead {
     }
 
     /// From text.
-    pub(super) fn read(text: &str) -> Option<PartHead> {
-        serde_json::from_str(text).ok().filter(|head: &PartHead| head.schema == SCHEMA)
+    ///
+    /// # Errors
+    /// It is not the head of a part, or one of another form.
+    pub(super) fn read(text: &str) -> Result<PartHead, String> {
+        let head: PartHead = serde_json::from_str(text).map_err(|_| NOT_A_PART.to_owned())?;
+        if head.schema == SCHEMA {
+            return Ok(head);
+        }
+        Err(format!("it is a part in form {}, but form {SCHEMA} is needed: make it anew with --shard", head.schema))
     }
 
     /// A text is one, of whatever version.
@@ -61,8 +70,11 @@ impl PartHead {
     }
 
     /// From the first line of a CSV part.
-    pub(super) fn of_line(line: &str) -> Option<PartHead> {
-        PartHead::read(line.trim_end().strip_prefix(HEAD)?)
+    ///
+    /// # Errors
+    /// See [`read`](PartHead::read).
+    pub(super) fn of_line(line: &str) -> Result<PartHead, String> {
+        PartHead::read(line.trim_end().strip_prefix(HEAD).ok_or(NOT_A_PART)?)
     }
 
     /// The columns of the rows.

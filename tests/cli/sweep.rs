@@ -199,6 +199,7 @@ fn parts_that_do_not_make_one_whole_sweep_are_refused() {
     folder.write("torn.csv", &text[..text.len() / 2]);
     let few = [&lines[..5], &lines[6..]].concat().join("\n");
     folder.write("few.csv", &few);
+    folder.write("old.csv", &text.replacen("\"schema\":2", "\"schema\":1", 1));
     let before = folder.files();
     for (parts, hint) in [
         ("1.csv", "part 2/2 is missing"),
@@ -207,7 +208,8 @@ fn parts_that_do_not_make_one_whole_sweep_are_refused() {
         ("1.csv 2.csv 2.csv", "given twice"),
         ("1.csv other.csv", "it is of another sweep"),
         ("1.csv third.csv", "it is of another sweep"),
-        ("1.csv whole.csv", "it is no part of a sweep"),
+        ("1.csv whole.csv", "it is not a part of a sweep"),
+        ("1.csv old.csv", "it is a part in form 1, but form 2 is needed: make it anew with --shard"),
         ("1.csv cut.csv", "its end is missing"),
         ("1.csv torn.csv", "cannot merge torn.csv"),
         ("1.csv few.csv", "of its 50 rows"),

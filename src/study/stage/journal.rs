@@ -101,7 +101,7 @@ impl Journal {
         // Killed before its first line: nothing is left.
         let Some(first) = lines.next() else { return Ok(Vec::new()) };
         let way_out = "give the same options as then, or leave --resume out to begin anew";
-        let Some(known) = PartHead::read(first.trim_end()) else {
+        let Ok(known) = PartHead::read(first.trim_end()) else {
             return Err(format!("what is left next to it is of another version: {way_out}"));
         };
         if known != *head {
