@@ -20,7 +20,7 @@ mod widths;
 pub(crate) use endings::{Format, file_of};
 pub(crate) use names::{Registers, known_register, registers};
 use names::{all_registers, listed, model_name};
-pub(crate) use program::ProgramArgs;
+pub(crate) use program::{ProgramArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use values::{ClockArgs, HardwareArgs, Point, SimulationArgs};

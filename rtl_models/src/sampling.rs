@@ -96,7 +96,8 @@ impl Sampling {
         let word = (u128::from(step.0) << fraction).saturating_add(500_000) / 1_000_000;
         if word == 0 {
             let least = Millionths((1_000_000_u64 >> fraction) + 1);
-            let reason = format!("it is 0 with {fraction} bits of fraction: give --step {least} or more");
+            let reason =
+                format!("it is 0 with {fraction} bits of fraction: give --step {least} or more, or a higher --feed");
             return refused(Choice::Step, step.to_string(), reason);
         }
         // What lies in front of the middle of a step, and room for the way that the path may be off.
@@ -106,6 +107,8 @@ impl Sampling {
             let fits = MOST.saturating_sub(whole);
             let way_out = if fits >= LEAST_FRACTION {
                 format!("give --fraction {fits} or less")
+            } else if radius.is_none() && step.units() > greatest {
+                "give a smaller --step, or a lower --feed".to_owned()
             } else {
                 "give a smaller geometry, or a greater BLU".to_owned()
             };

@@ -4,13 +4,15 @@ use std::path::PathBuf;
 
 use clap::builder::StringValueParser;
 use clap::{Args, Subcommand};
-use stepwave::models::{Adder, Beats, Compare, EndPoint, Form, OnOverflow, Radix, StepTiming, System, Weights};
+use stepwave::models::{
+    Adder, Beats, Compare, EndPoint, Form, Millionths, OnOverflow, Radix, StepTiming, System, Weights,
+};
 use stepwave::nc::Opens;
 use stepwave::study::{Grid, Range};
 
 use super::endings::{Format, file_of};
 use super::names::{all_widths, list_of, listed, model_name, words};
-use super::values::{Point, opens, parse_point, parse_timing};
+use super::values::{Point, opens, parse_millionths, parse_point, parse_timing};
 
 /// A grid on the command line.
 fn grid(text: &str) -> Result<Grid, String> {
@@ -44,13 +46,14 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     stepwave sweep dda-line --to-grid 0..4095x0..4095 --samples 5000 --seed 7 --csv -\n\
     \n\
     Geometries. A grid gives a geometry for every point; of arcs, helices and conics those of its\n\
-    points that lie within 1 BLU of the curve. Grids of start points and of end points make a product.\n\
+    points that lie within 1 BLU of the curve, arcs and helices with --tolerance also farther off: the\n\
+    arc is then one about the nearest whole centre, as in `stepwave run`. Grids of start points and of end points make a product.\n\
     Without an end point an arc or ellipse is a whole one. Ranges are FIRST..LAST or FIRST..LAST/STEP,\n\
     both ends in them.\n\
     \n\
     Hardware choices. Each takes a list with commas, numbers also ranges; every value of each goes with\n\
     every value of the others. Without --width each geometry has the least widths that hold it, as in\n\
-    `stepwave run`.\n\
+    `stepwave run`. Data sampling has a clock of 1 MHz.\n\
     \n\
     Rows. One a run: index (all points of the grid count, those without a curve too), geometry, choices,\n\
     ending (done, trapped, stalled, limit, refused), clocks, steps, pulses and end point of each axis,\n\
@@ -131,6 +134,10 @@ pub(crate) struct SpaceArgs {
     /// Counter-clockwise
     #[arg(long)]
     pub(crate) ccw: bool,
+    /// How far an arc may be left, in BLU: by an end point, whose radius may differ from that of the start by so much more
+    /// than rounding makes, and by the chords of a coarse stage
+    #[arg(long, value_name = "BLU", value_parser = parse_millionths)]
+    pub(crate) tolerance: Option<Millionths>,
     /// So many random ones of the geometries, instead of all
     #[arg(long, value_name = "N", conflicts_with = "file", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) samples: Option<u64>,

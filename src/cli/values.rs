@@ -151,12 +151,16 @@ pub(super) fn parse_narrower(text: &str) -> Result<Narrower, String> {
 /// Times of step and direction outputs: `length=2,space=2,setup=4,hold=4`, any of them.
 pub(super) fn parse_timing(text: &str) -> Result<StepTiming, String> {
     let way_out = "give clocks such as length=2,space=2,setup=4,hold=4";
-    let mut timing = StepTiming::default();
+    let (mut timing, mut named) = (StepTiming::default(), Vec::new());
     for part in text.split(',') {
         let (name, clocks) = part.split_once('=').ok_or_else(|| format!("'{part}' is no time: {way_out}"))?;
         let least = u64::from(matches!(name.trim(), "length" | "space"));
         let number = clocks.trim().parse().ok().filter(|clocks| (least..=1 << 20).contains(clocks));
         let number = number.ok_or_else(|| format!("'{clocks}' is no time from {least} to {}: {way_out}", 1 << 20))?;
+        if named.contains(&name.trim()) {
+            return Err(format!("'{}' is given two times: leave one of them out", name.trim()));
+        }
+        named.push(name.trim());
         match name.trim() {
             "length" => timing.length = number,
             "space" => timing.space = number,
@@ -277,16 +281,26 @@ pub(crate) struct SimulationArgs {
     pub(crate) max_clocks: Option<u64>,
 }
 
-/// Splits values for all from values for single registers; the last one given counts.
-fn split<T>(given: impl Iterator<Item = (Option<String>, T)>) -> (Option<T>, BTreeMap<String, T>) {
+/// Splits values for all from values for single registers.
+///
+/// # Errors
+/// Two values were given for the same: neither may be ignored.
+fn split<T>(
+    option: &str,
+    given: impl Iterator<Item = (Option<String>, T)>,
+) -> Result<(Option<T>, BTreeMap<String, T>), Failure> {
     let (mut all, mut single) = (None, BTreeMap::new());
     for (name, value) in given {
-        match name {
-            Some(name) => _ = single.insert(name, value),
-            None => all = Some(value),
+        let whose = name.as_ref().map_or_else(|| "all registers".to_owned(), |name| format!("'{name}'"));
+        let before = match name {
+            Some(name) => single.insert(name, value),
+            None => all.replace(value),
+        };
+        if before.is_some() {
+            return Err(Failure::Trouble(format!("{option} gives {whose} two values: leave one of them out")));
         }
     }
-    (all, single)
+    Ok((all, single))
 }
 
 impl HardwareArgs {
@@ -295,6 +309,10 @@ impl HardwareArgs {
         match error {
             ModelError::NotTaken { model, choice: Choice::Step, takes } if self.feed.is_some() => {
                 Failure::Trouble(format!("{model} does not take --feed; it takes {takes}"))
+            }
+            error @ ModelError::Value { choice: Choice::Step, .. } if self.feed.is_some() => {
+                let feed = self.feed.unwrap_or_default();
+                Failure::Trouble(format!("--feed {feed} gives the way of a period, as --step does: {error}"))
             }
             other => other.into(),
         }
@@ -309,8 +327,8 @@ impl HardwareArgs {
     }
 
     /// The choices made, for a clock of this frequency in Hz.
-    pub(crate) fn choices_at(&self, clock_hz: f64) -> Choices {
-        Choices { clock_hz: Some(Millionths::saturating(clock_hz)), ..self.choices() }
+    pub(crate) fn choices_at(&self, clock_hz: f64) -> Result<Choices, Failure> {
+        Ok(Choices { clock_hz: Some(Millionths::saturating(clock_hz)), ..self.choices()? })
     }
 
     /// How far the two radii of an arc may differ beyond what rounding makes, in BLU.
@@ -319,15 +337,18 @@ impl HardwareArgs {
     }
 
     /// The choices made.
-    pub(crate) fn choices(&self) -> Choices {
-        let (width, widths) = split(self.width.iter().flat_map(|arg| arg.0.iter().cloned()));
-        let (preset, presets) = split(self.preset.iter().flat_map(|arg| arg.0.iter().cloned()));
+    ///
+    /// # Errors
+    /// One of them was made twice.
+    pub(crate) fn choices(&self) -> Result<Choices, Failure> {
+        let (width, widths) = split("--width", self.width.iter().flat_map(|arg| arg.0.iter().cloned()))?;
+        let (preset, presets) = split("--preset", self.preset.iter().flat_map(|arg| arg.0.iter().cloned()))?;
         // What is beyond all measure is refused by its length.
         let of_feed = |feed: f64| {
             let way = feed / 60.0 * self.system.unwrap_or_default().period() / self.blu;
             Millionths::nearest(way).unwrap_or(Millionths(1 << 60))
         };
-        Choices {
+        Ok(Choices {
             width,
             widths,
             preset,
@@ -350,6 +371,6 @@ impl HardwareArgs {
             tolerance: self.tolerance,
             clock_hz: None,
             on_overflow: self.on_overflow,
-        }
+        })
     }
 }

@@ -20,10 +20,10 @@ const DEEPEST: u64 = 1000;
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
-    let curve = curve(model.name, model.curve, &args.geometry, args.hardware.radii())?;
-    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
-    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
+    let curve = curve(model.name, model.curve, &args.geometry, args.hardware.radii())?;
+    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz)?;
+    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
     let comment = [
         report::title(model, bench.hardware(), &curve),
         format!("Written by stepwave {}; the geometry gives the widths.", env!("CARGO_PKG_VERSION")),

@@ -96,11 +96,16 @@ fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Resul
 
 /// The choices made for a model and a clock in Hz: the tolerance counts for the radii of an arc alone where the model itself
 /// takes none.
-pub(crate) fn choices(model: &Model, curve: &Curve, hardware: &HardwareArgs, clock_hz: f64) -> Choices {
+pub(crate) fn choices(
+    model: &Model,
+    curve: &Curve,
+    hardware: &HardwareArgs,
+    clock_hz: f64,
+) -> Result<Choices, Failure> {
     let of_radii = matches!(curve, Curve::Arc(_) | Curve::Helix(_));
     let taken = model.choices.iter().any(|doc| doc.choice == Choice::Tolerance);
-    let choices = hardware.choices_at(clock_hz);
-    Choices { tolerance: choices.tolerance.filter(|_| taken || !of_radii), ..choices }
+    let choices = hardware.choices_at(clock_hz)?;
+    Ok(Choices { tolerance: choices.tolerance.filter(|_| taken || !of_radii), ..choices })
 }
 
 /// What is to be reported where the radii of an arc are so different that its centre has moved.

@@ -1,5 +1,6 @@
 //! `stepwave program`.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::Path;
@@ -17,7 +18,7 @@ use super::progress::Progress;
 use super::run::Finished;
 use super::size::Size;
 use super::wave::{Sinks, Waves, shows_trap};
-use crate::cli::ProgramArgs;
+use crate::cli::{ProgramArgs, Tool};
 use crate::failure::Failure;
 use crate::output::{Outputs, Sink};
 
@@ -45,6 +46,19 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
     }
 }
 
+/// The tool table: radii in mm by D number.
+fn tools(given: &[Tool]) -> Result<BTreeMap<u64, f64>, Failure> {
+    let mut tools = BTreeMap::new();
+    for Tool { number, radius } in given {
+        if let Some(before) = tools.insert(*number, *radius) {
+            return Err(Failure::Trouble(format!(
+                "--tool gives D{number} two radii, {before} mm and {radius} mm: leave one of them out"
+            )));
+        }
+    }
+    Ok(tools)
+}
+
 /// Simulates; the wave shows the operands of a trap that is known.
 fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> Result<Finished, Failure> {
     let family = args.method;
@@ -54,7 +68,7 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
         reading: Reading {
             blu: args.hardware.blu,
             integers: args.integers,
-            tools: args.tool.iter().map(|tool| (tool.number, tool.radius)).collect(),
+            tools: tools(&args.tool)?,
             tolerance: args.hardware.radii(),
             home: args.home.0,
         },
@@ -64,7 +78,7 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
     };
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
     // How far the radii of an arc may differ is not the machine's concern.
-    let choices = Choices { tolerance: None, ..args.hardware.choices() };
+    let choices = Choices { tolerance: None, ..args.hardware.choices()? };
     let hardware = family.plan(&survey.size, &choices).map_err(|error| args.hardware.told(error))?;
     let machine = family.machine(&hardware)?;
     let bench = Testbench::of_machine(hardware, machine)

@@ -39,6 +39,19 @@ fn tell(args: &ProveArgs, text: &str) -> Result<(), Failure> {
     if is_stdout(&args.certificate) || is_stdout(&args.vcd) { Ok(()) } else { output::print(text) }
 }
 
+/// By how many bits registers are narrower.
+fn narrower(args: &ProveArgs) -> Result<Narrower, Failure> {
+    let mut narrower = Narrower::new();
+    for (name, bits) in args.narrower.iter().flat_map(|list| list.0.iter().cloned()) {
+        if let Some(before) = narrower.insert(name.clone(), bits) {
+            return Err(Failure::Trouble(format!(
+                "--narrower gives '{name}' two values, {before} and {bits}: leave one of them out"
+            )));
+        }
+    }
+    Ok(narrower)
+}
+
 /// Bits of coordinates among which counterexamples are looked for.
 const SEARCHED: RangeInclusive<u32> = 1..=6;
 /// Bits of coordinates that a solver is asked about unless the user says otherwise.
@@ -57,7 +70,7 @@ impl<'a> Job<'a> {
     fn new(args: &'a ProveArgs, narrower: Narrower) -> Result<Job<'a>, Failure> {
         let model = find(args.model.as_deref().unwrap_or_default())?;
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-        Ok(Job { args, model, claims, choices: args.hardware.choices(), narrower })
+        Ok(Job { args, model, claims, choices: args.hardware.choices()?, narrower })
     }
 
     /// The box that is given, or what coordinates of the width that is given for all registers hold.
@@ -187,7 +200,7 @@ fn attempt(args: &ProveArgs) -> Result<(), Failure> {
     // Whichever is written in the end, both are tried before anything is attempted.
     let mut both = Outputs::default();
     args.certificate.iter().chain(&args.vcd).try_for_each(|path| both.claim(path).map(drop))?;
-    let job = Job::new(args, args.narrower.iter().flat_map(|list| list.0.iter().cloned()).collect())?;
+    let job = Job::new(args, narrower(args)?)?;
     let model = job.model;
     if job.is_fixed() {
         job.check_fixed()?;

@@ -79,12 +79,12 @@ fn once(args: &RunArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> 
             "textbooks print the registers of {name} as the step table does: leave --textbook out; it is for {models}"
         )));
     }
+    let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let curve = curve(model.name, model.curve, &args.geometry, args.hardware.radii())?;
-    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
+    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz)?;
     let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
     let bench = bench.limited_to(args.simulation.max_clocks);
     let bench = trap.and_then(|event| bench.showing(event)).unwrap_or(bench);
-    let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let title = report::title(model, bench.hardware(), &curve);
 
     let states = States::of(args, &bench)?;
@@ -93,6 +93,9 @@ fn once(args: &RunArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> 
     let mut open = |path: &Option<PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
     let (steps, mut json, plot) = (open(&args.outputs.steps)?, open(&args.outputs.json)?, open(&args.outputs.plot)?);
     let mut states = states.map(|states| states.open(outputs)).transpose()?;
+    if outputs.uses_stdout() {
+        no_table(args)?;
+    }
     let mut waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &title)).transpose()?;
     let mut csv = steps.map(|sink| CsvTable::new(&bench, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Picture(Plot::new(&curve)), sink));
@@ -162,6 +165,16 @@ fn once(args: &RunArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> 
     }
     let trap = report.overflows.first().filter(|_| report.outcome.ending == Ending::Trapped);
     Ok(Finished { text, failures: report.failures(), trap: trap.cloned() })
+}
+
+/// Refuses what is about the printed table, where a file is printed in its place.
+fn no_table(args: &RunArgs) -> Result<(), Failure> {
+    let given = [(args.textbook, "--textbook"), (args.bits, "--bits")].into_iter().find(|(given, _)| *given);
+    given.map_or(Ok(()), |(_, option)| {
+        Err(Failure::Trouble(format!(
+            "{option} is for the printed table, but a file goes to standard output (-) in its place: leave one of them out"
+        )))
+    })
 }
 
 fn title_of_picture(report: &Report<'_>) -> String {

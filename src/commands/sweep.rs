@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 use stepwave::kernel::did_you_mean;
-use stepwave::models::{Choice, CurveKind, Model, find};
+use stepwave::models::{Choice, CurveKind, Millionths, Model, find};
 use stepwave::nc::Direction;
 use stepwave::report::heat::HeatMap;
 use stepwave::study::{
@@ -41,7 +41,9 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Failure> {
         let mut names = parts.filter_map(|part| part.split_once('=')).map(|(name, _)| name.trim());
         names.try_for_each(|name| known_register(model, choice, name))?;
     }
-    let sweep = Sweep::new(model, space, variants(&args.variants)?, Part { number, of }, args.outputs.max_clocks)?;
+    let mut variants = variants(&args.variants)?;
+    variants.0.extend(tolerance(model, args.space.tolerance)?);
+    let sweep = Sweep::new(model, space, variants, Part { number, of }, args.outputs.max_clocks)?;
     let inputs: Vec<&PathBuf> = args.space.file.iter().collect();
     let mut outputs = Outputs::reading(&inputs);
     let written = write(&sweep, &args.outputs, Outputs::reading(&inputs), &mut outputs);
@@ -58,8 +60,9 @@ fn trouble<T>(sentence: String) -> Result<T, Failure> {
 
 /// All geometries that the options tell.
 fn space(model: &Model, args: &SpaceArgs) -> Result<Space, Failure> {
+    let radii = args.tolerance.unwrap_or(Millionths(0));
     if let Some(file) = &args.file {
-        return Ok(study::read_points(file, model)?);
+        return Ok(study::read_points(file, model, radii)?);
     }
     let drawn = drawn(model, args)?;
     let points = |one: &Option<Point>, many: &Option<Grid>| {
@@ -111,7 +114,7 @@ fn space(model: &Model, args: &SpaceArgs) -> Result<Space, Failure> {
     };
     let ways = [(args.cw, Direction::Clockwise), (args.ccw, Direction::CounterClockwise)];
     let directions = ways.into_iter().filter(|(given, _)| *given).map(|(_, direction)| direction).collect();
-    let cells = Cells { drawn, sizes, from, to, center, directions };
+    let cells = Cells { drawn, sizes, from, to, center, directions, radii };
     Ok(match args.samples {
         Some(count) if cells.count() <= u128::from(u64::MAX) => Space::Samples { cells, count, seed: args.seed },
         Some(_) => return trouble(format!("a grid of {} geometries is too large to draw from", cells.count())),
@@ -183,6 +186,17 @@ fn variants(args: &VariantArgs) -> Result<Variants, Failure> {
     let mut dimensions = given.collect::<Result<Vec<_>, StudyError>>()?;
     dimensions.extend((!args.timing.is_empty()).then(|| Dimension::timings(&args.timing)));
     Ok(Variants(dimensions))
+}
+
+/// The tolerance as a choice of hardware, of models that have chords.
+fn tolerance(model: &Model, given: Option<Millionths>) -> Result<Option<Dimension>, Failure> {
+    let round = matches!(model.curve, CurveKind::Arc | CurveKind::Helix);
+    if given.is_some() && !round {
+        let takes = model.curve.describe();
+        return trouble(format!("{} interpolates {takes}, which have no --tolerance: leave it out", model.name));
+    }
+    let has_chords = model.choices.iter().any(|doc| doc.choice == Choice::Tolerance);
+    Ok(given.filter(|_| has_chords).map(Dimension::tolerance))
 }
 
 /// A heat map being gathered.

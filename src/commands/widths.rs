@@ -15,7 +15,7 @@ use crate::output;
 /// Prints the table; a width that is given and too narrow is a failed check.
 pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
-    let choices = args.hardware.choices();
+    let choices = args.hardware.choices()?;
     let progress = Progress::new("geometries");
     let found = widths(model, &choices, &args.extent, &|more| progress.add(more));
     progress.finish();

@@ -238,19 +238,26 @@ impl Report<'_> {
         }))
     }
 
-    /// Mean speed along the curve: BLU per step, and mm/min at the clock and BLU chosen. Clocks that load are none of the
-    /// motion.
+    /// Clocks of the motion: those that load are none.
+    fn moving_clocks(&self) -> u64 {
+        self.outcome.clocks.saturating_sub(self.outcome.load_clocks)
+    }
+
+    /// Mean speed along the curve, in mm/min at the clock and BLU chosen.
+    pub(super) fn mean_feed(&self) -> f64 {
+        60.0 * self.curve.length() * self.blu_mm * self.clock_hz / self.moving_clocks().max(1) as f64
+    }
+
+    /// Mean speed along the curve: BLU per step, and mm/min.
     fn feed(&self) -> Value {
-        let moving = self.outcome.clocks.saturating_sub(self.outcome.load_clocks);
-        let (steps, clocks) = (self.outcome.steps.max(1) as f64, moving.max(1) as f64);
-        let length = self.curve.length();
+        let (steps, length) = (self.outcome.steps.max(1) as f64, self.curve.length());
         json!({
             "clock_hz": self.clock_hz,
             "blu_mm": self.blu_mm,
             "length": length,
-            "clocks": moving,
+            "clocks": self.moving_clocks(),
             "mean_per_step": length / steps,
-            "mean_mm_per_min": 60.0 * length * self.blu_mm * self.clock_hz / clocks,
+            "mean_mm_per_min": self.mean_feed(),
         })
     }
 }

@@ -171,6 +171,14 @@ impl Report<'_> {
             sampling.step.units() * self.blu_mm * 60.0 / period,
             sampling.period_clocks(),
         );
+        if self.outcome.ending == Ending::Done {
+            let _ = writeln!(
+                text,
+                "mean feed {:.3} mm/min over {} period(s): the last goes what is left of the way",
+                self.mean_feed(),
+                self.outcome.steps
+            );
+        }
         let _ = writeln!(
             text,
             "coarse points with {} bits of fraction: up to {} off the curve, period {}",

@@ -8,7 +8,7 @@
 //! threads nor how the work is cut changes a byte of what is written.
 //!
 //! ```
-//! use stepwave::models::{Choice, find};
+//! use stepwave::models::{Choice, Millionths, find};
 //! use stepwave::study::{Cells, Dimension, Drawn, Part, Range, Space, Sweep, Value, Variants};
 //!
 //! let cells = Cells {
@@ -18,6 +18,7 @@
 //!     to: Some(vec!["1..7".parse()?, "0..3".parse()?]),
 //!     center: [0, 0],
 //!     directions: vec![],
+//!     radii: Millionths(0),
 //! };
 //! let variants = Variants(vec![Dimension::parse(Choice::Width, "3..4")?]);
 //! let sweep = Sweep::new(find("dda-line")?, Space::Cells(cells), variants, Part::WHOLE, 1 << 20)?;

@@ -4,7 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
 use stepwave_kernel::did_you_mean;
-use stepwave_models::{AXES, CurveKind, Model};
+use stepwave_models::{AXES, CurveKind, Millionths, Model};
 use stepwave_nc::{Direction, Opens};
 
 use super::StudyError;
@@ -12,11 +12,12 @@ use super::space::{Drawn, Site, Space};
 use super::table::fields;
 
 /// Reads geometries for a model: `to_x,to_y` and whatever else is not as by default: `from_x`, `center_x`, `direction`
-/// (`cw`, `ccw`), and of conics `curve`, `size_a`, `size_b`, `opens`.
+/// (`cw`, `ccw`), and of conics `curve`, `size_a`, `size_b`, `opens`. The two radii of an arc may differ by `radii` BLU
+/// beyond what rounding makes.
 ///
 /// # Errors
 /// The file cannot be read, or has a mistake, which is told with its line.
-pub fn read_points(file: &Path, model: &Model) -> Result<Space, StudyError> {
+pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Space, StudyError> {
     let text = std::fs::read_to_string(file).map_err(|error| StudyError::reading(file, error))?;
     let mistake = |line: usize, what: String| StudyError::Points { file: file.display().to_string(), line, what };
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
@@ -42,7 +43,7 @@ pub fn read_points(file: &Path, model: &Model) -> Result<Space, StudyError> {
             let count = words.len();
             return Err(mistake(index + 1, format!("{count} values under {} columns", heading.len())));
         }
-        let line = Line { heading: &heading, words: &words, axes };
+        let line = Line { heading: &heading, words: &words, axes, radii };
         line.site(model.curve).map_err(|what| mistake(index + 1, what))
     };
     let points: Vec<Site> = lines.map(site).collect::<Result<_, _>>()?;
@@ -70,6 +71,7 @@ struct Line<'a> {
     heading: &'a [String],
     words: &'a [String],
     axes: usize,
+    radii: Millionths,
 }
 
 impl Line<'_> {
@@ -121,6 +123,6 @@ impl Line<'_> {
         };
         let (from, to) = (self.point("from", self.axes)?, self.point("to", self.axes)?);
         let center = [self.number("center_x")?, self.number("center_y")?];
-        Ok(Site { drawn, sizes, from, to, center, direction })
+        Ok(Site { drawn, sizes, from, to, center, direction, radii: self.radii })
     }
 }

@@ -1,6 +1,7 @@
 //! The geometries of a sweep: cells of a grid, random samples of them, or the lines of a file. Every geometry has a
 //! number, from which alone it is made, so that any part of a sweep can be done anywhere.
 
+use stepwave_models::Millionths;
 use stepwave_nc::{Arc, Conic, Curve, Direction, GeometryError, Helix, Line, Opens};
 
 use super::Range;
@@ -37,6 +38,8 @@ pub struct Cells {
     pub center: [i64; 2],
     /// Directions; one that does not count for lines and open curves.
     pub directions: Vec<Direction>,
+    /// How far the two radii of an arc may differ beyond what rounding makes, in BLU.
+    pub radii: Millionths,
 }
 
 /// A geometry, or why there is none.
@@ -57,6 +60,8 @@ pub struct Site {
     pub center: [i64; 2],
     /// Direction, where it counts.
     pub direction: Direction,
+    /// How far the two radii of an arc may differ beyond what rounding makes, in BLU.
+    pub radii: Millionths,
 }
 
 impl Site {
@@ -68,11 +73,11 @@ impl Site {
         let plane = |point: &[i64]| [0, 1].map(|axis| point.get(axis).copied().unwrap_or(0));
         let space = |point: &[i64]| [0, 1, 2].map(|axis| point.get(axis).copied().unwrap_or(0));
         let (sizes, from, to) = (plane(&self.sizes), plane(&self.from), plane(&self.to));
-        let (center, direction) = (self.center, self.direction);
+        let (center, direction, radii) = (self.center, self.direction, self.radii.units());
         Ok(match self.drawn {
             Drawn::Line => Line::new(self.from.clone(), self.to.clone())?.into(),
-            Drawn::Arc => Arc::new(from, to, center, direction)?.into(),
-            Drawn::Helix => Helix::new(space(&self.from), space(&self.to), center, direction)?.into(),
+            Drawn::Arc => Arc::within(from, to, center, direction, radii)?.into(),
+            Drawn::Helix => Helix::within(space(&self.from), space(&self.to), center, direction, radii)?.into(),
             Drawn::Ellipse => Conic::ellipse(sizes, from, to, center, direction)?.into(),
             Drawn::Parabola(opens) => Conic::parabola(sizes[0], opens, from, to, center)?.into(),
             Drawn::Hyperbola(opens) => Conic::hyperbola(sizes, opens, from, to, center)?.into(),
@@ -114,7 +119,8 @@ impl Cells {
             *z = z.saturating_add(*height);
         }
         let direction = direction.copied().unwrap_or(Direction::CounterClockwise);
-        let site = Site { drawn: self.drawn, sizes: sizes.to_vec(), from, to, center: self.center, direction };
+        let (drawn, sizes, center, radii) = (self.drawn, sizes.to_vec(), self.center, self.radii);
+        let site = Site { drawn, sizes, from, to, center, direction, radii };
         let geometry = site.geometry();
         let none = self.count() > 1 && geometry.as_ref().is_err_and(lies_on_no_curve);
         (!none).then_some((site, geometry))
@@ -296,6 +302,7 @@ mod tests {
             to: to.map(|to| to.iter().map(range).collect()),
             center: [0, 0],
             directions: vec![Direction::CounterClockwise],
+            radii: Millionths(0),
         }
     }
 

@@ -126,6 +126,7 @@ impl Sweep {
                 "to": cells.to.as_deref().map(ranges),
                 "center": cells.center,
                 "directions": cells.directions.iter().map(ToString::to_string).collect::<Vec<_>>(),
+                "radii": cells.radii.to_string(),
             })
         };
         let space = match &self.space {
@@ -133,7 +134,10 @@ impl Sweep {
             Space::Samples { cells: grid, count, seed } => {
                 json!({ "grid": cells(grid), "samples": count, "seed": seed })
             }
-            Space::Points { points, content } => json!({ "points": points.len(), "content": content }),
+            Space::Points { points, content } => {
+                let radii = points.first().map(|site| site.radii.to_string());
+                json!({ "points": points.len(), "content": content, "radii": radii })
+            }
         };
         let choices: BTreeMap<&str, Vec<&str>> =
             self.variants.words().map(|(choice, words)| (choice.option(), words)).collect();

@@ -23,6 +23,7 @@ enum Setting {
     PickOff(u64),
     Fraction(u32),
     Step(Millionths),
+    Tolerance(Millionths),
     Timing(StepTiming),
     /// A value of a choice among words, by its index.
     Word(usize),
@@ -81,6 +82,7 @@ impl Setting {
             Setting::PickOff(bit) => choices.pick_off = Some(*bit),
             Setting::Fraction(bits) => choices.fraction = Some(*bits),
             Setting::Step(way) => choices.step = Some(*way),
+            Setting::Tolerance(length) => choices.tolerance = Some(*length),
             Setting::Timing(timing) => choices.timing = Some(*timing),
             Setting::Word(index) => match choice {
                 Choice::Normalize => choices.normalize = *index == 1,
@@ -202,6 +204,12 @@ impl Dimension {
             }
         };
         Ok(Dimension { choice, values })
+    }
+
+    /// One tolerance of chords.
+    #[must_use]
+    pub fn tolerance(length: Millionths) -> Dimension {
+        Dimension { choice: Choice::Tolerance, values: vec![(length.to_string(), Setting::Tolerance(length))] }
     }
 
     /// Times of step and direction outputs.

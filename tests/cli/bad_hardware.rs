@@ -302,3 +302,36 @@ fn without_a_command_the_help_is_shown_and_the_exit_code_is_2() {
     let help = Folder::new().good("--help");
     assert_eq!(Folder::new().run("").err, help, "what is shown is the help");
 }
+
+#[test]
+fn two_values_for_one_register_tool_or_time_are_refused() {
+    for (words, hint) in [
+        ("ppc-line --to 6,4 --width f=5,f=6", "--width gives 'f' two values"),
+        ("ppc-line --to 6,4 --width f=5 --width f=6", "--width gives 'f' two values"),
+        ("ppc-line --to 6,4 --width 5,6", "--width gives all registers two values"),
+        ("dda-line --to 6,4 --preset half --preset zero", "--preset gives all registers two values"),
+        ("dda-line --to 6,4 --preset jrx=1,jrx=2", "--preset gives 'jrx' two values"),
+        ("stepgen --to 6,4 --timing length=2,space=2,length=3", "'length' is given two times"),
+    ] {
+        run_refused(words, &[hint, "leave one of them out"]);
+    }
+    refused("prove ppc-arc --narrower f=1,f=2", &["--narrower gives 'f' two values, 1 and 2"]);
+    let folder = Folder::new();
+    folder.write("part.ngc", "G21 G90 F300\nG1 X1\nM2\n");
+    let ran = folder.run("program part.ngc --method cim --tool 1=2mm --tool D1=3mm");
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("--tool gives D1 two radii, 2 mm and 3 mm"), "{}", ran.err);
+    // What does not contradict itself is taken.
+    assert_eq!(folder.run("run ppc-line --to 6,4 --width 5,f=7 --width e=9").code, 0);
+}
+
+#[test]
+fn options_of_the_printed_table_are_refused_where_a_file_is_printed_in_its_place() {
+    for (words, option) in [
+        ("dda-arc --from 5,0 --to 0,5 --ccw --textbook --steps -", "--textbook"),
+        ("dda-arc --from 5,0 --to 0,5 --ccw --textbook --json -", "--textbook"),
+        ("ppc-line --to 6,4 --bits --vcd -", "--bits"),
+    ] {
+        refused(&format!("run {words}"), &[option, "is for the printed table", "standard output"]);
+    }
+}

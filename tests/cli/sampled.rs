@@ -67,3 +67,30 @@ fn a_period_keeps_its_time_so_that_the_feed_asked_for_and_the_feed_reached_agree
     assert!((mean - whole).abs() < 0.001 * whole, "{mean} for {whole}");
     run_refused("sampled-line --to 3000,2000 --feed 600 --clock-hz 1000", &["--clock-hz", "or more", "8 ms"]);
 }
+
+#[test]
+fn the_summary_says_why_the_mean_feed_is_below_the_feed() {
+    // 45 periods of 80 BLU and one of 5.551, 8000 clocks each, and the first calculation, at 1 MHz.
+    let text = good("run sampled-line --to 3000,2000 --feed 600");
+    assert!(
+        text.contains("mean feed 587.600 mm/min over 46 period(s): the last goes what is left of the way"),
+        "{text}"
+    );
+    let report = report("sampled-line --to 3000,2000 --feed 600");
+    let clocks = report["feed"]["clocks"].as_f64().unwrap();
+    let mean = 60.0 * 3000_f64.hypot(2000.0) * 0.001 * 1e6 / clocks;
+    assert!((report["feed"]["mean_mm_per_min"].as_f64().unwrap() - mean).abs() < 1e-9);
+    assert!((46.0 * 8000.0..46.0 * 8000.0 + 200.0).contains(&clocks), "{clocks}");
+}
+
+#[test]
+fn refusals_of_a_feed_or_a_clock_name_what_was_given() {
+    run_refused(
+        "sampled-line --to 9,5 --feed 1e-6",
+        &["--feed 0.000001 gives the way of a period", "or a higher --feed"],
+    );
+    run_refused("sampled-line --to 9,5 --feed 1e9", &["make 37 bits", "give a smaller --step, or a lower --feed"]);
+    for clock in ["nan", "inf", "1e300", "0", "1e15"] {
+        run_refused(&format!("sampled-line --to 9,5 --clock-hz {clock}"), &["is not possible", "from 1e-3 to 1e14 Hz"]);
+    }
+}
