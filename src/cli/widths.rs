@@ -17,7 +17,8 @@ use super::names::model_name;
     The command in the last column shows what happens one bit below.\n\n\
     --width N and --width REGISTER=N,… are the hardware that is judged: the column `given`. Where one is less than needed,\n\
     the run that shows it is named and the exit code is 1. Without --width, `given` is the default. What is needed\n\
-    depends neither on that nor on --on-overflow, but for integrators (jv, jr): their width is the scale of the run.\n\n\
+    depends neither on that nor on --on-overflow, but for integrators (jv, jr) and the accumulations of stepgen (e): their\n\
+    width is the scale of the run.\n\n\
     Examples:\n  \
     stepwave widths ppc-line --box 8\n  \
     stepwave widths ppc-line --box 0..300000x0..200000\n  \

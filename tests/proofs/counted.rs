@@ -249,3 +249,23 @@ fn what_is_counted_pulse_by_pulse_is_so_for_every_coefficient_of_machines_that_w
     }
     assert!(refused > 20 && other > 5 && same > 5, "{refused} refused, {other} of other ends, {same} of the same");
 }
+
+#[test]
+fn a_certificate_that_says_something_else_is_refused_before_anything_is_counted() {
+    let folder = Folder::new();
+    folder.good("prove dpm-line --bits 2 --certificate two.cert");
+    let text = folder.read("two.cert");
+    // Blocks of 2^20 clocks, none of which ends as a coefficient of 20 bits does.
+    for (from, to) in
+        [("counted 2 ", "counted 20 "), ("clocks=5 ", ""), ("clocks=5 ", "clocks=5, "), ("+2*mx.1", "+3*mx.1")]
+    {
+        assert!(text.contains(from));
+        std::fs::write(folder.path("other.cert"), text.replace(from, to)).unwrap();
+        let start = std::time::Instant::now();
+        let ran = folder.run("prove check other.cert");
+        assert!(ran.code == 1 && ran.err.contains("does not say what its blocks come to"), "{to}: {ran:?}");
+        assert!(start.elapsed().as_secs() < 5, "{to}");
+    }
+    std::fs::write(folder.path("other.cert"), text.replace("clocks=5", "clocks=6")).unwrap();
+    assert_eq!(folder.run("prove check other.cert").code, 1);
+}

@@ -143,6 +143,7 @@ fn the_table_names_a_run_that_one_bit_less_does_not_hold() {
         ("widths ppc-line --box 0..9x0..9x0..9", "give --box 0..9x0..9\n"),
         ("widths ppc-arc --box 0..9x0..9x0..9", "give --box 0..9x0..9"),
         ("widths ppc-arc --box 1..2x5..6", "the box holds nothing"),
+        ("widths ppc-arc --box 1..3000x5000000000..5000002000", "6003000 points are too many to look at all"),
         ("widths ppc-line --box 0..4503599627370496x0..9", "within ±4503599627370495"),
         ("widths dda-helix --box 0..4x0..4", "give --box 4"),
         ("widths ppc-line --box 4 --preset half", "does not take --preset"),
@@ -302,4 +303,59 @@ fn a_width_that_is_given_is_judged() {
     assert_eq!((&row("jrx")["given"], &row("jrx")["needed"]), (&6.into(), &6.into()));
     assert_eq!((&row("jvx")["given"], &row("jvx")["needed"]), (&6.into(), &4.into()));
     assert_eq!((&row("x")["least"], &row("x")["greatest"]), (&(-15).into(), &15.into()));
+}
+
+/// Registers of `widths … --json`: what is given and what is needed.
+fn judged(folder: &Folder, words: &str, code: i32) -> BTreeMap<String, [i64; 2]> {
+    let ran = folder.run(&format!("{words} --json"));
+    assert_eq!(ran.code, code, "{words}: {ran:?}");
+    let json: serde_json::Value = serde_json::from_str(&ran.out).unwrap();
+    let rows = json["registers"].as_array().unwrap().iter();
+    let number = |row: &serde_json::Value, key: &str| row[key].as_i64().unwrap();
+    rows.map(|row| (row["name"].as_str().unwrap().to_owned(), ["given", "needed"].map(|key| number(row, key))))
+        .collect()
+}
+
+#[test]
+fn a_width_that_is_none_of_coordinates_is_not_taken_from_the_box() {
+    let folder = Folder::new();
+    // A period of 8 BLU is 8 pulses of one axis at most, whatever the length of the line.
+    for words in ["widths sampled-line --box 5", "widths sampled-line --box 5 --width 4", "widths sampled-arc --box 5"]
+    {
+        let rows = judged(&folder, words, 0);
+        assert!(["jvx", "jvy", "jrx", "jry"].iter().all(|name| rows[*name] == [4, 4]), "{words}: {rows:?}");
+    }
+    assert_eq!(judged(&folder, "widths sampled-line --box 3 --step 20", 0)["jrx"], [5, 5]);
+    assert_eq!(judged(&folder, "widths sampled-line --box 3 --width 6", 0)["jrx"], [6, 6]);
+}
+
+#[test]
+fn the_accumulations_of_a_step_generator_are_those_that_are_given() {
+    let folder = Folder::new();
+    // 2^11 accumulations of a rate of 31 or 2^5 · 31 less: 31 · 2^11 and a sign are 17 bits.
+    let rows = judged(&folder, "widths stepgen --box 5 --width 9,accx=14", 1);
+    assert_eq!((rows["e"], rows["accx"]), ([12, 12], [14, 17]));
+    let rows = judged(&folder, "widths stepgen --box 5 --width 9", 0);
+    assert_eq!((rows["e"], rows["accx"]), ([12, 12], [21, 17]));
+    // Fewer accumulations than by default are no fault.
+    let rows = judged(&folder, "widths stepgen --box 5 --width 5,e=7", 0);
+    assert_eq!((rows["e"], rows["accx"]), ([7, 7], [12, 12]));
+    assert_eq!(judged(&folder, "widths stepgen --box 5", 0)["e"], [8, 8]);
+}
+
+#[test]
+fn a_box_of_more_points_than_are_listed_has_the_arcs_next_to_its_corners() {
+    let model = find("ppc-arc").unwrap();
+    let of = |extent: &str| Geometries::of(model, &Choices::default(), &extent.parse().unwrap()).unwrap();
+    // 10,007,001 points, none of which is another one with x and y exchanged.
+    let found = of("0..5000x60000..62000");
+    assert!(!found.all && found.curves.len() > 100, "{} arcs", found.curves.len());
+    let square = |point: &[i64]| point.iter().map(|side| side.pow(2)).sum::<i64>();
+    for curve in &found.curves {
+        let (from, to) = (curve.from(), curve.to());
+        assert!(square(from) == square(to) && from != to, "{curve:?}");
+        for point in [from, to] {
+            assert!((0..=5000).contains(&point[0]) && (60_000..=62_000).contains(&point[1]), "{curve:?}");
+        }
+    }
 }

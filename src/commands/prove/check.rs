@@ -64,6 +64,19 @@ fn check_blocks(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Re
     if ks.is_empty() || !ks.is_sorted() || file.counted.len() != ks.len() * job.claims.geometries.kinds().len() {
         return Err(other());
     }
+    // What does not even say that every axis ends where it should is not worth it.
+    let wanted = followed(job.model, &job.choices, &job.narrower, ks.clone(), Way::Wanted)
+        .map_err(|error| unfollowed(error, Failure::from))?;
+    let ends = |block: &str| {
+        let (head, rest) = block.split_once(" clocks=")?;
+        let (clocks, ends) = rest.split_once(' ')?;
+        clocks.parse::<u64>().ok().map(|_| (head.to_owned(), ends.to_owned()))
+    };
+    let as_wanted =
+        |(block, line): (&Block, &String)| ends(line).is_some_and(|own| ends(&block.to_string()) == Some(own));
+    if !wanted.iter().zip(&file.counted).all(as_wanted) {
+        return Err(other());
+    }
     let blocks = followed(job.model, &job.choices, &job.narrower, ks, Way::Recount)
         .map_err(|error| unfollowed(error, Failure::from))?;
     if blocks.iter().map(Block::to_string).ne(file.counted.iter().cloned()) {

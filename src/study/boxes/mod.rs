@@ -155,7 +155,9 @@ impl Geometries {
         let all = listed.is_some();
         let extremes = || match plane::extremes(&sides, arcs) {
             // No two of its extreme points are on one circle; others may be.
-            none if none.is_empty() && arcs => plane::all_arcs(&sides).unwrap_or_default(),
+            none if none.is_empty() && arcs => {
+                plane::all_arcs(&sides).or_else(|| plane::corner_arcs(&sides)).unwrap_or_default()
+            }
             some => some,
         };
         let mut curves = listed.unwrap_or_else(extremes);
@@ -165,6 +167,13 @@ impl Geometries {
             curves.retain(|curve| kinds.iter().any(|kind| region.symbols(kind, curve).is_some()));
         }
         let largest = if axes == 2 { region.largest(k) } else { line(vec![(1_i64 << k) - 1; axes]) };
+        if curves.is_empty() && arcs && plane::all_arcs(&sides).is_none() {
+            return Err(ProofError::Box(format!(
+                "no two points next to the corners of the box are ends of one arc, and its {} points are too many to look at \
+                 all: give a smaller one",
+                plane::count(&sides)
+            )));
+        }
         let (Some(largest), false) = (largest, curves.is_empty()) else {
             return Err(ProofError::Box(format!(
                 "the box holds nothing for {}, which takes {}: give a larger one",
@@ -172,7 +181,7 @@ impl Geometries {
                 region.describe()
             )));
         };
-        let choices = Choices { width: choices.width.or(width(choices, k)), ..choices.clone() };
+        let choices = Choices { width: choices.width.or(width(model, choices, k)), ..choices.clone() };
         Ok(Geometries { curves, all, k, hardware: model.plan(&largest, &choices)?, choices })
     }
 
@@ -204,8 +213,12 @@ impl Geometries {
     }
 }
 
-/// The width of registers that hold every number of `k` bits, in whole digits and whole units.
-fn width(choices: &Choices, k: u32) -> Option<Width> {
+/// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is not
+/// the width of coordinates, but of the ways of a period.
+fn width(model: &Model, choices: &Choices, k: u32) -> Option<Width> {
+    if model.method == "data sampling" {
+        return None;
+    }
     let bits = choices.radix.unwrap_or_default().reading().needed((1_i128 << k) - 1);
     let bits = bits.next_multiple_of(choices.cascade.map_or(1, Width::get));
     Width::new(u64::from(bits)).ok()

@@ -1,7 +1,5 @@
 //! Lines and arcs in a grid: all of them, or the extreme ones.
 
-use std::collections::BTreeMap;
-
 use stepwave_models::Model;
 use stepwave_models::extremes::{self, Reach};
 use stepwave_nc::Curve;
@@ -12,6 +10,8 @@ use crate::study::{Grid, Range};
 
 /// Points of a grid in which all arcs are looked for, at most.
 const MOST_POINTS: u64 = 1 << 22;
+/// Coordinates at each end of a range that are looked at where its points are more.
+const CORNER: u64 = 256;
 
 /// The model takes geometries of as many axes as the grid has ranges.
 pub(super) fn check(model: &Model, Grid(ranges): &Grid, arcs: bool) -> Result<(), ProofError> {
@@ -54,19 +54,37 @@ pub(super) fn all_arcs(grid: &Grid) -> Option<Vec<Curve>> {
     if count(grid) > u128::from(MOST_POINTS) {
         return None;
     }
-    let mut circles: BTreeMap<i128, Vec<[i64; 2]>> = BTreeMap::new();
+    arcs_between(&x.numbers().collect::<Vec<i64>>(), &y.numbers().collect::<Vec<i64>>())
+}
+
+/// Such arcs between the points next to the corners of a grid that is too large for all of them; `None` if they are too
+/// many.
+pub(super) fn corner_arcs(grid: &Grid) -> Option<Vec<Curve>> {
+    let [x, y] = grid.0[..] else { return None };
+    let ends = |range: Range| -> Vec<i64> {
+        let count = range.count();
+        let first = 0..CORNER.min(count);
+        let last = count.saturating_sub(CORNER).max(first.end)..count;
+        first.chain(last).map(|place| range.at(place)).collect()
+    };
+    arcs_between(&ends(x), &ends(y))
+}
+
+/// Arcs inside one quadrant between points of these coordinates, in the order of their radii.
+fn arcs_between(x: &[i64], y: &[i64]) -> Option<Vec<Curve>> {
     let square = |place: i64| i128::from(place).pow(2);
-    for x in x.numbers() {
-        y.numbers().for_each(|y| circles.entry(square(x) + square(y)).or_default().push([x, y]));
-    }
+    let mut points: Vec<(i128, [i64; 2])> =
+        x.iter().flat_map(|&x| y.iter().map(move |&y| (square(x) + square(y), [x, y]))).collect();
+    points.sort_by_key(|(square, _)| *square);
     let mut arcs = Vec::new();
-    for points in circles.values() {
+    for circle in points.chunk_by(|a, b| a.0 == b.0) {
         let side = |axis: usize, point: &[i64; 2]| point[axis].signum();
-        for from in points {
+        for (_, from) in circle {
             // The ends of an arc inside a quadrant are on no two sides of an axis.
             let near =
                 |to: &&[i64; 2]| *to != from && [0, 1].iter().all(|&axis| side(axis, from) * side(axis, to) >= 0);
-            arcs.extend(points.iter().filter(near).filter_map(|to| extremes::inside([*from, *to])));
+            let ends = circle.iter().map(|(_, to)| to).filter(near);
+            arcs.extend(ends.filter_map(|to| extremes::inside([*from, *to])));
             if arcs.len() > MOST {
                 return None;
             }

@@ -1,10 +1,11 @@
 //! Proofs at one width: a block whose clocks do not depend on its coefficients is followed with all their bits unknown.
 
 use std::fmt;
+use std::ops::Range;
 
 use rayon::prelude::*;
 use stepwave_kernel::bits::Reading;
-use stepwave_kernel::prove::{AxisNets, Sum, Word, follow, recount};
+use stepwave_kernel::prove::{AxisNets, Followed, Sum, Word, follow, recount};
 use stepwave_models::{AXES, Choices, Claims, Kind, Model};
 use stepwave_nc::Curve;
 
@@ -57,13 +58,15 @@ impl fmt::Display for Block {
     }
 }
 
-/// How a block is gone through. The two share nothing but the question.
+/// How a block is gone through. The first two share nothing but the question.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Way {
     /// By sums of unknown bits: [`follow`].
     Follow,
     /// Pulse by pulse, gate by gate: [`recount`].
     Recount,
+    /// Not at all: every axis is said to end where it should, after no clock.
+    Wanted,
 }
 
 /// Goes through a block of each kind of geometry with coordinates of `k` bits.
@@ -127,19 +130,25 @@ fn block(
     let (design, limit) = (&machine.design, hardware.stall_clocks);
     let ends: Vec<_> = machine.positions.iter().map(|port| port.net).collect();
     let axes = machine.pulses.iter().zip(&ends).map(|(pulse, end)| AxisNets { pulse: pulse.net, position: *end });
+    let wanted = wanted(&own, &bounds, names.len());
     let followed = match way {
+        Way::Wanted => Ok(Followed { clocks: 0, ends: wanted.iter().cloned().map(Some).collect() }),
         Way::Follow => follow(design, strobes, &given, &ends, limit, |_, _| {}),
         Way::Recount => recount(design, strobes, &given, &axes.collect::<Vec<_>>(), limit),
     };
     let followed = followed.map_err(|lost| ProofError::Lost { model: model.name, k, kind: kind.name.clone(), lost })?;
-    let moves = |axis: usize| own.iter().find_map(|curve| Some(curve.to()[axis].signum()).filter(|sign| *sign != 0));
-    let wanted = bounds.iter().enumerate().map(|(axis, bounds)| {
-        let mut factors = vec![0; names.len()];
+    Ok(Block { k, kind: kind.name.clone(), clocks: followed.clocks, ends: followed.ends, wanted, names })
+}
+
+/// Where each axis should end: at the sum of the bits of its coefficient, in the direction in which these curves go.
+fn wanted(curves: &[&Curve], bounds: &[Range<usize>], unknowns: usize) -> Vec<Sum> {
+    let moves = |axis: usize| curves.iter().find_map(|curve| Some(curve.to()[axis].signum()).filter(|sign| *sign != 0));
+    let end = |(axis, bounds): (usize, &Range<usize>)| {
+        let mut factors = vec![0; unknowns];
         for (bit, place) in bounds.clone().enumerate() {
             factors[place] = i128::from(moves(axis).unwrap_or(1)) << bit;
         }
         Sum { constant: 0, factors }
-    });
-    let wanted = wanted.collect();
-    Ok(Block { k, kind: kind.name.clone(), clocks: followed.clocks, ends: followed.ends, wanted, names })
+    };
+    bounds.iter().enumerate().map(end).collect()
 }

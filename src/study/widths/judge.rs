@@ -19,6 +19,10 @@ pub(super) fn ample(model: &'static Model, choices: &Choices, extent: &Extent) -
     }
     let least = Geometries::extremes(model, &default, extent)?;
     let given = given(model, choices, &least)?;
+    let paces = paces(model, &least, &given);
+    if !paces.is_empty() {
+        return Ok(Choices { widths: paces, ..default });
+    }
     let scaled = |hardware: &Hardware| {
         let own = hardware.widths.iter().filter(|(name, _)| hardware.shares_a_scale(name));
         own.map(|(name, width)| (name.clone(), *width)).collect::<BTreeMap<String, Width>>()
@@ -39,6 +43,23 @@ pub(super) fn ample(model: &'static Model, choices: &Choices, extent: &Extent) -
         None if more > 0 => Ok(Choices { widths: widths.collect::<Result<_, ProofError>>()?, ..default }),
         None => Ok(default),
     }
+}
+
+/// Registers that are loaded with what their own width makes possible, so that all others count on another scale: the
+/// accumulations of a step generator. Whatever width they are given is the hardware that is judged.
+fn paces(model: &Model, least: &Geometries, given: &Hardware) -> BTreeMap<String, Width> {
+    let Some(curve) = least.curves.first() else { return BTreeMap::new() };
+    let word = |hardware: &Hardware, name: &str| {
+        let words = model.words(hardware, curve).into_iter().flatten();
+        words.filter(|(register, _)| *register == name).map(|(_, word)| word).collect::<Vec<_>>()
+    };
+    let is_pace = |name: &str, width: Width| {
+        let mut alone = least.hardware.clone();
+        let other = alone.widths.insert(name.to_owned(), width) != Some(width);
+        other && !given.shares_a_scale(name) && word(&alone, name) != word(&least.hardware, name)
+    };
+    let own = given.widths.iter().filter(|(name, width)| is_pace(name, **width));
+    own.map(|(name, width)| (name.clone(), *width)).collect()
 }
 
 /// The hardware with the widths that are given.
