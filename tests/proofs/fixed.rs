@@ -41,6 +41,16 @@ fn a_travel_is_proved_by_the_form_for_every_k_or_refuted_by_a_run() {
 }
 
 #[test]
+fn a_small_box_of_narrow_registers_is_simulated_and_no_proof_is_searched_for() {
+    let folder = Folder::new();
+    // Of these arcs the largest radius inside a quadrant has F within 5 bits; the search for a proof took minutes.
+    let out = folder.good("prove ppc-arc --width 5,yi=5,f=5 --travel 4,16");
+    assert!(out.contains("PROVED at these widths (exhausted: "), "{out}");
+    let ran = folder.run("prove ppc-arc --width 5,yi=5,f=4 --travel 4,16");
+    assert!(ran.code == 1 && ran.out.starts_with("COUNTEREXAMPLE"), "{ran:?}");
+}
+
+#[test]
 fn a_register_of_a_fixed_width_alone_is_too_narrow_somewhere_and_never_proved() {
     let folder = Folder::new();
     let ran = folder.run("prove ppc-line --width x=8 --on-overflow wrap");

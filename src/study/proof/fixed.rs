@@ -86,6 +86,12 @@ impl Fixed {
         self.k
     }
 
+    /// A register is narrower than by default, so that what is proved of the default says nothing.
+    #[must_use]
+    pub fn is_narrower(&self) -> bool {
+        self.offsets.values().any(|bits| *bits < 0)
+    }
+
     /// The box in words.
     #[must_use]
     pub fn about(&self) -> String {
@@ -133,7 +139,14 @@ impl Fixed {
         progress: impl Fn(usize, usize),
     ) -> Result<(Option<Counterexample>, Tried), ProofError> {
         let free = Choices { width: None, widths: BTreeMap::new(), ..self.choices.clone() };
-        let (mut curves, mut all) = self.small(few);
+        let (mut curves, mut all) = match &self.extent {
+            // Listed in a moment, though coordinates of so many bits may be far more.
+            Extent::Grid(grid) if few && points(grid) < FEW as u128 => {
+                let geometries = Geometries::of(self.model, &free, &self.extent)?;
+                (geometries.curves, geometries.all)
+            }
+            _ => self.small(few),
+        };
         if few && !all {
             curves.extend(Geometries::extremes(self.model, &free, &self.extent)?.curves);
         } else if curves.is_empty() {
@@ -177,6 +190,11 @@ impl Fixed {
         curves.retain(|curve| holds(curve) && kinds.iter().any(|kind| region.symbols(kind, curve).is_some()));
         (curves, all)
     }
+}
+
+/// Points of a grid.
+fn points(Grid(ranges): &Grid) -> u128 {
+    ranges.iter().fold(1_u128, |count, range| count.saturating_mul(range.count().into()))
 }
 
 fn bit(number: u32) -> &'static str {
