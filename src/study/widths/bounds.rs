@@ -143,3 +143,24 @@ fn of_clause(clause: &Clause, known: &BTreeMap<String, Bounds>) -> Option<(Optio
     // No alternative is left: nothing is like this.
     Some((least.filter(|least| *least != i128::MAX), greatest.filter(|greatest| *greatest != i128::MIN)))
 }
+
+#[cfg(test)]
+mod tests {
+    use stepwave_models::{Choices, find};
+
+    use super::*;
+    use crate::testbench::Testbench;
+
+    #[test]
+    fn the_deviation_is_bounded_by_the_ways_of_the_box_exactly() {
+        // F of a line is within [-b, a - 1]; of minimum deviation, that of 2S - L, within [-2L, 2S - 1].
+        for (name, wanted) in [("ppc-line", (-200_000, 299_999)), ("mindev-line", (-600_000, 399_999))] {
+            let model = find(name).expect("a model");
+            let extent: Extent = "0..300000x0..200000".parse().expect("a box");
+            let set = Geometries::extremes(model, &Choices::default(), &extent).expect("geometries");
+            let bench = Testbench::of_hardware(model, set.hardware.clone()).expect("hardware");
+            let found = bounds(model, bench.machine(), &set, &extent);
+            assert_eq!(found["f"], wanted, "{name}");
+        }
+    }
+}
