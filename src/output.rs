@@ -186,6 +186,11 @@ impl Outputs {
         Ok(sink.flush()?)
     }
 
+    /// No output was opened.
+    pub(crate) fn are_unopened(&self) -> bool {
+        self.named.is_empty() && self.staged.is_empty() && !self.stdout
+    }
+
     /// Standard output belongs to one of the outputs.
     pub(crate) fn uses_stdout(&self) -> bool {
         self.stdout

@@ -133,19 +133,35 @@ fn a_sweep_that_is_stopped_says_that_its_rows_are_kept() {
     assert!(folder.read("s.csv") == folder.read("whole.csv"));
 }
 
+/// Runs the program where no file may have more bytes.
+fn limited(folder: &Folder, bytes: u64, words: &str) -> Output {
+    let program = env!("CARGO_BIN_EXE_stepwave");
+    let script = format!("exec prlimit --fsize={bytes} {program} {words}");
+    Command::new("sh").args(["-c", &script]).current_dir(folder.path("")).output().unwrap()
+}
+
+#[test]
+fn a_counterexample_whose_wave_cannot_be_written_leaves_no_half_of_it() {
+    for words in [
+        "prove ppc-arc --narrower f=1",
+        "prove ppc-line --width x=8 --box 8",
+        "prove ppc-line --width f=4 --box 5 --on-overflow wrap",
+    ] {
+        let folder = Folder::new();
+        let output = limited(&folder, 1024, &format!("{words} --vcd w.vcd"));
+        let words = errors(&output);
+        assert_eq!(output.status.code(), Some(2), "{words}");
+        assert!(words.starts_with("stepwave: cannot write w.vcd: ") && words.lines().count() == 1, "{words}");
+        assert_eq!(folder.files(), [""; 0], "{words}");
+    }
+}
+
 #[test]
 fn a_sweep_that_may_write_no_more_keeps_its_rows_and_says_so() {
     let folder = Folder::new();
     folder.good(&format!("{SWEEP} --csv whole.csv"));
     let all = folder.path("whole.csv").metadata().unwrap().len();
-    let limited = |blocks: u64, words: &str| {
-        // Blocks of 512 bytes, whatever the shell.
-        let program = env!("CARGO_BIN_EXE_stepwave");
-        let bytes = blocks * 512;
-        let script = format!("exec prlimit --fsize={bytes} {program} {words}");
-        Command::new("sh").args(["-c", &script]).current_dir(folder.path("")).output().unwrap()
-    };
-    let output = limited(all / 512 * 3 / 4, &format!("{SWEEP} --csv s.csv"));
+    let output = limited(&folder, all / 4 * 3, &format!("{SWEEP} --csv s.csv"));
     let (words, count) = (errors(&output), done(&folder));
     assert_eq!(output.status.code(), Some(2), "{words}");
     assert!(count > 0 && words.starts_with("stepwave: cannot write ") && words.lines().count() == 1, "{words}");
@@ -155,7 +171,7 @@ fn a_sweep_that_may_write_no_more_keeps_its_rows_and_says_so() {
     assert!(folder.read("s.csv") == folder.read("whole.csv"));
     // With nothing done there is nothing to be kept, and a run leaves nothing either.
     for words in [format!("{SWEEP} --csv t.csv"), "run ppc-line --to 4000,3000 --vcd t.csv --steps u.csv".to_owned()] {
-        let output = limited(1, &words);
+        let output = limited(&folder, 512, &words);
         assert_eq!((output.status.code(), errors(&output).lines().count()), (Some(2), 1), "{output:?}");
         assert!(!errors(&output).contains("kept"), "{output:?}");
         assert_eq!(folder.files(), ["s.csv", "whole.csv"], "{words}");

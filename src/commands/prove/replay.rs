@@ -64,7 +64,11 @@ pub(super) fn refuted_with(
             text.lines().filter_map(|line| line.strip_prefix("warning: ")).collect::<Vec<_>>().join("; ")
         }
         Ok(Finished { failures, .. }) => failures.join("; "),
-        Err(refused) => refused.to_string().trim_start_matches("stepwave: ").to_owned(),
+        // A geometry that is refused comes to no output; where one was begun, it cannot be written.
+        Err(refused) if *fault == Fault::Refused && outputs.are_unopened() => {
+            refused.to_string().trim_start_matches("stepwave: ").to_owned()
+        }
+        Err(trouble) => return Err(trouble),
     };
     if shown.is_empty() {
         return Err(Failure::Trouble(format!("the lanes and a single run differ: {command}")));
