@@ -14,6 +14,13 @@ pub(super) enum Format {
 
 /// An FST header block: type 0, then its length of 329 bytes.
 const FST_HEADER: [u8; 9] = [0, 0, 0, 0, 0, 0, 0, 1, 73];
+/// The type of the header, and where after its length it says how many blocks of changes there are.
+const HEADER: u8 = 0;
+const CHANGE_BLOCKS: u64 = 56 + 8;
+/// The types of blocks of changes.
+const CHANGES: u8 = 1;
+const CHANGES_ALIASED: u8 = 5;
+const CHANGES_ALIASED_SIGNED: u8 = 8;
 /// A block of type 254 holds a whole FST compressed by gzip, whose magic number follows two lengths.
 const FST_WRAPPER: u8 = 254;
 const GZIP: [u8; 2] = [0x1f, 0x8b];
@@ -70,7 +77,7 @@ pub(super) fn check(input: &mut (impl Read + Seek), name: &str, length: u64) -> 
     let end = input.seek(SeekFrom::End(0)).map_err(io)?;
     let limit = limits::inflated(length);
     let mut room = limit;
-    let mut at = 0;
+    let (mut at, mut found, mut said) = (0, 0, 0);
     while at < end {
         let (kind, length) = match u64s(input, at + 1) {
             Ok([length]) => (first_byte(input, at).map_err(io)?, length),
@@ -84,7 +91,20 @@ pub(super) fn check(input: &mut (impl Read + Seek), name: &str, length: u64) -> 
             return Err(WaveError::Malformed { name: name.into(), reason });
         };
         room = room.checked_sub(claimed).ok_or_else(|| too_much(name, "the content of its blocks", limit))?;
+        match kind {
+            HEADER if length >= CHANGE_BLOCKS + 8 => [said] = u64s(input, at + 1 + CHANGE_BLOCKS).map_err(io)?,
+            CHANGES | CHANGES_ALIASED | CHANGES_ALIASED_SIGNED => found += 1,
+            _ => {}
+        }
         at = next;
+    }
+    // A file that is cut off between two blocks looks whole but for their number. While one is written the header says 0.
+    if found < said {
+        return Err(WaveError::CutOff {
+            name: name.into(),
+            place: format!("byte {end}"),
+            what: "its blocks of changes",
+        });
     }
     Ok(())
 }
@@ -97,7 +117,7 @@ fn plausible(input: &mut (impl Read + Seek), kind: u8, at: u64, length: u64) -> 
     let expanded = |bytes: u64| bytes.saturating_mul(1032);
     let claim = |bytes: u64, most: u64| (bytes <= most).then_some(bytes);
     Ok(match kind {
-        1 | 5 | 8 if length >= 56 => changes(input, kind, at, length)?,
+        CHANGES | CHANGES_ALIASED | CHANGES_ALIASED_SIGNED if length >= 56 => changes(input, kind, at, length)?,
         2 => {
             input.seek(SeekFrom::Start(at + 8))?;
             claim(varint(input)?, length).map(|blackouts| blackouts.saturating_mul(16))
@@ -113,7 +133,7 @@ fn plausible(input: &mut (impl Read + Seek), kind: u8, at: u64, length: u64) -> 
             let middle = varint(input)?;
             claim(middle, expanded(length)).and_then(|_| claim(bytes, expanded(middle)))
         }
-        1 | 3..=8 => None,
+        CHANGES | 3..=CHANGES_ALIASED_SIGNED => None,
         _ => Some(0),
     })
 }
@@ -141,7 +161,7 @@ fn changes(input: &mut (impl Read + Seek), kind: u8, at: u64, length: u64) -> io
     input.seek(SeekFrom::Start(table))?;
     let mut written = Vec::new();
     input.by_ref().take(places).read_to_end(&mut written)?;
-    let Some(uses) = chains(&written, kind == 8) else { return Ok(None) };
+    let Some(uses) = chains(&written, kind == CHANGES_ALIASED_SIGNED) else { return Ok(None) };
     let mut claimed = times.saturating_mul(TIME).saturating_add(frame).saturating_add(handles.saturating_mul(HANDLE));
     let fastlz = first_byte(input, first)? == b'F';
     for (number, (offset, used)) in uses.iter().enumerate() {

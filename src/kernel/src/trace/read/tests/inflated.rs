@@ -85,3 +85,14 @@ fn an_fst_in_gzip_is_read_and_one_that_inflates_too_much_is_refused() {
     assert!(error(wrapped(COUNTER_FST, u64::MAX)).contains("take more than"));
     assert!(error(wrapped(&wrapped(COUNTER_FST, 100), 100)).contains("broken"));
 }
+
+#[test]
+fn a_file_that_lacks_blocks_of_changes_is_cut_off() {
+    let whole = fst(3, 8);
+    assert_eq!(whole[65..73], 1u64.to_be_bytes());
+    assert!(Wave::from_bytes(whole.clone()).is_ok());
+    // As long as it is written the header names no block.
+    let with = |blocks: u64| [&whole[..65], &blocks.to_be_bytes(), &whole[73..]].concat();
+    assert!(Wave::from_bytes(with(0)).is_ok());
+    assert!(error(with(2)).contains(&format!("byte {}: the file ends inside its blocks of changes", whole.len())));
+}
