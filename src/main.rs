@@ -7,7 +7,9 @@ mod output;
 mod stop;
 
 use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use clap::Parser;
 
@@ -18,7 +20,7 @@ use crate::failure::Failure;
 const MOST_THREADS_A_CORE: usize = 8;
 
 fn main() -> ExitCode {
-    match run() {
+    match unless_at_fault(run) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             // Nothing is left to be done where standard error is gone too.
@@ -26,6 +28,25 @@ fn main() -> ExitCode {
             ExitCode::from(failure.code())
         }
     }
+}
+
+/// Does the work of the program. A panic, also one of a thread that it waits for, is a mistake of our own: it ends as any
+/// failure does, with its temporary files taken away, in one sentence with its place.
+fn unless_at_fault(work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+    let place = Arc::new(Mutex::new(None));
+    let seen = Arc::clone(&place);
+    std::panic::set_hook(Box::new(move |panic| {
+        // The first is the cause of the others.
+        let mut place = seen.lock().unwrap_or_else(PoisonError::into_inner);
+        place.get_or_insert_with(|| panic.to_string());
+    }));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+        let place = place.lock().unwrap_or_else(PoisonError::into_inner).take();
+        Err(Failure::Trouble(format!(
+            "a mistake of stepwave itself, not of what it was given: {}; please report it with the command and its files",
+            place.unwrap_or_else(|| "unknown reason".to_owned())
+        )))
+    })
 }
 
 fn run() -> Result<(), Failure> {
@@ -47,4 +68,29 @@ fn bound_threads() -> Result<(), Failure> {
         rayon::ThreadPoolBuilder::new().num_threads(most).build_global()?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Failure, unless_at_fault};
+
+    #[test]
+    fn a_panic_ends_as_a_failure_does_in_one_line_with_its_place() {
+        let before = std::panic::take_hook();
+        let own = unless_at_fault(|| panic!("no\n{}", 7));
+        let of_thread = unless_at_fault(|| {
+            rayon::join(|| (), || assert_eq!(1 + 1, 3));
+            Ok(())
+        });
+        let none = unless_at_fault(|| Err(Failure::Trouble("bad".to_owned())));
+        std::panic::set_hook(before);
+        for failed in [own, of_thread] {
+            let failure = failed.expect_err("a panic");
+            let words = failure.to_string();
+            assert_eq!((failure.code(), words.lines().count()), (2, 1), "{words}");
+            let begin = "stepwave: a mistake of stepwave itself, not of what it was given: panicked at src/main.rs:";
+            assert!(words.starts_with(begin) && words.ends_with("with the command and its files"), "{words}");
+        }
+        assert_eq!(none.expect_err("a failure").to_string(), "stepwave: bad");
+    }
 }

@@ -110,24 +110,59 @@ impl Drop for Temporary {
     }
 }
 
-/// Gives every file its final name, all of them or, where a signal comes first, none.
+/// A file that has its final name.
+struct Placed {
+    target: PathBuf,
+    /// There was one before, and another name that was given to it.
+    replaced: Option<Option<TempPath>>,
+}
+
+/// Gives every file its final name, all of them or, where a signal comes first or one cannot be renamed, none.
 ///
 /// # Errors
 /// A file cannot be renamed.
 pub(super) fn persist(staged: &mut Vec<(Temporary, PathBuf)>) -> Result<(), (PathBuf, io::Error)> {
     let mut present = present();
     let mut result = Ok(());
-    let mut renamed = Vec::new();
+    let (mut renamed, mut placed) = (Vec::new(), Vec::new());
+    let several = staged.len() > 1;
     for (mut temporary, target) in staged.drain(..) {
         if let (Ok(()), Some(path)) = (&result, temporary.path.take()) {
             present.temporary.retain(|listed| **listed != *path);
-            result = path.persist(&target).map_err(|error| (target, error.error));
+            let replaced = target.exists().then(|| if several { second_name(&target) } else { None });
+            match path.persist(&target) {
+                Ok(()) => placed.push(Placed { target, replaced }),
+                Err(error) => result = Err((target, error.error)),
+            }
         }
         renamed.push(temporary);
+    }
+    if result.is_err() {
+        placed.into_iter().rev().for_each(Placed::undo);
     }
     // What is dropped asks for the list.
     drop(present);
     result
+}
+
+impl Placed {
+    /// Puts back what was there. Nothing can be done where that fails too.
+    fn undo(self) {
+        match self.replaced {
+            Some(Some(before)) => drop(before.persist(&self.target)),
+            Some(None) => {}
+            None => drop(fs::remove_file(&self.target)),
+        }
+    }
+}
+
+/// Gives an existing file a second name, where its file system can.
+fn second_name(target: &Path) -> Option<TempPath> {
+    let prefix = format!("{PREFIX}{}-", std::process::id());
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(SUFFIX).rand_bytes(LETTERS);
+    let link = builder.make_in(super::folder_of(target), |name| fs::hard_link(target, name));
+    Some(link.ok()?.into_temp_path())
 }
 
 /// A temporary folder, which goes when it is dropped.
@@ -220,3 +255,32 @@ fn remove_if_left(path: &Path, process: u32) {
 
 #[cfg(not(unix))]
 fn remove_if_left(_: &Path, _: u32) {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_one_file_cannot_be_renamed_all_are_as_they_were() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("old"), "before").expect("a file");
+        for last in ["blocked", "free"] {
+            let mut staged = Vec::new();
+            for name in ["old", "new", last] {
+                let (temporary, mut file) = Temporary::new(folder.path()).expect("a temporary file");
+                io::Write::write_all(&mut file, b"after").expect("a text");
+                staged.push((temporary, at(name)));
+            }
+            // Since the last was staged a folder has come to its place.
+            fs::create_dir_all(at("blocked/inside")).expect("a folder");
+            let refused = persist(&mut staged).err().map(|(target, _)| target);
+            assert_eq!(refused, (last == "blocked").then(|| at("blocked")));
+            let text = |name: &str| fs::read_to_string(at(name)).ok();
+            let (old, new) = if last == "free" { ("after", Some("after".to_owned())) } else { ("before", None) };
+            assert_eq!((text("old").as_deref(), text("new")), (Some(old), new), "{last}");
+            let hidden = |entry: &fs::DirEntry| entry.file_name().to_string_lossy().starts_with('.');
+            assert_eq!(fs::read_dir(folder.path()).expect("the folder").flatten().filter(hidden).count(), 0);
+        }
+    }
+}
