@@ -114,7 +114,10 @@ fn simulate(case: &Case, folder: &Path, engine: EngineKind) -> Result<Files, Fai
     outputs.commit()?;
     let exit = u8::from(!finished.failures.is_empty());
     if exit != case.exit {
-        let said = finished.failures.join("; ");
+        let said = match finished.failures.join("; ") {
+            none if none.is_empty() => "it passes every check".to_owned(),
+            said => said,
+        };
         return Err(Failure::Check(vec![format!("case {}: exit code {exit}, not {}: {said}", case.name, case.exit)]));
     }
     let mut files = Files::new();
@@ -130,7 +133,9 @@ fn stale(case: &Case, all: &[Case], dir: &Path, made: &Files) -> Result<Vec<Stri
     let belongs_to = |name: &str, case: &Case| name.strip_prefix(&case.name).is_some_and(|rest| rest.starts_with('.'));
     let mut names = Vec::new();
     for entry in fs::read_dir(dir)? {
-        let name = entry?.file_name().to_string_lossy().into_owned();
+        let entry = entry?;
+        // A folder, or a name that is not Unicode, was made by no case.
+        let Some(name) = entry.file_name().into_string().ok().filter(|_| !entry.path().is_dir()) else { continue };
         // `a.b.states` is that of the case `a.b` rather than of `a`, if there is one.
         let owner = all.iter().filter(|case| belongs_to(&name, case)).max_by_key(|case| case.name.len());
         let own = owner.is_some_and(|owner| owner.name == case.name);
@@ -160,7 +165,9 @@ fn write(case: &Case, all: &[Case], dir: &Path, files: &Files, stale: &[String])
     }
     outputs.commit()?;
     for name in stale {
-        fs::remove_file(dir.join(name))?;
+        let path = dir.join(name);
+        fs::remove_file(&path)
+            .map_err(|error| Failure::Trouble(format!("cannot delete {}: {error}", path.display())))?;
         kinds.entry(2).or_default().push(name);
     }
     let words = ["new", "changed", "removed", "same"];

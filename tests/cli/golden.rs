@@ -1,5 +1,7 @@
 //! Recorded waves: made anew, compared bit by bit, and the first difference named.
 
+use std::os::unix::ffi::OsStrExt;
+
 use super::Folder;
 
 const LINE: &str = "[[case]]\nname = \"line\"\nsource = \"by hand\"\nargs = [\"ppc-line\", \"--to\", \"6,4\"]\n";
@@ -80,6 +82,9 @@ fn every_case_with_another_exit_code_is_told_and_the_others_are_checked() {
     assert_eq!(ran.code, 1, "{ran:?}");
     assert!(ran.err.starts_with("stepwave: case trap: exit code 1, not 0: overflow of ppc_line.f"), "{ran:?}");
     assert!(folder.path("w/line.vcd").is_file() && !folder.path("w/trap.vcd").exists());
+    let folder = self::folder(&format!("{LINE}exit = 1\n"));
+    let ran = folder.run("golden record w");
+    assert_eq!(ran.err, "stepwave: case line: exit code 0, not 1: it passes every check\n");
     let folder = recorded(&format!("{trap}exit = 1\n{LINE}"));
     assert_eq!(folder.good("golden check w"), "2 cases same, bit by bit, from 3 engines\n");
 }
@@ -163,8 +168,11 @@ fn record_says_what_is_new_changed_removed_and_the_same() {
     let folder = recorded(LINE);
     folder.write("w/line.csv", "");
     folder.write("w/line.old.states", "");
-    // Of another case, by its longer name.
+    // Of another case, by its longer name; a folder; a name that is not Unicode.
     folder.write("w/line-2.old.states", "");
+    folder.make("w/line.folder.states");
+    let strange = folder.path("w").join(std::ffi::OsStr::from_bytes(b"line.\xff.states"));
+    std::fs::write(&strange, "").unwrap();
     std::fs::remove_file(folder.path("w/line.gtkw")).unwrap();
     let ran = folder.run("golden check w");
     assert_eq!(ran.code, 2, "{ran:?}");
@@ -172,6 +180,8 @@ fn record_says_what_is_new_changed_removed_and_the_same() {
     let line = "line: new line.gtkw; changed line.csv; removed line.old.states; same line.beat.states, line.vcd";
     assert_eq!(text.lines().next(), Some(line));
     assert!(!folder.path("w/line.old.states").exists() && folder.path("w/line-2.old.states").exists());
+    assert!(strange.exists() && folder.path("w/line.folder.states").exists());
+    folder.good("golden check w");
     folder.write("w/line.old.states", "");
     let ran = folder.run("golden check w");
     assert!(ran.code == 1 && ran.err.contains("case line no longer makes line.old.states"), "{ran:?}");
@@ -188,6 +198,12 @@ fn differences_of_tables_name_the_columns_and_the_step() {
             vec!["line 5: recorded", "; step 3: column "],
         ),
         (good.replacen("clock", "cycle", 1), vec!["columns only recorded: cycle, only simulated: clock"]),
+        (
+            good.replace('\n', "\r\n"),
+            vec!["recorded are lines that end with CR and LF, simulated lines that end with LF"],
+        ),
+        (good.trim_end().to_owned(), vec!["recorded are lines of which the last has no end, simulated lines"]),
+        (good.replacen(lines[4], &format!("{},9", lines[4]), 1), vec!["; recorded are 11 columns, simulated 10"]),
         (lines[..8].join("\n"), vec!["line 9: recorded 'the end of the file'", "recorded are 7 rows, simulated 11"]),
     ] {
         assert_ne!(text, good);
@@ -215,6 +231,10 @@ fn a_case_stays_in_its_folder() {
         let ran = folder.run("golden record w");
         assert!(ran.code == 2 && ran.err.contains(hint), "{name}: {ran:?}");
     }
+    folder.write("w/in.nc", &folder.read("two.nc"));
+    folder.write("w/cases.toml", &program("./in.nc"));
+    folder.good("golden record w");
+    std::fs::remove_file(folder.path("w/two.vcd")).unwrap();
     // A recorded file that leads elsewhere, and one that is the program.
     folder.write("w/cases.toml", LINE);
     folder.good("golden record w");

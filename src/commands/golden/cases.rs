@@ -97,7 +97,7 @@ fn is_file_stem(name: &str) -> bool {
 /// A file below the folder, to which no link leads from elsewhere.
 fn stays_in(dir: &Path, file: &Path) -> Result<(), String> {
     let name = file.display();
-    if !file.components().all(|part| matches!(part, Component::Normal(_))) {
+    if !file.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
         return Err(format!("the program {name} is not in the folder {}: copy it there", dir.display()));
     }
     let path = dir.join(file);

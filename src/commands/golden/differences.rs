@@ -12,6 +12,9 @@ pub(super) fn first(name: &str, recorded: &[u8], made: &[u8]) -> String {
     wave.unwrap_or_else(|| {
         let (recorded, made) = (String::from_utf8_lossy(recorded), String::from_utf8_lossy(made));
         let place = recorded.lines().zip(made.lines()).take_while(|(a, b)| a == b).count();
+        if place == recorded.lines().count().max(made.lines().count()) {
+            return format!("recorded are {}, simulated {}", line_ends(&recorded), line_ends(&made));
+        }
         let at = |text: &str| text.lines().nth(place).unwrap_or("the end of the file").to_owned();
         let mut words = format!("line {}: recorded '{}', simulated '{}'", place + 1, at(&recorded), at(&made));
         if name.ends_with(".csv") {
@@ -27,6 +30,15 @@ fn first_divergence(recorded: &[u8], made: &[u8]) -> Option<String> {
     let options = Options { context: CONTEXT, ..Options::default() };
     let divergence = diverge::first_divergence(&recorded, &made, &options).ok()??;
     Some(format!("recorded is A, simulated is B\n{divergence}"))
+}
+
+/// What the lines of a text end with.
+fn line_ends(text: &str) -> &'static str {
+    match (text.contains("\r\n"), text.ends_with('\n')) {
+        (true, true) => "lines that end with CR and LF",
+        (false, true) => "lines that end with LF",
+        (_, false) => "lines of which the last has no end",
+    }
 }
 
 /// The columns in which two tables differ in this line, and the step there.
@@ -51,6 +63,9 @@ fn columns(recorded: &str, made: &str, place: usize) -> String {
     if before.is_empty() || now.is_empty() {
         let rows = |text: &str| text.lines().count().saturating_sub(1);
         return format!("; recorded are {} rows, simulated {}", rows(recorded), rows(made));
+    }
+    if before.len() != now.len() {
+        return format!("; recorded are {} columns, simulated {}", before.len(), now.len());
     }
     let row = ["block", "step"].into_iter().filter_map(|name| {
         let column = heading.iter().position(|heading| heading == name)?;
