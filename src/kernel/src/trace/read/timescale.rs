@@ -11,6 +11,10 @@ pub(super) fn parse(text: &str) -> Result<Timescale, String> {
     let wrong = |why: &str| {
         format!("`$timescale {text}` cannot be read: {why}; write it as 1, 10 or 100 of a unit, as in `1 ns`")
     };
+    let apart = text.split_ascii_whitespace().collect::<Vec<_>>();
+    if !matches!(apart[..], [] | [_]) && apart != [number, unit] {
+        return Err(wrong("it is more than a number and a unit"));
+    }
     let base = match unit {
         "s" => 0,
         "ms" => -3,
@@ -84,7 +88,12 @@ mod tests {
             ("99999999999999999999 ns", "is not a number"),
             ("5000000000 s", "too large"),
             ("", "it has no unit"),
-            ("1/10 ns", "the unit `/10ns` is not"),
+            ("1/10 ns", "more than a number and a unit"),
+            ("1/10ns", "the unit `/10ns` is not"),
+            ("1 0 ns", "more than a number and a unit"),
+            ("1 n s", "more than a number and a unit"),
+            ("1n s", "more than a number and a unit"),
+            ("1 ns 1 ns", "more than a number and a unit"),
         ] {
             let refused = parse(text).expect_err(text);
             assert!(refused.contains(why), "{text}: {refused}");
