@@ -62,6 +62,36 @@ pub(crate) fn reader_left() -> ! {
     std::process::exit(141)
 }
 
+/// Ends the process as soon as the reader of a pipe on standard output leaves, for work of which nothing else comes: it
+/// would go on for a result that nobody reads.
+#[cfg(unix)]
+pub(crate) fn watch_reader() {
+    use rustix::event::{PollFd, PollFlags, poll};
+    use std::os::fd::AsFd;
+    use std::os::unix::fs::FileTypeExt;
+
+    let Ok(out) = io::stdout().as_fd().try_clone_to_owned() else { return };
+    let out = std::fs::File::from(out);
+    if !out.metadata().is_ok_and(|found| found.file_type().is_fifo() || found.file_type().is_socket()) {
+        return;
+    }
+    // Where no thread can be had, it is noticed at the next write.
+    let _ = std::thread::Builder::new().spawn(move || {
+        loop {
+            // What nothing is asked about is told all the same: an error, which is that nobody reads.
+            let mut asked = [PollFd::new(&out, PollFlags::empty())];
+            match poll(&mut asked, None) {
+                Ok(_) if asked[0].revents().contains(PollFlags::ERR) => reader_left(),
+                Err(rustix::io::Errno::INTR) => {}
+                _ => return,
+            }
+        }
+    });
+}
+
+#[cfg(not(unix))]
+pub(crate) fn watch_reader() {}
+
 /// One line on standard error, over a progress bar if there is one.
 fn say(sentence: &str) {
     let mut err = io::stderr();

@@ -68,7 +68,7 @@ pub(crate) struct DiffArgs {
     /// Also write both sides and their exclusive-or as one VCD for the viewer (`-`: to standard output, instead of the
     /// report)
     #[arg(long, value_name = "F.vcd", value_parser = file_of(&[Format::Vcd]))]
-    merged: Option<PathBuf>,
+    pub(super) merged: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -17,14 +17,20 @@ mod sweep;
 mod wave;
 mod widths;
 
-use crate::cli::{Cli, Command};
+use std::path::{Path, PathBuf};
+
+use crate::cli::{Cli, Command, GoldenCommand, OutputArgs, TraceArgs};
 use crate::failure::Failure;
+use crate::stop;
 
 /// Runs the command that was given.
 ///
 /// # Errors
 /// Whatever ends the process with an exit code other than 0.
 pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
+    if only_prints(&cli.command) {
+        stop::watch_reader();
+    }
     match &cli.command {
         Command::List(args) => list::run(args),
         Command::Run(args) => run::run(args),
@@ -39,4 +45,26 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
         Command::Completions { shell } => pages::completions(*shell),
         Command::Man { dir } => pages::manual(dir),
     }
+}
+
+/// Nothing comes of a command but what it writes on standard output.
+fn only_prints(command: &Command) -> bool {
+    let traced = |args: &TraceArgs| [args.vcd.clone(), args.fst.clone()];
+    let written = |args: &OutputArgs| [args.steps.clone(), args.json.clone(), args.plot.clone()];
+    let files: Vec<Option<PathBuf>> = match command {
+        Command::Run(args) => {
+            let own = [args.checkpoints.clone()];
+            traced(&args.trace).into_iter().chain(written(&args.outputs)).chain(own).collect()
+        }
+        Command::Program(args) => traced(&args.trace).into_iter().chain(written(&args.outputs)).collect(),
+        Command::Sweep(args) if args.command.is_none() => {
+            let table = &args.outputs;
+            table.plot.iter().cloned().map(Some).chain([table.csv.clone(), table.parquet.clone()]).collect()
+        }
+        Command::Prove(args) => vec![args.certificate.clone(), args.vcd.clone()],
+        Command::Diff(args) => vec![args.merged.clone()],
+        Command::Compare(_) | Command::Widths(_) | Command::Golden(GoldenCommand::Check(_)) => Vec::new(),
+        _ => return false,
+    };
+    files.iter().flatten().all(|file| file == Path::new("-"))
 }

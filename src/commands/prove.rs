@@ -23,7 +23,7 @@ use stepwave::study::proof::{
 use self::verdict::hardware_in_words;
 use crate::cli::{ProveArgs, ProveCommand};
 use crate::failure::Failure;
-use crate::output::{self, Outputs, Sink};
+use crate::output::{self, Outputs, Sink, temporary};
 
 /// Attempts a proof, or checks one.
 pub(crate) fn run(args: &ProveArgs) -> Result<(), Failure> {
@@ -152,13 +152,14 @@ impl<'a> Job<'a> {
         let k = self.args.bits.unwrap_or(ASKED);
         let question = question(self.model, &self.claims, &self.choices, &self.narrower, k)
             .map_err(|error| self.args.hardware.told_of_study(error))?;
-        let answer = match ask(command, &question.script, Duration::from_secs(self.args.solver_seconds)) {
-            Err(late @ SolverError::Late { .. }) => {
-                tell(self.args, &format!("{late}\n"))?;
-                return Ok(None);
-            }
-            answer => answer?,
-        };
+        let answer =
+            match ask(command, &question.script, Duration::from_secs(self.args.solver_seconds), &temporary::attend) {
+                Err(late @ SolverError::Late { .. }) => {
+                    tell(self.args, &format!("{late}\n"))?;
+                    return Ok(None);
+                }
+                answer => answer?,
+            };
         let (word, what) = match answer {
             Answer::Sat => ("sat", "a register overflows or an end point is missed"),
             Answer::Unsat => ("unsat", "no register overflows, and every end point is reached"),

@@ -1,4 +1,4 @@
-//! Temporary files. They are listed, so that a signal can take them away, and locked for as long as their process lives,
+//! Temporary files, and other things that go with the process. They are listed, so that a signal can take them away, and locked for as long as their process lives,
 //! so that a later run knows what a killed one has left.
 
 use std::ffi::OsStr;
@@ -27,9 +27,12 @@ struct Present {
     searched: Vec<PathBuf>,
     /// What is kept, in words.
     kept: Option<String>,
+    /// A process that was started, with a group of its own.
+    started: Option<u32>,
 }
 
-static PRESENT: Mutex<Present> = Mutex::new(Present { temporary: Vec::new(), searched: Vec::new(), kept: None });
+static PRESENT: Mutex<Present> =
+    Mutex::new(Present { temporary: Vec::new(), searched: Vec::new(), kept: None, started: None });
 
 fn present() -> MutexGuard<'static, Present> {
     PRESENT.lock().unwrap_or_else(PoisonError::into_inner)
@@ -47,6 +50,11 @@ pub(crate) fn keep(paths: &[PathBuf], what: Option<String>) {
     present.kept = what;
 }
 
+/// This process was started and ends with ours, with all of its group; or none is left.
+pub(crate) fn attend(started: Option<u32>) {
+    present().started = started;
+}
+
 /// What is kept, in words.
 pub(crate) fn kept() -> Option<String> {
     present().kept.clone()
@@ -59,6 +67,13 @@ pub(crate) fn abandon(end: impl FnOnce(Option<&str>)) {
     for path in present.temporary.drain(..) {
         // Nothing can be done about one that stays.
         let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+    }
+    #[cfg(unix)]
+    if let Some(number) = present.started.and_then(|number| i32::try_from(number).ok())
+        && let Some(group) = rustix::process::Pid::from_raw(number)
+    {
+        // One that has gone needs no end.
+        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
     }
     end(present.kept.as_deref());
 }

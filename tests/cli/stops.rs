@@ -202,6 +202,74 @@ fn a_reader_that_leaves_ends_the_run_at_once_and_no_file_is_left() {
 }
 
 #[test]
+fn a_reader_that_leaves_ends_a_run_that_writes_nothing_else_and_no_other() {
+    for (words, ends) in [
+        (LONG.to_owned(), true),
+        (format!("{LONG} --json -"), true),
+        ("widths dda-conic --box 8".to_owned(), true),
+        (format!("{LONG} --json r.json"), false),
+    ] {
+        let folder = Folder::new();
+        let mut command = folder.command();
+        let mut child = command.args(words.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        if ends {
+            wait("the run ends", || child.try_wait().unwrap().is_some());
+            let output = child.wait_with_output().unwrap();
+            assert_eq!((output.status.signal(), errors(&output).as_str()), (Some(13), ""), "{words}");
+        } else {
+            std::thread::sleep(Duration::from_millis(500));
+            assert!(child.try_wait().unwrap().is_none(), "{words}");
+            child.kill().unwrap();
+            child.wait().unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_large_wave_is_reported_before_it_is_written_where_it_may_be() {
+    for (way, large, unit) in [("X100", " --large", " GB; "), ("X10", "", " MB; ")] {
+        let folder = Folder::new();
+        folder.write("p.ngc", &format!("G1 {way} F60\n"));
+        let words = format!("program p.ngc --method ppc --vcd -{large}");
+        let mut command = folder.command();
+        let mut child = command.args(words.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut first = String::new();
+        BufReader::with_capacity(64, child.stdout.take().unwrap()).read_line(&mut first).unwrap();
+        let told = errors(&child.wait_with_output().unwrap());
+        assert!(first.starts_with("$version") && told.lines().count() == 1, "{first}{told}");
+        assert!(told.starts_with("stepwave: the wave will have about ") && told.contains(unit), "{told}");
+        assert!(["--trace-steps", "--no-clk", "--fst"].iter().all(|hint| told.contains(hint)), "{told}");
+    }
+}
+
+/// A process that waits for nothing but its parent.
+fn is_gone(process: &str) -> bool {
+    let status = fs::read_to_string(format!("/proc/{}/status", process.trim())).unwrap_or_default();
+    status.lines().find(|line| line.starts_with("State:")).is_none_or(|state| state.contains('Z'))
+}
+
+#[test]
+fn a_solver_ends_with_all_that_it_has_started_after_its_time_and_with_its_asker() {
+    use std::os::unix::fs::PermissionsExt;
+    for seconds in ["1", "300"] {
+        let folder = Folder::new();
+        folder.write("solver", "#!/bin/sh\nsleep 300 &\necho $! > new\nmv new started\nwait\n");
+        fs::set_permissions(folder.path("solver"), fs::Permissions::from_mode(0o755)).unwrap();
+        let child = started(&folder, &format!("prove ppc-line --solver ./solver --solver-seconds {seconds}"));
+        wait("the solver works", || folder.path("started").exists());
+        let own = folder.read("started");
+        if seconds == "300" {
+            assert!(!is_gone(&own));
+            signal(&child, "TERM");
+        }
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(if seconds == "300" { 143 } else { 0 }), "{}", errors(&output));
+        wait("what the solver has started ends", || is_gone(&own));
+    }
+}
+
+#[test]
 fn a_closed_standard_output_ends_every_command_as_it_ends_other_tools() {
     let folder = Folder::new();
     for words in

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use stepwave_kernel::export::{Checking, smt2_asking};
@@ -163,21 +163,21 @@ pub fn question(
 }
 
 /// Asks a solver: its command, whose words stand apart by blanks, gets the script on its input. After the `limit` it is
-/// killed, and gives no answer.
+/// killed with all that it has started, and gives no answer. `running` is given its process as long as it runs.
 ///
 /// # Errors
 /// It cannot be run, or says neither `sat` nor `unsat`, or nothing in time.
-pub fn ask(command: &str, script: &str, limit: Duration) -> Result<Answer, SolverError> {
+pub fn ask(command: &str, script: &str, limit: Duration, running: &dyn Fn(Option<u32>)) -> Result<Answer, SolverError> {
     let failed = |error| SolverError::Start { command: command.to_owned(), error };
     let mut words = command.split_whitespace();
     let program = words.next().unwrap_or_default();
-    let mut child = Command::new(program)
-        .args(words)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .map_err(failed)?;
+    let mut asked = Command::new(program);
+    asked.args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+    // A group of its own, which ends as a whole.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut asked, 0);
+    let mut child = asked.spawn().map_err(failed)?;
+    running(Some(child.id()));
     let (input, output) = (child.stdin.take(), child.stdout.take());
     // The two threads are not waited for: children of the solver may hold its input and output open for ever.
     let owned = script.to_owned();
@@ -193,7 +193,7 @@ pub fn ask(command: &str, script: &str, limit: Duration) -> Result<Answer, Solve
     });
     // The first line is the answer.
     let said = receiver.recv_timeout(limit);
-    let ended = child.kill().and_then(|()| child.wait());
+    let ended = end(&mut child, running);
     let Ok(said) = said else {
         return Err(SolverError::Late { command: command.to_owned(), seconds: limit.as_secs() });
     };
@@ -203,4 +203,19 @@ pub fn ask(command: &str, script: &str, limit: Duration) -> Result<Answer, Solve
         Some("unsat") => Ok(Answer::Unsat),
         first => Err(SolverError::Answer { command: command.to_owned(), said: first.unwrap_or_default().to_owned() }),
     }
+}
+
+/// Ends a solver and what it has started.
+fn end(child: &mut Child, running: &dyn Fn(Option<u32>)) -> std::io::Result<std::process::ExitStatus> {
+    #[cfg(unix)]
+    if let Ok(number) = i32::try_from(child.id())
+        && let Some(group) = rustix::process::Pid::from_raw(number)
+    {
+        // One that has gone needs no end.
+        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+    }
+    let killed = child.kill();
+    // Once it was waited for, its number may be another's.
+    running(None);
+    killed.and_then(|()| child.wait())
 }
