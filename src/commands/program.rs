@@ -59,12 +59,12 @@ fn tools(given: &[Tool]) -> Result<BTreeMap<u64, f64>, Failure> {
     Ok(tools)
 }
 
-/// Simulates; the wave shows the operands of a trap that is known.
-fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> Result<Finished, Failure> {
-    let family = args.method;
-    let file = args.file.display().to_string();
-    let told = |error: &dyn std::fmt::Display| Failure::Trouble(format!("{file}: {error}"));
-    let preparation = Preparation {
+/// How the options want the program prepared.
+///
+/// # Errors
+/// A tool has two radii.
+pub(super) fn preparation(args: &ProgramArgs) -> Result<Preparation, Failure> {
+    Ok(Preparation {
         reading: Reading {
             blu: args.hardware.blu,
             integers: args.integers,
@@ -75,7 +75,15 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
         scheme: args.compensation,
         corner: args.corner,
         chords: args.chords,
-    };
+    })
+}
+
+/// Simulates; the wave shows the operands of a trap that is known.
+fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> Result<Finished, Failure> {
+    let family = args.method;
+    let file = args.file.display().to_string();
+    let told = |error: &dyn std::fmt::Display| Failure::Trouble(format!("{file}: {error}"));
+    let preparation = preparation(args)?;
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
     // How far the radii of an arc may differ is not the machine's concern.
     let choices = Choices { tolerance: None, ..args.hardware.choices()? };

@@ -19,20 +19,28 @@ const NOTED: f64 = 1e8;
 const REMEDIES: &str = "make it small by --trace-steps (one sample a step), --no-clk, a window (--trace-from, --trace-to), \
     fewer signals (--trace) or --fst; or give --large";
 
-/// Bytes of VCD that a bit of a vector takes at a step on the average, as measured on machines of every family.
+/// Bytes of VCD that a bit of a vector takes at a step that moves the machine on the average, as measured on machines of
+/// every family.
 const BIT: f64 = 0.14;
+/// Registers that change with every step, also where it moves nothing.
+const COUNTING: [&str; 3] = ["q", "jrx", "jry"];
 /// Bytes of the three flags that come and go with each step.
 const FLAGS: f64 = 18.0;
-/// Bytes of FST that a clock takes where the pulse source is shown, and a step as a part of those of VCD, as measured.
-const FST_CLOCK: f64 = 10.0;
+/// Bytes of FST that a clock takes where the pulse source is shown, less where its phase comes round; and what changes at a
+/// step, and counts at every step, as parts of what they take as VCD; all as measured.
+const FST_CLOCK: f64 = 12.0;
+const FST_ROUND: f64 = 0.1;
 const FST_STEP: f64 = 0.25;
+const FST_COUNT: f64 = 0.1;
 
 /// What the samples of a wave take, in bytes.
 pub(super) struct Size {
     /// Signals that change with every clock: the pulse source adds to its phase.
     clock: f64,
-    /// What changes at a step.
+    /// What changes at a step that moves the machine.
     step: f64,
+    /// What changes at every step.
+    count: f64,
     ticks: f64,
 }
 
@@ -45,18 +53,20 @@ impl Size {
         let mut probes = probes(bench, args)?;
         probes.sort_by_key(|probe| probe.column);
         probes.dedup_by_key(|probe| probe.column);
-        let (mut clock, mut step) = (0.0, 0.0);
+        let (mut clock, mut step, mut count) = (0.0, 0.0, 0.0);
         for probe in probes {
             let width = f64::from(probe.width.get());
             let of_source = matches!(probe.name.as_str(), "phase" | "sum") && probe.width.get() >= RATE_BITS;
             if of_source {
                 // A b, a blank, a name of one character and the end of the line.
                 clock += width + 4.0;
+            } else if COUNTING.contains(&probe.name.as_str()) {
+                count += width + 4.0;
             } else if width > 1.0 {
                 step += width * BIT;
             }
         }
-        Ok(Size { clock, step, ticks: time.ticks() as f64 })
+        Ok(Size { clock, step, count, ticks: time.ticks() as f64 })
     }
 
     /// Bytes of the VCD and of the FST that are asked for, 0 where they are not.
@@ -64,16 +74,19 @@ impl Size {
         let clocks = limit.map_or(estimate.clocks, |limit| estimate.clocks.min(limit as f64));
         let end = args.trace_to.map_or(clocks, |to| clocks.min(to as f64 + 1.0));
         let shown = (end - args.trace_from as f64).max(0.0);
-        let steps = estimate.steps * shown / estimate.clocks.max(1.0);
+        let of_window = |all: f64| all * shown / estimate.clocks.max(1.0);
+        let [steps, moving, drifting] = [estimate.steps, estimate.moving, estimate.drifting].map(of_window);
         let samples = if args.trace_steps { steps } else { shown };
         // A #, the time and the end of the line.
         let stamp = 2.0 + (end * self.ticks).max(1.0).log10().floor() + 1.0;
         let edges = if args.no_clk { stamp } else { 2.0 * stamp + 6.0 };
         let edges = if args.no_clk && self.clock == 0.0 { edges * steps } else { edges * samples };
-        // At steps alone the flags of a step stay up, and the phase may come round to what it was.
-        let [clock, flags] = if args.trace_steps { [self.clock / 2.0, 0.0] } else { [self.clock, FLAGS] };
-        let vcd = edges + clock * samples + (self.step + flags) * steps;
-        let fst = if self.clock > 0.0 { FST_CLOCK * samples } else { 0.0 } + FST_STEP * self.step * steps;
+        // At steps alone the flags of a step stay up, and of the source only the phase between two steps is seen.
+        let (changing, flags) = if args.trace_steps { (drifting, 0.0) } else { (samples, FLAGS) };
+        let vcd = edges + self.clock * changing + (self.count + flags) * steps + self.step * moving;
+        let round = if args.trace_steps { 1.0 } else { FST_ROUND + drifting / steps.max(1.0) };
+        let source = if self.clock > 0.0 { FST_CLOCK * changing * round } else { 0.0 };
+        let fst = source + FST_COUNT * self.count * steps + FST_STEP * self.step * moving;
         [(&args.vcd, vcd), (&args.fst, fst)].map(|(path, bytes)| if path.is_some() { bytes } else { 0.0 })
     }
 
@@ -137,3 +150,6 @@ impl<W: Seek> Seek for Limited<W> {
         self.out.seek(to)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -16,7 +16,14 @@ pub struct Estimate {
     pub clocks: f64,
     /// Steps of the interpolator.
     pub steps: f64,
+    /// Those that move the machine.
+    pub moving: f64,
+    /// Those after which the phase of the pulse source is another one than before.
+    pub drifting: f64,
 }
+
+/// Pulses for each BLU of the way, on the average of all directions.
+const PULSES: f64 = 1.25;
 
 impl Estimate {
     /// Reads the program once more, for this hardware and pace.
@@ -43,8 +50,12 @@ impl Estimate {
                     }
                     for block in &blocks {
                         for part in family.words(hardware, block) {
-                            let source_hz = frequency(pace, rate(pace, family, block, &part, speed).word);
+                            let word = rate(pace, family, block, &part, speed).word;
+                            let source_hz = frequency(pace, word);
                             estimate.steps += part.steps;
+                            estimate.moving += part.steps.min(part.length * PULSES);
+                            // Where the source gives a pulse every 2^n clocks, its phase comes round.
+                            estimate.drifting += if word.is_power_of_two() { 0.0 } else { part.steps };
                             // The next block is taken over in one clock.
                             estimate.clocks += part.steps * pace.clock_hz / source_hz + 1.0;
                         }

@@ -261,3 +261,31 @@ impl Totals {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::program::stream::{Item, Preparation, Stream};
+    use stepwave_models::program::FAMILIES;
+    use stepwave_nc::{Corner, Integers, Reading, Scheme};
+
+    #[test]
+    fn a_tool_beyond_what_is_promised_of_its_contour_fails() {
+        let reading =
+            Reading { blu: 0.01, integers: Integers::Units, tools: BTreeMap::new(), tolerance: 0.0, home: None };
+        let preparation = Preparation { reading, scheme: Scheme::B, corner: Corner::Straight, chords: 0.5 };
+        let text = "G21 G90 G1 X1 F100\n".as_bytes();
+        let mut stream = Stream::new(text, FAMILIES[0], &preparation).expect("a program");
+        let Some(Ok(Item::Move(of, _))) = stream.next() else { panic!("no move") };
+        let mut totals = Totals::default();
+        let report = MoveReport { contour_bound: Some(1.5), off_compensated: 1.5, ..MoveReport::new(of, 0, [0; 3]) };
+        totals.add(&report);
+        assert_eq!((totals.beyond, totals.failures.len()), (0, 0));
+        totals.add(&MoveReport { off_compensated: 1.75, ..report });
+        let told = "line 1: the tool's centre is 1.750 BLU off the contour, where method and rounding promise 1.500 BLU: \
+                    choose a smaller --blu";
+        assert_eq!((totals.beyond, totals.failures), (1, vec![told.to_owned()]));
+    }
+}

@@ -1,0 +1,73 @@
+use std::io::{BufReader, Cursor};
+
+use clap::Parser;
+use stepwave::program::{Pace, Survey};
+
+use super::*;
+use crate::cli::{Cli, Command, ProgramArgs};
+use crate::commands::program;
+use crate::output::Outputs;
+
+/// Rates of the pulse source that come round and that do not, moves of all kinds.
+const TEXT: &str = "G21 G90 G1 X3 Y0.9 F300\nX0.9 Y3.6 F500\nG2 X2.4 Y2.1 I1.5 J0\nG1 X0 Y0 Z0.3\nG0 X1\n";
+
+fn args(words: &str) -> Box<ProgramArgs> {
+    match Cli::try_parse_from(words.split(' ')).expect("a command").command {
+        Command::Program(args) => args,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// What is expected of the waves of a program.
+fn expected(args: &ProgramArgs) -> [f64; 2] {
+    let preparation = program::preparation(args).expect("options");
+    let text = || BufReader::new(Cursor::new(TEXT));
+    let survey = Survey::of(text(), args.method, &preparation).expect("a program");
+    let hardware = args.method.plan(&survey.size, &args.hardware.choices().expect("choices")).expect("hardware");
+    let machine = args.method.machine(&hardware).expect("a machine");
+    let bench = Testbench::of_machine(hardware, machine);
+    let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
+    let estimate = Estimate::of(text(), args.method, &preparation, bench.hardware(), pace).expect("an estimate");
+    let time = ClockTime::from_hz(args.clock.clock_hz).expect("a clock");
+    Size::of(&bench, &args.trace, time).expect("a size").bytes(&args.trace, None, &estimate)
+}
+
+#[test]
+fn waves_take_about_what_is_expected_of_every_family_and_option() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    std::fs::write(at("p.ngc"), TEXT).expect("a program");
+    let mut wrong = Vec::new();
+    for method in ["ppc", "dda", "dpm", "cim", "mindev"] {
+        for options in ["", " --trace-steps", " --no-clk", " --trace-from 2000 --trace-to 20000"] {
+            let (file, vcd, fst) = (at("p.ngc"), at("w.vcd"), at("w.fst"));
+            let own = format!("--method {method} --blu 0.01mm --clock-hz 20000 --vcd {vcd} --fst {fst}{options}");
+            let args = args(&format!("stepwave program {file} {own}"));
+            let mut outputs = Outputs::default();
+            program::simulate(&args, &mut outputs).expect("a run");
+            outputs.commit().expect("waves");
+            for (expected, file) in expected(&args).into_iter().zip([vcd, fst]) {
+                let share = expected / std::fs::metadata(&file).expect("a wave").len() as f64;
+                // Of FST one knows less: how well the samples of a program pack, to a factor of three or so.
+                let near = if file.ends_with("vcd") { 0.75..2.0 } else { 0.25..3.0 };
+                if !near.contains(&share) {
+                    wrong.push(format!("{method}{options}: {share:.2} of {file}"));
+                }
+            }
+        }
+    }
+    assert_eq!(wrong, [""; 0]);
+}
+
+#[test]
+fn an_output_ends_at_its_limit_unless_more_is_wanted() {
+    let mut limited = Limited { left: 10, ..Limited::new(Vec::new(), false) };
+    limited.write_all(b"0123456").expect("room");
+    let refused = limited.write_all(b"789ab").expect_err("no room").to_string();
+    assert!(
+        refused.starts_with("the wave has come to 1 GB and was given up: ") && refused.contains("--large"),
+        "{refused}"
+    );
+    assert_eq!(limited.out, b"0123456");
+    assert_eq!((Limited::new((), false).left, Limited::new((), true).left), (1_000_000_000, u64::MAX));
+}
