@@ -46,6 +46,11 @@ impl Failure {
         for tip in tips.filter(|tip| !tip.starts_with("to pass ")) {
             sentence += &format!("; {tip}");
         }
+        if error.kind() == ErrorKind::InvalidUtf8
+            && let Some(word) = std::env::args_os().find(|word| word.to_str().is_none())
+        {
+            sentence = format!("'{}' is not Unicode: only names of files may be any bytes", word.to_string_lossy());
+        }
         let program = Cli::command();
         // Not `args`, which panics on what is not Unicode.
         let command = std::env::args_os().nth(1).and_then(|word| word.into_string().ok());

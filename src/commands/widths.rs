@@ -20,7 +20,7 @@ pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
     let found = widths(model, &choices, &args.extent, &|more| progress.add(more));
     progress.finish();
     let found = found.map_err(|error| args.hardware.told_of_study(error))?;
-    output::print(&if args.json { as_json(model, &found) } else { table(model, &found) })?;
+    if args.json { output::print_data(&as_json(model, &found)) } else { output::print(&table(model, &found)) }?;
     if choices.width.is_none() && choices.widths.is_empty() {
         return Ok(());
     }
