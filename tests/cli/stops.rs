@@ -228,7 +228,7 @@ fn a_reader_that_leaves_ends_a_run_that_writes_nothing_else_and_no_other() {
 
 #[test]
 fn a_large_wave_is_reported_before_it_is_written_where_it_may_be() {
-    for (way, large, unit) in [("X100", " --large", " GB; "), ("X10", "", " MB; ")] {
+    for (way, large, unit) in [("X100", " --large", " GB; "), ("X5", "", " MB; ")] {
         let folder = Folder::new();
         folder.write("p.ngc", &format!("G1 {way} F60\n"));
         let words = format!("program p.ngc --method ppc --vcd -{large}");

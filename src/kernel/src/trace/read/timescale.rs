@@ -12,7 +12,7 @@ pub(super) fn parse(text: &str) -> Result<Timescale, String> {
         format!("`$timescale {text}` cannot be read: {why}; write it as 1, 10 or 100 of a unit, as in `1 ns`")
     };
     let apart = text.split_ascii_whitespace().collect::<Vec<_>>();
-    if !matches!(apart[..], [] | [_]) && apart != [number, unit] {
+    if !number.is_empty() && apart.len() > 1 && apart != [number, unit] {
         return Err(wrong("it is more than a number and a unit"));
     }
     let base = match unit {
