@@ -9,6 +9,7 @@ mod dda_conic;
 mod dda_decimal;
 mod dda_helix;
 mod dda_serial;
+mod digests;
 mod dpm;
 mod eight;
 mod modern;

@@ -1,0 +1,161 @@
+//! Every model with every value of every option on a small and an awkward curve: the netlist, the load words, the title
+//! and the command that repeats the run are those recorded in `digests.txt`. The golden waves see a few combinations only.
+//!
+//! `STEPWAVE_BLESS=1 cargo test --test main models::digests` records them anew.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use stepwave::report::{run_command, title};
+use stepwave::study::{Dimension, Variants};
+use stepwave_kernel::text;
+use stepwave_models::program::{FAMILIES, Size};
+use stepwave_models::{Choice, CurveKind, Model, catalogue};
+use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
+
+/// Values of each option, of which at least one is refused where there can be one.
+fn values(option: Choice) -> &'static [&'static str] {
+    match option.option() {
+        "--width" => &["9", "f=7", "jr=8,jv=6", "8,e=12"],
+        "--preset" => &["zero", "half", "full", "5", "half,jrx=3"],
+        "--normalize" => &["yes"],
+        "--radix" => &["2", "10"],
+        "--adder" => &["parallel", "serial"],
+        "--end-point" => &["total", "per-axis", "longest", "iterations"],
+        "--form" => &["magnitude", "signed", "bare"],
+        "--weights" => &["mid", "pre", "post"],
+        "--beats" => &["4", "1"],
+        "--override" => &["none", "35"],
+        "--cascade" => &["none", "4"],
+        "--compare" => &["ge", "gt"],
+        "--pick-off" => &["7", "32"],
+        "--timing" => &[],
+        "--system" => &["7m", "7360"],
+        "--fraction" => &["8", "12", "3"],
+        "--step" => &["2.5", "80"],
+        "--tolerance" => &[],
+        "--on-overflow" => &["trap", "saturate", "wrap"],
+        option => panic!("values of {option} are missing here"),
+    }
+}
+
+/// A small and an awkward curve that the model takes.
+fn curves(model: &Model) -> [Curve; 2] {
+    let line = |from: &[i64], to: &[i64]| Curve::Line(Line::new(from.to_vec(), to.to_vec()).unwrap());
+    let arc = |from, to, center, direction| Arc::new(from, to, center, direction).unwrap();
+    let (cw, ccw) = (Direction::Clockwise, Direction::CounterClockwise);
+    match model.curve {
+        CurveKind::Line { max_axes: 2 } => [line(&[0, 0], &[8, 6]), line(&[5, -3], &[-95, 0])],
+        CurveKind::Line { .. } => [line(&[0, 0], &[8, 6]), line(&[5, -3, 2], &[-95, -3, 77])],
+        CurveKind::Arc => [
+            Curve::Arc(arc([5, 0], [0, 5], [0, 0], ccw)),
+            // Beside its circle, through all quadrants, about a centre of its own.
+            Curve::Arc(arc([17, -4], [-14, 10], [1, 2], cw)),
+        ],
+        CurveKind::Helix => [
+            Curve::Helix(Helix::new([5, 0, 0], [0, 5, 3], [0, 0], ccw).unwrap()),
+            Curve::Helix(Helix::new([17, -4, 9], [-17, 4, -31], [0, 0], cw).unwrap()),
+        ],
+        CurveKind::Conic => {
+            let ellipse = |semi_axes, from, to, center, direction| {
+                Curve::Conic(Conic::ellipse(semi_axes, from, to, center, direction).unwrap())
+            };
+            [ellipse([6, 4], [6, 0], [0, 4], [0, 0], ccw), ellipse([3, 11], [4, 2], [-2, 2], [1, 2], cw)]
+        }
+    }
+}
+
+fn crc(text: &str) -> u32 {
+    crc32fast::hash(text.as_bytes())
+}
+
+/// What a model makes of a curve with some options.
+fn digest(model: &'static Model, curve: &Curve, variants: &Variants) -> String {
+    let (choices, words) = variants.at(0);
+    let said = words.join(" ");
+    let text = match model.plan(curve, &choices) {
+        Err(error) => format!("refused {:08x}", crc(&error.to_string())),
+        Ok(hardware) => {
+            let machine = model.machine(&hardware).unwrap();
+            let loaded = match machine.load(&hardware, &model.words(&hardware, curve)) {
+                Ok(loaded) => format!("{:?} {:?}", loaded.blocks, loaded.cut),
+                Err(error) => error.to_string(),
+            };
+            let netlist = text::print(machine.design.netlist());
+            let described = title(model, &hardware, curve) + &run_command(model, curve, &choices);
+            let numbers = format!(
+                "{:?} {:?} {:?} {} {:?}",
+                hardware.table, hardware.error_bound, hardware.rate_bound, hardware.stall_clocks, hardware.pace
+            );
+            format!("{:08x} {:08x} {:08x} {:08x}", crc(&netlist), crc(&loaded), crc(&described), crc(&numbers))
+        }
+    };
+    format!("{said:24} {text}")
+}
+
+/// Every option with every of its values, one option at a time; then every pair of values of two options.
+fn combinations(model: &Model) -> (Vec<Variants>, Vec<Variants>) {
+    let options = model.choices.iter().map(|doc| doc.choice);
+    let dimensions: Vec<Vec<Dimension>> = options
+        .map(|option| values(option).iter().map(|text| Dimension::parse(option, text).unwrap()).collect())
+        .collect();
+    let single = dimensions.iter().flatten().map(|dimension| Variants(vec![dimension.clone()]));
+    let mut pairs = Vec::new();
+    for (index, first) in dimensions.iter().enumerate() {
+        for second in dimensions[index + 1..].iter().flatten() {
+            pairs.extend(first.iter().map(|first| Variants(vec![first.clone(), second.clone()])));
+        }
+    }
+    ([Variants::default()].into_iter().chain(single).collect(), pairs)
+}
+
+fn all() -> String {
+    let mut text = String::new();
+    for model in catalogue() {
+        let (single, pairs) = combinations(model);
+        for (curve, what) in curves(model).iter().zip(["small", "awkward"]) {
+            writeln!(text, "{} {what}", model.name).unwrap();
+            for variants in &single {
+                writeln!(text, "  {}", digest(model, curve, variants)).unwrap();
+            }
+            let pairs: String = pairs.iter().map(|variants| digest(model, curve, variants)).collect();
+            writeln!(text, "  pairs {:08x}", crc(&pairs)).unwrap();
+        }
+    }
+    for family in FAMILIES {
+        writeln!(text, "program {}", family.name).unwrap();
+        let options = family.choices.iter().map(|doc| doc.choice);
+        let given = options.flat_map(|option| values(option).iter().map(move |text| (option, text)));
+        let size = Size { magnitude: 300, positions: [[-20, 300], [0, 200], [-5, 0]] };
+        for (option, value) in given {
+            let variants = Variants(vec![Dimension::parse(option, value).unwrap()]);
+            let netlist = family.plan(&size, &variants.at(0).0).and_then(|hardware| {
+                Ok((format!("{:?}{:?}", hardware.widths, hardware.table), family.machine(&hardware)?))
+            });
+            let digest = match netlist {
+                Ok((plan, machine)) => {
+                    format!("{:08x} {:08x}", crc(&text::print(machine.design.netlist())), crc(&plan))
+                }
+                Err(error) => format!("refused {:08x}", crc(&error.to_string())),
+            };
+            writeln!(text, "  {value:24} {digest}").unwrap();
+        }
+    }
+    text
+}
+
+#[test]
+fn digests_of_every_option_value_are_those_recorded() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/models/digests.txt");
+    let now = all();
+    if std::env::var_os("STEPWAVE_BLESS").is_some() {
+        std::fs::write(&path, now).unwrap();
+        return;
+    }
+    let recorded = std::fs::read_to_string(&path).unwrap();
+    let (now, recorded): (Vec<_>, Vec<_>) = (now.lines().collect(), recorded.lines().collect());
+    for (index, (now, recorded)) in now.iter().zip(&recorded).enumerate() {
+        assert_eq!(now, recorded, "line {} of digests.txt", index + 1);
+    }
+    assert_eq!(now.len(), recorded.len());
+}
