@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use std::time::{Duration, Instant};
 
 use stepwave::kernel::engine::{EngineKind, Rows, Stop, Watch};
-use stepwave::models::{Choices, find};
+use stepwave::models::{Options, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::testbench::Testbench;
 
@@ -57,7 +57,7 @@ fn run(bench: &Testbench, kind: EngineKind, columns: bool) -> Outcome<Duration> 
 
 #[allow(clippy::cast_precision_loss)]
 fn measure(model: &str, curve: &Curve, wanted: &[String]) -> Outcome<()> {
-    let bench = Testbench::new(find(model)?, curve, &Choices::default())?;
+    let bench = Testbench::new(find(model)?, curve, &Options::default())?;
     for kind in EngineKind::ALL {
         for (what, columns) in [("bare", false), ("rows", true)] {
             let name = format!("{model} {} {what}", kind.name());

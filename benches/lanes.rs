@@ -12,7 +12,8 @@ use std::time::Instant;
 use stepwave::testbench::Testbench;
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::lanes::{Job, LaneProgram, LaneWatch, Observe};
-use stepwave_models::{Choices, find};
+use stepwave_models::options::WIDTH;
+use stepwave_models::{Options, find};
 use stepwave_nc::{Arc, Curve, Direction, Line};
 
 const MODELS: [&str; 4] = ["dda-line", "ppc-line", "dda-arc", "ppc-arc"];
@@ -44,7 +45,7 @@ fn curve(model: &str, bits: u32, index: usize) -> Curve {
 
 fn bench(model: &str, bits: u32) -> Testbench {
     let width = Width::new(u64::from(bits)).unwrap();
-    let choices = Choices { width: Some(width), ..Choices::default() };
+    let choices = Options::default().with_all(&WIDTH, width);
     let widest = if model.ends_with("line") {
         let large = (1i64 << bits) - 1;
         line([large, large])

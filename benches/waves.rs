@@ -14,7 +14,7 @@ use stepwave::kernel::trace::fst::FstHeader;
 use stepwave::kernel::trace::probe::{Probe, Selection};
 use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::kernel::trace::vcd::{Background, VcdHeader};
-use stepwave::models::{Choices, find};
+use stepwave::models::{Options, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Testbench, WaveWriter, Window};
 
@@ -121,7 +121,7 @@ fn observe(observer: &mut impl Observer, blocks: &[Rows]) -> Outcome<usize> {
 }
 
 fn measure(model: &str, curve: Curve) -> Outcome<()> {
-    let bench = Testbench::new(find(model)?, &curve, &Choices::default())?;
+    let bench = Testbench::new(find(model)?, &curve, &Options::default())?;
     let mut recorder = Recorder::default();
     let ended = bench.run(EngineKind::Word, &mut [&mut recorder]);
     assert!(ended.is_err_and(|error| error.is::<Enough>()), "{model}: the run is too short");

@@ -10,13 +10,13 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use stepwave::kernel::engine::EngineKind;
-use stepwave::models::{Choices, find};
+use stepwave::models::{Options, find};
 use stepwave::study::widths::{ranges_alone, simulated};
 use stepwave::study::{Extent, Geometries};
 use stepwave::testbench::Testbench;
 
 fn compare(model: &str, k: &str, engine: EngineKind) -> Result<bool, Box<dyn std::error::Error>> {
-    let (model, choices, extent) = (find(model)?, Choices::default(), k.parse::<Extent>()?);
+    let (model, choices, extent) = (find(model)?, Options::default(), k.parse::<Extent>()?);
     let start = Instant::now();
     let own = Geometries::of(model, &choices, &extent)?;
     let found = simulated(model, &choices, &extent, own.clone(), &|_| {})?;

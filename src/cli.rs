@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
+use crate::models::Millionths;
+use crate::nc::Opens;
 use clap::builder::StringValueParser;
 use clap::{Args, Parser, Subcommand};
-use stepwave::models::Millionths;
-use stepwave::nc::Opens;
 
 use crate::commands::diff::DiffArgs;
 
 mod endings;
+mod hardware;
 mod names;
 mod program;
 mod proof;
@@ -18,12 +19,13 @@ mod values;
 mod widths;
 
 pub(crate) use endings::{Format, file_of};
+pub(crate) use hardware::HardwareArgs;
 pub(crate) use names::{Registers, known_register, registers};
 use names::{all_registers, listed, model_name};
 pub(crate) use program::{ProgramArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
-pub(crate) use values::{ClockArgs, HardwareArgs, Point, SimulationArgs};
+pub(crate) use values::{ClockArgs, Point, SimulationArgs};
 pub(crate) use widths::WidthsArgs;
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware

@@ -8,7 +8,7 @@
 //!
 //! ```
 //! use stepwave::kernel::engine::EngineKind;
-//! use stepwave::models::{Choices, find};
+//! use stepwave::models::{Options, find};
 //! use stepwave::nc::{Curve, Line};
 //! use stepwave::testbench::{Observer, ObserverError, Step, Testbench};
 //!
@@ -25,7 +25,7 @@
 //! }
 //!
 //! let curve = Curve::Line(Line::new(vec![0, 0], vec![8, 6])?);
-//! let bench = Testbench::new(find("dda-line")?, &curve, &Choices::default())?;
+//! let bench = Testbench::new(find("dda-line")?, &curve, &Options::default())?;
 //! let mut pulses = Pulses::default();
 //! let outcome = bench.run(EngineKind::Word, &mut [&mut pulses]).unwrap();
 //! assert_eq!(pulses.y, [3, 6, 8, 11, 14, 16]);
@@ -37,7 +37,15 @@ pub use stepwave_kernel as kernel;
 pub use stepwave_models as models;
 pub use stepwave_nc as nc;
 
+mod app;
+mod cli;
+mod commands;
+mod failure;
+mod output;
 pub mod program;
 pub mod report;
+mod stop;
 pub mod study;
 pub mod testbench;
+
+pub use app::main_with;

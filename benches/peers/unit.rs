@@ -5,10 +5,11 @@ use std::fs;
 use std::path::Path;
 
 use stepwave::kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
-use stepwave::kernel::export::{self, Options};
+use stepwave::kernel::export;
 use stepwave::kernel::trace::timescale::ClockTime;
 use stepwave::kernel::{Design, Net, Width, bits};
-use stepwave::models::{Choices, Model, Preset, find};
+use stepwave::models::options::{PRESET, WIDTH};
+use stepwave::models::{Model, Options, Preset, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::testbench::Testbench;
 
@@ -39,9 +40,9 @@ impl Case {
         curve(self.model.name, all, less)
     }
 
-    fn choices(&self) -> Fallible<Choices> {
+    fn choices(&self) -> Fallible<Options> {
         let preset = (self.model.name == "dda-arc").then_some(Preset::Half);
-        Ok(Choices { width: Some(Width::new(u64::from(self.width))?), preset, ..Choices::default() })
+        Ok(Options::default().with_all(&WIDTH, Width::new(u64::from(self.width))?).with_all(&PRESET, preset))
     }
 
     pub(crate) fn bench(&self) -> Fallible<Testbench> {
@@ -164,12 +165,12 @@ impl Unit {
     }
 
     pub(crate) fn verilog(&self) -> String {
-        export::verilog(&self.design, &Options { comment: &[], outputs: &self.outputs })
+        export::verilog(&self.design, &export::Options { comment: &[], outputs: &self.outputs })
     }
 
     /// The test bench of `stepwave export`, and a second top module that prints the result.
     pub(crate) fn testbench(&self, bench: &Testbench) -> Fallible<String> {
-        let options = Options { comment: &[], outputs: &self.outputs };
+        let options = export::Options { comment: &[], outputs: &self.outputs };
         let time = ClockTime::from_hz(1e6)?;
         let text = export::testbench(&self.design, &options, &bench.stimulus(), time, "wave.vcd");
         let tb = format!("{}_tb", self.name());

@@ -38,30 +38,28 @@
 #![doc = include_str!("../../waves/bresenham-5-3.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::{Module, Scope, Signal};
+use stepwave_kernel::dsl::{Scope, Signal};
 use stepwave_kernel::formula::name;
 use stepwave_kernel::netlist::Format;
-use stepwave_nc::Curve;
+use stepwave_nc::Line;
 
-use crate::choices::{Choice, Choices, Compare, EndPoint, Form};
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::names::{COUNTER, POSITION, SIGN, STEPS};
 use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{COMPARE, Compare, END_POINT, EndPoint, FORM, Form, ON_OVERFLOW, WIDTH};
 use crate::parts::{Block, DownCounter, axis_counter};
-use crate::plan;
-use crate::registers::Registers;
+use crate::plan::Plan;
+use crate::sizes;
 
-const NAME: &str = "bresenham";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Step counters of printer and mill firmware, line of 2 to 6 axes.
+pub static MODEL: Model = Model {
+    name: "bresenham",
     title: "Step counters of printer and mill firmware, line of 2 to 6 axes",
     method: "modern step generators",
-    curve: CurveKind::Line { max_axes: 6 },
+    source: "the line tracing of open firmware for printers and mills, after J. E. Bresenham, 1965",
     registers: &[
         RegisterDoc { name: "stepsx, stepsy, …", width: "n", about: "|d| of each axis" },
         RegisterDoc { name: "cntx, cnty, …", width: "n+1", about: "counter, from N/2 (signed form: from -N/2)" },
@@ -69,46 +67,40 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "e", width: "n", about: "step events left, from N" },
         RegisterDoc::AXIS_POSITIONS,
     ],
-    choices: &[
-        ChoiceDoc::WIDTH,
-        ChoiceDoc { choice: Choice::Form, values: "magnitude (default) | signed: counters are N lower" },
-        ChoiceDoc { choice: Choice::Compare, values: "ge (default) | gt (default of the signed form)" },
-        ChoiceDoc::ON_OVERFLOW,
+    options: &[
+        &WIDTH,
+        &FORM.only(
+            Some(Form::Magnitude),
+            &[(Form::Magnitude, ""), (Form::Signed, ": counters are N lower")],
+            "its counters have no case of their own for a line along an axis",
+        ),
+        &COMPARE.only(
+            None,
+            &[(Compare::AtLeast, " (default)"), (Compare::Greater, " (default of the signed form)")],
+            "",
+        ),
+        &ON_OVERFLOW,
     ],
-    source: "the line tracing of open firmware for printers and mills, after J. E. Bresenham, 1965",
     claims: Some(Claims::of(Region::LinesHalved)),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(6, Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let axes = curve.axes();
-    if choices.form == Some(Form::Bare) {
-        return Err(ModelError::Value {
-            model: NAME,
-            choice: Choice::Form,
-            value: "bare".to_owned(),
-            reason: "its counters have no case of their own for a line along an axis; give magnitude or signed"
-                .to_owned(),
-        });
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    let n = plan.magnitude_bits(sizes::longest(line));
+    for axis in 0..plan.axes() {
+        plan.register(STEPS[axis], n).register(COUNTER[axis], n + 1);
     }
-    let n = plan::magnitude_bits(choices, plan::longest(curve));
-    let mut registers = Registers::new(NAME, choices);
-    for axis in 0..axes {
-        registers.register(STEPS[axis], n).register(COUNTER[axis], n + 1);
-    }
-    registers.register("events", n).register("e", n).positions(plan::end_positions(curve));
-    let hardware = registers.hardware(axes, EndPoint::Longest)?;
-    let right = if hardware.form == Form::Signed { Compare::Greater } else { Compare::AtLeast };
-    let compare = choices.compare.unwrap_or(right);
-    let bounded = axes == 2 && compare == right;
-    Ok(Hardware { compare, error_bound: bounded.then_some(0.5), pace: Pace::Longest, ..hardware })
+    plan.register("events", n).register("e", n).positions(sizes::end_positions(line));
+    plan.fix(&END_POINT, EndPoint::Longest);
+    let right = if plan.get(&FORM) == Form::Signed { Compare::Greater } else { Compare::AtLeast };
+    let compare = plan.decide(&COMPARE, right);
+    plan.error_bound = (plan.axes() == 2 && compare == right).then_some(0.5);
+    plan.pace = Pace::Longest;
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow(NAME, hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let names = [(0, "IDLE"), (1, "ADD"), (2, "TEST")].map(|(value, name)| (value, name.to_owned()));
     let beat = m.reg("beat", 2).shown(Format::States(names.to_vec()));
@@ -119,7 +111,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         let scope = m.scope(&format!("axis_{letter}"));
         let steps = block.held(scope, STEPS[i], hardware.bits(STEPS[i]));
         let step = counter(scope, &block, hardware, COUNTER[i], [add, test], [steps, events]);
-        if hardware.form == Form::Magnitude && hardware.compare == Compare::AtLeast {
+        if hardware.get(&FORM) == Form::Magnitude && hardware.get(&COMPARE) == Compare::AtLeast {
             scope.between_steps("below_the_events", [name("events") - 1 - name(COUNTER[i])]);
         }
         let negative = block.held(scope, SIGN[i], 1);
@@ -128,7 +120,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let last = e.count(test);
     beat.when(block.load, m.lit(2, 1)).when(test & last, m.lit(2, 0)).otherwise(add.concat(test));
     block.close(block.load, test, last);
-    Ok(module.finish()?)
 }
 
 /// The counter of an axis: adds the steps at an edge with `add` = 1; at one with `test` = 1 it loses the events where it
@@ -142,11 +133,11 @@ fn counter<'m>(
     [steps, events]: [Signal<'m>; 2],
 ) -> Signal<'m> {
     let bits = hardware.bits(name);
-    let signed = hardware.form == Form::Signed;
+    let signed = hardware.get(&FORM) == Form::Signed;
     let counter = if signed { m.reg_signed(name, bits) } else { m.reg(name, bits) };
     let wide = bits.max(events.bits());
     let [count, whole] = [counter.q.extend(wide), events.extend(wide)];
-    let come = match (signed, hardware.compare) {
+    let come = match (signed, hardware.get(&COMPARE)) {
         (false, Compare::AtLeast) => !count.less_than(whole),
         (false, Compare::Greater) => whole.less_than(count),
         (true, Compare::AtLeast) => !count.msb(),
@@ -160,14 +151,13 @@ fn counter<'m>(
     step
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(line) = plan::line(curve) else { return Vec::new() };
-    let events = i128::from(plan::longest(curve));
+fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
+    let events = i128::from(sizes::longest(line));
     let half = events / 2;
     let mut words: Words = vec![("events", events), ("e", events)];
     for (axis, (delta, from)) in line.delta().into_iter().zip(line.from()).enumerate() {
         words.push((STEPS[axis], i128::from(delta).abs()));
-        words.push((COUNTER[axis], if hardware.form == Form::Signed { -half } else { half }));
+        words.push((COUNTER[axis], if hardware.get(&FORM) == Form::Signed { -half } else { half }));
         words.push((SIGN[axis], i128::from(delta < 0)));
         words.push((POSITION[axis], i128::from(*from)));
     }

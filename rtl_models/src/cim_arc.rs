@@ -36,28 +36,26 @@
 #![doc = include_str!("../../waves/cim-arc-nr1.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::dsl::Scope;
 use stepwave_kernel::formula::{Formula, name};
-use stepwave_nc::{Crossing, Curve, Sector};
+use stepwave_nc::{Arc, Crossing, Sector};
 
-use crate::choices::{Choices, EndPoint, Weights};
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH, Weights};
 use crate::parts::{Block, Change, Kind, Side, comparison_integral, quadrant_register};
-use crate::registers::Registers;
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "cim-arc";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Comparison-integral, arc.
+pub static MODEL: Model = Model {
+    name: "cim-arc",
     title: "Comparison-integral, arc",
     method: "comparison-integral",
-    curve: CurveKind::Arc,
+    source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
     registers: &[
         RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement" },
         RegisterDoc { name: "a, b", width: "n", about: "interval weights A of an X, B of a Y pulse: |x|, |y|" },
@@ -66,30 +64,25 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc::EX_EY,
         RegisterDoc::POSITIONS,
     ],
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::WEIGHTS, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
-    source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
+    options: &[&WIDTH, &WEIGHTS, &BEATS, &ON_OVERFLOW],
     claims: Some(Claims { modes: &["base"], ..Claims::of(Region::QuadrantArcs) }),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Arcs(Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let sectors = plan::arc(curve).map(|arc| arc.sectors(Crossing::RoundedRadius)).unwrap_or_default();
-    let n = plan::magnitude_bits(choices, plan::largest_coordinate(&sectors));
-    let rule = choices.weights.unwrap_or_default();
-    let mut registers = Registers::new(NAME, choices);
-    let f = plan::off_circle_bits(curve, choices, n) + 2;
-    registers.register("f", f).register("a", n).register("b", n);
-    registers.shown("base").shown("quad").end_counters(2, n);
-    registers.positions(plan::arc_positions(curve, &sectors));
-    let error_bound = (rule == Weights::Mid).then_some(1.0);
-    Ok(Hardware { error_bound, ..registers.hardware(2, EndPoint::PerAxis)? })
+fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
+    let sectors = arc.sectors(Crossing::RoundedRadius);
+    let n = plan.magnitude_bits(sizes::largest_coordinate(&sectors));
+    let f = sizes::off_circle_bits(arc, plan, n) + 2;
+    plan.register("f", f).register("a", n).register("b", n);
+    plan.shown("base").shown("quad").end_counters(2, n);
+    plan.positions(sizes::arc_positions(arc, &sectors));
+    plan.fix(&END_POINT, EndPoint::PerAxis);
+    plan.error_bound = (plan.get(&WEIGHTS) == Weights::Mid).then_some(1.0);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("cim_arc", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let ccw = block.held(m, "ccw", 1);
     let quad = quadrant_register(m);
@@ -97,9 +90,8 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let kind = Kind::decode(m.scope("quadrant"), quad.q, ccw);
     let side = |negative, grows| Side { negative, change: Some(Change { grows, unit: m.lit(1, 1) }) };
     let sides = [side(kind.x_negative, kind.x_grows), side(kind.y_negative, !kind.x_grows)];
-    between_steps(m, hardware.weights);
+    between_steps(m, hardware.get(&WEIGHTS));
     comparison_integral(m, block, hardware, sides);
-    Ok(module.finish()?)
 }
 
 /// F is ±(x² + y² - R²), or with `pre` and `post` half of that less or more the steps of both axes; it stays between
@@ -128,14 +120,13 @@ fn between_steps(m: Scope<'_>, rule: Weights) {
     }
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(arc) = plan::arc(curve) else { return Vec::new() };
+fn load(arc: &Arc, hardware: &Hardware) -> Vec<Words> {
     let block = |sector: &Sector| {
         let [x, y] = sector.start.map(i128::from);
         let [ex, ey] = sector.steps().map(i128::from);
         let x_grows = sector.quadrant.growing_axis(arc.direction()) == 0;
         let deviation = x * x + y * y - arc.radius_squared();
-        let f = words::weighed(hardware.weights, [x.abs(), y.abs()], x_grows, deviation);
+        let f = words::weighed(hardware.get(&WEIGHTS), [x.abs(), y.abs()], x_grows, deviation);
         let own = vec![("f", f), ("a", x.abs()), ("b", y.abs()), ("ex", ex), ("ey", ey)];
         [own, words::sector(arc, sector)].concat()
     };

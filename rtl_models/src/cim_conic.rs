@@ -32,26 +32,24 @@
 #![doc = include_str!("../../waves/cim-conic-ellipse.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
-use stepwave_nc::{ConicSector, Curve, Shape};
+use stepwave_kernel::dsl::Scope;
+use stepwave_nc::{Conic, ConicSector, Shape};
 
-use crate::choices::{Choices, EndPoint};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH};
 use crate::parts::{Block, Change, Side, comparison_integral};
-use crate::registers::Registers;
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "cim-conic";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Comparison-integral, ellipse, parabola, hyperbola.
+pub static MODEL: Model = Model {
+    name: "cim-conic",
     title: "Comparison-integral, ellipse, parabola, hyperbola",
     method: "comparison-integral",
-    curve: CurveKind::Conic,
+    source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
     registers: &[
         RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement" },
         RegisterDoc { name: "a, b", width: "n", about: "interval weights A of an X, B of a Y pulse" },
@@ -60,27 +58,23 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc::EX_EY_NEEDED,
         RegisterDoc::POSITIONS,
     ],
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::WEIGHTS, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
-    source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
+    options: &[&WIDTH, &WEIGHTS, &BEATS, &ON_OVERFLOW],
     claims: None,
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Conics(Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let size = plan::ConicSize::of(curve, |weight, at| weight.at(at));
-    let n = choices.width.map_or(plan::needed(size.greatest), stepwave_kernel::Width::get);
-    let mut registers = Registers::new(NAME, choices);
-    registers.register("f", n + 2).register("a", n).register("b", n).shown("base");
-    registers.hidden("alpha", size.slopes[0]).hidden("beta", size.slopes[1]);
-    registers.end_counters(2, size.steps).positions(size.positions);
-    registers.hardware(2, EndPoint::PerAxis)
+fn plan(conic: &Conic, plan: &mut Plan) -> Result<(), ModelError> {
+    let size = sizes::ConicSize::of(conic, |weight, at| weight.at(at));
+    let n = plan.bits_or(sizes::needed(size.greatest));
+    plan.register("f", n + 2).register("a", n).register("b", n).shown("base");
+    plan.hidden("alpha", size.slopes[0]).hidden("beta", size.slopes[1]);
+    plan.end_counters(2, size.steps).positions(size.positions);
+    plan.fix(&END_POINT, EndPoint::PerAxis);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("cim_conic", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let side = |sign, grows, unit| {
         let grows = block.held(m, grows, 1);
@@ -89,17 +83,15 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     };
     let sides = [side("sx", "x_grows", "alpha"), side("sy", "y_grows", "beta")];
     comparison_integral(m, block, hardware, sides);
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(conic) = plan::conic(curve) else { return Vec::new() };
+fn load(conic: &Conic, hardware: &Hardware) -> Vec<Words> {
     // The weights of a parabola are twice those that its implicit function has.
     let scale = if matches!(conic.shape(), Shape::Parabola { .. }) { 2 } else { 1 };
     let weights = conic.weights();
     let block = |sector: &ConicSector| {
         let [a, b] = [0, 1].map(|axis| weights[axis].at(sector.start[axis].abs()));
-        let f = words::weighed(hardware.weights, [a, b], !sector.x_lowers, scale * conic.implicit(sector.start));
+        let f = words::weighed(hardware.get(&WEIGHTS), [a, b], !sector.x_lowers, scale * conic.implicit(sector.start));
         let own = vec![("f", f), ("a", a), ("b", b), ("alpha", weights[0].slope), ("beta", weights[1].slope)];
         let [ex, ey] = sector.steps().map(i128::from);
         [own, vec![("ex", ex), ("ey", ey)], words::conic_sector(conic, sector)].concat()

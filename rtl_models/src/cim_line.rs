@@ -26,28 +26,26 @@
 #![doc = include_str!("../../waves/cim-line-5-3.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::dsl::Scope;
 use stepwave_kernel::formula::{name, number};
-use stepwave_nc::Curve;
+use stepwave_nc::Line;
 
-use crate::choices::{Choice, Choices, EndPoint};
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH, Weights};
 use crate::parts::{Block, Side, comparison_integral};
-use crate::registers::Registers;
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "cim-line";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Comparison-integral, line.
+pub static MODEL: Model = Model {
+    name: "cim-line",
     title: "Comparison-integral, line",
     method: "comparison-integral",
-    curve: CurveKind::Line { max_axes: 2 },
+    source: "比较积分法, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
         RegisterDoc { name: "a, b", width: "n", about: "interval weights A of an X, B of a Y pulse: |dy|, |dx|" },
@@ -55,37 +53,37 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc::EX_EY,
         RegisterDoc::POSITIONS,
     ],
-    choices: &[
-        ChoiceDoc::WIDTH,
-        ChoiceDoc { choice: Choice::Weights, values: "mid (default) | pre | post: all the same on a line" },
-        ChoiceDoc::BEATS,
-        ChoiceDoc::ON_OVERFLOW,
+    options: &[
+        &WIDTH,
+        &WEIGHTS.only(
+            Some(Weights::Mid),
+            &[(Weights::Mid, ""), (Weights::Pre, ""), (Weights::Post, ": all the same on a line")],
+            "",
+        ),
+        &BEATS,
+        &ON_OVERFLOW,
     ],
-    source: "比较积分法, as in Chinese NC textbooks",
     claims: Some(Claims { modes: &["base"], ..Claims::of(Region::Lines) }),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(2, Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let n = plan::magnitude_bits(choices, plan::longest(curve));
-    let mut registers = Registers::new(NAME, choices);
-    registers.register("f", n + 1).register("a", n).register("b", n).shown("base").end_counters(2, n);
-    registers.positions(plan::end_positions(curve));
-    let hardware = registers.hardware(2, EndPoint::PerAxis)?;
-    Ok(Hardware { error_bound: Some(1.0), pace: Pace::Longest, ..hardware })
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    let n = plan.magnitude_bits(sizes::longest(line));
+    plan.register("f", n + 1).register("a", n).register("b", n).shown("base").end_counters(2, n);
+    plan.positions(sizes::end_positions(line));
+    plan.fix(&END_POINT, EndPoint::PerAxis);
+    plan.error_bound = Some(1.0);
+    plan.pace = Pace::Longest;
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("cim_line", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let sides = ["sx", "sy"].map(|sign| Side { negative: block.held(m, sign, 1), change: None });
     invariants(m);
 
     comparison_integral(m, block, hardware, sides);
-    Ok(module.finish()?)
 }
 
 /// F stays between what a step at 0 and a step at -1 leave.
@@ -99,8 +97,8 @@ fn invariants(m: Scope<'_>) {
     m.between_steps("f_from_above_y", [b() - 1 - f(), -f(), x_is_base() - 1]);
 }
 
-fn words(_: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some((way, mut words)) = words::line(curve) else { return Vec::new() };
+fn load(line: &Line, _: &Hardware) -> Vec<Words> {
+    let (way, mut words) = words::line(line);
     words.extend([("f", 0), ("a", way[1]), ("b", way[0]), ("ex", way[0]), ("ey", way[1])]);
     vec![words]
 }

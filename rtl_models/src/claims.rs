@@ -11,8 +11,8 @@ use stepwave_kernel::formula::{Clause, Formula, name, number};
 use stepwave_kernel::prove::Symbol;
 use stepwave_nc::Curve;
 
-use crate::choices::EndPoint;
 use crate::hardware::Hardware;
+use crate::options::{END_POINT, EndPoint};
 
 /// Which geometries are meant.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -53,7 +53,8 @@ pub struct Claims {
 
 impl Claims {
     /// Over these geometries; whatever the end counters are, one of them counts at every step.
-    pub(crate) const fn of(geometries: Region) -> Claims {
+    #[must_use]
+    pub const fn of(geometries: Region) -> Claims {
         Claims {
             geometries,
             told_apart: |_| None,
@@ -74,7 +75,7 @@ impl Claims {
 
 /// What the end counters still have to count, less the step under way.
 pub(crate) fn steps_left(hardware: &Hardware) -> Option<Formula> {
-    match hardware.end_point {
+    match hardware.get(&END_POINT) {
         EndPoint::PerAxis => Some(name("ex") + name("ey") - 1),
         EndPoint::Total | EndPoint::Iterations | EndPoint::Longest => Some(name("e") - 1),
     }

@@ -38,27 +38,26 @@
 #![doc = include_str!("../../waves/dda-arc-nr1.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
-use stepwave_nc::{Crossing, Curve, Sector};
+use stepwave_kernel::dsl::Scope;
+use stepwave_nc::{Arc, Crossing, Sector};
 
-use crate::choices::{Choice, Choices, EndPoint, Preset};
 use crate::claims::{Claims, Region};
+use crate::docs::INTEGRATED_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{END_POINT, EndPoint, NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{Block, IntegratorPair, Kind, Normalizer, shifted_left};
-use crate::registers::Registers;
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "dda-arc";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Digital differential analyser, arc.
+pub static MODEL: Model = Model {
+    name: "dda-arc",
     title: "Digital differential analyser, arc",
     method: "digital differential analyser",
-    curve: CurveKind::Arc,
+    source: "数字积分法, the DDA circular interpolator of early NC systems, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "jvx, jvy", width: "n", about: "integrands J_VX = |y|, J_VY = |x|" },
         RegisterDoc { name: "jrx, jry", width: "n", about: "remainders J_R, from the preset" },
@@ -68,49 +67,44 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "e", width: "n+1", about: "end-point down-counter of both axes (total)" },
         RegisterDoc { name: "x, y", width: "as the path needs, + 1", about: "machine position, signed" },
     ],
-    choices: &[
-        ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the arc)" },
-        ChoiceDoc { choice: Choice::Preset, values: "half (default) | zero | full | N, or jrx=N,jry=N" },
-        ChoiceDoc { choice: Choice::Normalize, values: "left-shift normalisation (default: none)" },
-        ChoiceDoc { choice: Choice::EndPoint, values: "per-axis (default) | total" },
-        ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
+    options: &[
+        &WIDTH.about("N or REGISTER=N,… (default: the least that holds the arc)"),
+        &PRESET.about("half (default) | zero | full | N, or jrx=N,jry=N"),
+        &NORMALIZE,
+        &INTEGRATED_END_POINT,
+        &ON_OVERFLOW,
     ],
-    source: "数字积分法, the DDA circular interpolator of early NC systems, as in Chinese NC textbooks",
     claims: Some(Claims { rank: |_| None, ..Claims::of(Region::QuadrantArcs) }),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Arcs(Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let choices = &Choices { preset: Some(choices.preset.unwrap_or(Preset::Half)), ..choices.clone() };
-    let end_point = plan::integrated_end_point(NAME, choices)?;
-    let sectors = plan::arc(curve).map(|arc| arc.sectors(Crossing::RoundedRadius)).unwrap_or_default();
-    let n = plan::magnitude_bits(choices, plan::largest_coordinate(&sectors));
-    let mut registers = Registers::new(NAME, choices);
+fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
+    plan.usual_preset(Preset::Half);
+    let sectors = arc.sectors(Crossing::RoundedRadius);
+    let n = plan.magnitude_bits(sizes::largest_coordinate(&sectors));
     for register in ["jvx", "jrx", "jvy", "jry"] {
-        registers.register(register, n);
+        plan.register(register, n);
     }
-    registers.shown("unit").shown("quad");
-    match end_point {
-        EndPoint::PerAxis => registers.end_counters(2, n),
-        _ => registers.register("e", n + 1),
+    plan.shown("unit").shown("quad");
+    match plan.get(&END_POINT) {
+        EndPoint::PerAxis => plan.end_counters(2, n),
+        _ => plan.register("e", n + 1),
     };
-    registers.positions(plan::arc_positions(curve, &sectors));
-    registers.integrators(2, end_point, 1)
+    plan.positions(sizes::arc_positions(arc, &sectors));
+    plan.integrators(1)?;
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("dda_arc", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let normalizer = Normalizer::new(m, &block, hardware.normalize);
+    let normalizer = Normalizer::new(m, &block, hardware.get(&NORMALIZE));
     let kind = Kind::held(m, &block);
     let pair = IntegratorPair::new(m, &block, hardware);
     let integrands = pair.integrands();
     let wide = integrands[0].bits();
     let normalized = normalizer.close(&integrands, wide.min(2));
-    let unit = if hardware.normalize {
+    let unit = if hardware.get(&NORMALIZE) {
         let unit = m.reg("unit", wide);
         unit.when(block.load, m.lit(wide, 1)).when(normalized.shift, shifted_left(m, unit.q)).else_hold();
         unit.q
@@ -120,11 +114,9 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
 
     let last = pair.close(hardware, normalized, kind.pair_sides(unit));
     block.close(normalized.ready, normalized.run, last);
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(arc) = plan::arc(curve) else { return Vec::new() };
+fn load(arc: &Arc, hardware: &Hardware) -> Vec<Words> {
     let block = |sector: &Sector| words::integrated_sector(hardware, arc, sector);
     arc.sectors(Crossing::RoundedRadius).iter().map(block).collect()
 }

@@ -37,37 +37,36 @@
 //!
 //! Limits of the method itself: the path may leave the curve by more than one BLU (on quarter ellipses of semi-axes
 //! below 30 by up to 2.13 with the preset zero, 1.17 with half, 2.07 with full); with a preset of full, seldom with
-//! zero, the motion can come to a stand before an axis or a vertex, where J_V is 0 already (with `half` it was never seen
+//! zero, the motion can stop before an axis or a vertex, where J_V is 0 already (with `half`, the default, it was never seen
 //! to on a curve whose ends lie on it); and the counter `total` may miss the end.
 //!
-//! The quarter of the ellipse with semi-axes 6 and 4 from (6, 0) to (0, 4), from the golden file
-//! `waves/dda-conic-ellipse.csv`; the wave stands beside it:
+//! The quarter of the ellipse with semi-axes 6 and 4 from (6, 0) to (0, 4) with `--preset zero`, from the golden
+//! file `waves/dda-conic-ellipse.csv`; the wave stands beside it:
 //!
 //! ```text
 #![doc = include_str!("../../waves/dda-conic-ellipse.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
-use stepwave_nc::{Conic, ConicSector, Curve};
+use stepwave_kernel::dsl::Scope;
+use stepwave_nc::{Conic, ConicSector};
 
-use crate::choices::{Choice, Choices, EndPoint};
+use crate::docs::INTEGRATED_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::hardware::names::{JR, JV};
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{END_POINT, EndPoint, NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{Block, IntegratorPair, Normalizer, PairSide, shifted_left};
-use crate::registers::Registers;
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "dda-conic";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Digital differential analyser, ellipse, parabola, hyperbola.
+pub static MODEL: Model = Model {
+    name: "dda-conic",
     title: "Digital differential analyser, ellipse, parabola, hyperbola",
     method: "digital differential analyser",
-    curve: CurveKind::Conic,
+    source: "数字积分法 for curves of second order, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc {
             name: "jvx, jvy", width: "n", about: "integrands J_VX = a²|y|, J_VY = b²|x|; parabola 2|y|, c"
@@ -79,18 +78,16 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "e", width: "as it needs", about: "end-point down-counter of both axes (total)" },
         RegisterDoc::POSITIONS,
     ],
-    choices: &[
-        ChoiceDoc::WIDTH,
-        ChoiceDoc::PRESET,
-        ChoiceDoc::NORMALIZE,
-        ChoiceDoc { choice: Choice::EndPoint, values: "per-axis (default) | total" },
-        ChoiceDoc::ON_OVERFLOW,
+    options: &[
+        &WIDTH,
+        &PRESET.about("half (default) | zero | full | N, or jrx=N,jry=N"),
+        &NORMALIZE,
+        &INTEGRATED_END_POINT,
+        &ON_OVERFLOW,
     ],
-    source: "数字积分法 for curves of second order, as in Chinese NC textbooks",
     claims: None,
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Conics(Method { plan, load }),
+    hardware,
 };
 
 /// The integrands J_VX and J_VY at a point: what weighs a pulse of the other axis.
@@ -105,40 +102,38 @@ fn corrections(conic: &Conic) -> [i128; 2] {
     [of_y.slope, of_x.slope]
 }
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let end_point = plan::integrated_end_point(NAME, choices)?;
-    let size = plan::ConicSize::of(curve, |weight, at| weight.at(at).max(weight.slope));
-    let n = choices.width.map_or(plan::needed(size.greatest), stepwave_kernel::Width::get);
-    let mut registers = Registers::new(NAME, choices);
+fn plan(conic: &Conic, plan: &mut Plan) -> Result<(), ModelError> {
+    plan.usual_preset(Preset::Half);
+    let size = sizes::ConicSize::of(conic, |weight, at| weight.at(at).max(weight.slope));
+    let n = plan.bits_or(sizes::needed(size.greatest));
     for axis in [0, 1] {
-        registers.register(JV[axis], n).register(JR[axis], n);
+        plan.register(JV[axis], n).register(JR[axis], n);
     }
     for (name, slope) in [("ux", size.slopes[1]), ("uy", size.slopes[0])] {
-        if choices.normalize {
-            registers.shown(name)
+        if plan.get(&NORMALIZE) {
+            plan.shown(name)
         } else {
-            registers.register(name, slope)
+            plan.register(name, slope)
         };
     }
-    match end_point {
-        EndPoint::PerAxis => registers.end_counters(2, size.steps),
-        _ => registers.register("e", size.steps + 1),
+    match plan.get(&END_POINT) {
+        EndPoint::PerAxis => plan.end_counters(2, size.steps),
+        _ => plan.register("e", size.steps + 1),
     };
-    registers.positions(size.positions);
-    registers.integrators(2, end_point, 1)
+    plan.positions(size.positions);
+    plan.integrators(1)?;
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("dda_conic", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let normalizer = Normalizer::new(m, &block, hardware.normalize);
+    let normalizer = Normalizer::new(m, &block, hardware.get(&NORMALIZE));
     let pair = IntegratorPair::new(m, &block, hardware);
 
     // What shifts along has the width of the integrands.
-    let bits = |name: &str| if hardware.normalize { hardware.bits("jvx") } else { hardware.bits(name) };
+    let bits = |name: &str| if hardware.get(&NORMALIZE) { hardware.bits("jvx") } else { hardware.bits(name) };
     let [ux, uy] = ["ux", "uy"].map(|name| m.reg(name, bits(name)));
-    let greatest = hardware.normalize.then(|| m.reg("jvm", bits("jvm")));
+    let greatest = hardware.get(&NORMALIZE).then(|| m.reg("jvm", bits("jvm")));
     let normalized = normalizer.close(&greatest.map(|greatest| greatest.q).into_iter().collect::<Vec<_>>(), 1);
     for (name, register) in [("ux", Some(ux)), ("uy", Some(uy)), ("jvm", greatest)] {
         let Some(register) = register else { continue };
@@ -152,16 +147,14 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let y = PairSide { negative: block.held(m, "sy", 1), raised: x_grows, unit: uy.q };
     let last = pair.close(hardware, normalized, [x, y]);
     block.close(normalized.ready, normalized.run, last);
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(conic) = plan::conic(curve) else { return Vec::new() };
+fn load(conic: &Conic, hardware: &Hardware) -> Vec<Words> {
     let units = corrections(conic);
     let block = |sector: &ConicSector| {
         let start = integrands(conic, sector.start);
         let mut own = words::integrators(hardware, start);
-        if hardware.normalize {
+        if hardware.get(&NORMALIZE) {
             // Each integrand is greatest at one of the ends.
             let all = [start, integrands(conic, sector.end), units];
             own.push(("jvm", all.into_iter().flatten().max().unwrap_or(0)));

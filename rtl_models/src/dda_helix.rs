@@ -30,39 +30,37 @@
 //! Textbooks print in row k of their tables the J_V that step k used; here it is the J_V after step k. `run --textbook`
 //! prints the table as they do.
 //!
-//! Limits are those of `dda-arc`: with a preset of zero or full the motion can come to a stand one pulse before an axis,
-//! and then z still arrives.
+//! Limits are those of `dda-arc`: with a preset of zero or full the motion can stop one pulse before an axis, and then z
+//! still arrives; the default is `half`.
 //!
-//! A quarter turn from (5, 0, 0) to (0, 5, 3), from the golden file `waves/dda-helix-quarter.csv`; the wave stands beside
+//! A quarter turn from (5, 0, 0) to (0, 5, 3) with `--preset zero`, from the golden file `waves/dda-helix-quarter.csv`; the wave stands beside
 //! it:
 //!
 //! ```text
 #![doc = include_str!("../../waves/dda-helix-quarter.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
-use stepwave_nc::{Crossing, Curve, Helix};
+use stepwave_kernel::dsl::Scope;
+use stepwave_nc::{Crossing, Helix};
 
-use crate::choices::{Choice, Choices, EndPoint};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{Block, DownCounter, IntegratorPair, Iteration, Kind, Normalizer, axis_counter, integrator};
-use crate::registers::Registers;
-use crate::{plan, words};
-
-const NAME: &str = "dda-helix";
+use crate::plan::Plan;
+use crate::{sizes, words};
 
 /// Bits of the fraction of J_VZ, unless the widths say otherwise.
 const FRACTION: u32 = 8;
 
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Digital differential analyser, helix.
+pub static MODEL: Model = Model {
+    name: "dda-helix",
     title: "Digital differential analyser, helix",
     method: "digital differential analyser",
-    curve: CurveKind::Helix,
+    source: "数字积分法: the DDA circular interpolator with a third integrator for the linear axis",
     registers: &[
         RegisterDoc { name: "jvx, jvy", width: "n", about: "integrands J_VX = |y|, J_VY = |x|" },
         RegisterDoc { name: "jrx, jry", width: "n", about: "remainders J_R, from the preset" },
@@ -73,16 +71,10 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "ez", width: "n+1", about: "end-point down-counter of z" },
         RegisterDoc { name: "x, y, z", width: "as the path needs, + 1", about: "machine position, signed" },
     ],
-    choices: &[
-        ChoiceDoc::WIDTH,
-        ChoiceDoc { choice: Choice::Preset, values: "zero (default) | half | full | N, or jrx=N,jry=N,jrz=N" },
-        ChoiceDoc::ON_OVERFLOW,
-    ],
-    source: "数字积分法: the DDA circular interpolator with a third integrator for the linear axis",
+    options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N, or jrx=N,jry=N,jrz=N"), &ON_OVERFLOW],
     claims: None,
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Helices(Method { plan, load }),
+    hardware,
 };
 
 /// Steps of z per radian in units of 2^-`fraction`, rounded up.
@@ -94,27 +86,25 @@ fn rate(helix: &Helix, fraction: u32) -> i128 {
     rate
 }
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let helix = plan::helix(curve);
-    let plane = helix.map(|helix| Curve::Arc(*helix.arc()));
-    let sectors = helix.map(|helix| helix.arc().sectors(Crossing::RoundedRadius)).unwrap_or_default();
+fn plan(helix: &Helix, plan: &mut Plan) -> Result<(), ModelError> {
+    plan.usual_preset(Preset::Half);
+    let sectors = helix.arc().sectors(Crossing::RoundedRadius);
     // J_VZ without its fraction.
-    let steepest = helix.map_or(0, |helix| u64::try_from(rate(helix, FRACTION) >> FRACTION).unwrap_or(u64::MAX));
-    let n = plan::magnitude_bits(choices, plan::largest_coordinate(&sectors).max(steepest));
-    let mut registers = Registers::new(NAME, choices);
+    let steepest = u64::try_from(rate(helix, FRACTION) >> FRACTION).unwrap_or(u64::MAX);
+    let n = plan.magnitude_bits(sizes::largest_coordinate(&sectors).max(steepest));
     for register in ["jvx", "jrx", "jvy", "jry"] {
-        registers.register(register, n);
+        plan.register(register, n);
     }
-    registers.register("jvz", n + FRACTION).register("jrz", n + FRACTION);
-    registers.shown("quad").end_counters(2, n).register("ez", n + 1);
-    let z = plan::end_positions(curve).nth(2);
-    registers.positions(plane.iter().flat_map(|plane| plan::arc_positions(plane, &sectors)).chain(z));
-    registers.integrators_with_fraction(3, 2, EndPoint::PerAxis, 1)
+    plan.register("jvz", n + FRACTION).register("jrz", n + FRACTION);
+    plan.shown("quad").end_counters(2, n).register("ez", n + 1);
+    let z = vec![helix.from()[2], helix.to()[2]];
+    plan.positions(sizes::arc_positions(helix.arc(), &sectors).into_iter().chain([z]));
+    plan.fix(&END_POINT, EndPoint::PerAxis);
+    plan.integrators_with_fraction(2, 1)?;
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("dda_helix", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let normalized = Normalizer::new(m, &block, false).close(&[], 1);
     let kind = Kind::held(m, &block);
@@ -128,11 +118,9 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let pulse = integrator(z, &block, hardware, 2, jvz, step);
     axis_counter(z, &block, "z", hardware.bits("z"), pulse, block.held(z, "sz", 1));
     block.close(normalized.ready, normalized.run, last_in_plane & ez.count(pulse));
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(helix) = plan::helix(curve) else { return Vec::new() };
+fn load(helix: &Helix, hardware: &Hardware) -> Vec<Words> {
     let jvz = rate(helix, hardware.fraction("jvz"));
     let mut made = 0;
     let mut blocks = Vec::new();

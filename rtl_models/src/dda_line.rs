@@ -49,32 +49,33 @@
 #![doc = include_str!("../../waves/dda-line-serial.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::Width;
+use stepwave_kernel::dsl::Scope;
 use stepwave_kernel::formula::{Clause, Formula, name, number};
-use stepwave_kernel::{Netlist, Width};
-use stepwave_nc::{Curve, Line};
+use stepwave_nc::Line;
 
-use crate::choices::{Adder, Choice, Choices, EndPoint, Radix};
 use crate::claims::{Claims, Region, steps_left};
 use crate::error::ModelError;
 use crate::hardware::names::{END, JR, JV, LONGEST, POSITION, SIGN};
 use crate::hardware::{Hardware, Pace, modulus};
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{ADDER, Adder, END_POINT, EndPoint, NORMALIZE, ON_OVERFLOW, PRESET, RADIX, Radix, WIDTH};
 use crate::parts::{
     Block, DownCounter, Iteration, Normalizer, axis_counter, digits, integrator, population_count, rotated,
     shifted_left,
 };
-use crate::plan;
-use crate::registers::Registers;
+use crate::plan::Plan;
+use crate::sizes;
 
 const NAME: &str = "dda-line";
 
-pub(crate) const MODEL: Model = Model {
+/// Digital differential analyser, line of 2 to 6 axes.
+pub static MODEL: Model = Model {
     name: NAME,
     title: "Digital differential analyser, line of 2 to 6 axes",
     method: "digital differential analyser",
-    curve: CurveKind::Line { max_axes: 6 },
+    source: "数字积分法, the DDA linear interpolator of early NC systems, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "jvx, jvy, …", width: "n", about: "integrand J_V of each axis, |d|" },
         RegisterDoc { name: "jrx, jry, …", width: "n", about: "remainder J_R of each axis, from the preset" },
@@ -83,31 +84,37 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "place", width: "as it needs", about: "digit that is added next, 0 the lowest (serial)" },
         RegisterDoc::AXIS_POSITIONS,
     ],
-    choices: &[
-        ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the line)" },
-        ChoiceDoc { choice: Choice::Preset, values: "zero (default) | half | full | N, or jrx=N,jry=N" },
-        ChoiceDoc { choice: Choice::Normalize, values: "left-shift normalisation (default: none)" },
-        ChoiceDoc { choice: Choice::Radix, values: "2 (default) | 10, BCD digits of 4 bits, not normalised" },
-        ChoiceDoc { choice: Choice::Adder, values: "parallel (default) | serial, a digit a clock" },
-        ChoiceDoc { choice: Choice::EndPoint, values: "iterations (default) | total | per-axis | longest" },
-        ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
+    options: &[
+        &WIDTH.about("N or REGISTER=N,… (default: the least that holds the line)"),
+        &PRESET,
+        &NORMALIZE,
+        &RADIX.only(
+            Some(Radix::Binary),
+            &[(Radix::Binary, ""), (Radix::Decimal, ", BCD digits of 4 bits, not normalised")],
+            "",
+        ),
+        &ADDER.only(Some(Adder::Parallel), &[(Adder::Parallel, ""), (Adder::Serial, ", a digit a clock")], ""),
+        &END_POINT.only(
+            Some(EndPoint::Iterations),
+            &[(EndPoint::Iterations, ""), (EndPoint::Total, ""), (EndPoint::PerAxis, ""), (EndPoint::Longest, "")],
+            "",
+        ),
+        &ON_OVERFLOW,
     ],
-    source: "数字积分法, the DDA linear interpolator of early NC systems, as in Chinese NC textbooks",
     claims: Some(Claims {
-        told_apart: |hardware| (hardware.end_point == EndPoint::Longest).then_some(Region::LinesByLength),
+        told_apart: |hardware| (hardware.get(&END_POINT) == EndPoint::Longest).then_some(Region::LinesByLength),
         rank,
         guesses,
         ..Claims::of(Region::Lines)
     }),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(6, Method { plan, load }),
+    hardware,
 };
 
 /// Iterations left of 2^n; where an axis stops by itself, what the remainders and the ends of both axes want of pulses.
 fn rank(hardware: &Hardware) -> Option<Formula> {
     let modulus = || name("2^k");
-    match hardware.end_point {
+    match hardware.get(&END_POINT) {
         EndPoint::Iterations => steps_left(hardware),
         EndPoint::Total | EndPoint::Longest => Some(modulus() - name("steps")),
         EndPoint::PerAxis => Some((name("ex") + name("ey") + 2) * modulus() - name("jrx") - name("jry")),
@@ -116,7 +123,7 @@ fn rank(hardware: &Hardware) -> Option<Formula> {
 
 /// What 2^n iterations have to do with a way that is left.
 fn guesses(hardware: &Hardware) -> Vec<Clause> {
-    if !matches!(hardware.end_point, EndPoint::Total | EndPoint::Longest) {
+    if !matches!(hardware.get(&END_POINT), EndPoint::Total | EndPoint::Longest) {
         return Vec::new();
     }
     let left = [0, 1].map(|i| name(JV[i]) - (number(1) - 2 * name(SIGN[i])) * name(POSITION[i]));
@@ -125,15 +132,13 @@ fn guesses(hardware: &Hardware) -> Vec<Clause> {
     [vec![Clause::either("an axis has not ended", left.map(|left| left - 1))], ended.to_vec()].concat()
 }
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let axes = curve.axes();
-    let delta = plan::line(curve).map(Line::delta).unwrap_or_default();
-    let n = plan::magnitude_bits(choices, delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0));
-    let radix = choices.radix.unwrap_or_default();
-    if radix == Radix::Decimal && choices.normalize {
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    let (axes, radix) = (plan.axes(), plan.get(&RADIX));
+    let n = plan.magnitude_bits(sizes::longest(line));
+    if radix == Radix::Decimal && plan.get(&NORMALIZE) {
         return Err(ModelError::Value {
             model: NAME,
-            choice: Choice::Normalize,
+            option: NORMALIZE.name,
             value: "with --radix 10".to_owned(),
             reason:
                 "decimal registers shift by whole digits, which leaves the first digit as small as it was, and the \
@@ -141,46 +146,43 @@ fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
                     .to_owned(),
         });
     }
-    let all = [EndPoint::Iterations, EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest];
-    let end_point = plan::end_point(NAME, choices, EndPoint::Iterations, &all, "")?;
-    let mut registers = Registers::new(NAME, choices);
     for axis in 0..axes {
-        registers.register(JV[axis], n).register(JR[axis], n);
+        plan.register(JV[axis], n).register(JR[axis], n);
     }
     // End points are counted in binary, whatever the radix.
     let steps = Width::needed_unsigned(modulus(radix, n) - 1);
+    let end_point = plan.get(&END_POINT);
     match end_point {
-        EndPoint::PerAxis => registers.end_counters(axes, steps),
+        EndPoint::PerAxis => plan.end_counters(axes, steps),
         // The sum of up to 2, 4 or 6 axes.
-        EndPoint::Total => registers.register("e", steps + axes.next_power_of_two().trailing_zeros()),
-        EndPoint::Iterations => registers.register("e", Width::needed_unsigned(modulus(radix, registers.bits(JR[0])))),
-        EndPoint::Longest => registers.register("e", steps + 1),
+        EndPoint::Total => plan.register("e", steps + axes.next_power_of_two().trailing_zeros()),
+        EndPoint::Iterations => plan.register("e", Width::needed_unsigned(modulus(radix, plan.bits(JR[0])))),
+        EndPoint::Longest => plan.register("e", steps + 1),
     };
-    registers.positions(plan::end_positions(curve));
-    let clocks = match choices.adder.unwrap_or_default() {
+    plan.positions(sizes::end_positions(line));
+    let clocks = match plan.get(&ADDER) {
         Adder::Parallel => 1,
-        Adder::Serial => registers.bits(JR[0]) / radix.digit_bits(),
+        Adder::Serial => plan.bits(JR[0]) / radix.digit_bits(),
     };
-    let hardware = registers.integrators(axes, end_point, clocks.into())?;
+    plan.integrators(clocks.into())?;
     // With unequal presets one axis may lead while another lags.
-    let equal = hardware.presets.windows(2).all(|pair| pair[0] == pair[1]);
-    let bounded = axes == 2 && end_point == EndPoint::Iterations && equal;
-    Ok(Hardware { error_bound: bounded.then_some(1.0), pace: Pace::Cycle(JR[0]), ..hardware })
+    let equal = plan.presets()?.windows(2).all(|pair| pair[0] == pair[1]);
+    plan.error_bound = (axes == 2 && end_point == EndPoint::Iterations && equal).then_some(1.0);
+    plan.pace = Pace::Cycle(JR[0]);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("dda_line", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let axes = 0..hardware.axes;
     let bits = |name: &str| hardware.bits(name);
     let block = Block::new(m);
-    let normalizer = Normalizer::new(m, &block, hardware.normalize);
+    let normalizer = Normalizer::new(m, &block, hardware.get(&NORMALIZE));
     let scopes: Vec<_> = hardware.letters().iter().map(|letter| m.scope(&format!("axis_{letter}"))).collect();
     let integrand = |i: usize| scopes[i].reg(JV[i], bits(JV[i])).shown(digits(hardware));
     let integrands: Vec<_> = axes.clone().map(integrand).collect();
     let normalized = normalizer.close(&integrands.iter().map(|jv| jv.q).collect::<Vec<_>>(), 1);
 
-    let counters: Option<Vec<_>> = (hardware.end_point == EndPoint::PerAxis)
+    let counters: Option<Vec<_>> = (hardware.get(&END_POINT) == EndPoint::PerAxis)
         .then(|| axes.clone().map(|i| DownCounter::new(scopes[i], &block, END[i], bits(END[i]))).collect());
     if counters.is_some() {
         let left = axes.clone().map(|i| name(END[i])).fold(number(-1), |sum, end| sum + end);
@@ -193,9 +195,9 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         // An exhausted axis stops adding.
         let step = counters.as_ref().map_or(iteration, |counters| iteration.only(counters[i].running()));
         let loaded = jv
-            .when(block.load, block.word_in(hardware.radix, JV[i], bits(JV[i])))
+            .when(block.load, block.word_in(hardware.get(&RADIX), JV[i], bits(JV[i])))
             .when(normalized.shift, shifted_left(scope, jv.q));
-        match hardware.adder {
+        match hardware.get(&ADDER) {
             Adder::Parallel => loaded.else_hold(),
             Adder::Serial => loaded.when(step.add, rotated(hardware, jv.q)).else_hold(),
         }
@@ -206,7 +208,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     }
 
     let e = || DownCounter::new(m, &block, "e", bits("e"));
-    let last = match (hardware.end_point, counters) {
+    let last = match (hardware.get(&END_POINT), counters) {
         (_, Some(counters)) => {
             let ended = counters.into_iter().zip(&pulses).map(|(counter, pulse)| counter.count(*pulse));
             ended.reduce(|a, b| a & b).unwrap_or(block.load)
@@ -219,11 +221,9 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         (_, None) => e().count_or_halve(iteration.complete, normalized.shift),
     };
     block.close(normalized.ready, iteration.complete, last);
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(line) = plan::line(curve) else { return Vec::new() };
+fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let delta: Vec<i128> = line.delta().into_iter().map(i128::from).collect();
     let way = |axis: usize| delta[axis].abs();
     let longest = (0..hardware.axes).rev().max_by_key(|&axis| way(axis)).unwrap_or(0);
@@ -233,13 +233,13 @@ fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
         words.push((JR[axis], hardware.preset(axis, JR[axis])));
         words.push((SIGN[axis], i128::from(delta[axis] < 0)));
         words.push((POSITION[axis], i128::from(line.from()[axis])));
-        match hardware.end_point {
+        match hardware.get(&END_POINT) {
             EndPoint::PerAxis => words.push((END[axis], way(axis))),
             EndPoint::Longest => words.push((LONGEST[axis], i128::from(axis == longest))),
             EndPoint::Total | EndPoint::Iterations => {}
         }
     }
-    match hardware.end_point {
+    match hardware.get(&END_POINT) {
         EndPoint::Iterations => {
             // At most 2^64.
             let iterations = hardware.modulus(hardware.bits(JR[0]));

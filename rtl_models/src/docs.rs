@@ -1,7 +1,9 @@
 //! Sentences of the documentation that several models share.
 
-use crate::choices::Choice;
-use crate::model::{ChoiceDoc, RegisterDoc};
+use stepwave_kernel::Width;
+
+use crate::model::RegisterDoc;
+use crate::options::{END_POINT, EndPoint, PerRegister, SYSTEM, System, Taken, WIDTH};
 
 impl RegisterDoc {
     pub(crate) const XI_YI: RegisterDoc =
@@ -25,31 +27,28 @@ impl RegisterDoc {
         RegisterDoc { name: "x, y, …", width: "as the path needs, + 1", about: "machine position, signed" };
 }
 
-impl ChoiceDoc {
-    pub(crate) const WIDTH: ChoiceDoc =
-        ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the geometry)" };
-    pub(crate) const PRESET: ChoiceDoc =
-        ChoiceDoc { choice: Choice::Preset, values: "zero (default) | half | full | N, or jrx=N,jry=N" };
-    pub(crate) const NORMALIZE: ChoiceDoc =
-        ChoiceDoc { choice: Choice::Normalize, values: "left-shift normalisation (default: none)" };
-    pub(crate) const ARC_END_POINT: ChoiceDoc = ChoiceDoc {
-        choice: Choice::EndPoint,
-        values: "total (default where the end point is on the curve) | per-axis (default elsewhere)",
-    };
-    pub(crate) const WEIGHTS: ChoiceDoc = ChoiceDoc { choice: Choice::Weights, values: "mid (default) | pre | post" };
-    pub(crate) const BEATS: ChoiceDoc = ChoiceDoc { choice: Choice::Beats, values: "4 (default) | 1" };
-    pub(crate) const SAMPLED_WIDTH: ChoiceDoc = ChoiceDoc {
-        choice: Choice::Width,
-        values: "N of jv and jr, or REGISTER=N,… (default: the least for a period)",
-    };
-    pub(crate) const SYSTEM: ChoiceDoc = ChoiceDoc {
-        choice: Choice::System,
-        values: "7m (default), by the direction, T = 8 ms | 7360, by the step factor, T = 10.24 ms",
-    };
-    pub(crate) const FRACTION: ChoiceDoc = ChoiceDoc {
-        choice: Choice::Fraction,
-        values: "bits of the fraction of coarse points, 8 or more (default: 10)",
-    };
-    pub(crate) const ON_OVERFLOW: ChoiceDoc =
-        ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" };
-}
+const ARC_LONGEST: &str =
+    "the longest axis of an arc may arrive while the other still has steps to go, and iterations are not counted";
+
+/// End points of an arc whose every step is judged.
+pub(crate) static ARC_END_POINT: Taken<EndPoint> = END_POINT.only(
+    None,
+    &[(EndPoint::Total, " (default where the end point is on the curve)"), (EndPoint::PerAxis, " (default elsewhere)")],
+    ARC_LONGEST,
+);
+/// End points of a curve that a pair of integrators draws.
+pub(crate) static INTEGRATED_END_POINT: Taken<EndPoint> = END_POINT.only(
+    Some(EndPoint::PerAxis),
+    &[(EndPoint::PerAxis, ""), (EndPoint::Total, "")],
+    "the longest axis of an arc may arrive while the other still has steps to go, and iterations say nothing of \
+     where an arc stands",
+);
+/// Widths of a fine stage.
+pub(crate) static SAMPLED_WIDTH: Taken<PerRegister<Width>> =
+    WIDTH.about("N of jv and jr, or REGISTER=N,… (default: the least for a period)");
+/// Systems of data sampling.
+pub(crate) static SAMPLED_SYSTEM: Taken<System> = SYSTEM.only(
+    Some(System::Direction),
+    &[(System::Direction, ", by the direction, T = 8 ms"), (System::StepFactor, ", by the step factor, T = 10.24 ms")],
+    "",
+);

@@ -46,31 +46,33 @@
 #![doc = include_str!("../../waves/dpm-line-5-3.csv")]
 //! ```
 
-use stepwave_kernel::dsl::{Module, Scope, Signal};
-use stepwave_kernel::{Netlist, Width};
-use stepwave_nc::Curve;
+use stepwave_kernel::Width;
+use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_nc::Line;
 
-use crate::choices::{Choice, Choices, EndPoint, Radix};
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::names::{COEFFICIENT, POSITION, SIGN};
-use crate::hardware::{Hardware, Pace};
+use crate::hardware::{Hardware, Pace, modulus};
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{CASCADE, END_POINT, EndPoint, ON_OVERFLOW, OVERRIDE, RADIX, Radix, WIDTH};
 use crate::parts::{Block, RateMultiplier, Units, axis_counter};
-use crate::plan;
-use crate::registers::Registers;
+use crate::plan::Plan;
+use crate::sizes;
 
 const NAME: &str = "dpm-line";
 
 /// The units of the feed override.
-const OVERRIDE: Units = Units { radix: Radix::Decimal, bits: 4, count: 2 };
+const OVERRIDE_UNITS: Units = Units { radix: Radix::Decimal, bits: 4, count: 2 };
 
-pub(crate) const MODEL: Model = Model {
+/// Digital pulse multiplier (rate multiplier), line of 2 to 6 axes.
+pub static MODEL: Model = Model {
     name: NAME,
     title: "Digital pulse multiplier (rate multiplier), line of 2 to 6 axes",
     method: "digital pulse multiplier",
-    curve: CurveKind::Line { max_axes: 6 },
+    source: "数字脉冲乘法器, the digital pulse multiplier of Chinese NC textbooks, known as binary rate multiplier; the \
+             counts of a decade are a definition of this project",
     registers: &[
         RegisterDoc { name: "o", width: "8", about: "count of the feed override, two decimal digits (override)" },
         RegisterDoc { name: "q", width: "n", about: "counter that all axes share" },
@@ -78,82 +80,78 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "mx, my, …", width: "n", about: "coefficient M of each axis, |d|" },
         RegisterDoc::AXIS_POSITIONS,
     ],
-    choices: &[
-        ChoiceDoc::WIDTH,
-        ChoiceDoc { choice: Choice::Radix, values: "2 (default) | 10: decade units, 4 bits a digit" },
-        ChoiceDoc {
-            choice: Choice::Cascade,
-            values: "BITS of each unit, of which n is a multiple (default: one unit)",
-        },
-        ChoiceDoc { choice: Choice::Override, values: "1 … 99: percentage of the clock (default: all of it)" },
-        ChoiceDoc::ON_OVERFLOW,
+    options: &[
+        &WIDTH,
+        &RADIX.only(
+            Some(Radix::Binary),
+            &[(Radix::Binary, ""), (Radix::Decimal, ": decade units, 4 bits a digit")],
+            "",
+        ),
+        &CASCADE.about("BITS of each unit, of which n is a multiple (default: one unit)"),
+        &OVERRIDE,
+        &ON_OVERFLOW,
     ],
-    source: "数字脉冲乘法器, the digital pulse multiplier of Chinese NC textbooks, known as binary rate multiplier; the \
-             counts of a decade are a definition of this project",
     claims: Some(Claims { rank: |_| None, counted: &["mx", "my"], ..Claims::of(Region::Lines) }),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(6, Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let axes = curve.axes();
-    let n = size(choices, plan::longest(curve))?;
-    let units = units(choices.radix.unwrap_or_default(), choices.cascade, n);
-    let mut registers = Registers::new(NAME, choices);
-    if choices.feed_override.is_some() {
-        registers.shown("o");
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    let n = size(plan, sizes::longest(line))?;
+    let units = units(plan.get(&RADIX), plan.get(&CASCADE), n);
+    let slower = plan.get(&OVERRIDE).is_some();
+    if slower {
+        plan.shown("o");
     }
     match units {
-        Units { radix: Radix::Decimal, .. } => _ = registers.shown("q"),
-        Units { count: 1, .. } => _ = registers.register("q", n),
+        Units { radix: Radix::Decimal, .. } => _ = plan.shown("q"),
+        Units { count: 1, .. } => _ = plan.register("q", n),
         Units { bits, count, .. } => {
             for index in 1..=count {
-                registers.register(format!("q{index}"), bits);
+                plan.register(format!("q{index}"), bits);
             }
         }
     }
-    for name in &COEFFICIENT[..axes] {
-        registers.register(*name, n);
+    for name in &COEFFICIENT[..plan.axes()] {
+        plan.register(*name, n);
     }
-    registers.positions(plan::end_positions(curve));
-    let mut hardware = registers.hardware(axes, EndPoint::Iterations)?;
-    check_widths(&hardware, units)?;
-    let n = hardware.bits(COEFFICIENT[0]);
-    let clocks = u64::try_from(hardware.modulus(n)).unwrap_or(u64::MAX);
-    let slower = if choices.feed_override.is_some() { 100 } else { 1 };
-    hardware.stall_clocks = clocks.saturating_mul(slower).saturating_add(16);
-    hardware.scale = &["m"];
-    hardware.pace = Pace::Cycle(COEFFICIENT[0]);
+    plan.positions(sizes::end_positions(line));
+    plan.fix(&END_POINT, EndPoint::Iterations);
+    check_widths(plan, units)?;
+    let n = plan.bits(COEFFICIENT[0]);
+    let clocks = u64::try_from(modulus(units.radix, n)).unwrap_or(u64::MAX);
+    plan.stall_clocks = clocks.saturating_mul(if slower { 100 } else { 1 }).saturating_add(16);
+    plan.scale = &["m"];
+    plan.pace = Pace::Cycle(COEFFICIENT[0]);
     let bound = rate_bound(units.radix, n);
-    hardware.rate_bound = Some(bound);
+    plan.rate_bound = Some(bound);
     // The place where all axes should be lies on the line.
-    hardware.error_bound = Some((0..axes).fold(0.0, |sum, _| f64::hypot(sum, bound)));
-    Ok(hardware)
+    plan.error_bound = Some((0..plan.axes()).fold(0.0, |sum, _| f64::hypot(sum, bound)));
+    Ok(())
 }
 
 /// Bits of a coefficient: as chosen, or the least whole number of units that holds `largest`.
-fn size(choices: &Choices, largest: u64) -> Result<u32, ModelError> {
-    let refuse = |choice, value, reason: String| ModelError::Value { model: NAME, choice, value, reason };
-    if let Some(percent) = choices.feed_override.filter(|percent| !(1..=99).contains(percent)) {
+fn size(plan: &Plan, largest: u64) -> Result<u32, ModelError> {
+    let refuse = |option, value, reason: String| ModelError::Value { model: NAME, option, value, reason };
+    if let Some(percent) = plan.get(&OVERRIDE).filter(|percent| !(1..=99).contains(percent)) {
         let reason = "its two decades pass 1 to 99 of 100 clocks; leave it out for all of them".to_owned();
-        return Err(refuse(Choice::Override, percent.to_string(), reason));
+        return Err(refuse(OVERRIDE.name, percent.to_string(), reason));
     }
-    let radix = choices.radix.unwrap_or_default();
-    let unit = unit(radix, choices.cascade);
-    if let (Radix::Decimal, Some(bits)) = (radix, choices.cascade) {
+    let radix = plan.get(&RADIX);
+    let unit = unit(radix, plan.get(&CASCADE));
+    if let (Radix::Decimal, Some(bits)) = (radix, plan.get(&CASCADE)) {
         let reason = "decades are cascaded as they are, 4 bits a unit: leave --cascade or --radix 10 out".to_owned();
-        return Err(refuse(Choice::Cascade, bits.get().to_string(), reason));
+        return Err(refuse(CASCADE.name, bits.get().to_string(), reason));
     }
     let least = radix.reading().needed(largest.into()).next_multiple_of(unit);
-    if choices.width.is_none() && radix == Radix::Binary && least > Width::MAX.get() {
+    if plan.options().of_all(&WIDTH).is_none() && radix == Radix::Binary && least > Width::MAX.get() {
         let reason = format!(
             "this line needs registers of {least} bits in whole units, but a register holds 1 to 64 bits: give units of \
              fewer bits"
         );
-        return Err(refuse(Choice::Cascade, unit.to_string(), reason));
+        return Err(refuse(CASCADE.name, unit.to_string(), reason));
     }
-    match choices.width.map(Width::get) {
+    match plan.options().of_all(&WIDTH).map(Width::get) {
         Some(bits) if bits % unit != 0 => {
             let what = match radix {
                 Radix::Binary => format!("units of {unit} bits"),
@@ -162,7 +160,7 @@ fn size(choices: &Choices, largest: u64) -> Result<u32, ModelError> {
             let more = Some(bits.next_multiple_of(unit)).filter(|&more| more <= Width::MAX.get());
             let whole = more.unwrap_or(bits - bits % unit);
             let reason = format!("it is no whole number of {what}; give --width {whole}");
-            Err(refuse(Choice::Width, bits.to_string(), reason))
+            Err(refuse(WIDTH.name, bits.to_string(), reason))
         }
         Some(bits) => Ok(bits),
         None => Ok(least),
@@ -185,11 +183,12 @@ fn units(radix: Radix, cascade: Option<Width>, n: u32) -> Units {
 }
 
 /// Coefficients must be as wide as the counter, and units as wide as they are said to be.
-fn check_widths(hardware: &Hardware, units: Units) -> Result<(), ModelError> {
-    let counter = hardware.widths.get("q").map_or(units.bits * units.count, |q| q.get());
+fn check_widths(plan: &Plan, units: Units) -> Result<(), ModelError> {
+    let widths = plan.widths()?;
+    let counter = widths.get("q").map_or(units.bits * units.count, |q| q.get());
     let mut widest = counter;
     let mut odd = None;
-    for (name, width) in &hardware.widths {
+    for (name, width) in &widths {
         let (wanted, what) = match name.as_str() {
             name if COEFFICIENT.contains(&name) => (counter, "the counter has"),
             name if name != "q" && name.starts_with('q') => (units.bits, "each unit has"),
@@ -202,7 +201,7 @@ fn check_widths(hardware: &Hardware, units: Units) -> Result<(), ModelError> {
             odd = odd.or(Some(format!("{name} of {width}, but {what} {wanted}")));
         }
     }
-    let unit = unit(hardware.radix, hardware.cascade);
+    let unit = unit(plan.get(&RADIX), plan.get(&CASCADE));
     let all = Some(widest.next_multiple_of(unit)).filter(|&all| all <= Width::MAX.get()).unwrap_or(counter);
     odd.map_or(Ok(()), |odd| Err(ModelError::Widths(format!("{NAME}: {odd}: give --width {all}"))))
 }
@@ -218,38 +217,34 @@ pub(crate) fn rate_bound(radix: Radix, n: u32) -> f64 {
     }
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("dpm_line", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let bits = |name: &str| hardware.bits(name);
     let block = Block::new(m);
-    let step = match hardware.feed_override {
+    let step = match hardware.get(&OVERRIDE) {
         Some(_) => feed_override(m.scope("feed_override"), &block),
         None => block.busy,
     };
-    let units = units(hardware.radix, hardware.cascade, bits(COEFFICIENT[0]));
+    let units = units(hardware.get(&RADIX), hardware.get(&CASCADE), bits(COEFFICIENT[0]));
     let counter = RateMultiplier::new(m.scope("counter"), &block, "q", units, step);
     for (axis, letter) in hardware.letters().iter().enumerate() {
         let scope = m.scope(&format!("axis_{letter}"));
-        let coefficient = block.held_in(scope, hardware.radix, COEFFICIENT[axis], bits(COEFFICIENT[axis]));
+        let coefficient = block.held_in(scope, hardware.get(&RADIX), COEFFICIENT[axis], bits(COEFFICIENT[axis]));
         let negative = block.held(scope, SIGN[axis], 1);
         let pulse = scope.name("pulse", counter.gated(scope, coefficient));
         axis_counter(scope, &block, letter, bits(letter), pulse, negative);
     }
     block.close(block.load, step, counter.carry);
-    Ok(module.finish()?)
 }
 
 /// Two decades that pass a percentage of the clocks of a block: 1 bit, the line takes a step at this edge.
 fn feed_override<'m>(m: Scope<'m>, block: &Block<'m>) -> Signal<'m> {
-    let percent = block.held_in(m, Radix::Decimal, "percent", OVERRIDE.bits * OVERRIDE.count);
-    let counter = RateMultiplier::new(m, block, "o", OVERRIDE, block.busy);
+    let percent = block.held_in(m, Radix::Decimal, "percent", OVERRIDE_UNITS.bits * OVERRIDE_UNITS.count);
+    let counter = RateMultiplier::new(m, block, "o", OVERRIDE_UNITS, block.busy);
     m.name("feed", counter.gated(m, percent))
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(line) = plan::line(curve) else { return Vec::new() };
-    let mut words: Words = hardware.feed_override.map(|percent| ("percent", percent.into())).into_iter().collect();
+fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
+    let mut words: Words = hardware.get(&OVERRIDE).map(|percent| ("percent", percent.into())).into_iter().collect();
     for (axis, delta) in line.delta().into_iter().enumerate() {
         words.push((COEFFICIENT[axis], i128::from(delta).abs()));
         words.push((SIGN[axis], i128::from(delta < 0)));

@@ -1,11 +1,9 @@
 //! Why a model cannot be built or loaded for a geometry.
 
-use stepwave_kernel::diag::Code;
+use stepwave_kernel::diag::{Code, Diagnostic};
 use stepwave_kernel::{Diagnostics, Width, did_you_mean};
 
-use crate::choices::Choice;
-
-/// A geometry or a choice that a model does not take; every message names the value, the limit and the way out.
+/// A geometry or an option that a model does not take; every message names the value, the limit and the way out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
     /// No model bears this name.
@@ -26,36 +24,36 @@ pub enum ModelError {
         /// What was given.
         given: String,
     },
-    /// A choice that the model does not have.
-    #[error("{model} does not take {}; it takes {takes}", .choice.option())]
+    /// An option that the model does not have.
+    #[error("{model} does not take --{option}; it takes {takes}")]
     NotTaken {
         /// The model.
         model: &'static str,
-        /// The choice.
-        choice: Choice,
+        /// The option, without its dashes.
+        option: &'static str,
         /// Options that it takes.
         takes: String,
     },
-    /// A value of a choice that the model does not have.
-    #[error("{model} does not take {} {value}: {reason}", .choice.option())]
+    /// A value of an option that the model does not have.
+    #[error("{model} does not take --{option} {value}: {reason}")]
     Value {
         /// The model.
         model: &'static str,
-        /// The choice.
-        choice: Choice,
+        /// The option, without its dashes.
+        option: &'static str,
         /// The value given.
         value: String,
         /// Why, and what it takes instead.
         reason: String,
     },
     /// `--width` or `--preset` names a register that does not exist here.
-    #[error("{model} has no register '{register}' here for {}{}; it has {known}", .choice.option(),
+    #[error("{model} has no register '{register}' here for --{option}{}; it has {known}",
         did_you_mean(.register, .known.split(", ")))]
     UnknownRegister {
         /// The model.
         model: &'static str,
-        /// The choice that names it.
-        choice: Choice,
+        /// The option that names it, without its dashes.
+        option: &'static str,
         /// The name given.
         register: String,
         /// Names that exist, with commas.
@@ -88,6 +86,14 @@ pub enum ModelError {
     /// Registers that must be equally wide, or ordered, are not.
     #[error("{0}")]
     Widths(String),
+    /// A model that cannot be installed: a defect of the model.
+    #[error("the model {model} does not work: {what}")]
+    Defect {
+        /// The model.
+        model: &'static str,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A model describes a netlist that does not elaborate: a defect of the model.
     #[error("the model's netlist is wrong; please report this:\n{0}")]
     Netlist(Diagnostics),
@@ -96,11 +102,20 @@ pub enum ModelError {
     MissingPort(String),
 }
 
+impl ModelError {
+    pub(crate) fn defect(model: &'static str, what: String) -> ModelError {
+        ModelError::Defect { model, what }
+    }
+}
+
 impl From<Diagnostics> for ModelError {
     fn from(diagnostics: Diagnostics) -> ModelError {
-        // No model asks for an impossible width by itself: the chosen ones lead to it, such as an exact sum of f in 4
-        // bits and xe in 64.
-        match diagnostics.0.iter().find(|diagnostic| diagnostic.code == Code::BadWidth) {
+        // The widths chosen may lead to one that is too great, such as an exact sum of f in 4 bits and xe in 64; a width of
+        // 0 is that of a register that the model did not plan.
+        let too_wide = |diagnostic: &&Diagnostic| {
+            diagnostic.code == Code::BadWidth && !diagnostic.message.contains("a width of 0 bits")
+        };
+        match diagnostics.0.iter().find(too_wide) {
             Some(diagnostic) => ModelError::Widths(format!(
                 "these registers are too wide to be added: {}: change --width",
                 diagnostic.message

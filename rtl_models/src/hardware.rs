@@ -1,10 +1,12 @@
-//! Hardware: a model's choices with nothing left open. One hardware may run many geometries.
+//! Hardware: a model's options with nothing left open. One hardware may run many geometries.
 
 use std::collections::BTreeMap;
 
-use stepwave_kernel::{OnOverflow, Width};
+use stepwave_kernel::Width;
 
-use crate::choices::{Adder, Beats, Compare, EndPoint, Form, Preset, Radix, StepTiming, Weights};
+use crate::options::{
+    ADDER, Adder, AnyOption, CASCADE, NORMALIZE, OptionDef, Options, PRESET, Preset, RADIX, Radix, WIDTH,
+};
 use crate::sampling::Sampling;
 
 /// Letters of up to six axes.
@@ -51,34 +53,10 @@ pub struct Hardware {
     pub widths: BTreeMap<String, Width>,
     /// Preset of each axis's remainder register.
     pub presets: Vec<Preset>,
-    /// Left-shift normalisation.
-    pub normalize: bool,
-    /// Number system of the integrators.
-    pub radix: Radix,
-    /// How integrators add.
-    pub adder: Adder,
-    /// End-point scheme.
-    pub end_point: EndPoint,
-    /// Form of the line's deviation.
-    pub form: Form,
-    /// Weight rule of comparison-integral.
-    pub weights: Weights,
-    /// Clocks a step.
-    pub beats: Beats,
-    /// Feed override in percent of the clock, if there is a unit for it.
-    pub feed_override: Option<u64>,
-    /// Bits of each of the cascaded units of a pulse multiplier; one unit if none.
-    pub cascade: Option<Width>,
-    /// Comparison of a counter.
-    pub compare: Compare,
-    /// Bit of a phase accumulator whose changes are steps.
-    pub pick_off: u64,
-    /// Times of step and direction outputs, in clocks.
-    pub timing: StepTiming,
+    /// The options given, with what the model has by default for those that are not.
+    pub options: Options,
     /// The coarse stage of data sampling, if there is one.
     pub sampling: Option<Sampling>,
-    /// What a strict cell does on overflow.
-    pub on_overflow: OnOverflow,
     /// Registers that a step table shows, in order.
     pub table: Vec<String>,
     /// No pulse for this many clocks while a block runs means that none will come.
@@ -94,17 +72,39 @@ pub struct Hardware {
 }
 
 impl Hardware {
-    /// Width of a register in bits; 1 for one that does not exist.
+    /// Width of a register in bits; 0, of which no netlist can be made, for one that was not planned.
     #[must_use]
     pub fn bits(&self, register: &str) -> u32 {
-        self.widths.get(register).map_or(1, |width| width.get())
+        self.widths.get(register).map_or(0, |width| width.get())
+    }
+
+    /// The value of an option: as given, or else by default.
+    #[must_use]
+    pub fn get<T: Clone + 'static>(&self, option: &OptionDef<T>) -> T {
+        self.options.value(option)
+    }
+
+    /// The value of an option as one would give it for this hardware: every width, and every preset where they differ.
+    #[must_use]
+    pub fn text(&self, option: &dyn AnyOption) -> String {
+        if option.name() == WIDTH.name {
+            let widths = self.widths.iter().map(|(name, width)| format!("{name}={}", width.get()));
+            return widths.collect::<Vec<_>>().join(",");
+        }
+        if option.name() == PRESET.name {
+            let all: Vec<_> = self.presets.iter().map(ToString::to_string).collect();
+            let one = all.first().filter(|first| all.iter().all(|preset| preset == *first));
+            return one.cloned().unwrap_or_else(|| all.join(","));
+        }
+        let given = self.options.given().iter().find(|value| value.option().name() == option.name());
+        given.map_or_else(|| option.default_text(), |value| value.text().to_owned())
     }
 
     /// One more than the greatest number in an integrator's register of `bits` bits: 2^bits, or 10 to the number of
     /// digits.
     #[must_use]
     pub fn modulus(&self, bits: u32) -> u128 {
-        modulus(self.radix, bits)
+        modulus(self.get(&RADIX), bits)
     }
 
     /// Steps that a line of these ways, in BLU, takes by the method; `None` where the axes have no constant rates.
@@ -115,7 +115,7 @@ impl Hardware {
             Pace::Varying => None,
             Pace::Total => Some(ways.iter().map(|&way| u128::from(way)).sum()),
             Pace::Longest => Some(longest.into()),
-            Pace::Cycle(_) if self.normalize => Some(1 << Width::needed_unsigned(longest.into())),
+            Pace::Cycle(_) if self.get(&NORMALIZE) => Some(1 << Width::needed_unsigned(longest.into())),
             Pace::Cycle(register) => Some(self.modulus(self.bits(register))),
         }
     }
@@ -147,9 +147,10 @@ impl Hardware {
     #[must_use]
     pub fn widening(&self, register: &str, bits: u32, all: u32) -> String {
         let room = register.strip_prefix("jv").map(|axis| self.bits(&format!("jr{axis}")));
-        let fits = room.is_some_and(|room| bits <= room) && !self.normalize && self.adder == Adder::Parallel;
+        let fits =
+            room.is_some_and(|room| bits <= room) && !self.get(&NORMALIZE) && self.get(&ADDER) == Adder::Parallel;
         // Whole units of a pulse multiplier.
-        let all = self.cascade.map_or(all, |unit| all.next_multiple_of(unit.get()));
+        let all = self.get(&CASCADE).map_or(all, |unit| all.next_multiple_of(unit.get()));
         if self.shares_a_scale(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
     }
 

@@ -4,12 +4,12 @@
 //! Models use the kernel's public interface only. [`catalogue`] is the one list of models.
 //!
 //! ```
-//! use stepwave_models::{Choices, find};
+//! use stepwave_models::{Options, find};
 //! use stepwave_nc::{Curve, Line};
 //!
 //! let model = find("dda-line")?;
 //! let line = Curve::Line(Line::new(vec![0, 0], vec![8, 6]).unwrap());
-//! let hardware = model.plan(&line, &Choices::default())?;
+//! let hardware = model.plan(&line, &Options::default())?;
 //! assert_eq!(hardware.bits("jrx"), 4);
 //! let machine = model.machine(&hardware)?;
 //! assert_eq!(machine.design.netlist().cell(machine.positions[0].net).width.get(), 6);
@@ -27,6 +27,7 @@ pub mod dda_line;
 pub mod dpm_line;
 pub mod mindev_arc;
 pub mod mindev_line;
+pub mod options;
 pub mod parts;
 pub mod ppc_arc;
 pub mod ppc_conic;
@@ -38,7 +39,7 @@ pub mod stepgen;
 pub mod vector_arc;
 pub mod vector_line;
 
-mod choices;
+mod catalogue;
 mod claims;
 mod docs;
 mod error;
@@ -47,58 +48,22 @@ mod machine;
 mod model;
 mod plan;
 mod promise;
-mod registers;
 mod sampling;
+mod sizes;
 mod words;
 
-pub use choices::{
-    Adder, Beats, Choice, Choices, Compare, EndPoint, Form, Millionths, Named, Preset, Radix, StepTiming, System,
-    Weights,
-};
+pub use catalogue::{Catalogue, catalogue, find, installed};
 pub use claims::{Claims, Kind, Region, extremes};
 pub use error::ModelError;
 pub use hardware::{AXES, Hardware, Pace};
 pub use machine::{CutWord, Loaded, Machine, Port, Words};
+pub use options::{
+    Adder, AnyOption, Beats, Compare, EndPoint, Form, Millionths, Named, OptionDef, Options, PerRegister, Preset,
+    Radix, StepTiming, System, Takes, Weights,
+};
 
-pub use model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+pub use model::{CurveKind, Interpolates, Method, Model, RegisterDoc};
+pub use plan::Plan;
 pub use promise::Promise;
 pub use sampling::Sampling;
 pub use stepwave_kernel::OnOverflow;
-
-/// Every model.
-#[must_use]
-pub fn catalogue() -> &'static [Model] {
-    const CATALOGUE: &[Model] = &[
-        ppc_line::MODEL,
-        ppc_arc::MODEL,
-        ppc_conic::MODEL,
-        dda_line::MODEL,
-        dda_arc::MODEL,
-        dda_conic::MODEL,
-        dda_helix::MODEL,
-        dpm_line::MODEL,
-        cim_line::MODEL,
-        cim_arc::MODEL,
-        cim_conic::MODEL,
-        mindev_line::MODEL,
-        mindev_arc::MODEL,
-        vector_line::MODEL,
-        vector_arc::MODEL,
-        sampled_line::MODEL,
-        sampled_arc::MODEL,
-        stepgen::MODEL,
-        bresenham::MODEL,
-    ];
-    CATALOGUE
-}
-
-/// The model of this name.
-///
-/// # Errors
-/// There is none; the message lists those there are.
-pub fn find(name: &str) -> Result<&'static Model, ModelError> {
-    catalogue().iter().find(|model| model.name == name).ok_or_else(|| ModelError::UnknownModel {
-        name: name.to_owned(),
-        known: catalogue().iter().map(|model| model.name).collect::<Vec<_>>().join(", "),
-    })
-}

@@ -9,6 +9,7 @@ use stepwave_kernel::{Design, Net, Netlist, OnOverflow, Width, elaborate};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::options::ON_OVERFLOW;
 
 /// A net as a number: its width and reading.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -104,7 +105,7 @@ impl Machine {
     /// # Errors
     /// Where overflows trap: a value does not fit in its register.
     pub fn load(&self, hardware: &Hardware, blocks: &[Words]) -> Result<Loaded, ModelError> {
-        self.loaded(hardware, blocks, hardware.on_overflow)
+        self.loaded(hardware, blocks, hardware.get(&ON_OVERFLOW))
     }
 
     fn loaded(&self, hardware: &Hardware, blocks: &[Words], mode: OnOverflow) -> Result<Loaded, ModelError> {

@@ -29,24 +29,24 @@
 #![doc = include_str!("../../waves/mindev-arc-nr1.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
-use stepwave_nc::{Crossing, Curve};
+use stepwave_kernel::dsl::Scope;
+use stepwave_nc::{Arc, Crossing};
 
-use crate::choices::Choices;
+use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
 use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, magnitude};
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "mindev-arc";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Minimum deviation, arc.
+pub static MODEL: Model = Model {
+    name: "mindev-arc",
     title: "Minimum deviation, arc",
     method: "minimum deviation",
-    curve: CurveKind::Arc,
+    source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
         RegisterDoc::XI_YI,
@@ -55,26 +55,24 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc::EX_EY,
         RegisterDoc::POSITIONS,
     ],
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
-    source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
+    options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
     claims: None,
-    plan,
-    netlist,
-    words: |hardware, curve| words::judged_arc(hardware, curve, CROSSING),
+    interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
+    hardware,
 };
 
 /// The radial error below half a BLU leaves one place to meet an axis.
 const CROSSING: Crossing = Crossing::RoundedRadius;
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    Ok(Hardware { error_bound: Some(0.5), ..plan::judged_arc(NAME, curve, choices, CROSSING, [1, 2])? })
+fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
+    sizes::judged_arc(arc, plan, CROSSING, [1, 2]);
+    plan.error_bound = Some(0.5);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("mindev_arc", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
 
@@ -103,5 +101,4 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let last = arc.compare(beat.compare, taken);
     beat.close(&block, last);
     block.close(block.load, beat.compare, last);
-    Ok(module.finish()?)
 }

@@ -23,50 +23,47 @@
 #![doc = include_str!("../../waves/mindev-line-5-3.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::dsl::Scope;
 use stepwave_kernel::formula::name;
-use stepwave_nc::Curve;
+use stepwave_nc::Line;
 
-use crate::choices::Choices;
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
 use crate::parts::{BeatRing, Block, DeviationAccumulator, LineFrame};
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "mindev-line";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Minimum deviation, line.
+pub static MODEL: Model = Model {
+    name: "mindev-line",
     title: "Minimum deviation, line",
     method: "minimum deviation",
-    curve: CurveKind::Line { max_axes: 2 },
+    source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "l, s", width: "n", about: "ways of the long and of the short axis" },
         RegisterDoc { name: "f", width: "n+2", about: "deviation D, two's complement, from 2S - L" },
         RegisterDoc { name: "e", width: "n", about: "end-point down-counter of the long axis" },
         RegisterDoc::POSITIONS,
     ],
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
-    source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
+    options: &[&WIDTH, &BEATS, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesByLength)),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(2, Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    Ok(Hardware { error_bound: Some(0.5), ..plan::judged_line(NAME, curve, choices, ["l", "s"], 2)? })
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    sizes::judged_line(line, plan, ["l", "s"], 2);
+    plan.error_bound = Some(0.5);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("mindev_line", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
     let [long, short] = ["l", "s"].map(|name| block.held(m, name, hardware.bits(name)));
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let line = LineFrame::new(m, &block, hardware);
@@ -84,7 +81,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
 
     // Feed, compare.
     line.close(hardware, beat, diagonal);
-    Ok(module.finish()?)
 }
 
 /// D stays between what a diagonal step at 0 and an axis step at -1 leave.
@@ -94,8 +90,8 @@ fn invariants(m: Scope<'_>) {
     m.between_steps("f_from_above", [2 * s() - 1 - f()]);
 }
 
-fn words(_: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(([a, b], mut words)) = words::judged_line(curve) else { return Vec::new() };
+fn load(line: &Line, _: &Hardware) -> Vec<Words> {
+    let ([a, b], mut words) = words::judged_line(line);
     let (long, short) = (a.max(b), a.min(b));
     words.extend([("l", long), ("s", short), ("f", 2 * short - long)]);
     vec![words]

@@ -1,13 +1,14 @@
-//! What a model is: a description for people, and three functions that make it run.
+//! What a model is: a description for people, and the functions that make it run.
 
-use stepwave_kernel::Netlist;
-use stepwave_nc::Curve;
+use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_nc::{Arc, Conic, Curve, Helix, Line};
 
-use crate::choices::{Choice, Choices};
 use crate::claims::Claims;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
+use crate::options::{AnyOption, ON_OVERFLOW, Options, Takes, chosen, taken};
+use crate::plan::Plan;
 
 /// What a model interpolates.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -74,16 +75,32 @@ pub struct RegisterDoc {
     pub about: &'static str,
 }
 
-/// A choice in a model's documentation.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct ChoiceDoc {
-    /// The choice.
-    pub choice: Choice,
-    /// Values and default.
-    pub values: &'static str,
+/// How a model plans its hardware for a curve of type C, and loads one.
+#[derive(Debug)]
+pub struct Method<C: 'static> {
+    /// Fixes registers, widths and promises for a curve; all that the hardware depends on comes from here.
+    ///
+    /// An error names a width or a value that cannot be.
+    pub plan: fn(&C, &mut Plan) -> Result<(), ModelError>,
+    /// The words of every block of a curve: one for a line, one for each sector of an arc where the loader has to reload
+    /// the registers.
+    pub load: fn(&C, &Hardware) -> Vec<Words>,
 }
 
-/// An interpolator: its documentation, and how it is sized, wired and loaded.
+/// What a model interpolates, and how it plans and loads it.
+#[derive(Debug)]
+pub enum Interpolates {
+    /// Lines of 2 up to this many axes.
+    Lines(usize, Method<Line>),
+    /// Circular arcs in the plane.
+    Arcs(Method<Arc>),
+    /// Arcs of ellipses, parabolas and hyperbolas in the plane.
+    Conics(Method<Conic>),
+    /// Circular arcs in the plane with a displacement in z.
+    Helices(Method<Helix>),
+}
+
+/// An interpolator: its documentation, and how it is planned, wired and loaded.
 #[derive(Debug)]
 pub struct Model {
     /// Name on the command line.
@@ -92,42 +109,71 @@ pub struct Model {
     pub title: &'static str,
     /// Family of methods.
     pub method: &'static str,
-    /// What it interpolates.
-    pub curve: CurveKind,
-    /// Its registers, in the order of the step table.
-    pub registers: &'static [RegisterDoc],
-    /// The choices that it takes.
-    pub choices: &'static [ChoiceDoc],
     /// Literature.
     pub source: &'static str,
+    /// Its registers, in the order of the step table.
+    pub registers: &'static [RegisterDoc],
+    /// The options that it takes.
+    pub options: &'static [&'static dyn Takes],
     /// What can be proved of it; `None` where nothing is claimed.
     pub claims: Option<Claims>,
-    pub(crate) plan: fn(&Curve, &Choices) -> Result<Hardware, ModelError>,
-    pub(crate) netlist: fn(&Hardware) -> Result<Netlist, ModelError>,
-    pub(crate) words: fn(&Hardware, &Curve) -> Vec<Words>,
+    /// What it interpolates, and how it is planned and loaded.
+    pub interpolates: Interpolates,
+    /// The wiring, from the top scope of a module that the caller makes.
+    pub hardware: fn(Scope<'_>, &Hardware),
 }
 
 impl Model {
-    /// Fixes every choice for a geometry: widths as given, or else the least that hold it.
+    /// What it interpolates.
+    #[must_use]
+    pub fn curve(&self) -> CurveKind {
+        match &self.interpolates {
+            Interpolates::Lines(max_axes, _) => CurveKind::Line { max_axes: *max_axes },
+            Interpolates::Arcs(_) => CurveKind::Arc,
+            Interpolates::Conics(_) => CurveKind::Conic,
+            Interpolates::Helices(_) => CurveKind::Helix,
+        }
+    }
+
+    /// The model takes this option.
+    #[must_use]
+    pub fn takes(&self, option: &dyn AnyOption) -> bool {
+        self.options.iter().any(|takes| takes.name() == option.name())
+    }
+
+    /// Refuses an option that the model does not take.
     ///
     /// # Errors
-    /// The model does not interpolate this curve, does not take a choice, or a width is impossible.
-    pub fn plan(&self, curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-        if !self.curve.fits(curve) {
-            let given = match curve {
-                Curve::Line(line) => format!("a line of {} axes", line.axes()),
-                Curve::Arc(_) => "an arc".to_owned(),
-                Curve::Conic(_) => "a conic".to_owned(),
-                Curve::Helix(_) => "a helix".to_owned(),
-            };
-            return Err(ModelError::Curve { model: self.name, takes: self.curve.describe(), given });
-        }
-        let taken = |choice: &Choice| self.choices.iter().any(|doc| doc.choice == *choice);
-        if let Some(choice) = choices.given().into_iter().find(|choice| !taken(choice)) {
-            let options: Vec<_> = self.choices.iter().map(|doc| doc.choice.option()).collect();
-            return Err(ModelError::NotTaken { model: self.name, choice, takes: options.join(", ") });
-        }
-        (self.plan)(curve, choices)
+    /// The model does not take it; the message lists those that it does.
+    pub fn require(&self, option: &'static dyn AnyOption) -> Result<(), ModelError> {
+        taken(self.name, self.options, option).map(drop)
+    }
+
+    /// Fixes every option for a geometry: widths as given, or else the least that hold it.
+    ///
+    /// # Errors
+    /// The model does not interpolate this curve, does not take an option, or a width is impossible.
+    pub fn plan(&self, curve: &Curve, options: &Options) -> Result<Hardware, ModelError> {
+        let new =
+            || chosen(self.name, self.options, options).map(|options| Plan::new(self.name, curve.axes(), options));
+        let plan = match (&self.interpolates, curve) {
+            (Interpolates::Lines(most, method), Curve::Line(line)) if line.axes() <= *most => {
+                method.planned(line, new()?)
+            }
+            (Interpolates::Arcs(method), Curve::Arc(arc)) => method.planned(arc, new()?),
+            (Interpolates::Conics(method), Curve::Conic(conic)) => method.planned(conic, new()?),
+            (Interpolates::Helices(method), Curve::Helix(helix)) => method.planned(helix, new()?),
+            _ => {
+                let given = match curve {
+                    Curve::Line(line) => format!("a line of {} axes", line.axes()),
+                    Curve::Arc(_) => "an arc".to_owned(),
+                    Curve::Conic(_) => "a conic".to_owned(),
+                    Curve::Helix(_) => "a helix".to_owned(),
+                };
+                return Err(ModelError::Curve { model: self.name, takes: self.curve().describe(), given });
+            }
+        };
+        plan?.finish()
     }
 
     /// The netlist of this hardware, elaborated.
@@ -135,13 +181,27 @@ impl Model {
     /// # Errors
     /// The model itself is wrong.
     pub fn machine(&self, hardware: &Hardware) -> Result<Machine, ModelError> {
-        Machine::new((self.netlist)(hardware)?, hardware)
+        let module = Module::with_overflow(&self.name.replace('-', "_"), hardware.get(&ON_OVERFLOW));
+        (self.hardware)(module.top(), hardware);
+        Machine::new(module.finish()?, hardware)
     }
 
-    /// The words of every block of a geometry: one for a line, one for each sector of an arc where the loader has to
-    /// reload the registers.
+    /// The words of every block of a geometry; none of a curve that the model does not interpolate.
     #[must_use]
     pub fn words(&self, hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-        (self.words)(hardware, curve)
+        match (&self.interpolates, curve) {
+            (Interpolates::Lines(_, method), Curve::Line(line)) => (method.load)(line, hardware),
+            (Interpolates::Arcs(method), Curve::Arc(arc)) => (method.load)(arc, hardware),
+            (Interpolates::Conics(method), Curve::Conic(conic)) => (method.load)(conic, hardware),
+            (Interpolates::Helices(method), Curve::Helix(helix)) => (method.load)(helix, hardware),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl<C> Method<C> {
+    fn planned(&self, curve: &C, mut plan: Plan) -> Result<Plan, ModelError> {
+        (self.plan)(curve, &mut plan)?;
+        Ok(plan)
     }
 }

@@ -1,212 +1,295 @@
-//! What the plans of several models need: the size of a geometry, and the values that a choice may have.
+//! The plan of a model for a curve: its registers in the order of the step table, with their default widths, and what the
+//! user says instead.
+
+use std::collections::BTreeMap;
 
 use stepwave_kernel::Width;
 use stepwave_kernel::bits::Reading;
-use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Curve, Helix, Line, Sector, Weight};
 
-use crate::choices::{Choice, Choices, EndPoint, Named, Radix};
 use crate::error::ModelError;
-use crate::hardware::{Hardware, Pace};
-use crate::registers::Registers;
+use crate::hardware::{AXES, Hardware, Pace};
+use crate::options::{ADDER, Adder, NORMALIZE, OptionDef, Options, PRESET, PerRegister, Preset, RADIX, Radix, WIDTH};
+use crate::sampling::Sampling;
 
-/// The line of a curve; `Model::plan` has checked that it is one.
-pub(crate) fn line(curve: &Curve) -> Option<&Line> {
-    match curve {
-        Curve::Line(line) => Some(line),
-        _ => None,
-    }
+/// What a model says of its hardware for a curve: registers and widths, in the order of the step table, and promises.
+///
+/// It begins without registers; the method promises no path error, and may be without a pulse for 16 clocks.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    model: &'static str,
+    axes: usize,
+    options: Options,
+    /// Those with a choice of width, and the width that they have unless the user says otherwise.
+    default: Vec<(String, u32)>,
+    table: Vec<String>,
+    /// Greatest path error in BLU that the method promises, if it promises one.
+    pub error_bound: Option<f64>,
+    /// Steps of a line.
+    pub pace: Pace,
+    /// Greatest deviation of an axis from its uniform rate, in pulses, that the method promises, if it promises one.
+    pub rate_bound: Option<f64>,
+    /// No pulse for this many clocks while a block runs means that none will come.
+    pub stall_clocks: u64,
+    /// Beginnings of the names of registers that share one scale and are widened together.
+    pub scale: &'static [&'static str],
+    pub(crate) sampling: Option<Sampling>,
 }
 
-/// The arc of a curve; `Model::plan` has checked that it is one.
-pub(crate) fn arc(curve: &Curve) -> Option<&Arc> {
-    match curve {
-        Curve::Arc(arc) => Some(arc),
-        _ => None,
-    }
-}
-
-/// The conic of a curve; `Model::plan` has checked that it is one.
-pub(crate) fn conic(curve: &Curve) -> Option<&Conic> {
-    match curve {
-        Curve::Conic(conic) => Some(conic),
-        _ => None,
-    }
-}
-
-/// The helix of a curve; `Model::plan` has checked that it is one.
-pub(crate) fn helix(curve: &Curve) -> Option<&Helix> {
-    match curve {
-        Curve::Helix(helix) => Some(helix),
-        _ => None,
-    }
-}
-
-/// Bits of a magnitude register: as chosen, or the least that hold `largest`.
-pub(crate) fn magnitude_bits(choices: &Choices, largest: u64) -> u32 {
-    let reading = match choices.radix.unwrap_or_default() {
-        Radix::Binary => Reading::Unsigned,
-        Radix::Decimal => Reading::Decimal,
-    };
-    choices.width.map_or_else(|| reading.needed(i128::from(largest)), Width::get)
-}
-
-/// Bits that a weight needs.
-pub(crate) fn needed(weight: i128) -> u32 {
-    Width::needed_unsigned(weight.unsigned_abs())
-}
-
-/// What the registers of a conic must hold.
-pub(crate) struct ConicSize {
-    /// Greatest value of the function given, at the ends of all sectors and on both axes.
-    pub(crate) greatest: i128,
-    /// Bits of the slopes of the weights of x and y.
-    pub(crate) slopes: [u32; 2],
-    /// Bits of the steps of one axis in a sector.
-    pub(crate) steps: u32,
-    /// Positions of each axis.
-    pub(crate) positions: [Vec<i64>; 2],
-}
-
-impl ConicSize {
-    /// Of a curve; `value` tells what a register holds at a magnitude on an axis of this weight.
-    pub(crate) fn of(curve: &Curve, value: impl Fn(Weight, i64) -> i128) -> ConicSize {
-        let sectors = conic(curve).map(Conic::sectors).unwrap_or_default();
-        let weights = conic(curve).map_or([Weight { slope: 0, constant: 0 }; 2], Conic::weights);
-        let center = conic(curve).map_or([0, 0], Conic::center);
-        let ends = || sectors.iter().flat_map(|sector| [sector.start, sector.end]);
-        let values = ends().flat_map(|end| [0, 1].map(|axis| value(weights[axis], end[axis].abs())));
-        let steps = sectors.iter().flat_map(ConicSector::steps).max().unwrap_or(0);
-        ConicSize {
-            greatest: values.max().unwrap_or(0),
-            slopes: weights.map(|weight| needed(weight.slope)),
-            steps: needed(steps.into()),
-            positions: [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect()),
+impl Plan {
+    /// For a curve of `axes` axes.
+    pub(crate) fn new(model: &'static str, axes: usize, options: Options) -> Plan {
+        Plan {
+            model,
+            axes,
+            options,
+            default: Vec::new(),
+            table: Vec::new(),
+            error_bound: None,
+            pace: Pace::default(),
+            rate_bound: None,
+            stall_clocks: 16,
+            scale: &[],
+            sampling: None,
         }
     }
-}
 
-/// Largest coordinate relative to the centre on the sectors of an arc.
-pub(crate) fn largest_coordinate(sectors: &[Sector]) -> u64 {
-    sectors
-        .iter()
-        .flat_map(|sector| sector.start.into_iter().chain(sector.end))
-        .map(i64::unsigned_abs)
-        .max()
-        .unwrap_or(0)
-}
-
-/// Way of the longest axis of a line; 0 if the curve is none.
-pub(crate) fn longest(curve: &Curve) -> u64 {
-    let delta = line(curve).map(Line::delta).unwrap_or_default();
-    delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0)
-}
-
-/// Positions of each axis at the ends of a curve.
-pub(crate) fn end_positions(curve: &Curve) -> impl Iterator<Item = Vec<i64>> {
-    curve.from().iter().zip(curve.to()).map(|(&from, &to)| vec![from, to])
-}
-
-/// Positions of x and y at the ends of all sectors of an arc, in machine coordinates.
-pub(crate) fn arc_positions(curve: &Curve, sectors: &[Sector]) -> [Vec<i64>; 2] {
-    let center = arc(curve).map_or([0, 0], Arc::center);
-    let ends = || sectors.iter().flat_map(|sector| [sector.start, sector.end]);
-    [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect())
-}
-
-/// The n of a deviation register, where magnitudes have `n` bits. Forced steps lead to an end off the circle, where F is up
-/// to twice the radius, which may need a bit more than the coordinates between both ends.
-pub(crate) fn off_circle_bits(curve: &Curve, choices: &Choices, n: u32) -> u32 {
-    arc(curve).map_or(n, |arc| n.max(magnitude_bits(choices, off_circle_radius(arc))))
-}
-
-/// The radius of an arc whose end lies off the circle, in whole BLU, rounded up; 0 of others.
-pub(crate) fn off_circle_radius(arc: &Arc) -> u64 {
-    // Within 2^53.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    if arc.ends_on_circle() { 0 } else { arc.radius().ceil() as u64 }
-}
-
-/// Hardware that judges every step of an arc by its deviation: registers `f` of so many more bits than the largest
-/// coordinate (where the end point is on the circle, and where it lies beside it), `xi`, `yi`, `quad`, and `e` or `ex`, `ey`.
-pub(crate) fn judged_arc(
-    model: &'static str,
-    curve: &Curve,
-    choices: &Choices,
-    crossing: Crossing,
-    deviation: [u32; 2],
-) -> Result<Hardware, ModelError> {
-    let on_circle = arc(curve).is_some_and(Arc::ends_on_circle);
-    let end_point = end_point(
-        model,
-        choices,
-        if on_circle { EndPoint::Total } else { EndPoint::PerAxis },
-        &[EndPoint::Total, EndPoint::PerAxis],
-        "the longest axis of an arc may arrive while the other still has steps to go, and iterations are not counted",
-    )?;
-    let sectors = arc(curve).map(|arc| arc.sectors(crossing)).unwrap_or_default();
-    let n = magnitude_bits(choices, largest_coordinate(&sectors));
-    let mut registers = Registers::new(model, choices);
-    registers
-        .register("f", off_circle_bits(curve, choices, n) + deviation[usize::from(!on_circle)])
-        .register("xi", n)
-        .register("yi", n)
-        .shown("quad");
-    match end_point {
-        EndPoint::PerAxis => registers.end_counters(2, n),
-        _ => registers.register("e", n + 3),
-    };
-    registers.positions(arc_positions(curve, &sectors));
-    registers.hardware(2, end_point)
-}
-
-/// Hardware that decides at every step of a line whether it takes the long axis alone: registers `f` of `deviation`
-/// more bits than the long axis needs, `e`, and those of `held`.
-pub(crate) fn judged_line(
-    model: &'static str,
-    curve: &Curve,
-    choices: &Choices,
-    held: [&str; 2],
-    deviation: u32,
-) -> Result<Hardware, ModelError> {
-    let n = magnitude_bits(choices, longest(curve));
-    let mut registers = Registers::new(model, choices);
-    for name in held {
-        registers.register(name, n);
+    /// Name of the model.
+    #[must_use]
+    pub fn model(&self) -> &'static str {
+        self.model
     }
-    registers.register("f", n + deviation).register("e", n);
-    registers.positions(end_positions(curve));
-    Ok(Hardware { pace: Pace::Longest, ..registers.hardware(2, EndPoint::Longest)? })
-}
 
-/// The end-point scheme chosen, which must be among those that the model takes.
-pub(crate) fn end_point(
-    model: &'static str,
-    choices: &Choices,
-    default: EndPoint,
-    taken: &[EndPoint],
-    why_not: &str,
-) -> Result<EndPoint, ModelError> {
-    let chosen = choices.end_point.unwrap_or(default);
-    if taken.contains(&chosen) {
-        return Ok(chosen);
+    /// Number of axes of the curve.
+    #[must_use]
+    pub fn axes(&self) -> usize {
+        self.axes
     }
-    let list: Vec<&str> = taken.iter().map(|scheme| scheme.word()).collect();
-    Err(ModelError::Value {
-        model,
-        choice: Choice::EndPoint,
-        value: chosen.word().to_owned(),
-        reason: format!("{why_not}; it takes {}", list.join(", ")),
-    })
-}
 
-/// The end-point scheme of a curve that a pair of integrators draws.
-pub(crate) fn integrated_end_point(model: &'static str, choices: &Choices) -> Result<EndPoint, ModelError> {
-    end_point(
-        model,
-        choices,
-        EndPoint::PerAxis,
-        &[EndPoint::PerAxis, EndPoint::Total],
-        "the longest axis of an arc may arrive while the other still has steps to go, and iterations say nothing of \
-         where an arc stands",
-    )
+    /// The options given, with the model's defaults that depend on nothing.
+    #[must_use]
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// The value of an option: as given, or by default.
+    #[must_use]
+    pub fn get<T: Clone + 'static>(&self, option: &OptionDef<T>) -> T {
+        self.options.value(option)
+    }
+
+    /// The value of an option: as given, or else this one, which the model chooses for the curve.
+    pub fn decide<T: Clone + PartialEq + Send + Sync + 'static>(
+        &mut self,
+        option: &'static OptionDef<T>,
+        usual: T,
+    ) -> T {
+        if self.options.get(option).is_none() {
+            self.fix(option, usual);
+        }
+        self.get(option)
+    }
+
+    /// Sets the value of an option, whatever was given.
+    pub fn fix<T: Clone + PartialEq + Send + Sync + 'static>(&mut self, option: &'static OptionDef<T>, value: T) {
+        self.options.set(option.value(value));
+    }
+
+    /// The preset of remainder registers for which none is given.
+    pub fn usual_preset(&mut self, usual: Preset) {
+        let single = self.options.of_single(&PRESET);
+        let all = self.options.of_all(&PRESET).or(Some(usual));
+        self.fix(&PRESET, PerRegister { all, single });
+    }
+
+    /// Bits n of a magnitude register: as chosen, or the least that hold `largest`.
+    #[must_use]
+    pub fn magnitude_bits(&self, largest: u64) -> u32 {
+        let reading = match self.get(&RADIX) {
+            Radix::Binary => Reading::Unsigned,
+            Radix::Decimal => Reading::Decimal,
+        };
+        self.bits_or(reading.needed(i128::from(largest)))
+    }
+
+    /// The width chosen for all magnitude registers, or else these bits.
+    #[must_use]
+    pub fn bits_or(&self, bits: u32) -> u32 {
+        self.options.of_all(&WIDTH).map_or(bits, Width::get)
+    }
+
+    /// A register of the step table and its default width in bits.
+    pub fn register(&mut self, name: impl Into<String>, bits: u32) -> &mut Self {
+        let name = name.into();
+        self.shown(&name).hidden(name, bits)
+    }
+
+    /// A column of the step table without a choice of width.
+    pub fn shown(&mut self, name: &str) -> &mut Self {
+        self.table.push(name.to_owned());
+        self
+    }
+
+    /// A register with a choice of width that the step table does not show.
+    pub fn hidden(&mut self, name: impl Into<String>, bits: u32) -> &mut Self {
+        self.default.push((name.into(), bits));
+        self
+    }
+
+    /// The end-point counters of `axes` axes, each of `bits` bits.
+    pub fn end_counters(&mut self, axes: usize, bits: u32) -> &mut Self {
+        AXES[..axes].iter().fold(self, |plan, axis| plan.register(format!("e{axis}"), bits))
+    }
+
+    /// The position counters, each for the positions of its axis that must fit. They get one bit more, so that an
+    /// erring path stays visible.
+    pub fn positions(&mut self, axes: impl IntoIterator<Item = Vec<i64>>) -> &mut Self {
+        for (letter, positions) in AXES.iter().zip(axes) {
+            let needed = positions.iter().map(|&position| Width::needed_signed(i128::from(position)));
+            self.hidden(*letter, needed.max().unwrap_or(1) + 1);
+        }
+        self
+    }
+
+    /// Width in bits of a register given so far: the user's, or its default; 0 for one that was not.
+    #[must_use]
+    pub fn bits(&self, name: &str) -> u32 {
+        let default = self.default.iter().find(|(known, _)| known == name).map_or(0, |(_, bits)| *bits);
+        self.chosen(name).map_or(default, Width::get)
+    }
+
+    /// The width that the user gave this register, by its name or by its kind.
+    fn chosen(&self, name: &str) -> Option<Width> {
+        let single = &self.options.get(&WIDTH)?.single;
+        single.get(name).or_else(|| single.get(self.kind(name)?)).copied()
+    }
+
+    /// `jr` for `jrx`: the name without the axis letter, for registers that several axes have.
+    fn kind<'n>(&self, name: &'n str) -> Option<&'n str> {
+        let of = |name: &'n str| AXES.iter().find_map(|axis| name.strip_suffix(axis)).filter(|kind| !kind.is_empty());
+        let kind = of(name)?;
+        let alike = |(other, _): &&(String, u32)| {
+            let other_kind = AXES.iter().find_map(|axis| other.strip_suffix(axis));
+            other_kind == Some(kind)
+        };
+        (self.default.iter().filter(alike).count() > 1).then_some(kind)
+    }
+
+    fn names(&self) -> impl Iterator<Item = &str> {
+        self.default.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// The widths of all registers that have a choice of it, by name.
+    pub(crate) fn widths(&self) -> Result<BTreeMap<String, Width>, ModelError> {
+        let given = self.options.get(&WIDTH).map(|widths| widths.single.keys()).into_iter().flatten();
+        for given in given {
+            if !self.names().any(|name| name == given || self.kind(name) == Some(given)) {
+                return Err(self.unknown(WIDTH.name, given, self.names().collect::<Vec<_>>().join(", ")));
+            }
+        }
+        let resolved = self.default.iter().map(|(name, bits)| {
+            let width = match self.chosen(name) {
+                Some(width) => width,
+                None => Width::new(u64::from(*bits)).map_err(|_| ModelError::TooWide {
+                    register: name.clone(),
+                    bits: u64::from(*bits),
+                    way_out: "give a smaller --width or a smaller geometry".to_owned(),
+                })?,
+            };
+            Ok((name.clone(), width))
+        });
+        resolved.collect()
+    }
+
+    fn unknown(&self, option: &'static str, given: &str, known: String) -> ModelError {
+        ModelError::UnknownRegister { model: self.model, option, register: given.to_owned(), known }
+    }
+
+    /// The preset of each axis.
+    ///
+    /// # Errors
+    /// One is given for a register that is not a remainder register.
+    pub fn presets(&self) -> Result<Vec<Preset>, ModelError> {
+        // What an axis accumulates in.
+        let kind = if self.names().any(|name| name == "accx") { "acc" } else { "jr" };
+        let remainders: Vec<String> = AXES[..self.axes].iter().map(|axis| format!("{kind}{axis}")).collect();
+        let single = self.options.of_single(&PRESET);
+        if let Some(unknown) = single.keys().find(|given| !remainders.contains(given)) {
+            return Err(self.unknown(PRESET.name, unknown, remainders.join(", ")));
+        }
+        let all = self.options.of_all(&PRESET).unwrap_or_default();
+        Ok(remainders.iter().map(|name| single.get(name).copied().unwrap_or(all)).collect())
+    }
+
+    /// The hardware: widths and all options as given or by default.
+    pub(crate) fn finish(self) -> Result<Hardware, ModelError> {
+        Ok(Hardware {
+            presets: self.presets()?,
+            widths: self.widths()?,
+            model: self.model,
+            axes: self.axes,
+            // Both are resolved, register by register.
+            options: self.options.without(&WIDTH).without(&PRESET),
+            sampling: self.sampling,
+            table: self.table,
+            stall_clocks: self.stall_clocks,
+            error_bound: self.error_bound,
+            pace: self.pace,
+            rate_bound: self.rate_bound,
+            scale: self.scale,
+        })
+    }
+
+    /// The integrators (`jr…`, `jv…`) share one scale: equally wide remainders, and integrands that fit in them. An
+    /// iteration takes so many `clocks`.
+    ///
+    /// # Errors
+    /// The widths chosen are of several scales.
+    pub fn integrators(&mut self, clocks: u64) -> Result<(), ModelError> {
+        self.integrators_with_fraction(self.axes, clocks)
+    }
+
+    /// As [`integrators`](Plan::integrators), but only the first `whole` of the axes count whole steps. The integrands of
+    /// the others have a fraction: as many bits as their remainders are wider than `jrx`.
+    ///
+    /// # Errors
+    /// The widths chosen are of several scales.
+    pub fn integrators_with_fraction(&mut self, whole: usize, clocks: u64) -> Result<(), ModelError> {
+        self.scale = &["jv", "jr"];
+        let (model, widths, radix) = (self.model, self.widths()?, self.get(&RADIX));
+        let first = widths["jrx"];
+        for (index, axis) in AXES[..self.axes].iter().enumerate() {
+            let (jr, jv) = (widths[&format!("jr{axis}")], widths[&format!("jv{axis}")]);
+            if index >= whole && jr < first {
+                return Err(ModelError::Widths(format!(
+                    "{model}: jr{axis} of {jr} is narrower than jrx of {first}, but its bits beyond those are the \
+                     fraction of jv{axis}: change --width"
+                )));
+            }
+            if index < whole && jr != first {
+                return Err(ModelError::Widths(format!(
+                    "{model}: jr{axis} of {jr} and jrx of {first} would count at unequal rates: give all jr the same \
+                     width"
+                )));
+            }
+            let equal = self.get(&NORMALIZE) || self.get(&ADDER) == Adder::Serial;
+            if jv > jr || equal && jv != jr {
+                let rule = if equal { "must be as wide as" } else { "must not be wider than" };
+                return Err(ModelError::Widths(format!(
+                    "{model}: the integrand jv{axis} of {jv} {rule} its remainder jr{axis} of {jr}: change --width"
+                )));
+            }
+            if radix == Radix::Decimal && (jr.get() % 4 != 0 || jv.get() % 4 != 0) {
+                return Err(ModelError::Widths(format!(
+                    "{model}: jv{axis} of {jv} and jr{axis} of {jr} hold no whole decimal digits of 4 bits: give a \
+                     --width that is a multiple of 4"
+                )));
+            }
+        }
+        // An integrator that has not pulsed in so many additions never will; and as many clocks of normalisation as
+        // bits, and those of loading.
+        let n = widths.iter().filter(|(name, _)| name.starts_with("jr")).map(|(_, jr)| jr.get()).max().unwrap_or(1);
+        let additions = u64::try_from(crate::hardware::modulus(radix, n)).unwrap_or(u64::MAX);
+        self.stall_clocks = additions.saturating_mul(clocks).saturating_add(u64::from(n) + 8);
+        Ok(())
+    }
 }

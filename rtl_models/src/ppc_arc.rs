@@ -30,26 +30,26 @@
 #![doc = include_str!("../../waves/ppc-arc-nr1.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::dsl::Scope;
 use stepwave_kernel::formula::name;
-use stepwave_nc::{Crossing, Curve};
+use stepwave_nc::{Arc, Crossing};
 
-use crate::choices::Choices;
 use crate::claims::{Claims, Region};
+use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
 use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, square_gain};
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "ppc-arc";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Point-by-point comparison, arc.
+pub static MODEL: Model = Model {
+    name: "ppc-arc",
     title: "Point-by-point comparison, arc",
     method: "point-by-point comparison",
-    curve: CurveKind::Arc,
+    source: "逐点比较法, the circular interpolator of early NC systems, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement, from 0" },
         RegisterDoc::XI_YI,
@@ -58,26 +58,24 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc::EX_EY,
         RegisterDoc::POSITIONS,
     ],
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
-    source: "逐点比较法, the circular interpolator of early NC systems, as in Chinese NC textbooks",
+    options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::QuadrantArcs)),
-    plan,
-    netlist,
-    words: |hardware, curve| words::judged_arc(hardware, curve, CROSSING),
+    interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
+    hardware,
 };
 
 /// The path itself crosses the axes.
 const CROSSING: Crossing = Crossing::PathExtreme;
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    Ok(Hardware { error_bound: Some(1.0), ..plan::judged_arc(NAME, curve, choices, CROSSING, [2; 2])? })
+fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
+    sizes::judged_arc(arc, plan, CROSSING, [2; 2]);
+    plan.error_bound = Some(1.0);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("ppc_arc", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
 
@@ -103,7 +101,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let last = arc.compare(beat.compare, taken);
     beat.close(&block, last);
     block.close(block.load, beat.compare, last);
-    Ok(module.finish()?)
 }
 
 /// F stays between what a step at 0 and a step at -1 leave.

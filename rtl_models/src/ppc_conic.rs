@@ -28,26 +28,25 @@
 #![doc = include_str!("../../waves/ppc-conic-ellipse.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
-use stepwave_nc::{Conic, ConicSector, Curve, Shape, Weight};
+use stepwave_kernel::dsl::Scope;
+use stepwave_nc::{Conic, ConicSector, Shape, Weight};
 
-use crate::choices::{Choices, EndPoint};
+use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WIDTH};
 use crate::parts::{BeatRing, Block, DeviationAccumulator, EndCounters, axis_counter, up_down_counter};
-use crate::registers::Registers;
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "ppc-conic";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Point-by-point comparison, ellipse, parabola, hyperbola.
+pub static MODEL: Model = Model {
+    name: "ppc-conic",
     title: "Point-by-point comparison, ellipse, parabola, hyperbola",
     method: "point-by-point comparison",
-    curve: CurveKind::Conic,
+    source: "逐点比较法 for curves of second order, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement" },
         RegisterDoc { name: "gx, gy", width: "n", about: "magnitudes of the derivatives of F" },
@@ -56,12 +55,10 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc::EX_EY_NEEDED,
         RegisterDoc::POSITIONS,
     ],
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ARC_END_POINT, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
-    source: "逐点比较法 for curves of second order, as in Chinese NC textbooks",
+    options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
     claims: None,
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Conics(Method { plan, load }),
+    hardware,
 };
 
 /// Derivative of F along an axis, and half its change by a step, of the axis's interval weight: of an ellipse or a
@@ -73,36 +70,26 @@ fn derivative(shape: Shape, weight: Weight, magnitude: i64) -> [i128; 2] {
     }
 }
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let conic = plan::conic(curve);
-    let end_point = plan::end_point(
-        NAME,
-        choices,
-        if conic.is_some_and(Conic::ends_on_curve) { EndPoint::Total } else { EndPoint::PerAxis },
-        &[EndPoint::Total, EndPoint::PerAxis],
-        "the longest axis of an arc may arrive while the other still has steps to go, and iterations are not counted",
-    )?;
-    let shape = conic.map_or(Shape::Parabola { c: 1, opens: stepwave_nc::Opens::PlusX }, Conic::shape);
+fn plan(conic: &Conic, plan: &mut Plan) -> Result<(), ModelError> {
+    let usual = if conic.ends_on_curve() { EndPoint::Total } else { EndPoint::PerAxis };
+    let end_point = plan.decide(&END_POINT, usual);
     // A derivative and what a step adds to it.
-    let size = plan::ConicSize::of(curve, |weight, at| derivative(shape, weight, at).iter().sum());
-    let n = choices.width.map_or(plan::needed(size.greatest), stepwave_kernel::Width::get);
-    let mut registers = Registers::new(NAME, choices);
-    registers.register("f", n + 1).register("gx", n).register("gy", n);
-    registers.hidden("ux", size.slopes[0]).hidden("uy", size.slopes[1]);
+    let size = sizes::ConicSize::of(conic, |weight, at| derivative(conic.shape(), weight, at).iter().sum());
+    let n = plan.bits_or(sizes::needed(size.greatest));
+    plan.register("f", n + 1).register("gx", n).register("gy", n);
+    plan.hidden("ux", size.slopes[0]).hidden("uy", size.slopes[1]);
     match end_point {
-        EndPoint::PerAxis => registers.end_counters(2, size.steps),
-        _ => registers.register("e", size.steps + 1),
+        EndPoint::PerAxis => plan.end_counters(2, size.steps),
+        _ => plan.register("e", size.steps + 1),
     };
-    registers.positions(size.positions);
-    registers.hardware(2, end_point)
+    plan.positions(size.positions);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("ppc_conic", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let bits = |name: &str| hardware.bits(name);
     let block = Block::new(m);
-    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
     let f = DeviationAccumulator::new(m, bits("f"));
     let [gx, gy] = ["gx", "gy"].map(|name| m.reg(name, bits(name)));
     let [ux, uy] = ["ux", "uy"].map(|name| block.held(m, name, bits(name)));
@@ -140,11 +127,9 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let last = end.count(beat.compare, taken);
     beat.close(&block, last);
     block.close(block.load, beat.compare, last);
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(conic) = plan::conic(curve) else { return Vec::new() };
+fn load(conic: &Conic, hardware: &Hardware) -> Vec<Words> {
     let weights = conic.weights();
     let block = |sector: &ConicSector| {
         let at = |axis: usize| derivative(conic.shape(), weights[axis], sector.start[axis].abs());

@@ -26,28 +26,26 @@
 #![doc = include_str!("../../waves/ppc-line-6-4.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::dsl::Scope;
 use stepwave_kernel::formula::{Formula, name, number};
-use stepwave_nc::{Curve, Line};
+use stepwave_nc::Line;
 
-use crate::choices::{Choice, Choices, EndPoint, Form};
 use crate::claims::{Claims, Region, steps_left};
 use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, END_POINT, EndPoint, FORM, Form, ON_OVERFLOW, WIDTH};
 use crate::parts::{BeatRing, Block, DeviationAccumulator, DownCounter, axis_counter};
-use crate::plan;
-use crate::registers::Registers;
+use crate::plan::Plan;
+use crate::sizes;
 
-const NAME: &str = "ppc-line";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Point-by-point comparison, line.
+pub static MODEL: Model = Model {
+    name: "ppc-line",
     title: "Point-by-point comparison, line",
     method: "point-by-point comparison",
-    curve: CurveKind::Line { max_axes: 2 },
+    source: "逐点比较法, the linear interpolator of early NC systems, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "xe", width: "n", about: "|dx| of the line (signed form: dx in n+1 bits)" },
         RegisterDoc { name: "ye", width: "n", about: "|dy| of the line (signed form: dy in n+1 bits)" },
@@ -56,64 +54,55 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "ex, ey", width: "n", about: "end-point down-counter of each axis (per-axis)" },
         RegisterDoc { name: "x, y", width: "as the path needs, + 1", about: "machine position, signed" },
     ],
-    choices: &[
-        ChoiceDoc { choice: Choice::Width, values: "N or REGISTER=N,… (default: the least that holds the line)" },
-        ChoiceDoc { choice: Choice::Form, values: "magnitude (default) | signed | bare" },
-        ChoiceDoc { choice: Choice::EndPoint, values: "total (default) | per-axis | longest" },
-        ChoiceDoc { choice: Choice::Beats, values: "4 (default) | 1" },
-        ChoiceDoc { choice: Choice::OnOverflow, values: "trap (default) | saturate | wrap" },
+    options: &[
+        &WIDTH.about("N or REGISTER=N,… (default: the least that holds the line)"),
+        &FORM,
+        &END_POINT.only(
+            Some(EndPoint::Total),
+            &[(EndPoint::Total, ""), (EndPoint::PerAxis, ""), (EndPoint::Longest, "")],
+            "a point-by-point step has no iterations beside its pulses",
+        ),
+        &BEATS,
+        &ON_OVERFLOW,
     ],
-    source: "逐点比较法, the linear interpolator of early NC systems, as in Chinese NC textbooks",
     claims: Some(Claims {
-        told_apart: |hardware| (hardware.end_point == EndPoint::Longest).then_some(Region::LinesByLonger),
+        told_apart: |hardware| (hardware.get(&END_POINT) == EndPoint::Longest).then_some(Region::LinesByLonger),
         rank,
         ..Claims::of(Region::Lines)
     }),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(2, Method { plan, load }),
+    hardware,
 };
 
 /// Steps left; where the counter counts one axis alone, a step of the other takes F, of |F| < 2^k, to where it steps.
 fn rank(hardware: &Hardware) -> Option<Formula> {
-    if hardware.end_point != EndPoint::Longest {
+    if hardware.get(&END_POINT) != EndPoint::Longest {
         return steps_left(hardware);
     }
     let sign = |flag: &str| number(1) - 2 * name(flag);
-    let judged = if hardware.form == Form::Signed { sign("sx") * sign("sy") * name("f") } else { name("f") };
+    let judged = if hardware.get(&FORM) == Form::Signed { sign("sx") * sign("sy") * name("f") } else { name("f") };
     Some(name("e") * name("2^k") + sign("x_is_longest") * judged)
 }
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let delta = plan::line(curve).map(Line::delta).unwrap_or_default();
-    let largest = delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0);
-    let n = plan::magnitude_bits(choices, largest);
-    let end_point = plan::end_point(
-        NAME,
-        choices,
-        EndPoint::Total,
-        &[EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest],
-        "a point-by-point step has no iterations beside its pulses",
-    )?;
-    let form = choices.form.unwrap_or_default();
-    let end_bits = if form == Form::Signed { n + 1 } else { n };
-    let mut registers = Registers::new(NAME, choices);
-    registers.register("xe", end_bits).register("ye", end_bits).register("f", n + 1);
-    match end_point {
-        EndPoint::PerAxis => registers.end_counters(2, n),
-        _ => registers.register("e", n + 1),
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    let n = plan.magnitude_bits(sizes::longest(line));
+    let end_bits = if plan.get(&FORM) == Form::Signed { n + 1 } else { n };
+    plan.register("xe", end_bits).register("ye", end_bits).register("f", n + 1);
+    match plan.get(&END_POINT) {
+        EndPoint::PerAxis => plan.end_counters(2, n),
+        _ => plan.register("e", n + 1),
     };
-    registers.positions(plan::end_positions(curve));
-    Ok(Hardware { error_bound: Some(1.0), pace: Pace::Total, ..registers.hardware(2, end_point)? })
+    plan.positions(sizes::end_positions(line));
+    plan.error_bound = Some(1.0);
+    plan.pace = Pace::Total;
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("ppc_line", hardware.on_overflow);
-    let m = module.top();
-    let signed = hardware.form == Form::Signed;
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
+    let signed = hardware.get(&FORM) == Form::Signed;
     let block = Block::new(m);
-    let beat = BeatRing::new(m, hardware.beats, block.busy);
-    let end = |name: &str| match hardware.form {
+    let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
+    let end = |name: &str| match hardware.get(&FORM) {
         Form::Magnitude | Form::Bare => block.held(m, name, hardware.bits(name)),
         Form::Signed => block.held_signed(m, name, hardware.bits(name)),
     };
@@ -123,7 +112,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let counter = |name: &str| DownCounter::new(m, &block, name, hardware.bits(name));
 
-    match hardware.form {
+    match hardware.get(&FORM) {
         Form::Magnitude => between_steps(m, "f", [name("xe"), name("ye")], &[]),
         Form::Signed => signs_between_steps(m),
         Form::Bare => {}
@@ -131,11 +120,11 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
 
     // Judge.
     let outside = if signed { f.not_negative() ^ sx ^ sy } else { f.not_negative() };
-    let per_axis = (hardware.end_point == EndPoint::PerAxis).then(|| (counter("ex"), counter("ey")));
+    let per_axis = (hardware.get(&END_POINT) == EndPoint::PerAxis).then(|| (counter("ex"), counter("ey")));
     let (x_open, y_open) = match per_axis {
         // An exhausted axis hands its step to the other.
         Some((ex, ey)) => (ex.running(), ey.running()),
-        None if hardware.form == Form::Bare => (m.lit(1, 1), m.lit(1, 1)),
+        None if hardware.get(&FORM) == Form::Bare => (m.lit(1, 1), m.lit(1, 1)),
         None => (xe.is_nonzero(), ye.is_nonzero()),
     };
     let take_x = beat.decided("take_x", outside & x_open | !y_open);
@@ -152,7 +141,7 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     // Compare.
     let last = match per_axis {
         Some((ex, ey)) => ex.count(beat.compare & take_x) & ey.count(beat.compare & !take_x),
-        None if hardware.end_point == EndPoint::Longest => {
+        None if hardware.get(&END_POINT) == EndPoint::Longest => {
             let x_is_longest = block.held(m, "x_is_longest", 1);
             counter("e").count(beat.compare & !(take_x ^ x_is_longest))
         }
@@ -160,7 +149,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     };
     beat.close(&block, last);
     block.close(block.load, beat.compare, last);
-    Ok(module.finish()?)
 }
 
 /// F stays between what a step of the first axis, which F >= 0 takes, at 0 and one of the second at -1 leave. `ways` are
@@ -185,23 +173,22 @@ fn signs_between_steps(m: Scope<'_>) {
     }
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(line) = plan::line(curve) else { return Vec::new() };
+fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let [dx, dy] = [0, 1].map(|axis| i128::from(line.delta()[axis]));
     let (a, b) = (dx.abs(), dy.abs());
-    let mut words = match hardware.form {
+    let mut words = match hardware.get(&FORM) {
         Form::Magnitude | Form::Bare => {
             vec![("xe", a), ("ye", b), ("sx", i128::from(dx < 0)), ("sy", i128::from(dy < 0))]
         }
         Form::Signed => vec![("xe", dx), ("ye", dy)],
     };
     words.push(("f", 0));
-    match hardware.end_point {
+    match hardware.get(&END_POINT) {
         EndPoint::PerAxis => words.extend([("ex", a), ("ey", b)]),
         EndPoint::Longest => {
             // On 45° lines the counter watches the axis that loses ties and therefore steps last: Y, but X where the
             // signed form gives the tie to Y.
-            let x_is_longest = a > b || a == b && hardware.form == Form::Signed && (dx < 0) != (dy < 0);
+            let x_is_longest = a > b || a == b && hardware.get(&FORM) == Form::Signed && (dx < 0) != (dy < 0);
             words.extend([("e", a.max(b)), ("x_is_longest", i128::from(x_is_longest))]);
         }
         EndPoint::Total | EndPoint::Iterations => words.push(("e", a + b)),

@@ -59,27 +59,26 @@
 #![doc = include_str!("../../waves/sampled-arc-7360.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::{Module, Register, Scope, Signal};
-use stepwave_nc::{Arc, Crossing, Curve, Direction};
+use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_nc::{Arc, Crossing, Direction};
 
-use crate::choices::{Choice, Choices, System};
+use crate::docs::{SAMPLED_SYSTEM, SAMPLED_WIDTH};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System, TOLERANCE};
 use crate::parts::{ArithmeticUnit, Block, FineStage, magnitude, negated, with_sign};
-use crate::plan;
-use crate::registers::Registers;
+use crate::plan::Plan;
 use crate::sampling::Sampling;
+use crate::sizes;
 
-const NAME: &str = "sampled-arc";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Data sampling with a fine DDA, arc.
+pub static MODEL: Model = Model {
+    name: "sampled-arc",
     title: "Data sampling with a fine DDA, arc",
     method: "data sampling",
-    curve: CurveKind::Arc,
+    source: "数据采样法, the two-stage interpolation of CNC systems, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "state", width: "4", about: "step of the coarse calculation" },
         RegisterDoc {
@@ -93,34 +92,29 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc::SAMPLED_JR,
         RegisterDoc::POSITIONS,
     ],
-    choices: &[
-        ChoiceDoc::SYSTEM,
-        ChoiceDoc::FRACTION,
-        ChoiceDoc {
-            choice: Choice::Step,
-            values: "BLU of a period, R/2 at most (default: 8, or what is taken); or --feed",
-        },
-        ChoiceDoc { choice: Choice::Tolerance, values: "greatest chord error in BLU (default: 1)" },
-        ChoiceDoc::SAMPLED_WIDTH,
-        ChoiceDoc::PRESET,
-        ChoiceDoc::ON_OVERFLOW,
+    options: &[
+        &SAMPLED_SYSTEM,
+        &FRACTION,
+        &STEP.about("BLU of a period, R/2 at most (default: 8, or what is taken); or --feed"),
+        &TOLERANCE.about("greatest chord error in BLU (default: 1)"),
+        &SAMPLED_WIDTH,
+        &PRESET,
+        &ON_OVERFLOW,
     ],
-    source: "数据采样法, the two-stage interpolation of CNC systems, as in Chinese NC textbooks",
     claims: None,
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Arcs(Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let radius = plan::arc(curve).map_or(1.0, Arc::radius);
-    let sampling = Sampling::plan(NAME, choices, radius, Some(radius))?;
-    let mut registers = Registers::new(NAME, choices);
-    let sectors = plan::arc(curve).map(|arc| arc.sectors(Crossing::PathExtreme)).unwrap_or_default();
+fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
+    let radius = arc.radius();
+    let sampling = Sampling::plan(plan, radius, Some(radius))?;
+    let sectors = arc.sectors(Crossing::PathExtreme);
     // The end may lie 1 BLU beside the circle, and a path by the step factor ends outside it.
     let more = 2.0 + growth(&sampling, radius);
     let coarse = f64::from(coarse_clocks(&sampling));
-    sampling.hardware(&mut registers, choices, [more, coarse], plan::arc_positions(curve, &sectors))
+    sampling.hardware(plan, [more, coarse], sizes::arc_positions(arc, &sectors))?;
+    Ok(())
 }
 
 /// Clocks from one hand-over to the next: a component takes a bit a clock, and its state two more.
@@ -373,10 +367,8 @@ fn magnitude_of_difference<'m>(m: Scope<'m>, a: Signal<'m>, b: Signal<'m>) -> Si
     borrow.mux(negated(m, difference.as_signed()).as_unsigned(), difference)
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("sampled_arc", hardware.on_overflow);
-    let top = module.top();
-    let Some(sampling) = hardware.sampling else { return Ok(module.finish()?) };
+fn hardware(top: Scope<'_>, hardware: &Hardware) {
+    let Some(sampling) = hardware.sampling else { return };
     let by_direction = sampling.system == System::Direction;
     let (q, n, bits) = (sampling.fraction, sampling.whole, sampling.magnitude());
     let block = Block::new(top);
@@ -445,11 +437,10 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     // As wide as the points that the fine stage takes.
     let points = [x, y].map(|coordinate| coordinate.extend(bits + 2));
     fine.close(block, hardware, [hand, arrives.q], points, q, ends);
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let (Some(sampling), Some(arc)) = (hardware.sampling, plan::arc(curve)) else { return Vec::new() };
+fn load(arc: &Arc, hardware: &Hardware) -> Vec<Words> {
+    let Some(sampling) = hardware.sampling else { return Vec::new() };
     let [[x, y], [xe, ye], from] = [arc.start(), arc.end(), arc.from()].map(|point| point.map(i128::from));
     let fine = |coordinate: i128| coordinate << sampling.fraction;
     vec![vec![

@@ -48,27 +48,26 @@
 
 use std::f64::consts::SQRT_2;
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
-use stepwave_nc::Curve;
+use stepwave_kernel::dsl::Scope;
+use stepwave_nc::Line;
 
-use crate::choices::{Choice, Choices, System};
+use crate::docs::{SAMPLED_SYSTEM, SAMPLED_WIDTH};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System};
 use crate::parts::{ArithmeticUnit, Block, FineStage, with_sign};
-use crate::registers::Registers;
+use crate::plan::Plan;
 use crate::sampling::Sampling;
-use crate::{plan, words};
+use crate::{sizes, words};
 
-const NAME: &str = "sampled-line";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Data sampling with a fine DDA, line of 2 axes.
+pub static MODEL: Model = Model {
+    name: "sampled-line",
     title: "Data sampling with a fine DDA, line of 2 axes",
     method: "data sampling",
-    curve: CurveKind::Line { max_axes: 2 },
+    source: "数据采样法, the two-stage interpolation of CNC systems, as in Chinese NC textbooks",
     registers: &[
         RegisterDoc { name: "state", width: "3", about: "step of the coarse calculation" },
         RegisterDoc { name: "far, near", width: "n+1+q", about: "coarse way of the long and the short axis" },
@@ -78,28 +77,26 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc::SAMPLED_JR,
         RegisterDoc::POSITIONS,
     ],
-    choices: &[
-        ChoiceDoc::SYSTEM,
-        ChoiceDoc::FRACTION,
-        ChoiceDoc { choice: Choice::Step, values: "BLU of a period (default: 8); or --feed" },
-        ChoiceDoc::SAMPLED_WIDTH,
-        ChoiceDoc::PRESET,
-        ChoiceDoc::ON_OVERFLOW,
+    options: &[
+        &SAMPLED_SYSTEM,
+        &FRACTION,
+        &STEP.about("BLU of a period (default: 8); or --feed"),
+        &SAMPLED_WIDTH,
+        &PRESET,
+        &ON_OVERFLOW,
     ],
-    source: "数据采样法, the two-stage interpolation of CNC systems, as in Chinese NC textbooks",
     claims: None,
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(2, Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let sampling = Sampling::plan(NAME, choices, curve.length(), None)?;
-    let mut registers = Registers::new(NAME, choices);
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    let sampling = Sampling::plan(plan, line.length(), None)?;
     let coarse = f64::from(coarse_clocks(&sampling));
-    let hardware = sampling.hardware(&mut registers, choices, [0.0, coarse], plan::end_positions(curve))?;
+    sampling.hardware(plan, [0.0, coarse], sizes::end_positions(line))?;
     // Half a pulse of rounding on each axis, twice where the fine stage is between two pulses.
-    Ok(Hardware { error_bound: Some(1.5 * SQRT_2), ..hardware })
+    plan.error_bound = Some(1.5 * SQRT_2);
+    Ok(())
 }
 
 /// Clocks from one hand-over to the next: a component takes a bit a clock, and its state two more.
@@ -150,10 +147,8 @@ const STEP_FACTOR: [(u64, &str); 8] = [
     (at::HAND, "HAND_OVER"),
 ];
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("sampled_line", hardware.on_overflow);
-    let m = module.top();
-    let Some(sampling) = hardware.sampling else { return Ok(module.finish()?) };
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
+    let Some(sampling) = hardware.sampling else { return };
     let by_direction = sampling.system == System::Direction;
     let (q, n, bits) = (sampling.fraction, sampling.whole, sampling.magnitude());
     let block = Block::new(m);
@@ -254,12 +249,11 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     let points = [0, 1].map(|axis| with_sign(coarse, ways[axis], bits + 2, signs[axis]));
     let ends = [0, 1].map(|axis| with_sign(coarse, wholes[axis], n + 2, signs[axis]));
     fine.close(block, hardware, [hand, last], points, q, ends);
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let Some(sampling) = hardware.sampling else { return Vec::new() };
-    let Some(([a, b], line)) = words::line(curve) else { return Vec::new() };
+    let ([a, b], line) = words::line(line);
     let sign = |name: &str| line.iter().find(|(word, _)| *word == name).map_or(0, |(_, value)| *value);
     let preset = |axis: usize, name: &str| hardware.preset(axis, name);
     vec![vec![

@@ -2,10 +2,9 @@
 
 use stepwave_kernel::Width;
 
-use crate::choices::{Choice, Choices, Millionths, System};
 use crate::error::ModelError;
-use crate::hardware::Hardware;
-use crate::registers::Registers;
+use crate::options::{END_POINT, EndPoint, FRACTION, Millionths, STEP, SYSTEM, System, TOLERANCE};
+use crate::plan::Plan;
 
 /// The coarse stage of data sampling: all that fixes it.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -34,9 +33,7 @@ pub struct Sampling {
 const MOST_CLOCK_BITS: u32 = 60;
 
 /// The way of a period in BLU where none is chosen.
-const STEP: u64 = 8;
-/// Bits of the fraction where none are chosen.
-const FRACTION: u32 = 10;
+const USUAL_STEP: u64 = 8;
 /// Least bits of a fraction.
 const LEAST_FRACTION: u32 = 8;
 /// Most bits of a magnitude: the square root takes its square.
@@ -61,26 +58,21 @@ impl Sampling {
 
     /// Fixes the coarse stage for a curve of this length, and of this radius if it is an arc. Magnitudes are up to
     /// `greatest` BLU and what an arc needs beyond its radius.
-    pub(crate) fn plan(
-        model: &'static str,
-        choices: &Choices,
-        greatest: f64,
-        radius: Option<f64>,
-    ) -> Result<Sampling, ModelError> {
-        let refused =
-            |choice: Choice, value: String, reason: String| Err(ModelError::Value { model, choice, value, reason });
-        let fraction = choices.fraction.unwrap_or(FRACTION);
+    pub(crate) fn plan(plan: &Plan, greatest: f64, radius: Option<f64>) -> Result<Sampling, ModelError> {
+        let model = plan.model();
+        let refused = |option, value: String, reason: String| Err(ModelError::Value { model, option, value, reason });
+        let fraction = plan.get(&FRACTION);
         if !(LEAST_FRACTION..=MOST - 1).contains(&fraction) {
             let reason = format!("a coarse point has {LEAST_FRACTION} to {} bits of fraction", MOST - 1);
-            return refused(Choice::Fraction, fraction.to_string(), reason);
+            return refused(FRACTION.name, fraction.to_string(), reason);
         }
-        let tolerance = choices.tolerance.unwrap_or(Millionths(1_000_000));
+        let tolerance = plan.get(&TOLERANCE).unwrap_or(Millionths(1_000_000));
         // On an arc the direction turns by less than the angle of a period, which a step of R/2 keeps below 30 degrees.
         let most = radius.map(|radius| (8.0 * radius * tolerance.units()).sqrt().min(radius / 2.0));
-        let default = most.map_or(STEP as f64, |most| most.min(STEP as f64));
+        let default = most.map_or(USUAL_STEP as f64, |most| most.min(USUAL_STEP as f64));
         // Down, so that it is none too great.
         let down = |length: f64| Millionths::nearest((length * 1e3).floor() / 1e3).unwrap_or(Millionths(0));
-        let step = choices.step.unwrap_or_else(|| down(default));
+        let step = plan.get(&STEP).unwrap_or_else(|| down(default));
         if let Some((radius, most)) = radius.zip(most).filter(|(_, most)| step.units() > *most) {
             let chord = step.units() * step.units() / (8.0 * radius);
             let why = if chord > tolerance.units() {
@@ -91,14 +83,14 @@ impl Sampling {
                 format!("it is more than half the radius {radius:.3}")
             };
             let reason = format!("{why}: give --step {} or less, or a lower --feed", down(most));
-            return refused(Choice::Step, step.to_string(), reason);
+            return refused(STEP.name, step.to_string(), reason);
         }
         let word = (u128::from(step.0) << fraction).saturating_add(500_000) / 1_000_000;
         if word == 0 {
             let least = Millionths((1_000_000_u64 >> fraction) + 1);
             let reason =
                 format!("it is 0 with {fraction} bits of fraction: give --step {least} or more, or a higher --feed");
-            return refused(Choice::Step, step.to_string(), reason);
+            return refused(STEP.name, step.to_string(), reason);
         }
         // What lies in front of the middle of a step, and room for the way that the path may be off.
         let room = radius.map_or(greatest.max(step.units()) + 2.0, |_| greatest * 1.25 + 8.0);
@@ -121,7 +113,7 @@ impl Sampling {
         let chord_error = radius.map_or(0.0, |radius| step.units() * step.units() / (8.0 * radius));
         // It is below 2^31: a step beyond does not get here.
         let word = u64::try_from(word).unwrap_or(u64::MAX);
-        let (system, clock_hz, clocks) = (choices.system.unwrap_or_default(), choices.clock_hz, [1, 1]);
+        let (system, clock_hz, clocks) = (plan.get(&SYSTEM), plan.options().clock_hz, [1, 1]);
         Ok(Sampling { system, fraction, step, word, whole, chord_error, tolerance, clock_hz, clocks })
     }
 
@@ -153,37 +145,40 @@ impl Sampling {
         }
     }
 
-    /// Hardware of a coarse stage and a fine stage of two axes, whose integrators hold the greatest way of a period:
+    /// Plans hardware of a coarse stage and a fine stage of two axes, whose integrators hold the greatest way of a period:
     /// f, rounded to whole pulses, and `more` BLU by which the last way may be longer. The coarse stage takes `coarse`
     /// clocks a period.
     pub(crate) fn hardware(
         self,
-        registers: &mut Registers<'_>,
-        choices: &Choices,
+        plan: &mut Plan,
         [more, coarse]: [f64; 2],
         positions: impl IntoIterator<Item = Vec<i64>>,
-    ) -> Result<Hardware, ModelError> {
-        let n = choices.width.map_or_else(|| Width::needed_unsigned(whole(self.step.units() + 1.0 + more)), Width::get);
-        registers.shown("cx").shown("cy");
+    ) -> Result<(), ModelError> {
+        let n = plan.bits_or(Width::needed_unsigned(whole(self.step.units() + 1.0 + more)));
+        plan.shown("cx").shown("cy");
         for axis in ["x", "y"] {
-            registers.register(format!("jv{axis}"), n).register(format!("jr{axis}"), n);
+            plan.register(format!("jv{axis}"), n).register(format!("jr{axis}"), n);
         }
-        registers.positions(positions);
-        let hardware = registers.integrators(2, crate::choices::EndPoint::Iterations, 1)?;
+        plan.positions(positions);
+        plan.fix(&END_POINT, EndPoint::Iterations);
+        plan.integrators(1)?;
         let coarse = u64::try_from(whole(coarse)).unwrap_or(u64::MAX);
         // Additions at least two clocks apart leave one for the integrands of the next period.
-        let burst = 1_u64.checked_shl(hardware.bits("jrx") + 1).unwrap_or(u64::MAX);
+        let burst = 1_u64.checked_shl(plan.bits("jrx") + 1).unwrap_or(u64::MAX);
         let (least, why) = if burst > coarse {
             (burst, "the additions of the fine stage take")
         } else {
             (coarse, "the coarse calculation takes")
         };
-        let clocks = self.period(hardware.model, least, why)?;
+        let clocks = self.period(plan.model(), least, why)?;
         // The calculation once a block; and periods without a pulse.
         let periods = u64::try_from(whole((4.0 / self.step.units()).min(1e9))).unwrap_or(u64::MAX >> 32) + 4;
         let period = (clocks[0] / clocks[1]).saturating_add(2);
-        let stall_clocks = coarse.saturating_mul(2).saturating_add(period.saturating_mul(periods));
-        Ok(Hardware { sampling: Some(Sampling { clocks, ..self }), stall_clocks, ..hardware })
+        plan.stall_clocks = coarse.saturating_mul(2).saturating_add(period.saturating_mul(periods));
+        plan.fix(&STEP, Some(self.step));
+        plan.fix(&TOLERANCE, Some(self.tolerance));
+        plan.sampling = Some(Sampling { clocks, ..self });
+        Ok(())
     }
 }
 

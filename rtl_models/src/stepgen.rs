@@ -49,30 +49,31 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use stepwave_kernel::dsl::Module;
-use stepwave_kernel::{Netlist, Width};
-use stepwave_nc::Curve;
+use stepwave_kernel::Width;
+use stepwave_kernel::dsl::Scope;
+use stepwave_nc::Line;
 
-use crate::choices::{Choice, Choices, EndPoint, Preset, StepTiming};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::hardware::names::{ACC, POSITION, RATE};
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PICK_OFF, PRESET, Preset, StepTiming, TIMING, WIDTH};
 use crate::parts::{Block, DownCounter, PhaseAccumulator, StepOutput, axis_counter};
-use crate::plan;
-use crate::registers::Registers;
+use crate::plan::Plan;
+use crate::sizes;
 
 const NAME: &str = "stepgen";
 
 /// Longest time of an output, in clocks.
 const LONGEST_TIME: u64 = 1 << 20;
 
-pub(crate) const MODEL: Model = Model {
+/// Phase accumulators of a motion card, line of 2 to 6 axes.
+pub static MODEL: Model = Model {
     name: NAME,
     title: "Phase accumulators of a motion card, line of 2 to 6 axes",
     method: "modern step generators",
-    curve: CurveKind::Line { max_axes: 6 },
+    source: "the step generators of FPGA motion cards: direct digital synthesis of step and direction",
     registers: &[
         RegisterDoc { name: "ratex, ratey, …", width: "n+1+p-k", about: "rate, d·2^(p-k), signed" },
         RegisterDoc { name: "accx, accy, …", width: "n+1+p", about: "phase accumulator, signed, from the preset" },
@@ -80,21 +81,16 @@ pub(crate) const MODEL: Model = Model {
         RegisterDoc { name: "stepx, dirx, …", width: "1", about: "step and direction output of each axis" },
         RegisterDoc::AXIS_POSITIONS,
     ],
-    choices: &[
-        ChoiceDoc::WIDTH,
-        ChoiceDoc { choice: Choice::Preset, values: "zero (default) | half | full | N below 2^p, or accx=N,accy=N" },
-        ChoiceDoc { choice: Choice::PickOff, values: "bit p whose changes are steps (default: k; on many cards 32)" },
-        ChoiceDoc {
-            choice: Choice::Timing,
-            values: "length=CLOCKS,space=CLOCKS,setup=CLOCKS,hold=CLOCKS (default: 2, 2, 4, 4)",
-        },
-        ChoiceDoc::ON_OVERFLOW,
+    options: &[
+        &WIDTH,
+        &PRESET.about("zero (default) | half | full | N below 2^p, or accx=N,accy=N"),
+        &PICK_OFF.about("bit p whose changes are steps (default: k; on many cards 32)"),
+        &TIMING.about("length=CLOCKS,space=CLOCKS,setup=CLOCKS,hold=CLOCKS (default: 2, 2, 4, 4)"),
+        &ON_OVERFLOW,
     ],
-    source: "the step generators of FPGA motion cards: direct digital synthesis of step and direction",
     claims: None,
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(6, Method { plan, load }),
+    hardware,
 };
 
 /// The least number whose power of two is not less.
@@ -102,46 +98,42 @@ fn log2_up(value: u64) -> u32 {
     if value <= 1 { 0 } else { Width::needed_unsigned(u128::from(value - 1)) }
 }
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    let axes = curve.axes();
-    let timing = timing(choices)?;
-    let longest = plan::longest(curve);
-    let n = plan::magnitude_bits(choices, longest);
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    let timing = timing(plan)?;
+    let longest = sizes::longest(line);
+    let n = plan.magnitude_bits(longest);
     let undelayed = n + log2_up(timing.length + timing.space);
-    let mut registers = Registers::new(NAME, choices);
-    let given = choices.pick_off.map(|bit| u32::try_from(bit).unwrap_or(u32::MAX));
-    registers.hidden("e", given.map_or(undelayed, |bit| undelayed.min(bit)).max(log2_up(longest)) + 1);
-    let k = registers.bits("e") - 1;
+    let given = plan.get(&PICK_OFF).map(|bit| u32::try_from(bit).unwrap_or(u32::MAX));
+    plan.hidden("e", given.map_or(undelayed, |bit| undelayed.min(bit)).max(log2_up(longest)) + 1);
+    let k = plan.bits("e") - 1;
     let pick_off = given.unwrap_or(k);
     accumulations(longest, k, pick_off)?;
     let rate_bits = (n + 1).saturating_add(pick_off - k);
-    for axis in 0..axes {
-        registers.register(RATE[axis], rate_bits).register(ACC[axis], (n + 1).saturating_add(pick_off));
+    for axis in 0..plan.axes() {
+        plan.register(RATE[axis], rate_bits).register(ACC[axis], (n + 1).saturating_add(pick_off));
     }
-    registers.shown("e").positions(plan::end_positions(curve));
-    let hardware = registers.hardware(axes, EndPoint::Iterations)?;
-    presets(&hardware, pick_off)?;
-    let rounds = hardware.presets.iter().all(|preset| *preset == Preset::Half);
+    plan.shown("e").positions(sizes::end_positions(line));
+    plan.fix(&END_POINT, EndPoint::Iterations);
+    plan.fix(&PICK_OFF, Some(u64::from(pick_off)));
+    let given = plan.presets()?;
+    presets(&given, pick_off)?;
+    let rounds = given.iter().all(|preset| *preset == Preset::Half);
     // An axis of one step may make it at the end, behind all delays.
     let delays = 2 * (timing.length + timing.space + timing.setup + timing.hold);
     let accumulations = 1_u64.checked_shl(k).unwrap_or(u64::MAX);
-    Ok(Hardware {
-        pick_off: pick_off.into(),
-        timing,
-        stall_clocks: accumulations.saturating_add(delays).saturating_add(16),
-        error_bound: (axes == 2).then_some(if rounds { FRAC_1_SQRT_2 } else { SQRT_2 }),
-        ..hardware
-    })
+    plan.stall_clocks = accumulations.saturating_add(delays).saturating_add(16);
+    plan.error_bound = (plan.axes() == 2).then_some(if rounds { FRAC_1_SQRT_2 } else { SQRT_2 });
+    Ok(())
 }
 
 /// The times chosen, which must be possible.
-fn timing(choices: &Choices) -> Result<StepTiming, ModelError> {
-    let timing = choices.timing.unwrap_or_default();
+fn timing(plan: &Plan) -> Result<StepTiming, ModelError> {
+    let timing = plan.get(&TIMING);
     let times = [timing.length, timing.space, timing.setup, timing.hold];
     if times[..2].contains(&0) || times.into_iter().any(|clocks| clocks > LONGEST_TIME) {
         return Err(ModelError::Value {
             model: NAME,
-            choice: Choice::Timing,
+            option: TIMING.name,
             value: timing.to_string(),
             reason: format!("length and space are 1 clock at least, and no time is more than {LONGEST_TIME}"),
         });
@@ -171,13 +163,18 @@ fn accumulations(longest: u64, k: u32, pick_off: u32) -> Result<(), ModelError> 
     Ok(())
 }
 
+/// The bit whose changes are steps.
+fn pick_off(hardware: &Hardware) -> u64 {
+    hardware.get(&PICK_OFF).unwrap_or(0)
+}
+
 /// Refuses a preset that is a step or more.
-fn presets(hardware: &Hardware, pick_off: u32) -> Result<(), ModelError> {
+fn presets(presets: &[Preset], pick_off: u32) -> Result<(), ModelError> {
     let step = 1_u128.checked_shl(pick_off).unwrap_or(u128::MAX);
-    match hardware.presets.iter().find(|preset| preset.value(step).is_none()) {
+    match presets.iter().find(|preset| preset.value(step).is_none()) {
         Some(preset) => Err(ModelError::Value {
             model: NAME,
-            choice: Choice::Preset,
+            option: PRESET.name,
             value: preset.to_string(),
             reason: format!("a preset is a part of a step, from 0 to {}, with pick-off bit {pick_off}", step - 1),
         }),
@@ -185,16 +182,14 @@ fn presets(hardware: &Hardware, pick_off: u32) -> Result<(), ModelError> {
     }
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow(NAME, hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let e = DownCounter::new(m, &block, "e", hardware.bits("e"));
     let axis = |(i, letter): (usize, &&'static str)| {
         let scope = m.scope(&format!("axis_{letter}"));
         let bits = [ACC[i], RATE[i]].map(|name| hardware.bits(name));
-        let acc = PhaseAccumulator::new(scope, &block, letter, bits, hardware.pick_off, hardware.on_overflow);
-        let output = StepOutput::new(scope, letter, hardware.timing, acc.negative());
+        let acc = PhaseAccumulator::new(scope, &block, letter, bits, pick_off(hardware), hardware.get(&ON_OVERFLOW));
+        let output = StepOutput::new(scope, letter, hardware.get(&TIMING), acc.negative());
         (scope, acc, output)
     };
     let axes: Vec<_> = hardware.letters().iter().enumerate().map(axis).collect();
@@ -212,13 +207,11 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         resting = resting & output.close(send);
     }
     block.close_behind(block.load, accumulate, block.busy & resting);
-    Ok(module.finish()?)
 }
 
-fn words(hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(line) = plan::line(curve) else { return Vec::new() };
+fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let k = hardware.bits("e") - 1;
-    let step = 1_u128.checked_shl(u32::try_from(hardware.pick_off).unwrap_or(u32::MAX)).unwrap_or(0);
+    let step = 1_u128.checked_shl(u32::try_from(pick_off(hardware)).unwrap_or(u32::MAX)).unwrap_or(0);
     let unit = i128::try_from(step >> k).unwrap_or(0);
     let mut words: Words = vec![("e", 1 << k)];
     for (axis, (delta, from)) in line.delta().into_iter().zip(line.from()).enumerate() {

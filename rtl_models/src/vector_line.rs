@@ -25,50 +25,47 @@
 #![doc = include_str!("../../waves/vector-line-5-3.csv")]
 //! ```
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_kernel::dsl::Scope;
 use stepwave_kernel::formula::name;
-use stepwave_nc::Curve;
+use stepwave_nc::Line;
 
-use crate::choices::Choices;
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{ChoiceDoc, CurveKind, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
 use crate::parts::{BeatRing, Block, DeviationAccumulator, LineFrame};
-use crate::{plan, words};
+use crate::plan::Plan;
+use crate::{sizes, words};
 
-const NAME: &str = "vector-line";
-
-pub(crate) const MODEL: Model = Model {
-    name: NAME,
+/// Vector discrimination, line.
+pub static MODEL: Model = Model {
+    name: "vector-line",
     title: "Vector discrimination, line",
     method: "vector discrimination",
-    curve: CurveKind::Line { max_axes: 2 },
+    source: "矢量判别法; no primary source survives: a definition of this project",
     registers: &[
         RegisterDoc { name: "xe, ye", width: "n", about: "|dx|, |dy| of the line" },
         RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
         RegisterDoc { name: "e", width: "n", about: "end-point down-counter of the long axis" },
         RegisterDoc::POSITIONS,
     ],
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::BEATS, ChoiceDoc::ON_OVERFLOW],
-    source: "矢量判别法; no primary source survives: a definition of this project",
+    options: &[&WIDTH, &BEATS, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesByLength)),
-    plan,
-    netlist,
-    words,
+    interpolates: Interpolates::Lines(2, Method { plan, load }),
+    hardware,
 };
 
-fn plan(curve: &Curve, choices: &Choices) -> Result<Hardware, ModelError> {
-    Ok(Hardware { error_bound: Some(1.0), ..plan::judged_line(NAME, curve, choices, ["xe", "ye"], 1)? })
+fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    sizes::judged_line(line, plan, ["xe", "ye"], 1);
+    plan.error_bound = Some(1.0);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("vector_line", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
     let [xe, ye] = ["xe", "ye"].map(|name| block.held(m, name, hardware.bits(name)));
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let line = LineFrame::new(m, &block, hardware);
@@ -89,7 +86,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
 
     // Feed, compare.
     line.close(hardware, beat, diagonal);
-    Ok(module.finish()?)
 }
 
 /// F stays between what a step of the axis vector at 0 and one of the diagonal beside the line leave.
@@ -102,8 +98,8 @@ fn invariants(m: Scope<'_>) {
     m.between_steps("f_from_above_y", [xe() - f(), x_is_long() - 1]);
 }
 
-fn words(_: &Hardware, curve: &Curve) -> Vec<Words> {
-    let Some(([a, b], mut words)) = words::judged_line(curve) else { return Vec::new() };
+fn load(line: &Line, _: &Hardware) -> Vec<Words> {
+    let ([a, b], mut words) = words::judged_line(line);
     words.extend([("xe", a), ("ye", b), ("f", 0)]);
     vec![words]
 }

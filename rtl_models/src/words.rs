@@ -1,11 +1,10 @@
 //! The load words that several models share.
 
-use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Curve, Direction, Line, Sector};
+use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Direction, Line, Sector};
 
-use crate::choices::{EndPoint, Weights};
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::plan;
+use crate::options::{END_POINT, EndPoint, Weights};
 
 /// Quadrant and direction of a sector, and the position at its start.
 pub(crate) fn sector(arc: &Arc, sector: &Sector) -> Words {
@@ -21,7 +20,7 @@ pub(crate) fn sector(arc: &Arc, sector: &Sector) -> Words {
 /// Steps of a sector: of each axis, or of both.
 pub(crate) fn end_counters(hardware: &Hardware, steps: [i64; 2]) -> Words {
     let [ex, ey] = steps.map(i128::from);
-    if hardware.end_point == EndPoint::PerAxis { vec![("ex", ex), ("ey", ey)] } else { vec![("e", ex + ey)] }
+    if hardware.get(&END_POINT) == EndPoint::PerAxis { vec![("ex", ex), ("ey", ey)] } else { vec![("e", ex + ey)] }
 }
 
 /// Integrands J_VX and J_VY, and the remainders.
@@ -38,15 +37,14 @@ pub(crate) fn integrated_sector(hardware: &Hardware, arc: &Arc, at: &Sector) -> 
 
 /// Blocks of a machine that judges every step of an arc: one where the hardware crosses the axes by itself, else one
 /// for each sector.
-pub(crate) fn judged_arc(hardware: &Hardware, curve: &Curve, crossing: Crossing) -> Vec<Words> {
-    let Some(arc) = plan::arc(curve) else { return Vec::new() };
+pub(crate) fn judged_arc(hardware: &Hardware, arc: &Arc, crossing: Crossing) -> Vec<Words> {
     let sectors = arc.sectors(crossing);
     let begin = |at: &Sector| -> Words {
         let [x, y] = at.start.map(i128::from);
         let own = vec![("f", x * x + y * y - arc.radius_squared()), ("xi", x.abs()), ("yi", y.abs())];
         [own, sector(arc, at)].concat()
     };
-    if hardware.end_point == EndPoint::PerAxis {
+    if hardware.get(&END_POINT) == EndPoint::PerAxis {
         let block = |sector: &Sector| [begin(sector), end_counters(hardware, sector.steps())].concat();
         return sectors.iter().map(block).collect();
     }
@@ -55,24 +53,23 @@ pub(crate) fn judged_arc(hardware: &Hardware, curve: &Curve, crossing: Crossing)
     sectors.first().map(|first| [begin(first), vec![("e", steps)]].concat()).into_iter().collect()
 }
 
-/// The ways |dx| and |dy| of a line in two axes, and the words of its directions and start.
-pub(crate) fn line(curve: &Curve) -> Option<([i128; 2], Words)> {
-    let delta = plan::line(curve).map(Line::delta)?;
-    let [dx, dy] = [0, 1].map(|axis| i128::from(delta[axis]));
+/// The displacements |dx| and |dy| of a line in two axes, and the words of its directions and start.
+pub(crate) fn line(line: &Line) -> ([i128; 2], Words) {
+    let [dx, dy] = [0, 1].map(|axis| i128::from(line.delta()[axis]));
     let words = vec![
         ("sx", i128::from(dx < 0)),
         ("sy", i128::from(dy < 0)),
-        ("x", i128::from(curve.from()[0])),
-        ("y", i128::from(curve.from()[1])),
+        ("x", i128::from(line.from()[0])),
+        ("y", i128::from(line.from()[1])),
     ];
-    Some(([dx.abs(), dy.abs()], words))
+    ([dx.abs(), dy.abs()], words)
 }
 
 /// As [`line`], with the words of the long axis.
-pub(crate) fn judged_line(curve: &Curve) -> Option<([i128; 2], Words)> {
-    let ([a, b], mut words) = line(curve)?;
+pub(crate) fn judged_line(at: &Line) -> ([i128; 2], Words) {
+    let ([a, b], mut words) = line(at);
     words.extend([("x_is_longest", i128::from(a >= b)), ("e", a.max(b))]);
-    Some(([a, b], words))
+    ([a, b], words)
 }
 
 /// Directions and growth of a sector of a conic, and the position at its start.

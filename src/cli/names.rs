@@ -4,9 +4,9 @@
 use std::collections::{BTreeSet, HashSet};
 use std::ffi::OsStr;
 
+use crate::models::{AXES, Model, ModelError, installed};
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Command, Error};
-use stepwave::models::{AXES, Choice, Model, ModelError, Named, catalogue};
 
 /// A parser whose values a shell can propose.
 #[derive(Clone)]
@@ -34,18 +34,8 @@ pub(crate) fn listed<P: TypedValueParser>(inner: P, words: Vec<String>) -> Liste
 
 /// The name of a model.
 pub(crate) fn model_name() -> Listed<StringValueParser> {
-    let names = catalogue().iter().map(|model| model.name.to_owned());
+    let names = installed().iter().map(|model| model.name.to_owned());
     listed(StringValueParser::new(), names.collect())
-}
-
-/// A list of the words of a choice.
-pub(crate) fn list_of<T: Named>() -> Listed<StringValueParser> {
-    words(&T::ALL.iter().map(|(word, _)| *word).collect::<Vec<_>>())
-}
-
-/// A list of words.
-pub(crate) fn words(words: &[&str]) -> Listed<StringValueParser> {
-    listed(StringValueParser::new(), words.iter().map(|&word| word.to_owned()).collect())
 }
 
 /// Which registers are meant.
@@ -58,7 +48,7 @@ pub(crate) enum Registers {
 
 /// Registers of a model: those of `jvx, jvy, …` for every axis that it takes.
 pub(crate) fn registers(model: &Model, which: Registers) -> Vec<String> {
-    let axes = &AXES[..model.curve.max_axes().min(AXES.len())];
+    let axes = &AXES[..model.curve().max_axes().min(AXES.len())];
     let mut names: Vec<String> = Vec::new();
     let fixed = |width: &str| width.parse::<u32>().is_ok();
     for doc in model.registers.iter().filter(|doc| which == Registers::All || !fixed(doc.width)) {
@@ -83,18 +73,18 @@ pub(crate) fn all_widths() -> Vec<String> {
 }
 
 fn of_all_models(which: Registers, suffix: &str) -> Vec<String> {
-    let names: BTreeSet<String> = catalogue().iter().flat_map(|model| registers(model, which)).collect();
+    let names: BTreeSet<String> = installed().iter().flat_map(|model| registers(model, which)).collect();
     names.into_iter().map(|name| name + suffix).collect()
 }
 
 /// Refuses the name of a register that a model has for no geometry; a name without its axis letter or number stands for
 /// several.
-pub(crate) fn known_register(model: &Model, choice: Choice, given: &str) -> Result<(), ModelError> {
+pub(crate) fn known_register(model: &Model, option: &'static str, given: &str) -> Result<(), ModelError> {
     let kind = |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit()).to_owned();
     let of_axes = |name: &str| AXES.iter().any(|axis| name.strip_suffix(axis) == Some(given));
     let known = registers(model, Registers::Resizable);
     if known.iter().any(|name| name == given || of_axes(name) || kind(name) == kind(given)) {
         return Ok(());
     }
-    Err(ModelError::UnknownRegister { model: model.name, choice, register: given.to_owned(), known: known.join(", ") })
+    Err(ModelError::UnknownRegister { model: model.name, option, register: given.to_owned(), known: known.join(", ") })
 }

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
+use crate::models::program::{FAMILIES, Family};
+use crate::nc::{Corner, Integers, Scheme};
 use clap::Args;
-use stepwave::models::program::{FAMILIES, Family};
-use stepwave::nc::{Corner, Integers, Scheme};
 
-use super::values::{ClockArgs, HardwareArgs, SimulationArgs, one_of, parse_blu};
-use super::{OutputArgs, TraceArgs};
+use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu};
+use super::{HardwareArgs, OutputArgs, TraceArgs};
 
 /// The radius of a tool: `1=4mm`.
 #[derive(Clone, Copy, Debug)]

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::study::Extent;
+use crate::study::proof::symmetric_box;
 use clap::{Args, Subcommand};
-use stepwave::study::Extent;
-use stepwave::study::proof::symmetric_box;
 
 use super::HardwareArgs;
 use super::endings::{Format, file_of};

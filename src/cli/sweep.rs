@@ -2,21 +2,20 @@
 
 use std::path::PathBuf;
 
+use crate::models::options::{AnyOption, Shape, all};
+use crate::nc::Opens;
+use crate::study::{Grid, Range};
 use clap::builder::StringValueParser;
-use clap::{Args, Subcommand};
-use stepwave::models::{
-    Adder, Beats, Compare, EndPoint, Form, Millionths, OnOverflow, Radix, StepTiming, System, Weights,
-};
-use stepwave::nc::Opens;
-use stepwave::study::{Grid, Range};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 
 use super::endings::{Format, file_of};
-use super::names::{all_widths, list_of, listed, model_name, words};
-use super::values::{Point, opens, parse_millionths, parse_point, parse_timing};
+use super::hardware::proposals;
+use super::names::{listed, model_name};
+use super::values::{Point, opens, parse_point};
 
 /// A grid on the command line.
 fn grid(text: &str) -> Result<Grid, String> {
-    text.parse().map_err(|error: stepwave::study::StudyError| error.to_string())
+    text.parse().map_err(|error: crate::study::StudyError| error.to_string())
 }
 
 /// Ranges apart by a comma, such as the semi-axes of ellipses.
@@ -26,7 +25,7 @@ fn ranges(text: &str) -> Result<Grid, String> {
 }
 
 fn range(text: &str) -> Result<Range, String> {
-    text.parse().map_err(|error: stepwave::study::StudyError| error.to_string())
+    text.parse().map_err(|error: crate::study::StudyError| error.to_string())
 }
 
 /// One part of several: `2/8`.
@@ -134,10 +133,6 @@ pub(crate) struct SpaceArgs {
     /// Counter-clockwise
     #[arg(long)]
     pub(crate) ccw: bool,
-    /// How far an arc may be left, in BLU: by an end point, whose radius may differ from that of the start by so much more
-    /// than rounding makes, and by the chords of a coarse stage
-    #[arg(long, value_name = "BLU", value_parser = parse_millionths)]
-    pub(crate) tolerance: Option<Millionths>,
     /// So many random ones of the geometries, instead of all
     #[arg(long, value_name = "N", conflicts_with = "file", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) samples: Option<u64>,
@@ -149,64 +144,50 @@ pub(crate) struct SpaceArgs {
     pub(crate) file: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Hardware choices (lists; each model takes some, `stepwave list` tells which)")]
-pub(crate) struct VariantArgs {
-    /// Widths of all magnitude registers, or of single ones: 8..12, or 8,f=9..11
-    #[arg(long, value_name = "LIST", hide_possible_values = true)]
-    #[arg(value_parser = listed(StringValueParser::new(), all_widths()))]
-    pub(crate) width: Option<String>,
-    /// Start values of the remainder registers: zero,half,full or numbers
-    #[arg(long, value_name = "LIST", value_parser = words(&["zero", "half", "full"]), hide_possible_values = true)]
-    pub(crate) preset: Option<String>,
-    /// Left-shift normalisation: no,yes
-    #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = "yes", value_parser = words(&["no", "yes"]), hide_possible_values = true)]
-    pub(crate) normalize: Option<String>,
-    /// Number systems: 2,10
-    #[arg(long, value_name = "LIST", value_parser = list_of::<Radix>(), hide_possible_values = true)]
-    pub(crate) radix: Option<String>,
-    /// Adders: parallel,serial
-    #[arg(long, value_name = "LIST", value_parser = list_of::<Adder>(), hide_possible_values = true)]
-    pub(crate) adder: Option<String>,
-    /// What ends a block: total,per-axis,longest,iterations
-    #[arg(long, value_name = "LIST", value_parser = list_of::<EndPoint>(), hide_possible_values = true)]
-    pub(crate) end_point: Option<String>,
-    /// How the deviation of a line is kept: magnitude,signed
-    #[arg(long, value_name = "LIST", value_parser = list_of::<Form>(), hide_possible_values = true)]
-    pub(crate) form: Option<String>,
-    /// Interval weights: mid,pre,post
-    #[arg(long, value_name = "LIST", value_parser = list_of::<Weights>(), hide_possible_values = true)]
-    pub(crate) weights: Option<String>,
-    /// Clocks of a step: 4,1
-    #[arg(long, value_name = "LIST", value_parser = list_of::<Beats>(), hide_possible_values = true)]
-    pub(crate) beats: Option<String>,
-    /// Feed overrides in percent, or none
-    #[arg(long = "override", value_name = "LIST")]
-    pub(crate) feed_override: Option<String>,
-    /// Bits of each unit of a cascaded pulse multiplier, or none
-    #[arg(long, value_name = "LIST")]
-    pub(crate) cascade: Option<String>,
-    /// Comparisons of a counter: ge,gt
-    #[arg(long, value_name = "LIST", value_parser = list_of::<Compare>(), hide_possible_values = true)]
-    pub(crate) compare: Option<String>,
-    /// Bits of the phase accumulator whose changes are steps
-    #[arg(long, value_name = "LIST")]
-    pub(crate) pick_off: Option<String>,
-    /// Times of step and direction outputs; may be repeated
-    #[arg(long, value_name = "NAME=CLOCKS,…", value_parser = parse_timing)]
-    pub(crate) timing: Vec<StepTiming>,
-    /// Systems of data sampling: 7m,7360
-    #[arg(long, value_name = "LIST", value_parser = list_of::<System>(), hide_possible_values = true)]
-    pub(crate) system: Option<String>,
-    /// Bits of the fraction of coarse points
-    #[arg(long, value_name = "LIST")]
-    pub(crate) fraction: Option<String>,
-    /// Ways of a period of data sampling, in BLU
-    #[arg(long, value_name = "LIST")]
-    pub(crate) step: Option<String>,
-    /// What cells do that must not overflow: trap,saturate,wrap
-    #[arg(long, value_name = "LIST", value_parser = list_of::<OnOverflow>(), hide_possible_values = true)]
-    pub(crate) on_overflow: Option<String>,
+/// Lists of values of hardware options.
+#[derive(Debug)]
+pub(crate) struct VariantArgs(pub(crate) Vec<(&'static dyn AnyOption, Vec<String>)>);
+
+fn list(option: &'static dyn AnyOption) -> Arg {
+    let (value_name, values) = match option.shape() {
+        Shape::Words(words) => ("LIST", words.join(",")),
+        Shape::Numbers { values, .. } | Shape::PerRegister { values, .. } | Shape::Text { values } => {
+            ("LIST", values.to_owned())
+        }
+        Shape::Commas => (option.value_name(), "may be repeated".to_owned()),
+    };
+    let help = option.help();
+    let help = help.split_once(" [default").map_or(help, |(help, _)| help);
+    let arg = Arg::new(option.name()).long(option.name()).help(format!("{help} [{values}]")).value_name(value_name);
+    let arg = arg.value_parser(listed(StringValueParser::new(), proposals(option))).hide_possible_values(true);
+    let arg = if option.shape() == Shape::Commas { arg.action(ArgAction::Append) } else { arg };
+    if option.value_name().is_empty() { arg.num_args(0..=1).default_missing_value("yes") } else { arg }
+}
+
+impl Args for VariantArgs {
+    fn augment_args(command: Command) -> Command {
+        let heading = "Hardware choices (lists; each model takes some, `stepwave list` tells which)";
+        command.next_help_heading(heading).args(all().iter().map(|option| list(*option)))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        VariantArgs::augment_args(command)
+    }
+}
+
+impl FromArgMatches for VariantArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<VariantArgs, clap::Error> {
+        let given = |option: &&'static dyn AnyOption| {
+            let texts = matches.get_many::<String>(option.name())?.cloned().collect();
+            Some((*option, texts))
+        };
+        Ok(VariantArgs(all().iter().filter_map(given).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = VariantArgs::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 #[derive(Debug, Args)]

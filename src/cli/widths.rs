@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use stepwave::study::Extent;
+use crate::study::Extent;
 
 use super::HardwareArgs;
 use super::names::model_name;

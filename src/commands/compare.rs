@@ -2,12 +2,10 @@
 
 use std::time::Instant;
 
-use stepwave::kernel::engine::{EngineKind, Rows};
-use stepwave::models::{
-    Adder, Beats, Choice, Choices, CurveKind, Millionths, Model, ModelError, Preset, Radix, System, catalogue,
-};
-use stepwave::nc::Curve;
-use stepwave::testbench::{Ending, Observer, ObserverError, PathWatch, Step, Testbench};
+use crate::kernel::engine::{EngineKind, Rows};
+use crate::models::{CurveKind, Millionths, Model, ModelError, Options, Preset, installed};
+use crate::nc::Curve;
+use crate::testbench::{Ending, Observer, ObserverError, PathWatch, Step, Testbench};
 
 use super::geometry;
 use super::progress::Progress;
@@ -30,7 +28,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
     };
     let curve = geometry::curve("compare", kind, geometry, args.tolerance.map_or(0.0, Millionths::units))?;
     let mut rows = vec![HEADING.map(str::to_owned)];
-    let models = catalogue().iter().filter(|model| model.curve.fits(&curve));
+    let models = installed().iter().filter(|model| model.curve().fits(&curve));
     let runs: Vec<_> =
         models.flat_map(|model| forms(model, &curve).into_iter().map(move |form| (model, form))).collect();
     let progress = Progress::of(runs.len() as u64, "machines");
@@ -50,34 +48,19 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
 
 const HEADING: [&str; 6] = ["model", "steps", "clocks", "greatest error (BLU)", "widest register", "end point"];
 
-/// The forms of a model whose path or clocks differ: its default, and one for each of the common choices.
-fn forms(model: &Model, curve: &Curve) -> Vec<(String, Choices)> {
-    let takes = |choice| model.choices.iter().any(|doc| doc.choice == choice);
-    let mut forms = vec![(String::new(), Choices::at_1_mhz())];
-    if takes(Choice::Beats) {
-        forms.push((" --beats 1".to_owned(), Choices { beats: Some(Beats::One), ..Choices::at_1_mhz() }));
-    }
-    if takes(Choice::Preset) {
-        let own = model.plan(curve, &Choices::at_1_mhz()).ok();
-        let has_half = own.is_some_and(|hardware| hardware.presets.iter().all(|preset| *preset == Preset::Half));
-        let (other, half) = if has_half { (Preset::Zero, "") } else { (Preset::Half, " --preset half") };
-        forms.push((format!(" --preset {other}"), Choices { preset: Some(other), ..Choices::at_1_mhz() }));
-        if takes(Choice::Normalize) {
-            let normalized = Choices { preset: Some(Preset::Half), normalize: true, ..Choices::at_1_mhz() };
-            forms.push((format!("{half} --normalize"), normalized));
-        }
-    }
-    if takes(Choice::System) {
-        let system = Some(System::StepFactor);
-        forms.push((" --system 7360".to_owned(), Choices { system, ..Choices::at_1_mhz() }));
-    }
-    if takes(Choice::Radix) {
-        forms.push((" --radix 10".to_owned(), Choices { radix: Some(Radix::Decimal), ..Choices::at_1_mhz() }));
-    }
-    if takes(Choice::Adder) {
-        forms.push((" --adder serial".to_owned(), Choices { adder: Some(Adder::Serial), ..Choices::at_1_mhz() }));
-    }
-    forms
+/// The forms of a model whose path or clocks differ: its default, and one for each of the common options.
+fn forms(model: &Model, curve: &Curve) -> Vec<(String, Options)> {
+    let own = model.plan(curve, &Options::at_1_mhz()).ok();
+    let has_half = own.is_some_and(|hardware| hardware.presets.iter().all(|preset| *preset == Preset::Half));
+    let presets: [&str; 2] =
+        if has_half { [" --preset zero", " --normalize"] } else { [" --preset half", " --preset half --normalize"] };
+    let words = ["", " --beats 1", presets[0], presets[1], " --system 7360", " --radix 10", " --adder serial"];
+    let form = |words: &str| {
+        let given = Options::parse(words.split_whitespace()).ok()?;
+        let takes = given.given().iter().all(|value| model.takes(value.option()));
+        takes.then(|| (words.to_owned(), given.at_clock(1e6)))
+    };
+    words.into_iter().filter_map(form).collect()
 }
 
 /// What a form of a model comes to; or why it cannot be built for this curve.
@@ -85,7 +68,7 @@ fn row(
     model: &Model,
     form: &str,
     curve: &Curve,
-    choices: &Choices,
+    choices: &Options,
     args: &CompareArgs,
 ) -> Result<Result<[String; 6], ModelError>, Failure> {
     let bench = match Testbench::new(model, curve, choices) {

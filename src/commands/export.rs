@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use stepwave::kernel::export::{self, Checking, Options};
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::kernel::{Design, Net};
-use stepwave::models::find;
-use stepwave::report;
-use stepwave::testbench::Testbench;
+use crate::kernel::export::{self, Checking, Options};
+use crate::kernel::trace::timescale::ClockTime;
+use crate::kernel::{Design, Net};
+use crate::models::find;
+use crate::report;
+use crate::testbench::Testbench;
 
 use super::geometry::{self, curve};
 use crate::cli::ExportArgs;
@@ -21,8 +21,8 @@ const DEEPEST: u64 = 1000;
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
-    let curve = curve(model.name, model.curve, &args.geometry, args.hardware.radii())?;
-    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz)?;
+    let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
+    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
     let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
     let comment = [
         report::title(model, bench.hardware(), &curve),

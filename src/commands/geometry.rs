@@ -1,7 +1,8 @@
 //! The curve that the options of several commands give.
 
-use stepwave::models::{Choice, Choices, CurveKind, Model};
-use stepwave::nc::{Arc, Conic, Curve, Direction, Helix, Line};
+use crate::models::options::TOLERANCE;
+use crate::models::{CurveKind, Model, Options};
+use crate::nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
 use crate::cli::{GeometryArgs, HardwareArgs, Point};
 use crate::failure::Failure;
@@ -96,16 +97,10 @@ fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Resul
 
 /// The choices made for a model and a clock in Hz: the tolerance counts for the radii of an arc alone where the model itself
 /// takes none.
-pub(crate) fn choices(
-    model: &Model,
-    curve: &Curve,
-    hardware: &HardwareArgs,
-    clock_hz: f64,
-) -> Result<Choices, Failure> {
+pub(crate) fn choices(model: &Model, curve: &Curve, hardware: &HardwareArgs, clock_hz: f64) -> Options {
     let of_radii = matches!(curve, Curve::Arc(_) | Curve::Helix(_));
-    let taken = model.choices.iter().any(|doc| doc.choice == Choice::Tolerance);
-    let choices = hardware.choices_at(clock_hz)?;
-    Ok(Choices { tolerance: choices.tolerance.filter(|_| taken || !of_radii), ..choices })
+    let choices = hardware.choices_at(clock_hz);
+    if model.takes(&TOLERANCE) || !of_radii { choices } else { choices.without(&TOLERANCE) }
 }
 
 /// What is to be reported where the radii of an arc are so different that its centre has moved.

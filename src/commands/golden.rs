@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::kernel::engine::EngineKind;
 use clap::Parser;
-use stepwave::kernel::engine::EngineKind;
 
 use self::cases::Case;
 use super::progress::Progress;

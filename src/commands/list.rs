@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
+use crate::models::options::{Shape, Takes};
+use crate::models::{CurveKind, Model, installed};
 use serde_json::{Value, json};
-use stepwave::models::{CurveKind, Model, catalogue};
 
 use crate::cli::ListArgs;
 use crate::failure::Failure;
@@ -12,11 +13,11 @@ use crate::output;
 /// Prints every model, by method.
 pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
     if args.json {
-        let models: Vec<Value> = catalogue().iter().map(as_json).collect();
+        let models: Vec<Value> = installed().iter().map(as_json).collect();
         return output::print_data(&format!("{:#}\n", json!(models)));
     }
     let methods = by_method();
-    let mut text = format!("{} models by method\n\n", catalogue().len());
+    let mut text = format!("{} models by method\n\n", installed().len());
     let widest = methods.iter().map(|(method, _)| method.chars().count()).max().unwrap_or(0);
     // Writing to a string cannot fail.
     for (method, models) in &methods {
@@ -38,7 +39,7 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
 /// The models of each method, methods in the order of their first model.
 fn by_method() -> Vec<(&'static str, Vec<&'static Model>)> {
     let mut methods: Vec<(&'static str, Vec<&'static Model>)> = Vec::new();
-    for model in catalogue() {
+    for model in installed().iter() {
         match methods.iter_mut().find(|(method, _)| *method == model.method) {
             Some((_, models)) => models.push(model),
             None => methods.push((model.method, vec![model])),
@@ -55,11 +56,12 @@ struct Columns {
 
 impl Columns {
     fn new() -> Columns {
-        let registers = || catalogue().iter().flat_map(|model| model.registers);
-        let options = catalogue().iter().flat_map(|model| model.choices).map(|doc| doc.choice.option());
+        let registers = || installed().iter().flat_map(|model| model.registers);
+        let options: Vec<String> =
+            installed().iter().flat_map(|model| model.options).map(|takes| format!("--{}", takes.name())).collect();
         let widest = |texts: &mut dyn Iterator<Item = &str>| texts.map(|text| text.chars().count()).max().unwrap_or(0);
         Columns {
-            name: widest(&mut registers().map(|register| register.name).chain(options)),
+            name: widest(&mut registers().map(|register| register.name).chain(options.iter().map(String::as_str))),
             width: widest(&mut registers().map(|register| register.width)),
         }
     }
@@ -67,21 +69,21 @@ impl Columns {
     fn describe(&self, text: &mut String, model: &Model) {
         let Columns { name, width } = *self;
         let _ = writeln!(text, "\n  {}  {}", model.name, model.title);
-        let _ = writeln!(text, "    takes {}", model.curve.describe());
+        let _ = writeln!(text, "    takes {}", model.curve().describe());
         let _ = writeln!(text, "    registers");
         for register in model.registers {
             let _ = writeln!(text, "      {:<name$}  {:<width$}  {}", register.name, register.width, register.about);
         }
         let _ = writeln!(text, "    options");
-        for doc in model.choices {
-            let _ = writeln!(text, "      {:<name$}  {}", doc.choice.option(), doc.values);
+        for takes in model.options {
+            let _ = writeln!(text, "      {:<name$}  {}", format!("--{}", takes.name()), takes.about());
         }
         let _ = writeln!(text, "    source {}", model.source);
     }
 }
 
 fn as_json(model: &Model) -> Value {
-    let kind = match model.curve {
+    let kind = match model.curve() {
         CurveKind::Line { .. } => "line",
         CurveKind::Arc => "arc",
         CurveKind::Conic => "conic",
@@ -91,14 +93,29 @@ fn as_json(model: &Model) -> Value {
         .registers
         .iter()
         .map(|register| json!({ "name": register.name, "default_width": register.width, "about": register.about }));
-    let options = model.choices.iter().map(|doc| json!({ "option": doc.choice.option(), "values": doc.values }));
+    let options = model.options.iter().map(|takes| {
+        json!({
+            "option": format!("--{}", takes.name()),
+            "values": values(*takes),
+            "default": takes.default_value().map(|value| value.text().to_owned()),
+            "about": takes.about(),
+        })
+    });
     json!({
         "name": model.name,
         "title": model.title,
         "method": model.method,
-        "curve": { "kind": kind, "max_axes": model.curve.max_axes() },
+        "curve": { "kind": kind, "max_axes": model.curve().max_axes() },
         "registers": registers.collect::<Vec<_>>(),
         "options": options.collect::<Vec<_>>(),
         "source": model.source,
     })
+}
+
+/// The words that a model takes for an option; none where it takes numbers alone.
+fn values(takes: &'static dyn Takes) -> Vec<&'static str> {
+    match takes.option().shape() {
+        Shape::PerRegister { words, .. } => words.to_vec(),
+        _ => takes.words().into_iter().map(|(word, _)| word).collect(),
+    }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::CommandFactory;
 
-use stepwave::models::catalogue;
+use crate::models::installed;
 
 use crate::cli::{Cli, Registers, registers};
 use crate::failure::Failure;
@@ -25,7 +25,7 @@ pub(crate) fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
 
 /// What makes fish offer models, as its script knows options only, until one is on the line.
 fn fish_models() -> String {
-    let names: Vec<&str> = catalogue().iter().map(|model| model.name).collect();
+    let names: Vec<&str> = installed().iter().map(|model| model.name).collect();
     let names = names.join(" ");
     let line = |command: &str| {
         format!(
@@ -39,7 +39,7 @@ fn fish_models() -> String {
 /// What makes bash offer the registers of the very model, where one is on the line, and no blank after `f=`.
 fn bash_registers() -> String {
     let mut cases = String::new();
-    for model in catalogue() {
+    for model in installed().iter() {
         for (option, which) in [("width", Registers::Resizable), ("trace", Registers::All)] {
             cases +=
                 &format!("            {option},{}) echo \"{}\" ;;\n", model.name, registers(model, which).join(" "));

@@ -5,14 +5,12 @@ use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::Path;
 
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::models::Choices;
-use stepwave::nc::{Reading, ToolMove};
-use stepwave::program::{Control, Estimate, MoveReport, Onlooker, Pace, Preparation, Stream, Survey};
-use stepwave::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail};
-use stepwave::testbench::{
-    Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, RangeWatch, Sample, Testbench,
-};
+use crate::kernel::trace::timescale::ClockTime;
+use crate::models::options::TOLERANCE;
+use crate::nc::{Reading, ToolMove};
+use crate::program::{Control, Estimate, MoveReport, Onlooker, Pace, Preparation, Stream, Survey};
+use crate::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail};
+use crate::testbench::{Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, RangeWatch, Sample, Testbench};
 
 use super::progress::Progress;
 use super::run::Finished;
@@ -86,7 +84,7 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
     let preparation = preparation(args)?;
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
     // How far the radii of an arc may differ is not the machine's concern.
-    let choices = Choices { tolerance: None, ..args.hardware.choices()? };
+    let choices = args.hardware.choices().without(&TOLERANCE);
     let hardware = family.plan(&survey.size, &choices).map_err(|error| args.hardware.told(error))?;
     let machine = family.machine(&hardware)?;
     let bench = Testbench::of_machine(hardware, machine)

@@ -9,10 +9,10 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use crate::kernel::engine::Rows;
+use crate::nc::Curve;
+use crate::testbench::{Memory, Observer, ObserverError, Testbench};
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
-use stepwave::kernel::engine::Rows;
-use stepwave::nc::Curve;
-use stepwave::testbench::{Memory, Observer, ObserverError, Testbench};
 
 /// How long work may take before it shows its progress.
 const PATIENCE: Duration = Duration::from_secs(1);

@@ -13,10 +13,11 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use stepwave::kernel::prove::Certificate;
-use stepwave::models::{Choices, Claims, Model, find};
-use stepwave::study::Extent;
-use stepwave::study::proof::{
+use crate::kernel::prove::Certificate;
+use crate::models::options::WIDTH;
+use crate::models::{Claims, Model, Options, find};
+use crate::study::Extent;
+use crate::study::proof::{
     Answer, CertificateFile, Fault, Fixed, Narrower, ProofError, SolverError, Subject, Survey, ask, question, search,
 };
 
@@ -62,7 +63,7 @@ struct Job<'a> {
     args: &'a ProveArgs,
     model: &'static Model,
     claims: Claims,
-    choices: Choices,
+    choices: Options,
     narrower: Narrower,
 }
 
@@ -70,18 +71,18 @@ impl<'a> Job<'a> {
     fn new(args: &'a ProveArgs, narrower: Narrower) -> Result<Job<'a>, Failure> {
         let model = find(args.model.as_deref().unwrap_or_default())?;
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-        Ok(Job { args, model, claims, choices: args.hardware.choices()?, narrower })
+        Ok(Job { args, model, claims, choices: args.hardware.choices(), narrower })
     }
 
     /// The box that is given, or what coordinates of the width that is given for all registers hold.
     fn extent(&self) -> Option<Extent> {
-        let of_width = || self.choices.width.map(|width| Extent::Bits(width.get()));
+        let of_width = || self.choices.of_all(&WIDTH).map(|width| Extent::Bits(width.get()));
         self.args.extent.clone().or_else(|| self.args.travel.clone().map(|travel| travel.0)).or_else(of_width)
     }
 
     /// It is about one hardware, and not about one for every k.
     fn is_fixed(&self) -> bool {
-        self.extent().is_some() || !self.choices.widths.is_empty()
+        self.extent().is_some() || !self.choices.of_single(&WIDTH).is_empty()
     }
 
     fn fixed(&self, extent: Extent) -> Result<Fixed, Failure> {
@@ -119,7 +120,7 @@ impl<'a> Job<'a> {
     }
 
     /// Simulates until a geometry refutes the claims on hardware of these choices, of coordinates of so many bits.
-    fn search(&self, choices: &Choices, ks: RangeInclusive<u32>) -> Survey {
+    fn search(&self, choices: &Options, ks: RangeInclusive<u32>) -> Survey {
         // A word that does not fit refutes a narrower register; else it says that a choice, such as a preset, needs more
         // bits.
         let refutes = |fault| fault != Fault::Refused || !self.narrower.is_empty();
@@ -137,7 +138,7 @@ impl<'a> Job<'a> {
             };
             ["--box".to_owned(), extent]
         });
-        self.choices.options().into_iter().chain(any).chain(extent).collect()
+        self.choices.words().into_iter().chain(any).chain(extent).collect()
     }
 
     /// Opens the file of the certificate, if one is wanted, before anything is attempted.

@@ -3,11 +3,11 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::models::find;
-use stepwave::report::plot::Plot;
-use stepwave::report::{self, CsvTable, Report, TEXTBOOK_STEPS, TextbookTable};
-use stepwave::testbench::{
+use crate::kernel::trace::timescale::ClockTime;
+use crate::models::find;
+use crate::report::plot::Plot;
+use crate::report::{self, CsvTable, Report, TEXTBOOK_STEPS, TextbookTable};
+use crate::testbench::{
     CoarseWatch, Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, PathWatch, RangeWatch, SpacingWatch,
     Step, Testbench,
 };
@@ -80,8 +80,8 @@ fn once(args: &RunArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> 
         )));
     }
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
-    let curve = curve(model.name, model.curve, &args.geometry, args.hardware.radii())?;
-    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz)?;
+    let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
+    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
     let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
     let bench = bench.limited_to(args.simulation.max_clocks);
     let bench = trap.and_then(|event| bench.showing(event)).unwrap_or(bench);

@@ -2,10 +2,10 @@
 
 use std::io::{self, Seek, SeekFrom, Write};
 
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::models::parts::RATE_BITS;
-use stepwave::program::Estimate;
-use stepwave::testbench::Testbench;
+use crate::kernel::trace::timescale::ClockTime;
+use crate::models::parts::RATE_BITS;
+use crate::program::Estimate;
+use crate::testbench::Testbench;
 
 use super::wave::probes;
 use crate::cli::TraceArgs;

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-use stepwave::testbench::{Checkpoints, State, Testbench};
+use crate::testbench::{Checkpoints, State, Testbench};
 
 use crate::cli::RunArgs;
 use crate::failure::Failure;

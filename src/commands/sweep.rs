@@ -4,15 +4,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
-use stepwave::kernel::did_you_mean;
-use stepwave::models::{Choice, CurveKind, Millionths, Model, find};
-use stepwave::nc::Direction;
-use stepwave::report::heat::HeatMap;
-use stepwave::study::{
+use crate::kernel::did_you_mean;
+use crate::models::options::{AnyOption, Shape, TOLERANCE};
+use crate::models::{CurveKind, Millionths, Model, find};
+use crate::nc::Direction;
+use crate::report::heat::HeatMap;
+use crate::study::{
     self, Cells, Dimension, Drawn, Grid, Kind, ParquetTable, Part, Range, Row, Space, Stage, StudyError, Summary,
     Sweep, Variants, write_line,
 };
+use rayon::prelude::*;
 
 mod kept;
 
@@ -35,14 +36,16 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Failure> {
     }
     let model = find(args.model.as_deref().unwrap_or_default())?;
     let [number, of] = args.outputs.shard.unwrap_or([1, 1]);
-    let space = space(model, &args.space)?;
-    for (choice, list) in [(Choice::Width, &args.variants.width), (Choice::Preset, &args.variants.preset)] {
-        let parts = list.iter().flat_map(|list| list.split(','));
-        let mut names = parts.filter_map(|part| part.split_once('=')).map(|(name, _)| name.trim());
-        names.try_for_each(|name| known_register(model, choice, name))?;
-    }
     let mut variants = variants(&args.variants)?;
-    variants.0.extend(tolerance(model, args.space.tolerance)?);
+    let radii = radii(model, &mut variants)?;
+    let space = space(model, &args.space, radii)?;
+    for (option, lists) in &args.variants.0 {
+        let parts = lists.iter().flat_map(|list| list.split(','));
+        let mut names = parts.filter_map(|part| part.split_once('=')).map(|(name, _)| name.trim());
+        if let Shape::PerRegister { .. } = option.shape() {
+            names.try_for_each(|name| known_register(model, option.name(), name))?;
+        }
+    }
     let sweep = Sweep::new(model, space, variants, Part { number, of }, args.outputs.max_clocks)?;
     let inputs: Vec<&PathBuf> = args.space.file.iter().collect();
     let mut outputs = Outputs::reading(&inputs);
@@ -59,8 +62,7 @@ fn trouble<T>(sentence: String) -> Result<T, Failure> {
 }
 
 /// All geometries that the options tell.
-fn space(model: &Model, args: &SpaceArgs) -> Result<Space, Failure> {
-    let radii = args.tolerance.unwrap_or(Millionths(0));
+fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Failure> {
     if let Some(file) = &args.file {
         return Ok(study::read_points(file, model, radii)?);
     }
@@ -88,11 +90,11 @@ fn space(model: &Model, args: &SpaceArgs) -> Result<Space, Failure> {
     }
     let axes = to.as_ref().or(from.as_ref()).map_or(2, Vec::len);
     let least = if drawn == Drawn::Helix { 3 } else { 2 };
-    let most = model.curve.max_axes();
+    let most = model.curve().max_axes();
     for (option, points) in [("--to", &to), ("--from", &from)] {
         let count = points.as_ref().map_or(axes.max(least), Vec::len);
         if !(least..=most).contains(&count) || (drawn == Drawn::Line && count != axes) {
-            let takes = model.curve.describe();
+            let takes = model.curve().describe();
             return trouble(format!("{option} has {count} coordinates, but {who} interpolates {takes}"));
         }
     }
@@ -124,7 +126,7 @@ fn space(model: &Model, args: &SpaceArgs) -> Result<Space, Failure> {
 
 /// What the model interpolates, if nothing was given that it has not.
 fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Failure> {
-    let drawn = match model.curve {
+    let drawn = match model.curve() {
         CurveKind::Line { .. } => Drawn::Line,
         CurveKind::Arc => Drawn::Arc,
         CurveKind::Helix => Drawn::Helix,
@@ -141,7 +143,7 @@ fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Failure> {
         },
     };
     let turns = matches!(drawn, Drawn::Arc | Drawn::Helix | Drawn::Ellipse);
-    let conic = model.curve == CurveKind::Conic;
+    let conic = model.curve() == CurveKind::Conic;
     let round = matches!(drawn, Drawn::Arc | Drawn::Helix);
     let superfluous = [
         (args.ellipse.is_some() || args.parabola.is_some() || args.hyperbola.is_some(), conic, "sizes of conics"),
@@ -152,7 +154,7 @@ fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Failure> {
         (args.center.is_some(), drawn != Drawn::Line, "--center"),
     ];
     if let Some((_, _, option)) = superfluous.into_iter().find(|(given, taken, _)| *given && !taken) {
-        let takes = model.curve.describe();
+        let takes = model.curve().describe();
         return trouble(format!("{} interpolates {takes}, which have no {option}: leave it out", model.name));
     }
     if turns && !args.cw && !args.ccw {
@@ -161,42 +163,35 @@ fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Failure> {
     Ok(drawn)
 }
 
-/// The hardware choices that the options tell.
-fn variants(args: &VariantArgs) -> Result<Variants, Failure> {
-    let lists = [
-        (Choice::Width, &args.width),
-        (Choice::Preset, &args.preset),
-        (Choice::Normalize, &args.normalize),
-        (Choice::Radix, &args.radix),
-        (Choice::Adder, &args.adder),
-        (Choice::EndPoint, &args.end_point),
-        (Choice::Form, &args.form),
-        (Choice::Weights, &args.weights),
-        (Choice::Beats, &args.beats),
-        (Choice::Override, &args.feed_override),
-        (Choice::Cascade, &args.cascade),
-        (Choice::Compare, &args.compare),
-        (Choice::PickOff, &args.pick_off),
-        (Choice::System, &args.system),
-        (Choice::Fraction, &args.fraction),
-        (Choice::Step, &args.step),
-        (Choice::OnOverflow, &args.on_overflow),
-    ];
-    let given = lists.into_iter().filter_map(|(choice, list)| Some(Dimension::parse(choice, list.as_deref()?)));
-    let mut dimensions = given.collect::<Result<Vec<_>, StudyError>>()?;
-    dimensions.extend((!args.timing.is_empty()).then(|| Dimension::timings(&args.timing)));
-    Ok(Variants(dimensions))
+/// The hardware options that are given, each with its values.
+fn variants(args: &VariantArgs) -> Result<Variants, StudyError> {
+    let dimension = |(option, lists): &(&'static dyn AnyOption, Vec<String>)| {
+        let dimensions = lists.iter().map(|list| Dimension::parse(*option, list)).collect::<Result<Vec<_>, _>>();
+        Ok(dimensions?.into_iter().reduce(Dimension::and))
+    };
+    let dimensions = args.0.iter().filter_map(|given| dimension(given).transpose());
+    dimensions.collect::<Result<_, _>>().map(Variants)
 }
 
-/// The tolerance as a choice of hardware, of models that have chords.
-fn tolerance(model: &Model, given: Option<Millionths>) -> Result<Option<Dimension>, Failure> {
-    let round = matches!(model.curve, CurveKind::Arc | CurveKind::Helix);
-    if given.is_some() && !round {
-        let takes = model.curve.describe();
+/// How far the two radii of an arc may differ beyond what rounding makes. As an option of hardware the tolerance stays with
+/// models that have chords.
+fn radii(model: &Model, variants: &mut Variants) -> Result<Millionths, Failure> {
+    let is_tolerance = |dimension: &Dimension| dimension.option.name() == TOLERANCE.name;
+    let Some(place) = variants.0.iter().position(is_tolerance) else { return Ok(Millionths(0)) };
+    if !matches!(model.curve(), CurveKind::Arc | CurveKind::Helix) {
+        let takes = model.curve().describe();
         return trouble(format!("{} interpolates {takes}, which have no --tolerance: leave it out", model.name));
     }
-    let has_chords = model.choices.iter().any(|doc| doc.choice == Choice::Tolerance);
-    Ok(given.filter(|_| has_chords).map(Dimension::tolerance))
+    let (given, _) = variants.at(0);
+    if variants.0[place].len() > 1 {
+        return trouble(
+            "--tolerance is of the radii of arcs too, and the same for all runs: give one value".to_owned(),
+        );
+    }
+    if !model.takes(&TOLERANCE) {
+        variants.0.remove(place);
+    }
+    Ok(given.value(&TOLERANCE).unwrap_or(Millionths(0)))
 }
 
 /// A heat map being gathered.

@@ -3,14 +3,14 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use stepwave::kernel::netlist::Format;
-use stepwave::kernel::trace::fst::{FstBody, FstHeader};
-use stepwave::kernel::trace::gtkw::{View, side_files};
-use stepwave::kernel::trace::probe::{Probe, Selection};
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::kernel::trace::vcd::{Background, VcdBody, VcdHeader};
-use stepwave::kernel::{Net, Width, did_you_mean};
-use stepwave::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window};
+use crate::kernel::netlist::Format;
+use crate::kernel::trace::fst::{FstBody, FstHeader};
+use crate::kernel::trace::gtkw::{View, side_files};
+use crate::kernel::trace::probe::{Probe, Selection};
+use crate::kernel::trace::timescale::ClockTime;
+use crate::kernel::trace::vcd::{Background, VcdBody, VcdHeader};
+use crate::kernel::{Net, Width, did_you_mean};
+use crate::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window};
 
 use super::size::Limited;
 use crate::cli::{OutputArgs, TraceArgs};

@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
+use crate::models::options::WIDTH;
+use crate::models::{Model, find};
+use crate::report::run_command;
+use crate::study::widths::{Known, RegisterWidth, Widths, Witness, widths};
 use serde_json::{Value, json};
-use stepwave::models::{Model, find};
-use stepwave::report::run_command;
-use stepwave::study::widths::{Known, RegisterWidth, Widths, Witness, widths};
 
 use super::progress::Progress;
 use crate::cli::WidthsArgs;
@@ -15,13 +16,13 @@ use crate::output;
 /// Prints the table; a width that is given and too narrow is a failed check.
 pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
     let model = find(&args.model)?;
-    let choices = args.hardware.choices()?;
+    let choices = args.hardware.choices();
     let progress = Progress::new("geometries");
     let found = widths(model, &choices, &args.extent, &|more| progress.add(more));
     progress.finish();
     let found = found.map_err(|error| args.hardware.told_of_study(error))?;
     if args.json { output::print_data(&as_json(model, &found)) } else { output::print(&table(model, &found)) }?;
-    if choices.width.is_none() && choices.widths.is_empty() {
+    if choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty() {
         return Ok(());
     }
     let short = found.registers.iter().filter(|register| register.given < register.needed);

@@ -1,6 +1,6 @@
 //! The command that repeats a run: `stepwave run dda-line --to 8,6 --width 4`.
 
-use stepwave_models::{Choices, Model};
+use stepwave_models::{Model, Options};
 use stepwave_nc::{Curve, Direction, Shape};
 
 fn point(coordinates: &[i64]) -> String {
@@ -52,7 +52,7 @@ pub fn geometry_options(curve: &Curve) -> Vec<String> {
 
 /// The command that runs a curve on this hardware.
 #[must_use]
-pub fn run_command(model: &Model, curve: &Curve, choices: &Choices) -> String {
-    let words = [vec![format!("stepwave run {}", model.name)], geometry_options(curve), choices.options()].concat();
+pub fn run_command(model: &Model, curve: &Curve, choices: &Options) -> String {
+    let words = [vec![format!("stepwave run {}", model.name)], geometry_options(curve), choices.words()].concat();
     words.join(" ")
 }

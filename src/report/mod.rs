@@ -12,6 +12,7 @@ mod table;
 
 use stepwave_kernel::OnOverflow;
 use stepwave_kernel::engine::EngineKind;
+use stepwave_models::options::ON_OVERFLOW;
 use stepwave_models::{CutWord, Hardware, Model, Preset, Promise};
 use stepwave_nc::Curve;
 
@@ -132,7 +133,7 @@ impl Report<'_> {
     fn went_on(&self, tally: &OverflowTally) -> String {
         let (component, clock) = (tally.first.component(), tally.first.clock());
         let times = if tally.count == 1 { "once".to_owned() } else { format!("{} times", tally.count) };
-        let did = match (&tally.first, self.hardware.on_overflow) {
+        let did = match (&tally.first, self.hardware.get(&ON_OVERFLOW)) {
             (OverflowEvent::Invariant { .. }, _) => {
                 return format!("invariant {component} did not hold {times}, first at clock {clock}");
             }
@@ -172,7 +173,7 @@ impl Report<'_> {
             Ending::Endless { since } => {
                 let position = summary::point(&self.outcome.reached);
                 let clock = self.outcome.clocks;
-                let way_out = if self.hardware.on_overflow == OnOverflow::Trap {
+                let way_out = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap {
                     ""
                 } else {
                     "; --on-overflow trap shows where it lost its way"

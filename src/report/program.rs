@@ -5,8 +5,9 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 use stepwave_kernel::engine::EngineKind;
+use stepwave_models::options::WIDTH;
 use stepwave_models::program::Family;
-use stepwave_models::{Choice, Hardware, Named, Promise};
+use stepwave_models::{Hardware, Promise};
 use stepwave_nc::Side;
 
 use super::json::{cut_word, event, number, tally};
@@ -78,17 +79,13 @@ impl ProgramHead<'_> {
     }
 
     fn choices(&self) -> Map<String, Value> {
-        let hardware = self.hardware;
-        let value = |choice: Choice| match choice {
-            Choice::Preset => hardware.presets.first().map(|preset| super::json::choice("preset", &preset.to_string())),
-            Choice::Normalize => Some(json!(hardware.normalize)),
-            Choice::OnOverflow => Some(json!(hardware.on_overflow.word())),
-            _ => None,
-        };
-        let choices = self.family.choices.iter().map(|doc| doc.choice);
-        let named = choices.filter_map(|choice| {
-            let name = choice.option().trim_start_matches("--").replace('-', "_");
-            Some((name, value(choice)?))
+        let named = self.family.options.iter().filter(|takes| takes.name() != WIDTH.name).map(|takes| {
+            let value = match self.hardware.text(takes.option()).as_str() {
+                "yes" => json!(true),
+                "no" => json!(false),
+                text => super::json::choice(takes.name(), text),
+            };
+            (takes.name().replace('-', "_"), value)
         });
         named.collect()
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use stepwave_models::{Choice, Hardware, Model, Named, Sampling};
+use stepwave_models::{Hardware, Model, Named, Takes};
 use stepwave_nc::{Curve, Shape};
 
 use super::Report;
@@ -48,35 +48,8 @@ pub fn geometry(curve: &Curve) -> String {
 /// The choices that the model takes, as an option line would give them.
 #[must_use]
 pub fn choices(model: &Model, hardware: &Hardware) -> Vec<(&'static str, String)> {
-    let of_sampling = |text: &dyn Fn(&Sampling) -> String| hardware.sampling.as_ref().map(text).unwrap_or_default();
-    let value = |choice: Choice| match choice {
-        Choice::Width => {
-            let widths = hardware.widths.iter().map(|(name, width)| format!("{name}={}", width.get()));
-            widths.collect::<Vec<_>>().join(",")
-        }
-        Choice::Preset => {
-            let all: Vec<_> = hardware.presets.iter().map(ToString::to_string).collect();
-            if all.windows(2).all(|pair| pair[0] == pair[1]) { all[0].clone() } else { all.join(",") }
-        }
-        Choice::Normalize => if hardware.normalize { "yes" } else { "no" }.to_owned(),
-        Choice::Radix => hardware.radix.word().to_owned(),
-        Choice::Adder => hardware.adder.word().to_owned(),
-        Choice::EndPoint => hardware.end_point.word().to_owned(),
-        Choice::Form => hardware.form.word().to_owned(),
-        Choice::Weights => hardware.weights.word().to_owned(),
-        Choice::Beats => hardware.beats.word().to_owned(),
-        Choice::Override => hardware.feed_override.map_or_else(|| "none".to_owned(), |percent| percent.to_string()),
-        Choice::Cascade => hardware.cascade.map_or_else(|| "none".to_owned(), |bits| bits.get().to_string()),
-        Choice::Compare => hardware.compare.word().to_owned(),
-        Choice::PickOff => hardware.pick_off.to_string(),
-        Choice::Timing => hardware.timing.to_string(),
-        Choice::System => of_sampling(&|sampling| sampling.system.word().to_owned()),
-        Choice::Fraction => of_sampling(&|sampling| sampling.fraction.to_string()),
-        Choice::Step => of_sampling(&|sampling| sampling.step.to_string()),
-        Choice::Tolerance => of_sampling(&|sampling| sampling.tolerance.to_string()),
-        Choice::OnOverflow => hardware.on_overflow.word().to_owned(),
-    };
-    model.choices.iter().map(|doc| (doc.choice.option().trim_start_matches("--"), value(doc.choice))).collect()
+    let value = |takes: &&'static dyn Takes| (takes.name(), hardware.text(takes.option()));
+    model.options.iter().map(value).collect()
 }
 
 /// One line for wave headers: model, geometry, choices.

@@ -32,8 +32,8 @@ impl Layout {
     pub(super) fn new(model: &Model, space: &Space, variants: &Variants) -> Result<Layout, StudyError> {
         let none = || StudyError::Geometries("there are no geometries: give a grid or a file that has some".to_owned());
         let (drawn, axes) = space.drawn().ok_or_else(none)?;
-        if axes > model.curve.max_axes() || axes < 2 {
-            let takes = model.curve.describe();
+        if axes > model.curve().max_axes() || axes < 2 {
+            let takes = model.curve().describe();
             let message = format!("{} interpolates {takes}; points of {axes} axes were given", model.name);
             return Err(StudyError::Geometries(message));
         }
@@ -55,8 +55,8 @@ impl Layout {
             add("center_y", Kind::Whole);
             add("direction", Kind::Word);
         }
-        for (choice, _) in variants.words() {
-            add(&choice.option().trim_start_matches('-').replace('-', "_"), Kind::Word);
+        for (option, _) in variants.words() {
+            add(&option.name().replace('-', "_"), Kind::Word);
         }
         add("ending", Kind::Word);
         add("clocks", Kind::Whole);
@@ -179,8 +179,8 @@ pub fn words(model: &Model, columns: &[Column], row: &[Value]) -> String {
     if let Some(direction) = value("direction") {
         add(&direction, Some(String::new()));
     }
-    for doc in model.choices {
-        let option = doc.choice.option().trim_start_matches('-');
+    for doc in model.options {
+        let option = doc.name().trim_start_matches('-');
         match (option, value(&option.replace('-', "_"))) {
             ("normalize", Some(word)) => add(option, (word == "yes").then(String::new)),
             (_, Some(word)) => add(option, Some(word).filter(|word| word != "none")),

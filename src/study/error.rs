@@ -25,12 +25,12 @@ pub enum StudyError {
         /// Its last.
         last: i64,
     },
-    /// A word among the values of a hardware choice.
-    #[error("'{word}' is no value of {option}{}: give {values}", did_you_mean(.word, .values.split(", ")))]
+    /// A word among the values of a hardware option.
+    #[error("'{word}' is no value of --{option}{}: give {values}", did_you_mean(.word, .values.split(", ")))]
     NoValue {
         /// The word.
         word: String,
-        /// The option.
+        /// The option, without its dashes.
         option: &'static str,
         /// What it may be.
         values: String,
@@ -45,7 +45,7 @@ pub enum StudyError {
     TooMany {
         /// Geometries.
         geometries: String,
-        /// Choices for each.
+        /// Options for each.
         variants: String,
         /// Most runs.
         limit: u64,

@@ -1,9 +1,8 @@
 //! Widths relative to k: proved for every k at once, and evaluated at any.
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
-use stepwave_models::{Choices, Hardware, Model, ModelError};
+use stepwave_models::options::WIDTH;
+use stepwave_models::{Hardware, Model, ModelError, Options};
 
 use super::boxes::{Extent, Geometries};
 use super::proof::{Block, Narrower, ProofError, Subject, Way, blocks, choices_at};
@@ -19,7 +18,7 @@ const MOST_FOLLOWED: u32 = 16;
 #[derive(Clone, Debug)]
 pub struct KForm {
     model: &'static Model,
-    choices: Choices,
+    choices: Options,
     narrower: Narrower,
     /// Each k needs a proof of its own.
     counted: bool,
@@ -30,9 +29,9 @@ impl KForm {
     ///
     /// # Errors
     /// The hardware cannot be built.
-    pub fn of(model: &'static Model, choices: &Choices) -> Result<Option<KForm>, ProofError> {
+    pub fn of(model: &'static Model, choices: &Options) -> Result<Option<KForm>, ProofError> {
         let Some(claims) = model.claims else { return Ok(None) };
-        let choices = Choices { width: None, widths: BTreeMap::new(), ..choices.clone() };
+        let choices = choices.clone().with(&WIDTH, None);
         let mut found = None;
         for k in FOUND {
             match Geometries::of(model, &choices, &Extent::Bits(k)) {
@@ -85,7 +84,7 @@ impl KForm {
 }
 
 /// With registers as narrow as this nothing overflows and every end is reached, for every k.
-fn is_proved(model: &'static Model, choices: &Choices, narrower: &Narrower) -> bool {
+fn is_proved(model: &'static Model, choices: &Options, narrower: &Narrower) -> bool {
     let Ok(subject) = Subject::new(model, choices, narrower) else { return false };
     let safe = |kind| subject.prove(&kind).is_ok_and(|(proof, _)| proof.is_safe());
     subject.kinds().into_par_iter().all(safe)

@@ -5,7 +5,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock, RwLock};
 
-use stepwave_models::{Choices, Hardware, Model, ModelError};
+use stepwave_models::options::NORMALIZE;
+use stepwave_models::{Hardware, Model, ModelError, Options};
 use stepwave_nc::Curve;
 
 use super::StudyError;
@@ -74,7 +75,7 @@ pub(super) struct Machines {
 fn digest(hardware: &Hardware) -> u64 {
     let mut hasher = DefaultHasher::new();
     hardware.widths.values().for_each(|width| width.get().hash(&mut hasher));
-    (hardware.axes, hardware.normalize, hardware.stall_clocks).hash(&mut hasher);
+    (hardware.axes, hardware.get(&NORMALIZE), hardware.stall_clocks).hash(&mut hasher);
     hasher.finish()
 }
 
@@ -87,7 +88,7 @@ impl Machines {
     ///
     /// # Errors
     /// The model refuses the geometry or a choice.
-    pub(super) fn plan(&self, curve: &Curve, choices: &Choices) -> Result<Arc<Machine>, ModelError> {
+    pub(super) fn plan(&self, curve: &Curve, choices: &Options) -> Result<Arc<Machine>, ModelError> {
         let hardware = self.model.plan(curve, choices)?;
         let digest = digest(&hardware);
         let alike =

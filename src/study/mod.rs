@@ -8,7 +8,8 @@
 //! threads nor how the work is cut changes a byte of what is written.
 //!
 //! ```
-//! use stepwave::models::{Choice, Millionths, find};
+//! use stepwave::models::{Millionths, find};
+//! use stepwave::models::options::WIDTH;
 //! use stepwave::study::{Cells, Dimension, Drawn, Part, Range, Space, Sweep, Value, Variants};
 //!
 //! let cells = Cells {
@@ -20,7 +21,7 @@
 //!     directions: vec![],
 //!     radii: Millionths(0),
 //! };
-//! let variants = Variants(vec![Dimension::parse(Choice::Width, "3..4")?]);
+//! let variants = Variants(vec![Dimension::parse(&WIDTH, "3..4")?]);
 //! let sweep = Sweep::new(find("dda-line")?, Space::Cells(cells), variants, Part::WHOLE, 1 << 20)?;
 //! let rows = sweep.rows(0..sweep.geometries())?;
 //! assert_eq!(rows.len(), 7 * 4 * 2);

@@ -44,7 +44,7 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
             return Err(mistake(index + 1, format!("{count} values under {} columns", heading.len())));
         }
         let line = Line { heading: &heading, words: &words, axes, radii };
-        line.site(model.curve).map_err(|what| mistake(index + 1, what))
+        line.site(model.curve()).map_err(|what| mistake(index + 1, what))
     };
     let points: Vec<Site> = lines.map(site).collect::<Result<_, _>>()?;
     let mut hasher = DefaultHasher::new();
@@ -54,13 +54,13 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
 
 /// Columns that a model's geometries may have.
 fn known(model: &Model) -> Vec<String> {
-    let axes = &AXES[..model.curve.max_axes()];
+    let axes = &AXES[..model.curve().max_axes()];
     let mut known: Vec<String> = Vec::new();
-    if model.curve == CurveKind::Conic {
+    if model.curve() == CurveKind::Conic {
         known.extend(["curve", "size_a", "size_b", "opens"].map(str::to_owned));
     }
     known.extend(["from", "to"].iter().flat_map(|point| axes.iter().map(move |axis| format!("{point}_{axis}"))));
-    if !matches!(model.curve, CurveKind::Line { .. }) {
+    if !matches!(model.curve(), CurveKind::Line { .. }) {
         known.extend(["center_x", "center_y", "direction"].map(str::to_owned));
     }
     known

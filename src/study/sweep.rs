@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use serde_json::{Value as Json, json};
-use stepwave_models::{Model, ModelError};
+use stepwave_models::Model;
 use stepwave_nc::Curve;
 
 use super::columns::Layout;
@@ -44,7 +44,7 @@ impl Sweep {
     /// Of this part of all geometries; each run ends after `limit` clocks, at most 2^31 - 1.
     ///
     /// # Errors
-    /// There are no geometries or too many, or the model does not take a choice.
+    /// There are no geometries or too many, or the model does not take an option.
     pub fn new(
         model: &'static Model,
         space: Space,
@@ -53,11 +53,7 @@ impl Sweep {
         limit: u64,
     ) -> Result<Sweep, StudyError> {
         for dimension in &variants.0 {
-            if !model.choices.iter().any(|doc| doc.choice == dimension.choice) {
-                let takes: Vec<_> = model.choices.iter().map(|doc| doc.choice.option()).collect();
-                let choice = dimension.choice;
-                return Err(ModelError::NotTaken { model: model.name, choice, takes: takes.join(", ") }.into());
-            }
+            model.require(dimension.option)?;
         }
         let (geometries, count) = (space.count(), variants.count());
         let few = geometries.checked_mul(count).filter(|&runs| runs <= u128::from(MOST_RUNS));
@@ -139,8 +135,8 @@ impl Sweep {
                 json!({ "points": points.len(), "content": content, "radii": radii })
             }
         };
-        let choices: BTreeMap<&str, Vec<&str>> =
-            self.variants.words().map(|(choice, words)| (choice.option(), words)).collect();
+        let words = self.variants.words().map(|(option, words)| (format!("--{}", option.name()), words));
+        let choices: BTreeMap<String, Vec<&str>> = words.collect();
         json!({
             "stepwave": env!("CARGO_PKG_VERSION"),
             "model": self.model.name,

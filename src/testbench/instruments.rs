@@ -15,6 +15,7 @@ use stepwave_kernel::dsl::{Module, Scope, Signal};
 use stepwave_kernel::engine::lanes::{Observe, ROOT_GAP_UNIT, root_gap};
 use stepwave_kernel::{Design, Net, OnOverflow, Width, elaborate};
 use stepwave_models::CurveKind;
+use stepwave_models::options::ON_OVERFLOW;
 use stepwave_nc::{Arc, Curve, Line};
 
 use super::measure::Measured;
@@ -88,7 +89,7 @@ impl Instruments {
             reach,
             pulses,
             properties: properties.map(|property| (property.never, property.name.clone())).collect(),
-            traps: bench.hardware().on_overflow == OnOverflow::Trap,
+            traps: bench.hardware().get(&ON_OVERFLOW) == OnOverflow::Trap,
             design: elaborate(module.finish().ok()?).ok()?,
         })
     }

@@ -3,6 +3,7 @@
 use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, Quiet};
 use stepwave_kernel::{Net, OnOverflow};
+use stepwave_models::options::ON_OVERFLOW;
 use stepwave_models::{Loaded, Machine, Model, ModelError, find};
 use stepwave_nc::Curve;
 
@@ -56,7 +57,7 @@ impl Testbench {
     /// # Errors
     /// The hardware is of no known model.
     pub fn measuring_lanes(&self, limit: u64) -> Result<Option<Lanes>, ModelError> {
-        let instruments = find(self.hardware.model).map(|model| Instruments::new(self, model.curve))?;
+        let instruments = find(self.hardware.model).map(|model| Instruments::new(self, model.curve()))?;
         instruments.map(|instruments| self.lanes_with(limit, Some(instruments))).transpose()
     }
 
@@ -65,7 +66,7 @@ impl Testbench {
         let machine = &self.machine;
         let never: Vec<Net> = self.design().netlist().properties.iter().map(|property| property.never).collect();
         let pulses: Vec<Net> = machine.pulses.iter().map(|port| port.net).collect();
-        let traps = if self.hardware.on_overflow == OnOverflow::Trap { never.clone() } else { Vec::new() };
+        let traps = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap { never.clone() } else { Vec::new() };
         let mut observe: Vec<Observe> = machine.positions.iter().map(|port| Observe::Last(port.net)).collect();
         observe.extend(pulses.iter().map(|&net| Observe::Count(vec![net])));
         let trusted = !traps.is_empty() || never.is_empty();
@@ -179,7 +180,7 @@ impl Lanes {
         let words = if curve.axes() == hardware.axes { self.model.words(hardware, curve) } else { Vec::new() };
         if words.is_empty() {
             let given = format!("a curve of {} axes in hardware for {}", curve.axes(), hardware.axes);
-            return Err(ModelError::Curve { model: self.model.name, takes: self.model.curve.describe(), given });
+            return Err(ModelError::Curve { model: self.model.name, takes: self.model.curve().describe(), given });
         }
         self.bench.load(&words)
     }

@@ -1,6 +1,6 @@
 //! The words of a geometry on the inputs of a machine.
 
-use stepwave_models::{Choices, CutWord, Loaded, Model, ModelError, Words};
+use stepwave_models::{CutWord, Loaded, Model, ModelError, Options, Words};
 use stepwave_nc::Curve;
 
 use super::Testbench;
@@ -13,7 +13,7 @@ impl Testbench {
     ///
     /// # Errors
     /// The model does not take the geometry or a choice, or a value does not fit in its register.
-    pub fn new(model: &Model, curve: &Curve, choices: &Choices) -> Result<Testbench, ModelError> {
+    pub fn new(model: &Model, curve: &Curve, choices: &Options) -> Result<Testbench, ModelError> {
         Testbench::of_hardware(model, model.plan(curve, choices)?)?.of(model, curve)
     }
 
@@ -21,7 +21,7 @@ impl Testbench {
     ///
     /// # Errors
     /// As [`new`](Self::new).
-    pub fn loading(model: &Model, curve: &Curve, choices: &Choices) -> Result<Testbench, ModelError> {
+    pub fn loading(model: &Model, curve: &Curve, choices: &Options) -> Result<Testbench, ModelError> {
         Testbench::of_hardware(model, model.plan(curve, choices)?)?.as_hardware_loads().of(model, curve)
     }
 

@@ -20,6 +20,7 @@ mod wave;
 
 use stepwave_kernel::engine::{self, Engine, EngineKind, Rows, Stop, Watch};
 use stepwave_kernel::{Design, Net, OnOverflow};
+use stepwave_models::options::ON_OVERFLOW;
 use stepwave_models::{CutWord, Hardware, Machine, Model, ModelError};
 
 pub use checkpoint::{CheckpointError, Checkpoints, Memory, State};
@@ -270,7 +271,7 @@ impl Testbench {
     fn begin<'a, 'o>(&'a self, engine: EngineKind, observers: &'a mut [&'o mut dyn Observer]) -> Run<'a, 'o> {
         let properties = &self.design().netlist().properties;
         let mut stops = vec![self.machine.done.net];
-        if self.hardware.on_overflow == OnOverflow::Trap {
+        if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap {
             stops.extend(properties.iter().map(|property| property.never));
         }
         let watch = Watch { columns: self.columns.nets().to_vec(), stops };
@@ -440,7 +441,7 @@ impl Run<'_, '_> {
 
     /// What the present sample says by itself.
     fn ended(&self) -> Option<Ending> {
-        if self.bench.hardware.on_overflow != OnOverflow::Trap {
+        if self.bench.hardware.get(&ON_OVERFLOW) != OnOverflow::Trap {
             return None;
         }
         let mut properties = self.bench.design().netlist().properties.iter();

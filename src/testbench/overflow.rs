@@ -9,6 +9,7 @@ use stepwave_kernel::engine::Rows;
 use stepwave_kernel::netlist::{Arithmetic, Claim, Property};
 use stepwave_kernel::{OnOverflow, Width, elaborate};
 use stepwave_models::Machine;
+use stepwave_models::options::ON_OVERFLOW;
 
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Columns, Observer, ObserverError, Testbench};
@@ -193,7 +194,7 @@ impl OverflowWatch {
             };
             Watched { property: property.clone(), never: at(property.never), operands }
         });
-        let mode = bench.hardware().on_overflow;
+        let mode = bench.hardware().get(&ON_OVERFLOW);
         let watched: Vec<_> = watched.collect();
         OverflowWatch { tallies: vec![Tally::NONE; watched.len()], watched, seen: Vec::new(), count: 0, mode }
     }

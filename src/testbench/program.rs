@@ -4,6 +4,7 @@ use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::{Engine, EngineKind, Idle, Rows, Stop, Watch};
 use stepwave_kernel::{Net, OnOverflow};
 use stepwave_models::ModelError;
+use stepwave_models::options::ON_OVERFLOW;
 
 use super::load::CUT_CLOCKS;
 use super::steps::StepColumns;
@@ -133,7 +134,7 @@ impl Testbench {
         let netlist = self.design().netlist();
         let find = |name: &str| netlist.find(name).ok_or_else(|| ModelError::MissingPort(name.to_owned()));
         let mut stops = vec![find("call")?.net, find("at_end")?.net];
-        if self.hardware().on_overflow == OnOverflow::Trap {
+        if self.hardware().get(&ON_OVERFLOW) == OnOverflow::Trap {
             stops.extend(netlist.properties.iter().map(|property| property.never));
         }
         let watch = Watch { columns: self.columns().nets().to_vec(), stops };
@@ -262,7 +263,7 @@ impl Run<'_, '_> {
 
     fn trapped(&self) -> bool {
         let properties = &self.bench.design().netlist().properties;
-        let traps = self.bench.hardware().on_overflow == OnOverflow::Trap;
+        let traps = self.bench.hardware().get(&ON_OVERFLOW) == OnOverflow::Trap;
         traps && properties.iter().any(|property| self.engine.value(property.never) == 1)
     }
 

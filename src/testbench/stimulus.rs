@@ -4,6 +4,7 @@ use stepwave_kernel::engine::{EngineKind, Rows};
 use stepwave_kernel::export::{Driven, Stall, Step, Stimulus, driven};
 use stepwave_kernel::{Design, Diagnostics, Net, OnOverflow};
 use stepwave_models::ModelError;
+use stepwave_models::options::ON_OVERFLOW;
 
 use super::{Observer, ObserverError, Testbench};
 
@@ -22,7 +23,7 @@ impl Testbench {
             steps.push(Step { set: load, clocks: Some(1) });
             steps.push(Step { set: vec![(machine.load.net, 0), (machine.preset_position.net, 0)], clocks: None });
         }
-        let never = if self.hardware.on_overflow == OnOverflow::Trap { self.properties() } else { Vec::new() };
+        let never = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap { self.properties() } else { Vec::new() };
         let pulses = machine.pulses.iter().map(|port| port.net).collect();
         let stall = Stall { nets: pulses, clocks: self.hardware.stall_clocks };
         Stimulus { steps, done: Some(machine.done.net), never, stall: Some(stall) }

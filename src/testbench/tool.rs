@@ -7,6 +7,7 @@ use stepwave_kernel::OnOverflow;
 use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::Rows;
 use stepwave_models::Port;
+use stepwave_models::options::ON_OVERFLOW;
 
 use super::{StepColumns, Testbench};
 
@@ -33,7 +34,7 @@ impl Tool {
         Tool {
             counters: columns.positions.into_iter().zip(ports.iter().copied()).collect(),
             pulses: columns.pulses,
-            trusted: bench.hardware().on_overflow == OnOverflow::Trap,
+            trusted: bench.hardware().get(&ON_OVERFLOW) == OnOverflow::Trap,
             place: bench.start.clone(),
         }
     }

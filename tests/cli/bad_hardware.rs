@@ -1,4 +1,4 @@
-//! Choices of hardware that cannot be are refused, and what a model does not take is never ignored.
+//! Options of hardware that cannot be are refused, and what a model does not take is never ignored.
 
 use super::{Folder, refused, refused_words, run_refused};
 

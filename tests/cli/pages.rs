@@ -80,7 +80,7 @@ fn the_list_names_every_model_with_its_registers_and_options() {
         let begin = list.find(&format!("\n  {name}  ")).unwrap_or_else(|| panic!("{name} is not in the list: {list}"));
         let part = list[begin + 1..].split("\n\n").next().unwrap();
         for (kind, fields) in
-            [("registers", ["name", "default_width", "about"].as_slice()), ("options", &["option", "values"])]
+            [("registers", ["name", "default_width", "about"].as_slice()), ("options", &["option", "about"])]
         {
             let entries = model[kind].as_array().unwrap();
             assert!(entries.len() >= 3, "{name}: {kind}");
@@ -90,6 +90,8 @@ fn the_list_names_every_model_with_its_registers_and_options() {
                 }
                 if let Some(option) = entry["option"].as_str() {
                     assert!(run.contains(option), "{name}: {option}");
+                    let (values, default) = (entry["values"].as_array().unwrap(), &entry["default"]);
+                    assert!(default.is_null() || values.contains(default), "{name}: {entry}");
                 }
             }
         }
@@ -137,7 +139,7 @@ fn registers_and_options_of_the_list_stand_in_columns() {
     let models: Vec<Value> = serde_json::from_str(&good("list --json")).unwrap();
     let mut columns = BTreeSet::new();
     for model in &models {
-        for (kind, fields) in [("registers", ["name", "default_width"]), ("options", ["option", "values"])] {
+        for (kind, fields) in [("registers", ["name", "default_width"]), ("options", ["option", "about"])] {
             for entry in model[kind].as_array().unwrap() {
                 let [name, next] = fields.map(|field| entry[field].as_str().unwrap());
                 let shown = list.lines().filter(|line| {

@@ -1,6 +1,6 @@
 //! A design with a loader beside it is the design under its test bench, sample by sample.
 
-use stepwave::models::{Choices, find};
+use stepwave::models::{Options, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::testbench::{Observer, ObserverError, Testbench};
 use stepwave_kernel::engine::{EngineKind, Rows, Watch};
@@ -34,7 +34,7 @@ fn a_machine_with_a_loader_runs_as_on_the_bench() {
     // Three quadrants: three blocks, one after another.
     let arc = Curve::Arc(Arc::new([5, -3], [-5, 3], [0, 0], Direction::CounterClockwise).unwrap());
     for (model, curve) in [("ppc-line", &line), ("dda-line", &line), ("ppc-arc", &arc), ("dda-arc", &arc)] {
-        let bench = Testbench::new(find(model).unwrap(), curve, &Choices::default()).unwrap();
+        let bench = Testbench::new(find(model).unwrap(), curve, &Options::default()).unwrap();
         let mut seen = Samples(Vec::new());
         bench.run(EngineKind::Gates, &mut [&mut seen]).unwrap();
         let driven = bench.driven().unwrap();

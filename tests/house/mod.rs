@@ -1,4 +1,5 @@
 //! The README tells the truth, and the rules of the house hold.
 
+mod examples;
 mod readme;
 mod tidy;

@@ -69,7 +69,7 @@ fn example(code: Code) -> (Diagnostics, String) {
             described(|m| {
                 let _ = m.input("a", 65);
             }),
-            "a width of 65 bits is not possible: a register holds 1 to 64 bits",
+            "a: a width of 65 bits is not possible: a register holds 1 to 64 bits",
         ),
         Code::ValueTooWide => (
             described(|m| {

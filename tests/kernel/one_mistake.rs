@@ -96,24 +96,25 @@ fn a_strict_cell_with_an_enable_of_several_bits_is_one_mistake() {
 
 #[test]
 fn a_width_that_is_not_possible_is_one_mistake_whatever_is_done_with_the_signal() {
-    let bad = |bits: u32| format!("a width of {bits} bits is not possible: a register holds 1 to 64 bits");
+    let bad =
+        |of: &str, bits: u32| format!("{of}a width of {bits} bits is not possible: a register holds 1 to 64 bits");
     type Make = for<'m> fn(Scope<'m>) -> Signal<'m>;
-    let makes: [(u32, Make); 13] = [
-        (65, |m| m.input("a", 65)),
-        (0, |m| m.input_signed("a", 0)),
-        (65, |m| m.lit(65, 17)),
-        (0, |m| m.lit(0, 17)),
-        (65, |m| m.lit_signed(65, -17)),
-        (0, |m| m.lit_signed(0, -17)),
-        (65, |m| m.input("a", 4).extend(65)),
-        (70, |m| m.input_signed("a", 4).extend(70)),
-        (0, |m| m.input("a", 4).extend(0)),
-        (65, |m| m.input("a", 4).slice(0, 65)),
-        (0, |m| m.input("a", 4).slice(9, 0)),
-        (65, |m| m.input("a", 40).concat(m.input("b", 25))),
-        (70, |m| m.input("a", 64).extend(70).slice(66, 2)),
+    let makes: [(&str, u32, Make); 13] = [
+        ("a: ", 65, |m| m.input("a", 65)),
+        ("a: ", 0, |m| m.input_signed("a", 0)),
+        ("", 65, |m| m.lit(65, 17)),
+        ("", 0, |m| m.lit(0, 17)),
+        ("", 65, |m| m.lit_signed(65, -17)),
+        ("", 0, |m| m.lit_signed(0, -17)),
+        ("", 65, |m| m.input("a", 4).extend(65)),
+        ("", 70, |m| m.input_signed("a", 4).extend(70)),
+        ("", 0, |m| m.input("a", 4).extend(0)),
+        ("", 65, |m| m.input("a", 4).slice(0, 65)),
+        ("", 0, |m| m.input("a", 4).slice(9, 0)),
+        ("", 65, |m| m.input("a", 40).concat(m.input("b", 25))),
+        ("", 70, |m| m.input("a", 64).extend(70).slice(66, 2)),
     ];
-    for (bits, make) in makes {
+    for (of, bits, make) in makes {
         assert_one(
             |m| {
                 let (signal, other) = (make(m), m.input("other", 7));
@@ -125,7 +126,7 @@ fn a_width_that_is_not_possible_is_one_mistake_whatever_is_done_with_the_signal(
                 m.invariant("never", signal);
             },
             Code::BadWidth,
-            &bad(bits),
+            &bad(of, bits),
         );
     }
     for bits in [0, 65] {
@@ -135,7 +136,7 @@ fn a_width_that_is_not_possible_is_one_mistake_whatever_is_done_with_the_signal(
                 r.when(m.input("load", 1), m.input("a", 9)).else_hold();
             },
             Code::BadWidth,
-            &bad(bits),
+            &bad("r: ", bits),
         );
     }
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use stepwave::testbench::{Ending, LaneOutcome, Observer, ObserverError, Testbench};
 use stepwave_kernel::engine::{EngineKind, Rows};
 use stepwave_kernel::{OnOverflow, Width};
-use stepwave_models::{Beats, Choices, EndPoint, ModelError, Preset, Radix, find};
+use stepwave_models::options::{BEATS, CASCADE, END_POINT, NORMALIZE, ON_OVERFLOW, OVERRIDE, PRESET, RADIX, WIDTH};
+use stepwave_models::{Beats, EndPoint, ModelError, Options, Preset, Radix, find};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
 
 const LIMIT: u64 = 1 << 20;
@@ -15,9 +16,9 @@ fn width(bits: u64) -> Width {
 }
 
 /// The same hardware for every geometry: all widths are given.
-fn choices(bits: u64, position: u64) -> Choices {
+fn choices(bits: u64, position: u64) -> Options {
     let positions = ["x", "y"].map(|axis| (axis.to_owned(), width(position)));
-    Choices { width: Some(width(bits)), widths: BTreeMap::from(positions), ..Choices::default() }
+    Options::default().with_all(&WIDTH, width(bits)).with_single(&WIDTH, BTreeMap::from(positions))
 }
 
 fn line(to: [i64; 2]) -> Curve {
@@ -80,7 +81,7 @@ fn alone(bench: &Testbench) -> LaneOutcome {
 }
 
 /// Runs all at once and each alone; gives what they came to.
-fn assert_each_as_alone(model: &str, curves: &[Curve], choices: &Choices) -> Vec<LaneOutcome> {
+fn assert_each_as_alone(model: &str, curves: &[Curve], choices: &Options) -> Vec<LaneOutcome> {
     let model = find(model).unwrap();
     let bench = Testbench::new(model, &curves[0], choices).unwrap();
     let outcomes = bench.run_many(curves, LIMIT).unwrap();
@@ -110,9 +111,9 @@ fn every_line_of_up_to_five_bits_in_all_quadrants_ends_as_alone() {
 fn every_line_of_the_pulse_multiplier_ends_as_alone() {
     let units = [
         choices(4, 6),
-        Choices { cascade: Some(width(2)), ..choices(4, 6) },
-        Choices { radix: Some(Radix::Decimal), ..choices(8, 6) },
-        Choices { feed_override: Some(35), ..choices(5, 6) },
+        choices(4, 6).with(&CASCADE, Some(width(2))),
+        choices(8, 6).with(&RADIX, Radix::Decimal),
+        choices(5, 6).with(&OVERRIDE, Some(35)),
     ];
     for choices in units {
         assert!(all_done(&assert_each_as_alone("dpm-line", &lines(4), &choices)), "{choices:?}");
@@ -123,7 +124,7 @@ fn every_line_of_the_pulse_multiplier_ends_as_alone() {
 fn every_line_of_the_methods_that_judge_both_axes_ends_as_alone() {
     for model in ["cim-line", "mindev-line", "vector-line"] {
         assert!(all_done(&assert_each_as_alone(model, &lines(4), &choices(4, 6))), "{model}");
-        let one_beat = Choices { beats: Some(Beats::One), ..choices(5, 7) };
+        let one_beat = choices(5, 7).with(&BEATS, Beats::One);
         assert!(all_done(&assert_each_as_alone(model, &lines(4), &one_beat)), "{model}");
     }
 }
@@ -148,9 +149,9 @@ fn quarters_of_ellipses_of_one_hardware_end_as_alone() {
     let quarters: Vec<Curve> = quarters.collect();
     let wide = |names: &[&str], bits| names.iter().map(|name| ((*name).to_owned(), width(bits))).collect::<Vec<_>>();
     let with = |names: &[&str]| {
-        let mut choices = choices(12, 6);
-        choices.widths.extend(wide(names, 6));
-        choices
+        let choices = choices(12, 6);
+        let single = choices.of_single(&WIDTH).into_iter().chain(wide(names, 6)).collect();
+        choices.with_single(&WIDTH, single)
     };
     assert!(all_done(&assert_each_as_alone("ppc-conic", &quarters, &with(&["ux", "uy", "e"]))));
     assert!(all_done(&assert_each_as_alone("cim-conic", &quarters, &with(&["alpha", "beta", "ex", "ey"]))));
@@ -160,10 +161,10 @@ fn quarters_of_ellipses_of_one_hardware_end_as_alone() {
 fn lines_with_other_choices_end_as_alone() {
     let curves = lines(3);
     for end_point in [EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest] {
-        let choices = Choices { end_point: Some(end_point), ..choices(4, 6) };
-        let normalized = Choices { normalize: true, preset: Some(Preset::Half), ..choices.clone() };
+        let choices = choices(4, 6).with(&END_POINT, end_point);
+        let normalized = choices.clone().with(&NORMALIZE, true).with_all(&PRESET, Preset::Half);
         assert_each_as_alone("dda-line", &curves, &normalized);
-        let one_beat = Choices { beats: Some(Beats::One), ..choices };
+        let one_beat = choices.with(&BEATS, Beats::One);
         assert!(all_done(&assert_each_as_alone("ppc-line", &curves, &one_beat)));
     }
 }
@@ -173,7 +174,7 @@ fn every_lattice_arc_of_one_or_many_blocks_ends_as_alone() {
     let curves = arcs(5);
     assert!(all_done(&assert_each_as_alone("ppc-arc", &curves, &choices(5, 8))));
     for end_point in [EndPoint::PerAxis, EndPoint::Total] {
-        let choices = Choices { end_point: Some(end_point), ..choices(5, 8) };
+        let choices = choices(5, 8).with(&END_POINT, end_point);
         assert_each_as_alone("ppc-arc", &curves, &choices);
         assert_each_as_alone("dda-arc", &curves, &choices);
     }
@@ -181,7 +182,7 @@ fn every_lattice_arc_of_one_or_many_blocks_ends_as_alone() {
 
 #[test]
 fn arcs_that_stall_are_given_up_at_the_clock_at_which_one_alone_is() {
-    let stalls = Choices { preset: Some(Preset::Zero), ..choices(4, 8) };
+    let stalls = choices(4, 8).with_all(&PRESET, Preset::Zero);
     let outcomes = assert_each_as_alone("dda-arc", &arcs(8), &stalls);
     let stalled = |outcome: &&LaneOutcome| matches!(outcome.ending, Some(Ending::Stalled { .. }));
     let count = outcomes.iter().filter(stalled).count();
@@ -192,7 +193,7 @@ fn arcs_that_stall_are_given_up_at_the_clock_at_which_one_alone_is() {
 fn overflows_trap_at_their_clock_or_are_counted() {
     for (mode, traps) in [(OnOverflow::Trap, true), (OnOverflow::Wrap, false), (OnOverflow::Saturate, false)] {
         // Positions of four bits, and lines of up to 15 to either side.
-        let choices = Choices { on_overflow: Some(mode), ..choices(4, 4) };
+        let choices = choices(4, 4).with(&ON_OVERFLOW, mode);
         for model in ["dda-line", "ppc-line"] {
             let outcomes = assert_each_as_alone(model, &lines(4), &choices);
             let overflows = outcomes.iter().filter(|outcome| outcome.overflows > 0).count();
@@ -234,7 +235,7 @@ fn a_geometry_that_takes_too_long_ends_at_the_limit() {
 fn arcs_that_come_to_rest_are_given_up_as_alone() {
     // In 11 bits a motion that has come to a stand is at rest long before 2^11 clocks are over.
     // With `half`, the default, arcs with both ends on their circle never do.
-    let stalls = Choices { preset: Some(Preset::Zero), ..choices(11, 13) };
+    let stalls = choices(11, 13).with_all(&PRESET, Preset::Zero);
     let outcomes = assert_each_as_alone("dda-arc", &arcs(8), &stalls);
     let early = |outcome: &&LaneOutcome| matches!(outcome.ending, Some(Ending::Stalled { clocks }) if clocks < 1 << 11);
     let given_up = outcomes.iter().filter(early).count();

@@ -6,7 +6,8 @@ use proptest::prelude::*;
 use stepwave::testbench::{Ending, Measured, Observer, ObserverError, Step, Testbench};
 use stepwave_kernel::engine::{EngineKind, Rows};
 use stepwave_kernel::{OnOverflow, Width};
-use stepwave_models::{Choices, CurveKind, Model, Preset, catalogue, find};
+use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
+use stepwave_models::{CurveKind, Model, Options, Preset, catalogue, find};
 use stepwave_nc::{Arc, Curve, Direction, Line};
 
 use crate::kernel::random::config;
@@ -15,20 +16,20 @@ const LIMIT: u64 = 1 << 20;
 /// Far more than what is not endless takes in 7 bits.
 const SHORT: u64 = 1 << 14;
 
-fn widths(bits: u64, position: u64) -> Choices {
+fn widths(bits: u64, position: u64) -> Options {
     let width = |bits| Width::new(bits).unwrap();
     let positions = ["x", "y"].map(|axis| (axis.to_owned(), width(position)));
-    Choices { width: Some(width(bits)), widths: BTreeMap::from(positions), ..Choices::default() }
+    Options::default().with_all(&WIDTH, width(bits)).with_single(&WIDTH, BTreeMap::from(positions))
 }
 
 /// The models of this kind of curve.
 fn models(kind: fn(&CurveKind) -> bool) -> impl Iterator<Item = &'static Model> {
-    catalogue().iter().filter(move |model| kind(&model.curve))
+    catalogue().iter().collect::<Vec<_>>().into_iter().filter(move |model| kind(&model.curve()))
 }
 
 /// Runs all curves of one hardware in lanes, and wants of each what it comes to alone; gives how many had to be run
 /// alone all the same.
-fn assert_measured_as_alone(model: &Model, curves: &[Curve], choices: &Choices, limit: u64) -> usize {
+fn assert_measured_as_alone(model: &Model, curves: &[Curve], choices: &Options, limit: u64) -> usize {
     let Ok(hardware) = model.plan(&curves[0], choices) else { return 0 };
     let bench = Testbench::of_hardware(model, hardware).unwrap();
     let lanes = bench.measuring_lanes(limit).unwrap().expect("lines and circles are measured in lanes");
@@ -58,17 +59,17 @@ fn line(from: [i64; 2], to: [i64; 2]) -> Option<Curve> {
     Line::new(from.to_vec(), to.to_vec()).ok().map(Into::into)
 }
 
-/// Choices of which each model takes what it has.
-fn choices_of(model: &Model, seed: u8, bits: u64, position: u64) -> Choices {
-    let takes = |choice: stepwave_models::Choice| model.choices.iter().any(|doc| doc.choice == choice);
+/// Options of which each model takes what it has.
+fn choices_of(model: &Model, seed: u8, bits: u64, position: u64) -> Options {
     let mut choices = widths(bits, position);
-    if takes(stepwave_models::Choice::Preset) {
-        choices.preset = [None, Some(Preset::Half), Some(Preset::Full)][usize::from(seed) % 3];
+    if model.takes(&PRESET) {
+        let preset = [None, Some(Preset::Half), Some(Preset::Full)][usize::from(seed) % 3];
+        choices = choices.with_all(&PRESET, preset);
     }
-    choices.normalize = takes(stepwave_models::Choice::Normalize) && seed % 2 == 1;
-    choices.on_overflow =
-        [OnOverflow::Trap, OnOverflow::Wrap, OnOverflow::Saturate].get(usize::from(seed / 6)).copied();
+    let modes = [OnOverflow::Trap, OnOverflow::Wrap, OnOverflow::Saturate];
     choices
+        .with(&NORMALIZE, model.takes(&NORMALIZE) && seed % 2 == 1)
+        .with(&ON_OVERFLOW, modes.get(usize::from(seed / 6)).copied())
 }
 
 proptest! {
@@ -110,7 +111,7 @@ proptest! {
         for model in models(|kind| *kind == CurveKind::Arc) {
             let choices = choices_of(model, seed, 6, 8);
             let alone = assert_measured_as_alone(model, &arcs, &choices, SHORT);
-            let traps = choices.on_overflow.is_none_or(|mode| mode == OnOverflow::Trap);
+            let traps = choices.get(&ON_OVERFLOW).copied().is_none_or(|mode| mode == OnOverflow::Trap);
             prop_assert!(alone == 0 || !traps, "{}: {alone}", model.name);
             assert_measured_as_alone(model, &arcs, &choices_of(model, seed, 6, 5), SHORT);
         }
@@ -176,7 +177,7 @@ fn mean_error_and_spacing_are_those_of_the_step_table_and_the_pulses() {
         ("ppc-arc", arc.into()),
         ("dda-arc", arc.into()),
     ] {
-        let bench = Testbench::new(find(name).unwrap(), &curve, &Choices::default()).unwrap();
+        let bench = Testbench::new(find(name).unwrap(), &curve, &Options::default()).unwrap();
         let Measured { ending, greatest, mean, spacing, .. } = bench.measure(&curve, LIMIT).unwrap();
         let pulses = bench.machine().pulses.iter().map(|port| bench.columns().index(port.net)).collect();
         let mut plain = Plain { curve: Some(curve.clone()), pulses, ..Plain::default() };
@@ -197,7 +198,7 @@ fn mean_error_and_spacing_are_those_of_the_step_table_and_the_pulses() {
 fn a_run_that_takes_too_long_is_told_to_in_lanes_and_alone() {
     let curve = line([0, 0], [100, 77]).unwrap();
     let model = find("dda-line").unwrap();
-    let hardware = model.plan(&curve, &Choices::default()).unwrap();
+    let hardware = model.plan(&curve, &Options::default()).unwrap();
     let bench = Testbench::of_hardware(model, hardware).unwrap();
     for (limit, ends) in [(128, false), (129, true), (130, true), (5, false)] {
         let alone = bench.of(model, &curve).unwrap().measure(&curve, limit).unwrap();

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use stepwave::testbench::{Ending, Observer, ObserverError, PathWatch, SpacingWatch, Step};
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Beats, Choices, Compare, EndPoint, Form, Preset, Radix, Weights, find};
+use stepwave_models::options::{BEATS, COMPARE, END_POINT, FORM, NORMALIZE, PRESET, RADIX, WEIGHTS, WIDTH};
+use stepwave_models::{Beats, Compare, EndPoint, Form, Options, Preset, Radix, Weights, find};
 use stepwave_nc::{Conic, Curve, Direction};
 
 use super::conics::every_quarter_ellipse;
@@ -18,7 +19,7 @@ use super::{arc, bench, every_lattice_arc, every_line, line};
 /// Greatest path error so far, where, and how many geometries were measured.
 type Worst = Mutex<(f64, String, u32)>;
 
-fn measure(worst: &Worst, model: &str, curve: &Curve, choices: &Choices) {
+fn measure(worst: &Worst, model: &str, curve: &Curve, choices: &Options) {
     let bench = bench(model, curve, choices);
     let mut path = PathWatch::new(&bench, curve);
     let mut observers: [&mut dyn Observer; 1] = [&mut path];
@@ -42,28 +43,28 @@ fn report(what: &str, worst: Worst) -> f64 {
     error
 }
 
-fn one_beat(model: &str) -> Choices {
-    let takes = find(model).unwrap().choices.iter().any(|doc| doc.choice.option() == "--beats");
-    Choices { beats: takes.then_some(Beats::One), ..Choices::default() }
+fn one_beat(model: &str) -> Options {
+    let takes = find(model).unwrap().takes(&BEATS);
+    Options::default().with(&BEATS, takes.then_some(Beats::One))
 }
 
 fn lines(model: &str) -> f64 {
     lines_with(model, "", &one_beat(model))
 }
 
-fn lines_with(model: &str, what: &str, choices: &Choices) -> f64 {
+fn lines_with(model: &str, what: &str, choices: &Options) -> f64 {
     let worst = Worst::default();
     every_line(|to| measure(&worst, model, &line(&[0, 0], &to), choices));
     report(&format!("{model} {what}"), worst)
 }
 
-fn arcs(model: &str, choices: &Choices) -> f64 {
+fn arcs(model: &str, choices: &Options) -> f64 {
     let worst = Worst::default();
     every_lattice_arc(900, |from, to, clockwise| measure(&worst, model, &arc(from, to, [0, 0], clockwise), choices));
     let options: Vec<String> = [
-        choices.weights.map(|weights| format!("{weights:?}")),
-        choices.preset.map(|preset| format!("{preset:?}")),
-        choices.end_point.map(|end| format!("{end:?}")),
+        choices.get(&WEIGHTS).copied().map(|weights| format!("{weights:?}")),
+        choices.of_all(&PRESET).map(|preset| format!("{preset:?}")),
+        choices.get(&END_POINT).copied().map(|end| format!("{end:?}")),
     ]
     .into_iter()
     .flatten()
@@ -84,7 +85,7 @@ fn lines_stay_within_the_bounds_of_their_methods() {
 /// Greatest deviation of any axis from its uniform rate behind any step, over all coefficients of `n` bits or of so many
 /// digits, in pulses times the steps of a block: six coefficients a run. What the report says must be the same.
 #[allow(clippy::cast_precision_loss)]
-fn worst_rate_deviation(choices: &Choices, steps: i64) -> i64 {
+fn worst_rate_deviation(choices: &Options, steps: i64) -> i64 {
     let worst = Mutex::new(0);
     let runs = (0..steps).step_by(6).collect::<Vec<_>>();
     runs.into_par_iter().for_each(|first| {
@@ -127,7 +128,7 @@ impl Observer for Farthest<'_> {
 fn the_worst_deviation_of_a_pulse_multiplier_is_that_of_the_closed_form() {
     for n in 1..=11 {
         let steps = 1_i64 << n;
-        let choices = Choices { width: Some(Width::new(n).unwrap()), ..Choices::default() };
+        let choices = Options::default().with_all(&WIDTH, Width::new(n).unwrap());
         let worst = worst_rate_deviation(&choices, steps);
         // Times 18·2^n: (3n + 7)/18 + (-1)^n/(9·2^n).
         let n = i64::try_from(n).unwrap();
@@ -141,7 +142,7 @@ fn the_worst_deviation_of_decades_is_that_of_a_number_of_sevens() {
     // Digit 7 has all its pulses in the counts 1 to 7, so that 8 clocks bring 1.4 more than 8·0.7.
     for (digits, literal) in [(1, 14), (2, 224), (3, 3024)] {
         let (width, steps) = (Some(Width::new(4 * digits).unwrap()), 10_i64.pow(u32::try_from(digits).unwrap()));
-        let choices = Choices { width, radix: Some(Radix::Decimal), ..Choices::default() };
+        let choices = Options::default().with_all(&WIDTH, width).with(&RADIX, Radix::Decimal);
         let worst = worst_rate_deviation(&choices, steps);
         assert_eq!(worst, literal);
         // Times 81·10^k: 7k/9 + 56/81·(1 - 10^(-k)).
@@ -154,7 +155,7 @@ fn accumulators_stay_within_a_step_of_each_axis_or_half_a_step() {
     for (what, preset, bound) in
         [("zero", Preset::Zero, SQRT_2), ("full", Preset::Full, SQRT_2), ("half", Preset::Half, FRAC_1_SQRT_2)]
     {
-        let choices = Choices { preset: Some(preset), ..Choices::default() };
+        let choices = Options::default().with_all(&PRESET, preset);
         let error = lines_with("stepgen", what, &choices);
         assert!(error < bound + 1e-9 && error > 0.9 * bound, "{what}");
     }
@@ -165,7 +166,7 @@ fn counters_stay_within_half_a_step_with_the_right_test() {
     for (what, form, compare) in
         [("ge", Form::Magnitude, Compare::AtLeast), ("signed gt", Form::Signed, Compare::Greater)]
     {
-        let choices = Choices { form: Some(form), compare: Some(compare), ..Choices::default() };
+        let choices = Options::default().with(&FORM, form).with(&COMPARE, compare);
         let error = lines_with("bresenham", what, &choices);
         assert!(error <= 0.5 && error > 0.4, "{what}");
     }
@@ -174,7 +175,7 @@ fn counters_stay_within_half_a_step_with_the_right_test() {
 #[test]
 fn arcs_stay_within_the_bounds_of_their_methods() {
     for end_point in [EndPoint::Total, EndPoint::PerAxis] {
-        let with = |model| Choices { end_point: Some(end_point), ..one_beat(model) };
+        let with = |model| one_beat(model).with(&END_POINT, end_point);
         assert!(arcs("ppc-arc", &with("ppc-arc")) <= 1.0);
         assert!(arcs("mindev-arc", &with("mindev-arc")) < 0.5);
         assert!(arcs("vector-arc", &with("vector-arc")) < 1.0);
@@ -183,7 +184,7 @@ fn arcs_stay_within_the_bounds_of_their_methods() {
 
 #[test]
 fn comparison_integral_stays_within_one_blu_with_the_weights_of_the_middle_only() {
-    let with = |weights| Choices { weights: Some(weights), ..one_beat("cim-arc") };
+    let with = |weights| one_beat("cim-arc").with(&WEIGHTS, weights);
     assert!(arcs("cim-arc", &with(Weights::Mid)) <= 1.0);
     assert!(arcs("cim-arc", &with(Weights::Pre)) > 1.0);
     assert!(arcs("cim-arc", &with(Weights::Post)) > 1.0);
@@ -191,7 +192,7 @@ fn comparison_integral_stays_within_one_blu_with_the_weights_of_the_middle_only(
 
 #[test]
 fn arcs_of_the_dda_may_leave_the_circle_by_more_than_one_blu() {
-    let with = |preset| Choices { preset: Some(preset), ..Choices::default() };
+    let with = |preset| Options::default().with_all(&PRESET, preset);
     assert!(arcs("dda-arc", &with(Preset::Half)) > 1.0);
 }
 
@@ -200,11 +201,10 @@ fn ellipses(preset: Preset, normalize: bool) -> f64 {
     let worst = Worst::default();
     every_quarter_ellipse(30, |case| {
         let curve = case.curve();
-        let mut choices = Choices { preset: Some(preset), ..Choices::default() };
+        let mut choices = Options::default().with_all(&PRESET, preset);
         if normalize {
             let least = find("dda-conic").unwrap().plan(&curve, &choices).unwrap().widths["jrx"];
-            choices.width = Width::new(u64::from(least.get()) + 4).ok();
-            choices.normalize = true;
+            choices = choices.with_all(&WIDTH, Width::new(u64::from(least.get()) + 4).ok()).with(&NORMALIZE, true);
         }
         measure(&worst, "dda-conic", &curve, &choices);
     });
@@ -217,7 +217,7 @@ fn ellipses_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_noth
     assert!(zero > 2.0 && half > 1.0 && half < 1.2 && full > 1.0, "{zero} {half} {full}");
     assert_eq!(ellipses(Preset::Half, true), half);
     let ellipse = Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], Direction::CounterClockwise).unwrap();
-    assert_eq!(find("dda-conic").unwrap().plan(&ellipse.into(), &Choices::default()).unwrap().error_bound, None);
+    assert_eq!(find("dda-conic").unwrap().plan(&ellipse.into(), &Options::default()).unwrap().error_bound, None);
 }
 
 #[test]
@@ -227,19 +227,19 @@ fn helices_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_nothi
         every_lattice_arc(122, |from, to, clockwise| {
             for rise in [0, 1, -5, 20, -100] {
                 let curve = helix([from[0], from[1], 0], [to[0], to[1], rise], [0, 0], clockwise);
-                measure(&worst, "dda-helix", &curve, &Choices { preset: Some(preset), ..Choices::default() });
+                measure(&worst, "dda-helix", &curve, &Options::default().with_all(&PRESET, preset));
             }
         });
         assert!(report(&format!("dda-helix {preset:?}"), worst) > 1.0);
     }
     let curve = helix([5, 0, 0], [0, 5, 3], [0, 0], false);
-    assert_eq!(find("dda-helix").unwrap().plan(&curve, &Choices::default()).unwrap().error_bound, None);
+    assert_eq!(find("dda-helix").unwrap().plan(&curve, &Options::default()).unwrap().error_bound, None);
 }
 
 #[test]
 fn a_line_with_unequal_presets_may_leave_by_more_than_one_blu_and_promises_nothing() {
     let presets = [("jrx".to_owned(), Preset::Full), ("jry".to_owned(), Preset::Zero)];
-    let choices = Choices { presets: presets.into(), ..Choices::default() };
+    let choices = Options::default().with_single(&PRESET, presets.into());
     let worst = Worst::default();
     every_line(|to| measure(&worst, "dda-line", &line(&[0, 0], &to), &choices));
     assert!(report("dda-line jrx=full,jry=zero", worst) > 1.0);

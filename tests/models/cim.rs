@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Beats, Choices, Weights};
+use stepwave_models::options::{BEATS, WEIGHTS};
+use stepwave_models::{Beats, Options, Weights};
 
 use super::{arc, check, conics, every_lattice_arc, every_line, line};
 use crate::reference::{self, cim_arc, cim_conic, cim_line};
@@ -15,14 +16,14 @@ const RULES: [(Weights, reference::Weights); 3] = [
 
 fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
     for (weights, _) in RULES {
-        let choices = Choices { weights: Some(weights), beats: Some(beats), ..Choices::default() };
+        let choices = Options::default().with(&WEIGHTS, weights).with(&BEATS, beats);
         check("cim-line", &line(&from, &to), &choices, engine, &cim_line(from, to));
     }
 }
 
 fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, beats: Beats, engine: EngineKind) {
     for (weights, rule) in RULES {
-        let choices = Choices { weights: Some(weights), beats: Some(beats), ..Choices::default() };
+        let choices = Options::default().with(&WEIGHTS, weights).with(&BEATS, beats);
         let table = cim_arc(from, to, center, clockwise, rule);
         check("cim-arc", &arc(from, to, center, clockwise), &choices, engine, &table);
     }
@@ -30,7 +31,7 @@ fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, be
 
 fn check_conic(case: &conics::Case, beats: Beats, engine: EngineKind) {
     for (weights, rule) in RULES {
-        let choices = Choices { weights: Some(weights), beats: Some(beats), ..Choices::default() };
+        let choices = Options::default().with(&WEIGHTS, weights).with(&BEATS, beats);
         let table = cim_conic(case.shape, case.from, case.to, case.center, case.clockwise, rule);
         check("cim-conic", &case.curve(), &choices, engine, &table);
     }

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Beats, Choices, EndPoint};
+use stepwave_models::options::{BEATS, END_POINT};
+use stepwave_models::{Beats, EndPoint, Options};
 use stepwave_nc::{Conic, Curve, Direction};
 
 use super::check;
@@ -134,7 +135,7 @@ fn check_ppc(case: &Case, beats: Beats, engine: EngineKind) {
     let ends = [(EndPoint::PerAxis, reference::EndPoint::PerAxis), (EndPoint::Total, reference::EndPoint::Total)];
     for (end_point, end_reference) in ends {
         if end_point == EndPoint::PerAxis || conic.ends_on_curve() {
-            let choices = Choices { end_point: Some(end_point), beats: Some(beats), ..Choices::default() };
+            let choices = Options::default().with(&END_POINT, end_point).with(&BEATS, beats);
             let table = ppc_conic(case.shape, case.from, case.to, case.center, case.clockwise, end_reference);
             check("ppc-conic", &curve, &choices, engine, &table);
         }

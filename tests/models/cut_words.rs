@@ -4,14 +4,15 @@
 use stepwave::testbench::{Ending, PathWatch, Testbench};
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, CurveKind, ModelError, OnOverflow, catalogue, find};
+use stepwave_models::options::{ON_OVERFLOW, WIDTH};
+use stepwave_models::{CurveKind, ModelError, OnOverflow, Options, catalogue, find};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix};
 
 use super::line;
 use super::modern::widths;
 
-fn with(mode: OnOverflow, choices: Choices) -> Choices {
-    Choices { on_overflow: Some(mode), ..choices }
+fn with(mode: OnOverflow, choices: Options) -> Options {
+    choices.with(&ON_OVERFLOW, mode)
 }
 
 /// A curve of some pulses that the model takes.
@@ -52,8 +53,8 @@ fn a_word_that_does_not_fit_is_refused_cut_or_held_at_the_end_of_the_range() {
 
 #[test]
 fn words_that_fit_are_never_listed() {
-    for model in catalogue() {
-        let bench = Testbench::loading(model, &curve(model.curve), &with(OnOverflow::Wrap, Choices::default()));
+    for model in catalogue().iter() {
+        let bench = Testbench::loading(model, &curve(model.curve()), &with(OnOverflow::Wrap, Options::default()));
         assert_eq!(bench.unwrap().cut_words(), [], "{}", model.name);
     }
 }
@@ -63,14 +64,14 @@ fn words_that_fit_are_never_listed() {
 #[test]
 fn whatever_register_is_too_narrow_the_machine_runs_and_lanes_agree() {
     let (mut ran, mut cut) = (0, 0);
-    for model in catalogue() {
-        let curve = curve(model.curve);
-        let own = model.plan(&curve, &Choices::default()).unwrap().widths;
+    for model in catalogue().iter() {
+        let curve = curve(model.curve());
+        let own = model.plan(&curve, &Options::default()).unwrap().widths;
         for (register, width) in &own {
             for bits in [1, width.get() / 2, width.get().saturating_sub(1)].into_iter().filter(|&bits| bits > 0) {
                 for mode in [OnOverflow::Wrap, OnOverflow::Saturate] {
                     let narrow = [(register.clone(), Width::new(bits.into()).unwrap())];
-                    let choices = with(mode, Choices { widths: narrow.into(), ..Choices::default() });
+                    let choices = with(mode, Options::default().with_single(&WIDTH, narrow.into()));
                     let what = format!("{} {register}={bits} {mode:?}", model.name);
                     let bench = match Testbench::loading(model, &curve, &choices) {
                         Ok(bench) => bench,

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use stepwave::testbench::Ending;
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, EndPoint, Preset, find};
+use stepwave_models::options::{END_POINT, NORMALIZE, PRESET, WIDTH};
+use stepwave_models::{EndPoint, Options, Preset, find};
 use stepwave_nc::Curve;
 
 use super::{arc, assert_equal, check, every_line, lattice, line, run};
@@ -27,14 +28,12 @@ pub(super) fn preset_value(preset: Preset, n: u32) -> i64 {
     }
 }
 
-pub(super) fn choices(n: u32, preset: Preset, normalize: bool, end_point: EndPoint) -> Choices {
-    Choices {
-        width: Some(Width::new(u64::from(n)).unwrap()),
-        preset: Some(preset),
-        normalize,
-        end_point: Some(end_point),
-        ..Choices::default()
-    }
+pub(super) fn choices(n: u32, preset: Preset, normalize: bool, end_point: EndPoint) -> Options {
+    Options::default()
+        .with_all(&WIDTH, Width::new(u64::from(n)).unwrap())
+        .with_all(&PRESET, preset)
+        .with(&NORMALIZE, normalize)
+        .with(&END_POINT, end_point)
 }
 
 fn check_line(n: u32, from: &[i64], to: &[i64], engine: EngineKind) {
@@ -52,7 +51,7 @@ fn check_line(n: u32, from: &[i64], to: &[i64], engine: EngineKind) {
 
 /// Bits that the largest coordinate of the arc needs, as the model plans them.
 fn least_bits(curve: &Curve) -> u32 {
-    find("dda-arc").unwrap().plan(curve, &Choices::default()).unwrap().bits("jrx")
+    find("dda-arc").unwrap().plan(curve, &Options::default()).unwrap().bits("jrx")
 }
 
 /// Compares, hang for hang, and says whether the arc hung.
@@ -72,7 +71,7 @@ fn check_arc(n: u32, curve: &Curve, preset: Preset, normalize: bool, engine: Eng
 }
 
 /// Wants the machine to come to a stand where the reference does.
-pub(super) fn check_hang(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind, table: &Table) {
+pub(super) fn check_hang(model: &str, curve: &Curve, choices: &Options, engine: EngineKind, table: &Table) {
     let what = format!("{model} {curve:?} {choices:?} on {}", engine.name());
     let mut ran = run(model, curve, choices, engine);
     assert!(matches!(ran.outcome.ending, Ending::Stalled { .. }), "{what}: {:?}", ran.outcome);

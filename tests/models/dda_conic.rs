@@ -2,7 +2,7 @@
 
 use stepwave::testbench::Ending;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, EndPoint, Preset, find};
+use stepwave_models::{EndPoint, Options, Preset, find};
 
 use super::conics::{Case, every_quarter_ellipse, various};
 use super::dda::{PRESETS, check_hang, choices, preset_value};
@@ -11,7 +11,7 @@ use crate::reference::{self, Opens, Shape, Table, dda_conic};
 
 /// The least bits of an integrand, and so many more.
 fn bits(case: &Case, spare: u32) -> u32 {
-    find("dda-conic").unwrap().plan(&case.curve(), &Choices::default()).unwrap().bits("jrx") + spare
+    find("dda-conic").unwrap().plan(&case.curve(), &Options::default()).unwrap().bits("jrx") + spare
 }
 
 fn table(case: &Case, n: u32, preset: Preset, normalize: bool, end: reference::EndPoint) -> Table {

@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 use stepwave::testbench::Ending;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Adder, Choices, EndPoint, Preset, Radix};
+use stepwave_models::options::{ADDER, RADIX};
+use stepwave_models::{Adder, EndPoint, Options, Preset, Radix};
 
 use super::dda::{END_POINTS, choices};
 use super::{check, line, run};
@@ -21,9 +22,9 @@ fn preset_value(preset: Preset, digits: u32) -> i64 {
 }
 
 /// Radix 10 with so many digits, 4 bits each.
-fn decimal(digits: u32, preset: Preset, end_point: EndPoint, adder: Adder) -> Choices {
+fn decimal(digits: u32, preset: Preset, end_point: EndPoint, adder: Adder) -> Options {
     let radix = Some(Radix::Decimal);
-    Choices { radix, adder: Some(adder), ..choices(4 * digits, preset, false, end_point) }
+    choices(4 * digits, preset, false, end_point).with(&RADIX, radix).with(&ADDER, adder)
 }
 
 fn check_decimal(
@@ -43,7 +44,7 @@ fn check_decimal(
 fn the_worked_line_in_one_digit_to_the_digit_from_every_engine() {
     for engine in EngineKind::ALL {
         for adder in [Adder::Parallel, Adder::Serial] {
-            let choices = Choices { adder: Some(adder), radix: Some(Radix::Decimal), ..Choices::default() };
+            let choices = Options::default().with(&ADDER, adder).with(&RADIX, Radix::Decimal);
             let ran = run("dda-line", &line(&[0, 0], &[8, 6]), &choices, engine);
             assert_eq!((ran.outcome.ending, &ran.outcome.reached[..]), (Ending::Done, &[8, 6][..]));
             let column = |name: &str| -> Vec<i64> {

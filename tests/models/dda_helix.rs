@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, Preset, find};
+use stepwave_models::options::{PRESET, WIDTH};
+use stepwave_models::{Options, Preset, find};
 use stepwave_nc::{Curve, Direction, Helix};
 
 use super::dda::{check_hang, preset_value};
@@ -19,10 +20,11 @@ pub(super) fn helix(from: [i64; 3], to: [i64; 3], center: [i64; 2], clockwise: b
 /// fraction.
 fn check_helix(curve: &Curve, spare: u32, fraction: u32, preset: Preset, engine: EngineKind) -> bool {
     let Curve::Helix(given) = curve else { panic!("a helix") };
-    let n = find("dda-helix").unwrap().plan(curve, &Choices::default()).unwrap().bits("jrx") + spare;
+    let n = find("dda-helix").unwrap().plan(curve, &Options::default()).unwrap().bits("jrx") + spare;
     let wide = |bits: u32| Width::new(bits.into()).unwrap();
     let widths = [("jvz".to_owned(), wide(n + fraction)), ("jrz".to_owned(), wide(n + fraction))];
-    let choices = Choices { width: Some(wide(n)), widths: widths.into(), preset: Some(preset), ..Choices::default() };
+    let choices =
+        Options::default().with_all(&WIDTH, wide(n)).with_single(&WIDTH, widths.into()).with_all(&PRESET, preset);
     let presets = [n, n, n + fraction].map(|bits| preset_value(preset, bits));
     let (from, to, center) = (given.from(), given.to(), given.arc().center());
     let clockwise = given.arc().direction() == Direction::Clockwise;
@@ -66,11 +68,14 @@ fn helices_of_one_quadrant_and_full_turns_on_every_engine() {
 
 #[test]
 fn a_helix_comes_to_a_stand_where_its_arc_does_and_z_still_arrives() {
+    let zero = Options::default().with_all(&PRESET, Preset::Zero);
     for engine in EngineKind::ALL {
         let curve = helix([3, 7, 0], [0, 8, 5], [0, 0], false);
         assert!(check_helix(&curve, 0, 8, Preset::Zero, engine));
-        let ran = run("dda-helix", &curve, &Choices::default(), engine);
+        let ran = run("dda-helix", &curve, &zero, engine);
         assert_eq!(ran.outcome.reached, [0, 7, 5]);
+        // By default it starts from half.
+        assert_eq!(run("dda-helix", &curve, &Options::default(), engine).outcome.reached, [0, 8, 5]);
     }
 }
 
@@ -78,8 +83,9 @@ fn a_helix_comes_to_a_stand_where_its_arc_does_and_z_still_arrives() {
 fn a_quarter_turn_to_the_digit_from_every_engine() {
     // NR1 (5, 0) to (0, 5) in three bits as the worked table of the arc has it; J_VZ = 3·256·2/π = 488.9, up.
     let curve = helix([5, 0, 0], [0, 5, 3], [0, 0], false);
+    let zero = Options::default().with_all(&PRESET, Preset::Zero);
     for engine in EngineKind::ALL {
-        let ran = run("dda-helix", &curve, &Choices::default(), engine);
+        let ran = run("dda-helix", &curve, &zero, engine);
         let column = |name: &str| -> Vec<i64> {
             let index = ran.columns.iter().position(|column| column == name).unwrap();
             ran.rows.iter().map(|row| row[index]).collect()

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Adder, Choices};
+use stepwave_models::Adder;
+use stepwave_models::options::ADDER;
 
 use super::dda::{END_POINTS, PRESETS, choices, preset_value};
 use super::{check, every_line, line, run};
@@ -14,7 +15,7 @@ fn check_serial(n: u32, from: &[i64], to: &[i64], which: usize, engine: EngineKi
         let (preset, normalize) = (PRESETS[which % 4], which / 4 % 2 == 1);
         let presets = vec![preset_value(preset, n); from.len()];
         let table = dda_line(n, from, to, &presets, normalize, end_reference);
-        let choices = Choices { adder: Some(Adder::Serial), ..choices(n, preset, normalize, end_point) };
+        let choices = choices(n, preset, normalize, end_point).with(&ADDER, Adder::Serial);
         check("dda-line", &line(from, to), &choices, engine, &table);
     }
 }
@@ -50,8 +51,7 @@ fn an_iteration_takes_as_many_clocks_as_there_are_bits() {
     for n in 4..=9 {
         let clocks = |adder| {
             let line = line(&[0, 0], &[8, -6]);
-            let choices =
-                Choices { adder: Some(adder), ..choices(n, PRESETS[0], false, stepwave_models::EndPoint::Iterations) };
+            let choices = choices(n, PRESETS[0], false, stepwave_models::EndPoint::Iterations).with(&ADDER, adder);
             run("dda-line", &line, &choices, EngineKind::Compiled).outcome.clocks
         };
         assert_eq!([clocks(Adder::Parallel), clocks(Adder::Serial)], [1 + (1 << n), 1 + (u64::from(n) << n)]);

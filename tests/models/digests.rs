@@ -9,32 +9,33 @@ use std::path::Path;
 use stepwave::report::{run_command, title};
 use stepwave::study::{Dimension, Variants};
 use stepwave_kernel::text;
+use stepwave_models::options::AnyOption;
 use stepwave_models::program::{FAMILIES, Size};
-use stepwave_models::{Choice, CurveKind, Model, catalogue};
+use stepwave_models::{CurveKind, Model, catalogue};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
 /// Values of each option, of which at least one is refused where there can be one.
-fn values(option: Choice) -> &'static [&'static str] {
-    match option.option() {
-        "--width" => &["9", "f=7", "jr=8,jv=6", "8,e=12"],
-        "--preset" => &["zero", "half", "full", "5", "half,jrx=3"],
-        "--normalize" => &["yes"],
-        "--radix" => &["2", "10"],
-        "--adder" => &["parallel", "serial"],
-        "--end-point" => &["total", "per-axis", "longest", "iterations"],
-        "--form" => &["magnitude", "signed", "bare"],
-        "--weights" => &["mid", "pre", "post"],
-        "--beats" => &["4", "1"],
-        "--override" => &["none", "35"],
-        "--cascade" => &["none", "4"],
-        "--compare" => &["ge", "gt"],
-        "--pick-off" => &["7", "32"],
-        "--timing" => &[],
-        "--system" => &["7m", "7360"],
-        "--fraction" => &["8", "12", "3"],
-        "--step" => &["2.5", "80"],
-        "--tolerance" => &[],
-        "--on-overflow" => &["trap", "saturate", "wrap"],
+fn values(option: &dyn AnyOption) -> &'static [&'static str] {
+    match option.name() {
+        "width" => &["9", "f=7", "jr=8,jv=6", "8,e=12"],
+        "preset" => &["zero", "half", "full", "5", "half,jrx=3"],
+        "normalize" => &["yes"],
+        "radix" => &["2", "10"],
+        "adder" => &["parallel", "serial"],
+        "end-point" => &["total", "per-axis", "longest", "iterations"],
+        "form" => &["magnitude", "signed", "bare"],
+        "weights" => &["mid", "pre", "post"],
+        "beats" => &["4", "1"],
+        "override" => &["none", "35"],
+        "cascade" => &["none", "4"],
+        "compare" => &["ge", "gt"],
+        "pick-off" => &["7", "32"],
+        "timing" => &[],
+        "system" => &["7m", "7360"],
+        "fraction" => &["8", "12", "3"],
+        "step" => &["2.5", "80"],
+        "tolerance" => &[],
+        "on-overflow" => &["trap", "saturate", "wrap"],
         option => panic!("values of {option} are missing here"),
     }
 }
@@ -44,7 +45,7 @@ fn curves(model: &Model) -> [Curve; 2] {
     let line = |from: &[i64], to: &[i64]| Curve::Line(Line::new(from.to_vec(), to.to_vec()).unwrap());
     let arc = |from, to, center, direction| Arc::new(from, to, center, direction).unwrap();
     let (cw, ccw) = (Direction::Clockwise, Direction::CounterClockwise);
-    match model.curve {
+    match model.curve() {
         CurveKind::Line { max_axes: 2 } => [line(&[0, 0], &[8, 6]), line(&[5, -3], &[-95, 0])],
         CurveKind::Line { .. } => [line(&[0, 0], &[8, 6]), line(&[5, -3, 2], &[-95, -3, 77])],
         CurveKind::Arc => [
@@ -95,7 +96,7 @@ fn digest(model: &'static Model, curve: &Curve, variants: &Variants) -> String {
 
 /// Every option with every of its values, one option at a time; then every pair of values of two options.
 fn combinations(model: &Model) -> (Vec<Variants>, Vec<Variants>) {
-    let options = model.choices.iter().map(|doc| doc.choice);
+    let options = model.options.iter().map(|takes| takes.option());
     let dimensions: Vec<Vec<Dimension>> = options
         .map(|option| values(option).iter().map(|text| Dimension::parse(option, text).unwrap()).collect())
         .collect();
@@ -111,7 +112,7 @@ fn combinations(model: &Model) -> (Vec<Variants>, Vec<Variants>) {
 
 fn all() -> String {
     let mut text = String::new();
-    for model in catalogue() {
+    for model in catalogue().iter() {
         let (single, pairs) = combinations(model);
         for (curve, what) in curves(model).iter().zip(["small", "awkward"]) {
             writeln!(text, "{} {what}", model.name).unwrap();
@@ -124,7 +125,7 @@ fn all() -> String {
     }
     for family in FAMILIES {
         writeln!(text, "program {}", family.name).unwrap();
-        let options = family.choices.iter().map(|doc| doc.choice);
+        let options = family.options.iter().map(|takes| takes.option());
         let given = options.flat_map(|option| values(option).iter().map(move |text| (option, text)));
         let size = Size { magnitude: 300, positions: [[-20, 300], [0, 200], [-5, 0]] };
         for (option, value) in given {

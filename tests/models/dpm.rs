@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, ModelError, Radix, find};
+use stepwave_models::options::{CASCADE, NORMALIZE, OVERRIDE, RADIX, WIDTH};
+use stepwave_models::{ModelError, Options, Radix, find};
 
 use super::{check, line, run};
 use crate::reference::{dpm_line, dpm_line_cascade, dpm_line_decade, dpm_line_override};
@@ -15,23 +16,23 @@ fn width(bits: u32) -> Option<Width> {
 }
 
 fn check_line(n: u32, from: &[i64], to: &[i64], engine: EngineKind) {
-    let choices = Choices { width: width(n), ..Choices::default() };
+    let choices = Options::default().with_all(&WIDTH, width(n));
     check(NAME, &line(from, to), &choices, engine, &dpm_line(n, from, to));
 }
 
 fn check_cascade(units: u32, bits: u32, from: &[i64], to: &[i64], engine: EngineKind) {
-    let choices = Choices { width: width(units * bits), cascade: width(bits), ..Choices::default() };
+    let choices = Options::default().with_all(&WIDTH, width(units * bits)).with(&CASCADE, width(bits));
     check(NAME, &line(from, to), &choices, engine, &dpm_line_cascade(units, bits, from, to));
 }
 
 fn check_decades(digits: u32, from: &[i64], to: &[i64], engine: EngineKind) {
-    let choices = Choices { width: width(4 * digits), radix: Some(Radix::Decimal), ..Choices::default() };
+    let choices = Options::default().with_all(&WIDTH, width(4 * digits)).with(&RADIX, Radix::Decimal);
     check(NAME, &line(from, to), &choices, engine, &dpm_line_decade(digits, from, to));
 }
 
 /// The columns `clock` and `o` of the reference are compared too.
 fn check_override(n: u32, from: &[i64], to: &[i64], percent: u64, engine: EngineKind) {
-    let choices = Choices { width: width(n), feed_override: Some(percent), ..Choices::default() };
+    let choices = Options::default().with_all(&WIDTH, width(n)).with(&OVERRIDE, Some(percent));
     let table = dpm_line_override(n, from, to, i64::try_from(percent).unwrap());
     check(NAME, &line(from, to), &choices, engine, &table);
 }
@@ -58,7 +59,7 @@ fn every_line_in_every_quadrant_in_1_to_5_bits() {
 #[test]
 fn the_worked_line_on_every_engine() {
     for engine in EngineKind::ALL {
-        let choices = Choices { width: width(3), ..Choices::default() };
+        let choices = Options::default().with_all(&WIDTH, width(3));
         let ran = run(NAME, &line(&[0, 0], &[5, 3]), &choices, engine);
         assert_eq!(pulses(&ran.rows, &ran.columns, "dx"), [1, 3, 4, 5, 7]);
         assert_eq!(pulses(&ran.rows, &ran.columns, "dy"), [2, 4, 6]);
@@ -113,11 +114,11 @@ fn every_feed_override_of_a_line() {
 #[test]
 fn the_feed_override_stands_before_decades_and_cascades_as_before_one_unit() {
     for (choices, to) in [
-        (Choices { radix: Some(Radix::Decimal), ..Choices::default() }, [74, -38]),
-        (Choices { cascade: width(3), ..Choices::default() }, [51, -8]),
+        (Options::default().with(&RADIX, Radix::Decimal), [74, -38]),
+        (Options::default().with(&CASCADE, width(3)), [51, -8]),
     ] {
         let usual = run(NAME, &line(&[0, 0], &to), &choices, EngineKind::Word);
-        let choices = Choices { feed_override: Some(30), ..choices };
+        let choices = choices.with(&OVERRIDE, Some(30));
         for engine in EngineKind::ALL {
             let slow = run(NAME, &line(&[0, 0], &to), &choices, engine);
             for name in ["dx", "dy"] {
@@ -138,35 +139,35 @@ fn the_feed_override_stands_before_decades_and_cascades_as_before_one_unit() {
 
 #[test]
 fn a_line_takes_the_least_whole_units_that_hold_it() {
-    let bits = |choices: &Choices| {
+    let bits = |choices: &Options| {
         let hardware = find(NAME).unwrap().plan(&line(&[0, 0], &[37, -1]), choices).unwrap();
         (hardware.bits("mx"), hardware.bits("my"))
     };
-    assert_eq!(bits(&Choices::default()), (6, 6));
+    assert_eq!(bits(&Options::default()), (6, 6));
     for (unit, all) in [(1, 6), (2, 6), (3, 6), (4, 8), (5, 10), (6, 6), (7, 7)] {
-        assert_eq!(bits(&Choices { cascade: width(unit), ..Choices::default() }), (all, all), "units of {unit}");
+        assert_eq!(bits(&Options::default().with(&CASCADE, width(unit))), (all, all), "units of {unit}");
     }
-    assert_eq!(bits(&Choices { radix: Some(Radix::Decimal), ..Choices::default() }), (8, 8));
+    assert_eq!(bits(&Options::default().with(&RADIX, Radix::Decimal)), (8, 8));
 }
 
 #[test]
 fn choices_that_do_not_go_together_are_refused_with_the_way_out() {
-    let refused = |choices: Choices, hint: &str| {
+    let refused = |choices: Options, hint: &str| {
         let error = find(NAME).unwrap().plan(&line(&[0, 0], &[37, 5]), &choices).unwrap_err();
         assert!(!matches!(error, ModelError::Netlist(_)) && error.to_string().contains(hint), "{error}");
     };
     let widths = |name: &str, bits| [(name.to_owned(), width(bits).unwrap())].into();
-    let (usual, decimal) = (Choices::default(), Some(Radix::Decimal));
+    let (usual, decimal) = (Options::default(), Some(Radix::Decimal));
     for percent in [0, 100, u64::MAX] {
-        refused(Choices { feed_override: Some(percent), ..usual.clone() }, "leave it out");
+        refused(usual.clone().with(&OVERRIDE, Some(percent)), "leave it out");
     }
-    refused(Choices { radix: decimal, cascade: width(4), ..usual.clone() }, "leave --cascade or --radix 10 out");
-    refused(Choices { radix: decimal, width: width(10), ..usual.clone() }, "give --width 12");
-    refused(Choices { cascade: width(5), width: width(12), ..usual.clone() }, "give --width 15");
-    refused(Choices { cascade: width(40), width: width(50), ..usual.clone() }, "give --width 40");
-    refused(Choices { widths: widths("my", 7), ..usual.clone() }, "my of 7 bits, but the counter has 6");
-    refused(Choices { cascade: width(3), widths: widths("q2", 4), ..usual.clone() }, "each unit has 3");
-    refused(Choices { normalize: true, ..usual }, "does not take --normalize");
+    refused(usual.clone().with(&RADIX, decimal).with(&CASCADE, width(4)), "leave --cascade or --radix 10 out");
+    refused(usual.clone().with(&RADIX, decimal).with_all(&WIDTH, width(10)), "give --width 12");
+    refused(usual.clone().with(&CASCADE, width(5)).with_all(&WIDTH, width(12)), "give --width 15");
+    refused(usual.clone().with(&CASCADE, width(40)).with_all(&WIDTH, width(50)), "give --width 40");
+    refused(usual.clone().with_single(&WIDTH, widths("my", 7)), "my of 7 bits, but the counter has 6");
+    refused(usual.clone().with(&CASCADE, width(3)).with_single(&WIDTH, widths("q2", 4)), "each unit has 3");
+    refused(usual.with(&NORMALIZE, true), "does not take --normalize");
 }
 
 proptest! {

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Beats, Choices, EndPoint};
+use stepwave_models::options::{BEATS, END_POINT};
+use stepwave_models::{Beats, EndPoint, Options};
 
 use super::{arc, check, every_lattice_arc, every_line, line};
 use crate::reference::{self, Table, mindev_arc, mindev_line, vector_arc, vector_line};
@@ -17,7 +18,7 @@ const ENDS: [(EndPoint, reference::EndPoint); 2] =
 
 fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
     for (model, table) in LINES {
-        let choices = Choices { beats: Some(beats), ..Choices::default() };
+        let choices = Options::default().with(&BEATS, beats);
         check(model, &line(&from, &to), &choices, engine, &table(from, to));
     }
 }
@@ -25,7 +26,7 @@ fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
 fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, beats: Beats, engine: EngineKind) {
     for (model, table) in ARCS {
         for (end_point, end_reference) in ENDS {
-            let choices = Choices { end_point: Some(end_point), beats: Some(beats), ..Choices::default() };
+            let choices = Options::default().with(&END_POINT, end_point).with(&BEATS, beats);
             let table = table(from, to, center, clockwise, end_reference);
             check(model, &arc(from, to, center, clockwise), &choices, engine, &table);
         }
@@ -63,7 +64,7 @@ fn an_end_point_beside_the_circle_is_reached_with_a_counter_for_each_axis() {
         for clockwise in [true, false] {
             for to in [[0, 6], [4, 4], [-3, 5], [-6, 0], [-4, -4], [2, -5], [6, 0], [5, 2]] {
                 let table = table([5, 1], to, [0, 0], clockwise, reference::EndPoint::PerAxis);
-                let choices = Choices { beats: Some(Beats::One), ..Choices::default() };
+                let choices = Options::default().with(&BEATS, Beats::One);
                 check(model, &arc([5, 1], to, [0, 0], clockwise), &choices, EngineKind::Word, &table);
             }
         }

@@ -25,7 +25,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 use stepwave::testbench::{Ending, Observer, ObserverError, Outcome, Step, Testbench};
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, find};
+use stepwave_models::{Options, find};
 use stepwave_nc::{Arc, Curve, Direction, Line};
 
 use crate::reference::Table;
@@ -87,7 +87,7 @@ thread_local! {
     static BENCHES: RefCell<HashMap<String, Testbench>> = RefCell::default();
 }
 
-fn bench(model: &str, curve: &Curve, choices: &Choices) -> Testbench {
+fn bench(model: &str, curve: &Curve, choices: &Options) -> Testbench {
     let model = find(model).unwrap();
     let hardware = model.plan(curve, choices).unwrap_or_else(|error| panic!("{curve:?} {choices:?}: {error}"));
     BENCHES.with_borrow_mut(|benches| {
@@ -96,7 +96,7 @@ fn bench(model: &str, curve: &Curve, choices: &Choices) -> Testbench {
     })
 }
 
-fn run(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind) -> Ran {
+fn run(model: &str, curve: &Curve, choices: &Options, engine: EngineKind) -> Ran {
     let bench = bench(model, curve, choices);
     let mut keep = Keep(Vec::new());
     let outcome = bench.run(engine, &mut [&mut keep]).unwrap();
@@ -127,7 +127,7 @@ fn assert_equal(what: &str, ran: &Ran, reference: &Table) {
 }
 
 /// Runs on one engine, compares with the reference, and wants a clean end.
-fn check(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind, reference: &Table) {
+fn check(model: &str, curve: &Curve, choices: &Options, engine: EngineKind, reference: &Table) {
     let what = format!("{model} {curve:?} {choices:?} on {}", engine.name());
     let ran = run(model, curve, choices, engine);
     assert_equal(&what, &ran, reference);

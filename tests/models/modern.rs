@@ -4,7 +4,8 @@ use proptest::prelude::*;
 use stepwave::testbench::{Ending, Observer, ObserverError};
 use stepwave_kernel::engine::{EngineKind, Rows};
 use stepwave_kernel::{OnOverflow, Width};
-use stepwave_models::{Choices, Compare, Form, ModelError, Preset, StepTiming, find};
+use stepwave_models::options::{COMPARE, FORM, ON_OVERFLOW, PICK_OFF, PRESET, TIMING, WIDTH};
+use stepwave_models::{Compare, Form, ModelError, Options, Preset, StepTiming, find};
 
 use super::{Ran, assert_equal, bench, check, every_line, line, run};
 use crate::reference::{self, Table, Timing, bresenham, stepgen, stepgen_clocks};
@@ -17,16 +18,16 @@ fn width(bits: u32) -> Width {
     Width::new(u64::from(bits)).unwrap()
 }
 
-pub(super) fn widths(given: &[(&str, u32)]) -> Choices {
+pub(super) fn widths(given: &[(&str, u32)]) -> Options {
     let widths = given.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits)));
-    Choices { widths: widths.collect(), ..Choices::default() }
+    Options::default().with_single(&WIDTH, widths.collect())
 }
 
 /// Every form and test; but the wrong test of a form misses blocks of one step, as the recurrence does.
 fn check_counters(from: &[i64], to: &[i64], engine: EngineKind) {
     for (form, form_reference) in FORMS {
         for (compare, strictly_greater) in TESTS {
-            let choices = Choices { form: Some(form), compare: Some(compare), ..Choices::default() };
+            let choices = Options::default().with(&FORM, form).with(&COMPARE, compare);
             let table = bresenham(from, to, form_reference, strictly_greater);
             let way = |axis: usize| (to[axis] - from[axis]).abs();
             let right = strictly_greater == (form == Form::Signed);
@@ -63,9 +64,9 @@ fn counters_of_up_to_six_axes_on_every_engine_from_a_translated_start() {
 #[test]
 fn a_form_has_its_right_test_by_default() {
     for (form, compare) in [(None, Compare::AtLeast), (Some(Form::Signed), Compare::Greater)] {
-        let choices = Choices { form, ..Choices::default() };
+        let choices = Options::default().with(&FORM, form);
         let hardware = find("bresenham").unwrap().plan(&line(&[0, 0], &[1, 0]), &choices).unwrap();
-        assert_eq!(hardware.compare, compare);
+        assert_eq!(hardware.get(&COMPARE), compare);
         let ran = run("bresenham", &line(&[0, 0], &[1, 0]), &choices, EngineKind::Word);
         assert_eq!(ran.outcome.reached, [1, 0]);
     }
@@ -86,13 +87,13 @@ fn gcd(a: i64, b: i64) -> i64 {
 fn a_counter_traps_exactly_where_one_bit_less_cannot_hold_a_sum() {
     every_line(|to| {
         for (form, form_reference) in FORMS {
-            let choices = Choices { form: Some(form), ..Choices::default() };
+            let choices = Options::default().with(&FORM, form);
             let table = bresenham(&[0, 0], &to, form_reference, form == Form::Signed);
             let usual = bench("bresenham", &line(&[0, 0], &to), &choices).hardware().bits("cntx");
             let ranges = [("x", to[0].abs()), ("y", to[1].abs())].map(|(axis, way)| sums(&table, axis, way));
             let limit = if form == Form::Signed { 1 << (usual - 1) } else { 1 << usual };
             assert!(ranges.iter().all(|(most, _)| *most < limit), "n + 1 bits hold every sum");
-            let narrow = Choices { form: Some(form), ..widths(&[("cnt", usual - 1)]) };
+            let narrow = widths(&[("cnt", usual - 1)]).with(&FORM, form);
             let (least, most) = match form {
                 Form::Signed => (-limit / 2, limit / 2 - 1),
                 Form::Magnitude | Form::Bare => (0, limit / 2 - 1),
@@ -114,8 +115,7 @@ fn a_counter_traps_exactly_where_one_bit_less_cannot_hold_a_sum() {
 fn a_counter_that_wraps_around_loses_steps_on_long_moves_only() {
     // Counters as wide as the step counts, five bits: (31, 30) comes to 30 + 30; (16, 15) to 15 + 15, which fits.
     for (to, reached) in [([31, 30], false), ([16, 15], true)] {
-        let choices =
-            Choices { on_overflow: Some(OnOverflow::Wrap), ..widths(&[("cnt", 5), ("steps", 5), ("events", 5)]) };
+        let choices = widths(&[("cnt", 5), ("steps", 5), ("events", 5)]).with(&ON_OVERFLOW, OnOverflow::Wrap);
         let ran = run("bresenham", &line(&[0, 0], &to), &choices, EngineKind::Word);
         assert_eq!(ran.outcome.ending, Ending::Done);
         assert_eq!(ran.outcome.reached == to, reached, "{to:?}: {:?}", ran.outcome.reached);
@@ -132,7 +132,7 @@ const GENERATORS: [(u32, u32, Preset, StepTiming); 5] = [
 ];
 
 /// A step generator for lines of n bits, and the same for the recurrences: pick-off, k, preset, times.
-fn generator(n: u32, form: (u32, u32, Preset, StepTiming)) -> (Choices, (u32, u32, i64, Timing)) {
+fn generator(n: u32, form: (u32, u32, Preset, StepTiming)) -> (Options, (u32, u32, i64, Timing)) {
     let (more, fraction, preset, timing) = form;
     let (k, pick_off) = (n + more, n + more + fraction);
     let value = match preset {
@@ -141,13 +141,11 @@ fn generator(n: u32, form: (u32, u32, Preset, StepTiming)) -> (Choices, (u32, u3
         Preset::Full => (1 << pick_off) - 1,
         Preset::Value(value) => i64::try_from(value).unwrap(),
     };
-    let choices = Choices {
-        width: Some(width(n)),
-        preset: Some(preset),
-        pick_off: Some(pick_off.into()),
-        timing: Some(timing),
-        ..widths(&[("e", k + 1)])
-    };
+    let choices = widths(&[("e", k + 1)])
+        .with_all(&WIDTH, width(n))
+        .with_all(&PRESET, preset)
+        .with(&PICK_OFF, Some(u64::from(pick_off)))
+        .with(&TIMING, timing);
     let [length, space, setup, hold] =
         [timing.length, timing.space, timing.setup, timing.hold].map(|clocks| i64::try_from(clocks).unwrap());
     (choices, (pick_off, k, value, Timing { length, space, setup, hold }))
@@ -210,7 +208,7 @@ fn accumulators_of_up_to_six_axes_on_every_engine_from_a_translated_start() {
 
 #[test]
 fn the_card_of_today_makes_lines_of_less_than_2_15_steps() {
-    let card = Choices { pick_off: Some(32), ..widths(&[("acc", 48), ("rate", 32)]) };
+    let card = widths(&[("acc", 48), ("rate", 32)]).with(&PICK_OFF, Some(32));
     let ran = run("stepgen", &line(&[0, 0], &[1000, -999]), &card, EngineKind::Compiled);
     assert_eq!((ran.outcome.ending, ran.outcome.reached), (Ending::Done, vec![1000, -999]));
     // Of 2^18 accumulations 50000 make a step; the one that would end step 32768 does not fit.
@@ -221,22 +219,19 @@ fn the_card_of_today_makes_lines_of_less_than_2_15_steps() {
 
 #[test]
 fn without_choices_a_generator_is_the_least_that_holds_the_line_and_never_waits_for_a_step() {
-    let bench = bench("stepgen", &line(&[0, 0], &[6, 4]), &Choices::default());
+    let bench = bench("stepgen", &line(&[0, 0], &[6, 4]), &Options::default());
     let bits = |name: &str| bench.hardware().bits(name);
     // n = 3, and 2 more for four clocks a step.
-    assert_eq!((bits("e"), bits("ratex"), bits("accx"), bench.hardware().pick_off), (6, 4, 9, 5));
-    let ran = run("stepgen", &line(&[0, 0], &[6, 4]), &Choices::default(), EngineKind::Word);
+    assert_eq!((bits("e"), bits("ratex"), bits("accx"), bench.hardware().get(&PICK_OFF)), (6, 4, 9, Some(5)));
+    let ran = run("stepgen", &line(&[0, 0], &[6, 4]), &Options::default(), EngineKind::Word);
     // The load, 2^5 accumulations, and the last step with its space: 4 clocks, of which the first is that of the step.
     assert_eq!(ran.outcome.clocks, 1 + 32 + 4);
 }
 
 /// A line in a given number of bits of the accumulator; n = 3, k = p = 4, from 0.
 fn with_accumulators_of(bits: u32, to: &[i64; 2], on_overflow: OnOverflow) -> Ran {
-    let choices = Choices {
-        width: Some(width(3)),
-        on_overflow: Some(on_overflow),
-        ..widths(&[("e", 5), ("accx", bits), ("accy", bits)])
-    };
+    let choices =
+        widths(&[("e", 5), ("accx", bits), ("accy", bits)]).with_all(&WIDTH, width(3)).with(&ON_OVERFLOW, on_overflow);
     run("stepgen", &line(&[0, 0], to), &choices, EngineKind::Word)
 }
 
@@ -280,13 +275,13 @@ fn an_accumulator_that_saturates_loses_the_steps_above_its_limit() {
 
 #[test]
 fn rates_that_would_be_a_fraction_or_two_steps_are_refused_with_the_way_out() {
-    let refusal = |choices: &Choices| match find("stepgen").unwrap().plan(&line(&[0, 0], &[6, 4]), choices) {
+    let refusal = |choices: &Options| match find("stepgen").unwrap().plan(&line(&[0, 0], &[6, 4]), choices) {
         Err(ModelError::Widths(message)) => message,
         other => panic!("{other:?}"),
     };
-    let message = refusal(&Choices { pick_off: Some(2), ..Choices::default() });
+    let message = refusal(&Options::default().with(&PICK_OFF, Some(2)));
     assert!(message.ends_with("give --pick-off 3 or more"), "{message}");
-    let message = refusal(&Choices { pick_off: Some(4), ..widths(&[("e", 6)]) });
+    let message = refusal(&widths(&[("e", 6)]).with(&PICK_OFF, Some(4)));
     assert!(message.ends_with("give --pick-off 5 or more, or --width e=5"), "{message}");
     let message = refusal(&widths(&[("e", 3)]));
     assert!(message.ends_with("give --width e=4 or more"), "{message}");

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Beats, Choices, EndPoint, Form};
+use stepwave_models::options::{BEATS, END_POINT, FORM};
+use stepwave_models::{Beats, EndPoint, Form, Options};
 
 use super::{arc, check, every_lattice_arc, every_line, lattice, line};
 use crate::reference::{self, ppc_arc, ppc_line};
@@ -15,8 +16,8 @@ const END_POINTS: [(EndPoint, reference::EndPoint); 3] = [
 const FORMS: [(Form, reference::Form); 2] =
     [(Form::Magnitude, reference::Form::Magnitude), (Form::Signed, reference::Form::Signed)];
 
-fn choices(end_point: EndPoint, form: Option<Form>, beats: Beats) -> Choices {
-    Choices { end_point: Some(end_point), form, beats: Some(beats), ..Choices::default() }
+fn choices(end_point: EndPoint, form: Option<Form>, beats: Beats) -> Options {
+    Options::default().with(&END_POINT, end_point).with(&FORM, form).with(&BEATS, beats)
 }
 
 /// Every form and end-point scheme of one line.
@@ -87,7 +88,7 @@ fn an_end_point_beside_the_circle_is_reached_with_a_counter_for_each_axis() {
                 if near && x * x + y * y != 50 {
                     off_circle += 1;
                     let table = ppc_arc(from, [x, y], [0, 0], true, reference::EndPoint::PerAxis);
-                    let choices = Choices { beats: Some(Beats::One), ..Choices::default() };
+                    let choices = Options::default().with(&BEATS, Beats::One);
                     check("ppc-arc", &arc(from, [x, y], [0, 0], true), &choices, EngineKind::Word, &table);
                 }
             }

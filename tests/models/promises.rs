@@ -4,7 +4,8 @@
 use proptest::prelude::*;
 use stepwave::testbench::{Ending, PathWatch, Testbench};
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, EndPoint, Form, OnOverflow, Promise, catalogue, find};
+use stepwave_models::options::{END_POINT, FORM, ON_OVERFLOW};
+use stepwave_models::{EndPoint, Form, OnOverflow, Options, Promise, catalogue, find};
 use stepwave_nc::{Arc, Curve, Direction};
 
 use super::bench;
@@ -47,7 +48,7 @@ fn no_arc_that_ends_where_it_should_is_blamed_for_an_end_off_the_circle() {
     let starts = (1..9).flat_map(|x| (0..9).map(move |y| [x, -y]));
     every_arc(starts, |curve, off| {
         for (model, method) in ARCS {
-            let bench = bench(model, curve, &Choices::default());
+            let bench = bench(model, curve, &Options::default());
             let promise = Promise::of(bench.hardware().error_bound, curve).unwrap();
             assert!((promise.bound() - method - off).abs() < 1e-12, "{model} {curve:?}");
             let error = error(&bench, curve);
@@ -71,7 +72,7 @@ proptest! {
         let Ok(arc) = Arc::new([x, y], to, [0, 0], direction) else { return Ok(()) };
         let curve = arc.into();
         for (model, method) in ARCS {
-            let error = error(&bench(model, &curve, &Choices::default()), &curve);
+            let error = error(&bench(model, &curve, &Options::default()), &curve);
             prop_assert!(error <= method + off([x, y], to) + 1e-9, "{model} {curve:?}: {error}");
         }
     }
@@ -82,7 +83,7 @@ proptest! {
 fn a_path_that_is_farther_off_than_its_end_is_blamed() {
     let mut blamed = 0;
     every_arc([[9, 0], [8, -3], [7, 6]].into_iter(), |curve, _| {
-        let narrow = Choices { on_overflow: Some(OnOverflow::Wrap), ..widths(&[("f", 4)]) };
+        let narrow = widths(&[("f", 4)]).with(&ON_OVERFLOW, OnOverflow::Wrap);
         let bench = Testbench::loading(find("mindev-arc").unwrap(), curve, &narrow).unwrap().limited(100_000);
         let mut path = PathWatch::new(&bench, curve);
         bench.run(EngineKind::Word, &mut [&mut path]).unwrap();
@@ -101,7 +102,7 @@ fn a_path_that_is_farther_off_than_its_end_is_blamed() {
 fn a_curve_whose_ends_lie_on_it_has_the_bound_of_its_method() {
     let curve: Curve = Arc::new([3, 4], [-5, 0], [0, 0], Direction::Clockwise).unwrap().into();
     for (model, method) in ARCS {
-        let hardware = find(model).unwrap().plan(&curve, &Choices::default()).unwrap();
+        let hardware = find(model).unwrap().plan(&curve, &Options::default()).unwrap();
         let promise = Promise::of(hardware.error_bound, &curve).unwrap();
         assert_eq!((promise.bound(), promise.ends()), (method, 0.0), "{model}");
     }
@@ -114,10 +115,11 @@ fn a_curve_whose_ends_lie_on_it_has_the_bound_of_its_method() {
 /// Both schemes of the end point: the total counter misses some of these ends, the others keep the promise.
 #[test]
 fn the_end_point_scheme_changes_nothing() {
-    let known = catalogue().iter().filter(|model| ["ppc-arc", "mindev-arc", "vector-arc"].contains(&model.name));
+    let models = catalogue();
+    let known = models.iter().filter(|model| ["ppc-arc", "mindev-arc", "vector-arc"].contains(&model.name));
     for model in known {
         every_arc([[5, 0], [4, -2]].into_iter(), |curve, _| {
-            let choices = Choices { end_point: Some(EndPoint::Total), form: None::<Form>, ..Choices::default() };
+            let choices = Options::default().with(&END_POINT, EndPoint::Total).with(&FORM, None::<Form>);
             let bench = bench(model.name, curve, &choices).limited(10_000);
             let mut path = PathWatch::new(&bench, curve);
             let outcome = bench.run(EngineKind::Word, &mut [&mut path]).unwrap();

@@ -4,7 +4,8 @@ use rayon::prelude::*;
 use stepwave::testbench::{CoarseWatch, Ending, SpacingWatch};
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, Millionths, ModelError, Preset, System, find};
+use stepwave_models::options::{FRACTION, PRESET, STEP, SYSTEM, TOLERANCE, WIDTH};
+use stepwave_models::{Millionths, ModelError, Options, Preset, System, find};
 use stepwave_nc::Curve;
 
 use super::{Ran, arc, bench, lattice, line, run};
@@ -14,9 +15,9 @@ const SYSTEMS: [(System, reference::System); 2] =
     [(System::Direction, reference::System::Direction), (System::StepFactor, reference::System::StepFactor)];
 
 /// A step in thousandths of a BLU.
-fn choices(system: System, fraction: u32, step: u64) -> Choices {
+fn choices(system: System, fraction: u32, step: u64) -> Options {
     let step = Some(Millionths(step * 1000));
-    Choices { system: Some(system), fraction: Some(fraction), step, ..Choices::default() }
+    Options::default().with(&SYSTEM, system).with(&FRACTION, fraction).with(&STEP, step)
 }
 
 fn column(ran: &Ran, name: &str) -> Vec<i64> {
@@ -72,19 +73,19 @@ fn assert_sampled(what: &str, curve: &Curve, ran: &Ran, wanted: &[[f64; 2]], fra
     }
 }
 
-fn check_line(from: [i64; 2], d: [i64; 2], choices: &Choices, engine: EngineKind) {
+fn check_line(from: [i64; 2], d: [i64; 2], choices: &Options, engine: EngineKind) {
     let curve = line(&from, &[from[0] + d[0], from[1] + d[1]]);
-    let system = SYSTEMS.iter().find(|(system, _)| Some(*system) == choices.system).unwrap().1;
-    let (fraction, step) = (choices.fraction.unwrap(), choices.step.unwrap().units());
+    let system = SYSTEMS.iter().find(|(system, _)| Some(*system) == choices.get(&SYSTEM).copied()).unwrap().1;
+    let (fraction, step) = (choices.get(&FRACTION).copied().unwrap(), choices.value(&STEP).unwrap().units());
     let what = format!("{curve:?} {choices:?} on {}", engine.name());
     let ran = run("sampled-line", &curve, choices, engine);
     assert_sampled(&what, &curve, &ran, &sampled_line(d, step, system), fraction, 2.0);
 }
 
-fn check_arc(start: [i64; 2], end: [i64; 2], clockwise: bool, choices: &Choices, engine: EngineKind) {
+fn check_arc(start: [i64; 2], end: [i64; 2], clockwise: bool, choices: &Options, engine: EngineKind) {
     let curve = arc([start[0] + 3, start[1] - 5], [end[0] + 3, end[1] - 5], [3, -5], clockwise);
-    let system = SYSTEMS.iter().find(|(system, _)| Some(*system) == choices.system).unwrap().1;
-    let (fraction, step) = (choices.fraction.unwrap(), choices.step.unwrap().units());
+    let system = SYSTEMS.iter().find(|(system, _)| Some(*system) == choices.get(&SYSTEM).copied()).unwrap().1;
+    let (fraction, step) = (choices.get(&FRACTION).copied().unwrap(), choices.value(&STEP).unwrap().units());
     let what = format!("{curve:?} {choices:?} on {}", engine.name());
     let ran = run("sampled-arc", &curve, choices, engine);
     assert_sampled(&what, &curve, &ran, &sampled_arc(start, end, clockwise, step, system), fraction, 4.0);
@@ -222,7 +223,7 @@ fn nothing_is_lost_below_the_fraction_of_an_arc_by_the_step_factor() {
 }
 
 /// Clocks of the rows of the step table, from the first period's end on.
-fn ends(model: &str, curve: &Curve, choices: &Choices) -> Vec<i64> {
+fn ends(model: &str, curve: &Curve, choices: &Options) -> Vec<i64> {
     column(&run(model, curve, choices, EngineKind::Compiled), "clock")[1..].to_vec()
 }
 
@@ -241,7 +242,7 @@ fn a_period_takes_t_at_the_clock_given_and_exactly_so_in_the_mean() {
             (System::StepFactor, 1_000_000.0, 10_240, 1),
             (System::StepFactor, 100_001.0, 102_401_024, 100_000),
         ] {
-            let choices = Choices { clock_hz: Some(Millionths::saturating(hz)), ..choices(system, 10, 8_000) };
+            let choices = choices(system, 10, 8_000).at_clock(hz);
             let clocks = ends(model, &curve, &choices);
             assert!(clocks.len() > 20, "{model}");
             let [first, last] = [clocks[0], clocks[clocks.len() - 1]];
@@ -259,7 +260,7 @@ fn a_period_takes_t_at_the_clock_given_and_exactly_so_in_the_mean() {
 #[test]
 fn the_pulses_of_a_period_are_spread_over_it() {
     // 8 BLU of a long axis in 8000 clocks: a pulse every 1000, to the distance of two additions of 16.
-    let choices = Choices { clock_hz: Some(Millionths::saturating(1e6)), ..choices(System::Direction, 10, 8_000) };
+    let choices = choices(System::Direction, 10, 8_000).at_clock(1e6);
     let curve = line(&[0, 0], &[400, 0]);
     let bench = bench("sampled-line", &curve, &choices);
     let mut spacing = SpacingWatch::new(&bench, &curve);
@@ -281,7 +282,7 @@ fn the_least_clock_just_leaves_the_coarse_calculation_its_time_and_a_slower_one_
             assert!(clocks.windows(2).all(|pair| pair[1] - pair[0] == wanted), "{model} {system:?}: {clocks:?}");
             // A slower clock names the least in Hz, and with that it works.
             let hz = (least[0] as f64 * period).ceil();
-            let at = |hz: f64| Choices { clock_hz: Some(Millionths::saturating(hz)), ..free.clone() };
+            let at = |hz: f64| free.clone().at_clock(hz);
             let message = refusal(model, &curve, &at(hz - 1.0));
             assert!(message.contains(&format!("the coarse calculation takes {}", least[0])), "{message}");
             assert!(message.contains(&format!("give --clock-hz {hz} or more")), "{message}");
@@ -290,14 +291,14 @@ fn the_least_clock_just_leaves_the_coarse_calculation_its_time_and_a_slower_one_
         }
     }
     for hz in [0.0, 1.0, f64::NAN] {
-        let choices = Choices { clock_hz: Some(Millionths::saturating(hz)), ..Choices::default() };
+        let choices = Options::default().at_clock(hz);
         assert!(refusal("sampled-line", &line(&[0, 0], &[9, 5]), &choices).contains("give --clock-hz"), "{hz}");
     }
 }
 
 #[test]
 fn wide_integrators_want_a_clock_for_their_additions() {
-    let choices = Choices { width: Some(Width::new(14).unwrap()), ..Choices::at_1_mhz() };
+    let choices = Options::at_1_mhz().with_all(&WIDTH, Width::new(14).unwrap());
     let message = refusal("sampled-line", &line(&[0, 0], &[9, 5]), &choices);
     // 2^14 additions, two clocks each, in 8 ms.
     assert!(
@@ -310,14 +311,14 @@ fn wide_integrators_want_a_clock_for_their_additions() {
 fn any_preset_draws_the_same_coarse_points() {
     for preset in [Preset::Half, Preset::Full, Preset::Value(5)] {
         for (system, _) in SYSTEMS {
-            let choices = Choices { preset: Some(preset), ..choices(system, 10, 8_000) };
+            let choices = choices(system, 10, 8_000).with_all(&PRESET, preset);
             check_line([1, 2], [-77, 40], &choices, EngineKind::Compiled);
             check_arc([-65, 0], [63, 16], false, &choices, EngineKind::Compiled);
         }
     }
 }
 
-fn refusal(model: &str, curve: &Curve, choices: &Choices) -> String {
+fn refusal(model: &str, curve: &Curve, choices: &Options) -> String {
     let refused: ModelError = find(model).unwrap().plan(curve, choices).unwrap_err();
     refused.to_string()
 }
@@ -329,9 +330,9 @@ fn steps_whose_chords_leave_the_arc_are_refused_with_the_greatest_that_do_not() 
     let message = refusal("sampled-arc", &curve, &choices(System::Direction, 10, 500_000));
     assert!(message.contains("--step 500: its chords would be up to 3.125 BLU off"), "{message}");
     assert!(message.contains("give --step 282.842 or less"), "{message}");
-    let plan = |choices: &Choices| find("sampled-arc").unwrap().plan(&curve, choices);
+    let plan = |choices: &Options| find("sampled-arc").unwrap().plan(&curve, choices);
     assert!(plan(&choices(System::Direction, 10, 282_842)).is_ok());
-    let hardware = plan(&Choices { tolerance: Some(Millionths(3_125_000)), ..choices(System::Direction, 10, 500_000) });
+    let hardware = plan(&choices(System::Direction, 10, 500_000).with(&TOLERANCE, Some(Millionths(3_125_000))));
     assert_eq!(hardware.unwrap().sampling.unwrap().chord_error, 3.125);
 
     let small = refusal("sampled-arc", &arc([5, 0], [0, 5], [0, 0], false), &choices(System::StepFactor, 10, 2_600));
@@ -349,7 +350,7 @@ fn fractions_out_of_range_and_geometries_too_large_for_the_root_are_refused() {
     assert!(message.contains("give --fraction 10 or less"), "{message}");
     let message = refusal("sampled-line", &curve, &choices(System::Direction, 8, 8_000));
     assert!(message.contains("give a smaller geometry"), "{message}");
-    let tiny = Choices { step: Some(Millionths(100)), ..choices(System::Direction, 8, 1) };
+    let tiny = choices(System::Direction, 8, 1).with(&STEP, Some(Millionths(100)));
     let message = refusal("sampled-line", &line(&[0, 0], &[9, 5]), &tiny);
     assert!(message.contains("give --step 0.003907 or more"), "{message}");
 }

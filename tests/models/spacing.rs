@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 use stepwave::testbench::{Observer, ObserverError, PulseTrain, RateDeviation, SpacingWatch, Testbench};
 use stepwave_kernel::engine::{EngineKind, Rows};
-use stepwave_models::{Beats, Choices, EndPoint, Preset};
+use stepwave_models::options::{BEATS, END_POINT, NORMALIZE, OVERRIDE, PRESET, WIDTH};
+use stepwave_models::{Beats, EndPoint, Options, Preset};
 use stepwave_nc::Curve;
 
 use super::{arc, bench, line};
@@ -28,7 +29,7 @@ impl Observer for Samples<'_> {
 }
 
 /// What the watch says of a run, and what the samples say of it; `steps` are those of the whole line by its method.
-fn both(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind, steps: Option<u64>) -> [Vec<PulseTrain>; 2] {
+fn both(model: &str, curve: &Curve, choices: &Options, engine: EngineKind, steps: Option<u64>) -> [Vec<PulseTrain>; 2] {
     let bench = bench(model, curve, choices);
     let (mut watch, mut samples) = (SpacingWatch::new(&bench, curve), Samples(&bench, Vec::new()));
     bench.run(engine, &mut [&mut watch, &mut samples]).unwrap();
@@ -60,7 +61,7 @@ fn plain(samples: &[(u64, bool, bool, Vec<bool>)], axis: usize, way: u64, steps:
     }
 }
 
-fn check(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind, steps: Option<u64>) {
+fn check(model: &str, curve: &Curve, choices: &Options, engine: EngineKind, steps: Option<u64>) {
     let [watch, plain] = both(model, curve, choices, engine, steps);
     assert_eq!(watch, plain, "{model} {curve:?} {choices:?} on {}", engine.name());
 }
@@ -68,7 +69,7 @@ fn check(model: &str, curve: &Curve, choices: &Choices, engine: EngineKind, step
 #[test]
 fn the_worked_line_of_the_pulse_multiplier() {
     for engine in EngineKind::ALL {
-        let [watch, _] = both("dpm-line", &line(&[0, 0], &[5, 3]), &Choices::default(), engine, Some(8));
+        let [watch, _] = both("dpm-line", &line(&[0, 0], &[5, 3]), &Options::default(), engine, Some(8));
         // X at 1, 3, 4, 5, 7: behind clock 5 there are four pulses, where 5·5/8 = 3.125 should be. Y at 2, 4, 6: behind
         // clock 6 there are three, where 6·3/8 = 2.25 should be.
         let x = PulseTrain {
@@ -87,15 +88,15 @@ fn the_worked_line_of_the_pulse_multiplier() {
 
 #[test]
 fn every_line_model_takes_the_steps_of_its_method() {
-    let half = |normalize| Choices { preset: Some(Preset::Half), normalize, ..Choices::default() };
-    let ends = |end_point| Choices { end_point: Some(end_point), ..Choices::default() };
-    let usual = Choices::default();
+    let half = |normalize| Options::default().with_all(&PRESET, Preset::Half).with(&NORMALIZE, normalize);
+    let ends = |end_point| Options::default().with(&END_POINT, end_point);
+    let usual = Options::default();
     for (from, to) in [([0, 0], [5, 3]), ([0, 0], [-40, 97]), ([7, -3], [7, 20]), ([1, 1], [0, 2]), ([0, 0], [-3, 0])] {
         let [a, b] = [0, 1].map(|axis| i64::abs_diff(from[axis], to[axis]));
         let cycle = (a.max(b) + 1).next_power_of_two();
         for engine in EngineKind::ALL {
             for beats in [Beats::Four, Beats::One] {
-                let choices = Choices { beats: Some(beats), ..usual.clone() };
+                let choices = usual.clone().with(&BEATS, beats);
                 check("ppc-line", &line(&from, &to), &choices, engine, Some(a + b));
                 for model in ["cim-line", "mindev-line", "vector-line"] {
                     check(model, &line(&from, &to), &choices, engine, Some(a.max(b)));
@@ -116,9 +117,9 @@ fn arcs_have_a_spacing_but_no_uniform_rate() {
     for model in ["ppc-arc", "dda-arc", "cim-arc", "mindev-arc", "vector-arc"] {
         for (from, to, clockwise) in [([5, 0], [0, 5], false), ([-30, 40], [-30, 40], true)] {
             let choices = if model == "dda-arc" {
-                Choices { preset: Some(Preset::Half), ..Choices::default() }
+                Options::default().with_all(&PRESET, Preset::Half)
             } else {
-                Choices::default()
+                Options::default()
             };
             let [watch, plain] = both(model, &arc(from, to, [0, 0], clockwise), &choices, EngineKind::Word, None);
             assert_eq!(watch, plain, "{model}");
@@ -140,9 +141,9 @@ proptest! {
         let longest = to.iter().map(|way| way.unsigned_abs()).max().unwrap();
         let cycle = (longest + 1).next_power_of_two() << wider;
         let width = stepwave_kernel::Width::new(u64::from(cycle.ilog2())).unwrap();
-        let choices = Choices { width: Some(width), ..Choices::default() };
+        let choices = Options::default().with_all(&WIDTH, width);
         check("dda-line", &line(&[0; 3], &to), &choices, EngineKind::Compiled, Some(cycle));
-        let choices = Choices { feed_override: percent, ..choices };
+        let choices = choices.with(&OVERRIDE, percent);
         check("dpm-line", &line(&[0; 3], &to), &choices, EngineKind::Compiled, Some(cycle));
     }
 }

@@ -1,8 +1,12 @@
 //! Whatever widths are chosen, a model builds, or refuses them with the user's way out: its netlist is never wrong.
 
 use stepwave_kernel::Width;
+use stepwave_models::options::{
+    ADDER, BEATS, CASCADE, COMPARE, END_POINT, FORM, FRACTION, NORMALIZE, ON_OVERFLOW, OVERRIDE, PICK_OFF, RADIX, STEP,
+    SYSTEM, TIMING, WIDTH,
+};
 use stepwave_models::{
-    Adder, Beats, Choices, Compare, EndPoint, Form, Millionths, Model, ModelError, OnOverflow, Radix, StepTiming,
+    Adder, Beats, Compare, EndPoint, Form, Millionths, Model, ModelError, OnOverflow, Options, Radix, StepTiming,
     System, catalogue,
 };
 use stepwave_nc::{Conic, Curve, Direction, Helix};
@@ -10,7 +14,7 @@ use stepwave_nc::{Conic, Curve, Direction, Helix};
 use super::{arc, line};
 
 /// Every form of every model: geometry, and the choices beside the widths.
-fn forms(model: &Model) -> Vec<(Curve, Choices)> {
+fn forms(model: &Model) -> Vec<(Curve, Options)> {
     let curves = match model.name {
         name if name.ends_with("helix") => {
             vec![Helix::new([5, 0, 0], [0, 5, -9], [0, 0], Direction::CounterClockwise).unwrap().into()]
@@ -31,8 +35,13 @@ fn forms(model: &Model) -> Vec<(Curve, Choices)> {
                 for beats in [None, Some(Beats::One)] {
                     for normalize in [false, true] {
                         for (radix, adder) in ADDERS {
-                            let choices =
-                                Choices { end_point, form, beats, normalize, radix, adder, ..Choices::default() };
+                            let choices = Options::default()
+                                .with(&END_POINT, end_point)
+                                .with(&FORM, form)
+                                .with(&BEATS, beats)
+                                .with(&NORMALIZE, normalize)
+                                .with(&RADIX, radix)
+                                .with(&ADDER, adder);
                             if model.plan(&curve, &choices).is_ok() {
                                 forms.push((curve.clone(), choices));
                             }
@@ -51,32 +60,31 @@ fn forms(model: &Model) -> Vec<(Curve, Choices)> {
 }
 
 /// The choices that step generators alone have.
-fn step_generators() -> Vec<Choices> {
+fn step_generators() -> Vec<Options> {
     let timing = StepTiming { length: 1, space: 3, setup: 0, hold: 1 << 20 };
     vec![
-        Choices { compare: Some(Compare::Greater), ..Choices::default() },
-        Choices { compare: Some(Compare::AtLeast), form: Some(Form::Signed), ..Choices::default() },
-        Choices { pick_off: Some(32), timing: Some(timing), ..Choices::default() },
-        Choices { pick_off: Some(4), on_overflow: Some(OnOverflow::Saturate), ..Choices::default() },
+        Options::default().with(&COMPARE, Compare::Greater),
+        Options::default().with(&COMPARE, Compare::AtLeast).with(&FORM, Form::Signed),
+        Options::default().with(&PICK_OFF, Some(32)).with(&TIMING, timing),
+        Options::default().with(&PICK_OFF, Some(4)).with(&ON_OVERFLOW, OnOverflow::Saturate),
     ]
 }
 
 /// The choices that data sampling alone has.
-fn coarse_stages() -> [Choices; 1] {
+fn coarse_stages() -> [Options; 1] {
     let (system, step) = (Some(System::StepFactor), Some(Millionths(500_000)));
-    [Choices { system, fraction: Some(24), step, ..Choices::default() }]
+    [Options::default().with(&SYSTEM, system).with(&FRACTION, 24).with(&STEP, step)]
 }
 
 /// One unit, two of three bits, two decades, each with a feed override and without.
-fn pulse_multipliers() -> Vec<(Curve, Choices)> {
+fn pulse_multipliers() -> Vec<(Curve, Options)> {
     let units = [
-        Choices::default(),
-        Choices { cascade: Some(Width::new(3).unwrap()), ..Choices::default() },
-        Choices { radix: Some(Radix::Decimal), ..Choices::default() },
+        Options::default(),
+        Options::default().with(&CASCADE, Some(Width::new(3).unwrap())),
+        Options::default().with(&RADIX, Radix::Decimal),
     ];
-    let all = units
-        .into_iter()
-        .flat_map(|units| [None, Some(35)].map(|percent| Choices { feed_override: percent, ..units.clone() }));
+    let all =
+        units.into_iter().flat_map(|units| [None, Some(35)].map(|percent| units.clone().with(&OVERRIDE, percent)));
     all.map(|choices| (line(&[0, 0], &[42, -7]), choices)).collect()
 }
 
@@ -92,7 +100,7 @@ const ADDERS: [(Option<Radix>, Option<Adder>); 4] = [
 fn any_two_registers_of_any_width_build_or_are_refused() {
     const WIDTHS: [u64; 6] = [1, 2, 3, 8, 33, 64];
     let (mut built, mut refused) = (0, 0);
-    for model in catalogue() {
+    for model in catalogue().iter() {
         for (curve, choices) in forms(model) {
             let names: Vec<String> = model.plan(&curve, &choices).unwrap().widths.into_keys().collect();
             for (index, first) in names.iter().enumerate() {
@@ -100,7 +108,7 @@ fn any_two_registers_of_any_width_build_or_are_refused() {
                     for (a, b) in WIDTHS.iter().flat_map(|a| WIDTHS.iter().map(move |b| (*a, *b))) {
                         let widths =
                             [(first, a), (second, b)].map(|(name, bits)| (name.clone(), Width::new(bits).unwrap()));
-                        let choices = Choices { widths: widths.into(), ..choices.clone() };
+                        let choices = choices.clone().with_single(&WIDTH, widths.into());
                         let machine = model.plan(&curve, &choices).and_then(|hardware| model.machine(&hardware));
                         match machine {
                             Ok(_) => built += 1,

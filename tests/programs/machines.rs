@@ -6,8 +6,9 @@ use stepwave::testbench::{
     Testbench,
 };
 use stepwave_kernel::engine::EngineKind;
+use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
 use stepwave_models::program::{FAMILIES, Family, Size};
-use stepwave_models::{Choices, Hardware, OnOverflow, Preset, Promise};
+use stepwave_models::{Hardware, OnOverflow, Options, Preset, Promise};
 use stepwave_nc::{
     Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, Side, ToolMove, Way,
 };
@@ -67,7 +68,7 @@ fn family(name: &str) -> &'static Family {
     FAMILIES.into_iter().find(|family| family.name == name).unwrap()
 }
 
-fn run(family: &Family, moves: &[ToolMove], choices: &Choices, engine: EngineKind) -> Ran {
+fn run(family: &Family, moves: &[ToolMove], choices: &Options, engine: EngineKind) -> Ran {
     let mut rounder = Rounder::new((!family.arcs).then_some(0.5));
     let mut blocks = Vec::new();
     moves.iter().for_each(|of| {
@@ -76,7 +77,7 @@ fn run(family: &Family, moves: &[ToolMove], choices: &Choices, engine: EngineKin
     run_blocks(family, blocks, choices, engine)
 }
 
-fn run_blocks(family: &Family, blocks: Vec<PulseBlock>, choices: &Choices, engine: EngineKind) -> Ran {
+fn run_blocks(family: &Family, blocks: Vec<PulseBlock>, choices: &Options, engine: EngineKind) -> Ran {
     let mut size = Size::default();
     blocks.iter().for_each(|block| size.add(family, block));
     let hardware = family.plan(&size, choices).unwrap();
@@ -161,7 +162,7 @@ struct Reports {
 }
 
 /// Runs a machine with a pulse every 2^`slow` clocks, and looks at every sample or not.
-fn reports(family: &Family, moves: &[ToolMove], choices: &Choices, slow: u32, every_sample: bool) -> Reports {
+fn reports(family: &Family, moves: &[ToolMove], choices: &Options, slow: u32, every_sample: bool) -> Reports {
     let (mut rounder, mut blocks, mut size) =
         (Rounder::new((!family.arcs).then_some(0.5)), Vec::new(), Size::default());
     moves.iter().for_each(|of| {
@@ -181,8 +182,8 @@ fn reports(family: &Family, moves: &[ToolMove], choices: &Choices, slow: u32, ev
     Reports { paths: host.paths, clocks: host.clocks, outcome, ranges: ranges.finish(), overflows: overflow.events() }
 }
 
-fn choices(normalize: bool) -> Choices {
-    Choices { normalize, on_overflow: Some(OnOverflow::Trap), ..Choices::default() }
+fn choices(normalize: bool) -> Options {
+    Options::default().with(&NORMALIZE, normalize).with(&ON_OVERFLOW, OnOverflow::Trap)
 }
 
 proptest! {
@@ -292,7 +293,7 @@ fn an_integrator_that_would_stand_beside_an_axis_steps_at_once() {
         [block(Curve::Line(line), [0; 3], [3, 14, 0]), block(Curve::Arc(arc), [3, 14, 0], [15, 0, 0])].to_vec();
     for preset in [Preset::Half, Preset::Zero, Preset::Full] {
         let width = Some(stepwave_kernel::Width::new(8).unwrap());
-        let choices = Choices { preset: Some(preset), width, ..choices(false) };
+        let choices = choices(false).with_all(&PRESET, preset).with_all(&WIDTH, width);
         let ran = run_blocks(family("dda"), blocks.clone(), &choices, EngineKind::Word);
         assert_eq!((ran.outcome.ending, ran.outcome.reached), (Ending::Done, vec![15, 0, 0]), "{preset}");
     }
@@ -306,7 +307,7 @@ proptest! {
         for family in FAMILIES {
             // The position overflows on its way; the loops are compiled behind 16384 clocks.
             let widths = [("x".to_owned(), stepwave_kernel::Width::new(4).unwrap())].into_iter().filter(|_| narrow);
-            let choices = Choices { on_overflow: Some(OnOverflow::Wrap), widths: widths.collect(), ..Choices::default() };
+            let choices = Options::default().with(&ON_OVERFLOW, OnOverflow::Wrap).with_single(&WIDTH, widths.collect());
             let moves: Vec<ToolMove> = moves.iter().cycle().take(if family.name == "dpm" { 3 } else { 12 }).copied().collect();
             let all = reports(family, &moves, &choices, slow, true);
             let some = reports(family, &moves, &choices, slow, false);

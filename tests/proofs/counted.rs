@@ -5,14 +5,15 @@ use stepwave_kernel::engine::{EngineKind, Rows, Watch};
 use stepwave_kernel::netlist::Op;
 use stepwave_kernel::prove::{AxisNets, Lost, Word, follow, recount};
 use stepwave_kernel::{Net, Width, elaborate};
-use stepwave_models::{Choices, Machine, find};
+use stepwave_models::options::{CASCADE, OVERRIDE, WIDTH};
+use stepwave_models::{Machine, Options, find};
 
 use crate::cli::Folder;
 
 /// A pulse multiplier of coefficients of so many bits.
-fn machine(k: u32, choices: &Choices) -> Machine {
+fn machine(k: u32, choices: &Options) -> Machine {
     let model = find("dpm-line").unwrap();
-    let choices = Choices { width: Width::new(u64::from(k)).ok(), ..choices.clone() };
+    let choices = choices.clone().with_all(&WIDTH, Width::new(u64::from(k)).ok());
     let largest = model.claims.unwrap().geometries.largest(k).unwrap();
     model.machine(&model.plan(&largest, &choices).unwrap()).unwrap()
 }
@@ -21,7 +22,7 @@ fn machine(k: u32, choices: &Choices) -> Machine {
 fn every_coefficient_is_counted_bit_by_bit_at_every_width() {
     let model = find("dpm-line").unwrap();
     for (k, way) in (1..=10).flat_map(|k| [(k, Way::Follow), (k, Way::Recount)]) {
-        let found = blocks(model, &model.claims.unwrap(), &Choices::default(), &Narrower::new(), k, way).unwrap();
+        let found = blocks(model, &model.claims.unwrap(), &Options::default(), &Narrower::new(), k, way).unwrap();
         assert_eq!(found.len(), 4);
         for block in found {
             assert!(block.is_exact(), "{block}");
@@ -88,9 +89,9 @@ fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) 
 
 #[test]
 fn what_is_said_of_every_net_is_what_the_engine_has() {
-    let cascade = Choices { cascade: Width::new(2).ok(), ..Choices::default() };
-    let slow = Choices { feed_override: Some(70), ..Choices::default() };
-    for choices in [Choices::default(), cascade, slow] {
+    let cascade = Options::default().with(&CASCADE, Width::new(2).ok());
+    let slow = Options::default().with(&OVERRIDE, Some(70));
+    for choices in [Options::default(), cascade, slow] {
         let machine = machine(4, &choices);
         for signs in 0..4_u8 {
             let unknowns: Vec<bool> =
@@ -108,7 +109,7 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
     let model = find("dpm-line").unwrap();
     let narrower = Narrower::from([("x".to_owned(), 2)]);
     for way in [Way::Follow, Way::Recount] {
-        let lost = blocks(model, &model.claims.unwrap(), &Choices::default(), &narrower, 5, way).unwrap_err();
+        let lost = blocks(model, &model.claims.unwrap(), &Options::default(), &narrower, 5, way).unwrap_err();
         let lost = lost.to_string();
         // A counter that is too narrow does not count every pulse as one.
         let word = if way == Way::Follow { "dpm_line.axis_x.x may overflow at clock " } else { "dpm_line.axis_x.x" };
@@ -117,7 +118,7 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
     // Loaded at clock 1, x of 5 bits can have come to 15 at clock 16, and to -16 at clock 17: a pulse more does not fit.
     let largest = model.claims.unwrap().geometries.largest(5).unwrap();
     let widths = [("x".to_owned(), Width::new(5).unwrap())].into();
-    let choices = Choices { width: Width::new(5).ok(), widths, ..Choices::default() };
+    let choices = Options::default().with_all(&WIDTH, Width::new(5).ok()).with_single(&WIDTH, widths);
     let machine = model.machine(&model.plan(&largest, &choices).unwrap()).unwrap();
     for (negative, clock) in [(0, 16), (1, 17)] {
         let word = |name: &str| match name {
@@ -132,7 +133,7 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
     // A comparison of coordinates is no sum of unknown bits.
     let model = find("ppc-line").unwrap();
     let largest = model.claims.unwrap().geometries.largest(3).unwrap();
-    let machine = model.machine(&model.plan(&largest, &Choices::default()).unwrap()).unwrap();
+    let machine = model.machine(&model.plan(&largest, &Options::default()).unwrap()).unwrap();
     let words: Vec<(Net, Word)> = machine.inputs.values().map(|port| (port.net, Word::Unknown)).collect();
     let lost = follow(&machine.design, machine.strobes(), &words, &[], 100, |_, _| {}).unwrap_err();
     assert!(matches!(lost, Lost::Claim { .. } | Lost::End { .. }), "{lost}");
@@ -215,7 +216,7 @@ fn changed(machine: &Machine, net: Net) -> Option<Machine> {
 
 #[test]
 fn what_is_counted_pulse_by_pulse_is_so_for_every_coefficient_of_machines_that_were_spoilt() {
-    let sound = machine(3, &Choices::default());
+    let sound = machine(3, &Options::default());
     let (mut refused, mut other, mut same) = (0, 0, 0);
     for machine in sound.design.netlist().nets().filter_map(|net| changed(&sound, net)) {
         let word = |name: &str| match name {

@@ -4,7 +4,7 @@ use stepwave::study::proof::{CounterexampleToInduction, InductionSearch, Narrowe
 use stepwave::testbench::Start;
 use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};
 use stepwave_kernel::formula::{Clause, name};
-use stepwave_models::{Choices, Kind, Machine, find};
+use stepwave_models::{Kind, Machine, Options, find};
 
 use super::{beats, narrower, subject};
 
@@ -19,7 +19,7 @@ fn searched(subject: &Subject, kind: &Kind) -> InductionSearch {
 fn machine(model: &str, k: u32, narrower: &Narrower) -> Machine {
     let model = find(model).unwrap();
     let claims = model.claims.unwrap();
-    let choices = stepwave::study::proof::choices_at(model, &claims, &Choices::default(), narrower, k).unwrap();
+    let choices = stepwave::study::proof::choices_at(model, &claims, &Options::default(), narrower, k).unwrap();
     model.machine(&model.plan(&claims.geometries.largest(k).unwrap(), &choices).unwrap()).unwrap()
 }
 
@@ -44,7 +44,7 @@ fn no_state_that_the_invariants_of_a_proof_allow_shows_anything_wrong() {
             assert!(found.is_none() && tried > 100, "{model}, {tried}: {found:?}");
         }
     }
-    let any = subject("dda-line", &Choices::default()).with_any_preset();
+    let any = subject("dda-line", &Options::default()).with_any_preset();
     let InductionSearch { found, tried } = searched(&any, &any.kinds()[0]);
     assert!(found.is_none() && tried > 50, "{tried}: {found:?}");
 }
@@ -52,7 +52,7 @@ fn no_state_that_the_invariants_of_a_proof_allow_shows_anything_wrong() {
 #[test]
 fn a_goal_that_is_one_off_is_missed_by_a_step_that_ends_before_it() {
     for (model, symbol) in [("ppc-line", "|dx|"), ("ppc-arc", "xt"), ("cim-arc", "xt")] {
-        let subject = subject(model, &Choices::default());
+        let subject = subject(model, &Options::default());
         let mut kind = subject.kinds().remove(0);
         kind.goals = vec![Clause::at_least_zero("x ends beyond", name("x") - name(symbol) - 1)];
         let step = searched(&subject, &kind).found.unwrap();
@@ -72,7 +72,7 @@ fn a_goal_that_is_one_off_is_missed_by_a_step_that_ends_before_it() {
 
 #[test]
 fn an_overflow_comes_from_a_state_that_satisfies_the_textbook() {
-    let subject = Subject::new(find("ppc-line").unwrap(), &Choices::default(), &narrower("f")).unwrap();
+    let subject = Subject::new(find("ppc-line").unwrap(), &Options::default(), &narrower("f")).unwrap();
     let mut kind = subject.kinds().remove(0);
     // Ends are missed too.
     kind.goals.clear();

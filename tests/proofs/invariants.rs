@@ -2,7 +2,8 @@
 
 use stepwave::study::proof::{Subject, states};
 use stepwave_kernel::formula::Clause;
-use stepwave_models::{Beats, Choices, EndPoint, Form, Model, Preset, Weights, catalogue};
+use stepwave_models::options::{BEATS, END_POINT, FORM, PRESET, WEIGHTS};
+use stepwave_models::{Beats, EndPoint, Form, Model, Options, Preset, Weights, catalogue};
 use stepwave_nc::Curve;
 
 use super::subject;
@@ -54,17 +55,17 @@ fn assert_hold(
 
 #[test]
 fn what_authors_claim_between_steps_holds_in_every_row_of_runs() {
-    for model in catalogue() {
+    for model in catalogue().iter() {
         let mut looked_at = 0;
         let mut claimed = false;
         for curve in curves(model) {
             for choices in [
-                Choices::default(),
-                Choices { beats: Some(Beats::One), end_point: Some(EndPoint::PerAxis), ..Choices::default() },
-                Choices { weights: Some(Weights::Pre), ..Choices::default() },
-                Choices { weights: Some(Weights::Post), ..Choices::default() },
-                Choices { form: Some(Form::Signed), end_point: Some(EndPoint::Longest), ..Choices::default() },
-                Choices { preset: Some(Preset::Half), ..Choices::default() },
+                Options::default(),
+                Options::default().with(&BEATS, Beats::One).with(&END_POINT, EndPoint::PerAxis),
+                Options::default().with(&WEIGHTS, Weights::Pre),
+                Options::default().with(&WEIGHTS, Weights::Post),
+                Options::default().with(&FORM, Form::Signed).with(&END_POINT, EndPoint::Longest),
+                Options::default().with_all(&PRESET, Preset::Half),
             ] {
                 let Ok(hardware) = model.plan(&curve, &choices) else { continue };
                 let machine = model.machine(&hardware).unwrap();
@@ -80,11 +81,11 @@ fn what_authors_claim_between_steps_holds_in_every_row_of_runs() {
 
 #[test]
 fn what_was_proved_holds_in_runs_of_widths_that_nothing_was_learnt_from() {
-    let signed = Choices { form: Some(Form::Signed), ..Choices::default() };
-    let post = Choices { weights: Some(Weights::Post), ..Choices::default() };
-    let total = Choices { end_point: Some(EndPoint::Total), ..Choices::default() };
+    let signed = Options::default().with(&FORM, Form::Signed);
+    let post = Options::default().with(&WEIGHTS, Weights::Post);
+    let total = Options::default().with(&END_POINT, EndPoint::Total);
     let by_default =
-        ["ppc-line", "ppc-arc", "dda-line", "cim-arc", "mindev-line"].map(|model| (model, Choices::default()));
+        ["ppc-line", "ppc-arc", "dda-line", "cim-arc", "mindev-line"].map(|model| (model, Options::default()));
     for (model, choices) in by_default.into_iter().chain([("ppc-line", signed), ("cim-arc", post), ("dda-line", total)])
     {
         let subject: Subject = subject(model, &choices);

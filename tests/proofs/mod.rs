@@ -16,7 +16,8 @@ use rayon::prelude::*;
 use stepwave::study::proof::{Counterexample, Fault, Narrower, Subject, search};
 use stepwave_kernel::formula::{Clause, name};
 use stepwave_kernel::prove::{Certificate, Proof};
-use stepwave_models::{Beats, Choices, EndPoint, Form, Kind, Preset, Weights, find};
+use stepwave_models::options::{BEATS, COMPARE, END_POINT, FORM, PRESET, WEIGHTS, WIDTH};
+use stepwave_models::{Beats, EndPoint, Form, Kind, Options, Preset, Weights, find};
 
 /// Attempts at every kind of geometry, each checked again from its certificate alone.
 fn proofs(subject: &Subject) -> Vec<(Kind, Proof)> {
@@ -28,7 +29,7 @@ fn proofs(subject: &Subject) -> Vec<(Kind, Proof)> {
     subject.kinds().into_par_iter().map(prove).collect()
 }
 
-fn subject(model: &str, choices: &Choices) -> Subject {
+fn subject(model: &str, choices: &Options) -> Subject {
     Subject::new(find(model).unwrap(), choices, &Narrower::new()).unwrap()
 }
 
@@ -44,8 +45,8 @@ fn assert_proved(model: &str, subject: &Subject, ends: bool) {
     }
 }
 
-fn beats() -> [Choices; 2] {
-    [Beats::Four, Beats::One].map(|beats| Choices { beats: Some(beats), ..Choices::default() })
+fn beats() -> [Options; 2] {
+    [Beats::Four, Beats::One].map(|beats| Options::default().with(&BEATS, beats))
 }
 
 #[test]
@@ -54,10 +55,10 @@ fn lines_are_proved_for_every_width_in_four_beats_and_in_one() {
         for model in ["ppc-line", "cim-line", "mindev-line", "vector-line"] {
             assert_proved(model, &subject(model, &choices), true);
         }
-        assert_proved("bresenham", &subject("bresenham", &Choices::default()), true);
+        assert_proved("bresenham", &subject("bresenham", &Options::default()), true);
         for form in [Form::Magnitude, Form::Signed] {
             for end_point in [EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest] {
-                let choices = Choices { form: Some(form), end_point: Some(end_point), ..choices.clone() };
+                let choices = choices.clone().with(&FORM, form).with(&END_POINT, end_point);
                 assert_proved("ppc-line", &subject("ppc-line", &choices), true);
             }
         }
@@ -69,7 +70,7 @@ fn arcs_inside_a_quadrant_are_proved_for_every_width_in_both_directions() {
     for choices in beats() {
         assert_proved("ppc-arc", &subject("ppc-arc", &choices), true);
         for weights in [Weights::Mid, Weights::Pre, Weights::Post] {
-            let choices = Choices { weights: Some(weights), ..choices.clone() };
+            let choices = choices.clone().with(&WEIGHTS, weights);
             assert_proved("cim-arc", &subject("cim-arc", &choices), true);
         }
     }
@@ -79,7 +80,7 @@ fn arcs_inside_a_quadrant_are_proved_for_every_width_in_both_directions() {
 #[test]
 fn weights_on_one_side_of_a_pulse_need_one_bit_less_than_those_of_its_middle() {
     for weights in [Weights::Pre, Weights::Post] {
-        let choices = Choices { weights: Some(weights), ..Choices::default() };
+        let choices = Options::default().with(&WEIGHTS, weights);
         let narrow = |bits| BTreeMap::from([("f".to_owned(), bits)]);
         let subject = |bits| Subject::new(find("cim-arc").unwrap(), &choices, &narrow(bits)).unwrap();
         assert_proved("cim-arc", &subject(1), true);
@@ -88,25 +89,25 @@ fn weights_on_one_side_of_a_pulse_need_one_bit_less_than_those_of_its_middle() {
         let kind = subject(2).kinds().remove(0);
         assert!(!subject(2).prove(&kind).unwrap().0.is_safe(), "{weights:?}");
     }
-    let mid = Choices::default();
+    let mid = Options::default();
     assert!(refuted("cim-arc", &mid, &narrower("f")).is_some() && refuted("cim-arc", &mid, &Narrower::new()).is_none());
 }
 
 #[test]
 fn integrators_are_proved_for_every_width_and_every_preset() {
     for preset in [Preset::Zero, Preset::Half, Preset::Full] {
-        let choices = Choices { preset: Some(preset), ..Choices::default() };
+        let choices = Options::default().with_all(&PRESET, preset);
         assert_proved("dda-line", &subject("dda-line", &choices), true);
         // An arc may come to a stand with some presets, so that its end is not claimed.
         assert_proved("dda-arc", &subject("dda-arc", &choices), false);
     }
-    assert_proved("dda-line", &subject("dda-line", &Choices::default()).with_any_preset(), true);
-    assert_proved("dda-arc", &subject("dda-arc", &Choices::default()).with_any_preset(), false);
+    assert_proved("dda-line", &subject("dda-line", &Options::default()).with_any_preset(), true);
+    assert_proved("dda-arc", &subject("dda-arc", &Options::default()).with_any_preset(), false);
 }
 
 #[test]
 fn lines_of_integrators_end_exactly_by_counters_of_pulses_too() {
-    let of = |end_point, preset| Choices { end_point: Some(end_point), preset: Some(preset), ..Choices::default() };
+    let of = |end_point, preset| Options::default().with(&END_POINT, end_point).with_all(&PRESET, preset);
     for end_point in [EndPoint::PerAxis, EndPoint::Total, EndPoint::Longest] {
         for preset in [Preset::Zero, Preset::Full] {
             assert_proved("dda-line", &subject("dda-line", &of(end_point, preset)), true);
@@ -122,7 +123,7 @@ fn lines_of_integrators_end_exactly_by_counters_of_pulses_too() {
         assert!(proof.holds() && !proof.missed.is_empty() && proof.endless.is_none(), "{}: {proof:#?}", kind.name);
     }
     let presets = [("jrx", 3), ("jry", 0)].map(|(name, value)| (name.to_owned(), Preset::Value(value)));
-    let apart = Choices { presets: presets.into(), ..of(EndPoint::Longest, Preset::Zero) };
+    let apart = of(EndPoint::Longest, Preset::Zero).with_single(&PRESET, presets.into());
     let found = refuted("dda-line", &apart, &Narrower::new()).unwrap();
     assert_eq!((found.fault, found.curve.to()), (Fault::Missed, &[1, 1][..]));
     // Of an arc the total of both axes tells no end.
@@ -133,7 +134,7 @@ fn narrower(register: &str) -> Narrower {
     BTreeMap::from([(register.to_owned(), 1)])
 }
 
-fn refuted(model: &str, choices: &Choices, narrower: &Narrower) -> Option<Counterexample> {
+fn refuted(model: &str, choices: &Options, narrower: &Narrower) -> Option<Counterexample> {
     let model = find(model).unwrap();
     let claims = model.claims.unwrap();
     search(model, &claims, choices, narrower, 2..=5, |_| true).found
@@ -142,24 +143,24 @@ fn refuted(model: &str, choices: &Choices, narrower: &Narrower) -> Option<Counte
 #[test]
 fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
     for model in ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line"] {
-        let found = refuted(model, &Choices::default(), &narrower("f"));
+        let found = refuted(model, &Options::default(), &narrower("f"));
         assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow), "{model}");
     }
     // The counters of early firmware: too narrow, and the wrong test.
-    let found = refuted("bresenham", &Choices::default(), &narrower("cnt"));
+    let found = refuted("bresenham", &Options::default(), &narrower("cnt"));
     assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow));
-    let gt = Choices { compare: Some(stepwave_models::Compare::Greater), ..Choices::default() };
+    let gt = Options::default().with(&COMPARE, stepwave_models::Compare::Greater);
     let model = find("bresenham").unwrap();
     let found = search(model, &model.claims.unwrap(), &gt, &Narrower::new(), 1..=2, |_| true).found.unwrap();
     assert_eq!((found.fault, found.curve.to()), (Fault::Missed, &[0, 1][..]));
-    let signed = Choices { form: Some(Form::Signed), ..Choices::default() };
-    let longest = Choices { end_point: Some(EndPoint::Longest), ..signed.clone() };
+    let signed = Options::default().with(&FORM, Form::Signed);
+    let longest = signed.clone().with(&END_POINT, EndPoint::Longest);
     for choices in [&signed, &longest] {
         let found = refuted("ppc-line", choices, &narrower("f"));
         assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow));
     }
     // The proof itself refuses too.
-    let default = Choices::default();
+    let default = Options::default();
     for (model, choices) in
         [("ppc-line", &default), ("mindev-line", &default), ("ppc-line", &signed), ("ppc-line", &longest)]
     {
@@ -174,7 +175,7 @@ fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
 fn a_position_counter_without_its_sign_is_never_proved() {
     // Its adder tells an overflow by its own flag, not by a wider sum.
     let two_less = BTreeMap::from([("x".to_owned(), 2)]);
-    let subject = Subject::new(find("ppc-line").unwrap(), &Choices::default(), &two_less).unwrap();
+    let subject = Subject::new(find("ppc-line").unwrap(), &Options::default(), &two_less).unwrap();
     for (kind, proof) in proofs(&subject) {
         assert!(proof.violated.iter().any(|(claim, _)| subject.claim(*claim).ends_with(".x")), "{}", kind.name);
     }
@@ -183,16 +184,16 @@ fn a_position_counter_without_its_sign_is_never_proved() {
 #[test]
 fn nothing_is_refuted_at_the_widths_that_are_proved() {
     for model in ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line", "dda-line", "dda-arc"] {
-        assert_eq!(refuted(model, &Choices::default(), &Narrower::new()), None, "{model}");
+        assert_eq!(refuted(model, &Options::default(), &Narrower::new()), None, "{model}");
     }
 }
 
 #[test]
 fn an_end_point_that_is_one_off_is_not_proved() {
-    let default = Choices::default();
-    let signed = Choices { form: Some(Form::Signed), end_point: Some(EndPoint::Longest), ..Choices::default() };
-    let pre = Choices { weights: Some(Weights::Pre), ..Choices::default() };
-    let total = Choices { end_point: Some(EndPoint::Total), ..Choices::default() };
+    let default = Options::default();
+    let signed = Options::default().with(&FORM, Form::Signed).with(&END_POINT, EndPoint::Longest);
+    let pre = Options::default().with(&WEIGHTS, Weights::Pre);
+    let total = Options::default().with(&END_POINT, EndPoint::Total);
     for (model, symbol, choices) in [
         ("ppc-line", "|dx|", &default),
         ("ppc-line", "|dx|", &signed),
@@ -213,7 +214,7 @@ fn an_end_point_that_is_one_off_is_not_proved() {
 }
 
 /// What is not proved of a model's first kind of arcs whose ends need not be on one circle.
-fn beside_its_circle(model: &str, choices: &Choices) -> Proof {
+fn beside_its_circle(model: &str, choices: &Options) -> Proof {
     let subject = subject(model, choices);
     let mut kind = subject.kinds().remove(0);
     let before = kind.premises.len();
@@ -224,20 +225,20 @@ fn beside_its_circle(model: &str, choices: &Choices) -> Proof {
 
 #[test]
 fn an_arc_that_ends_beside_its_circle_is_not_proved_with_one_counter() {
-    let total = Choices { end_point: Some(EndPoint::Total), ..Choices::default() };
+    let total = Options::default().with(&END_POINT, EndPoint::Total);
     let proof = beside_its_circle("ppc-arc", &total);
     assert!(!proof.is_safe(), "{proof:#?}");
 }
 
 #[test]
 fn weights_on_one_side_of_a_pulse_are_not_bounded_beside_the_circle() {
-    let proof = beside_its_circle("cim-arc", &Choices { weights: Some(Weights::Pre), ..Choices::default() });
+    let proof = beside_its_circle("cim-arc", &Options::default().with(&WEIGHTS, Weights::Pre));
     assert!(!proof.is_safe(), "{proof:#?}");
 }
 
 #[test]
 fn a_line_along_y_is_what_the_bare_form_cannot_do() {
-    let bare = Choices { form: Some(Form::Bare), ..Choices::default() };
+    let bare = Options::default().with(&FORM, Form::Bare);
     let example = refuted("ppc-line", &bare, &Narrower::new()).unwrap();
     assert_eq!((example.fault, example.curve.to()), (Fault::Missed, &[0, 1][..]));
     assert!(proofs(&subject("ppc-line", &bare)).iter().all(|(_, proof)| !proof.missed.is_empty()));
@@ -246,7 +247,7 @@ fn a_line_along_y_is_what_the_bare_form_cannot_do() {
 #[test]
 fn unequal_presets_bring_an_arc_to_a_stand() {
     let presets = [("jrx", 12), ("jry", 0)].map(|(name, value)| (name.to_owned(), Preset::Value(value)));
-    let choices = Choices { presets: presets.into(), ..Choices::default() };
+    let choices = Options::default().with_single(&PRESET, presets.into());
     let model = find("dda-arc").unwrap();
     let example =
         search(model, &model.claims.unwrap(), &choices, &Narrower::new(), 4..=4, |fault| fault == Fault::Endless);
@@ -254,7 +255,7 @@ fn unequal_presets_bring_an_arc_to_a_stand() {
     assert_eq!(example.k, 4);
     // The one of the literature is among them, by the simulator.
     let arc = crate::models::arc([3, 4], [0, 5], [0, 0], false);
-    let wide = Choices { width: stepwave_kernel::Width::new(4).ok(), ..choices };
+    let wide = choices.with_all(&WIDTH, stepwave_kernel::Width::new(4).ok());
     let bench = stepwave::testbench::Testbench::new(model, &arc, &wide).unwrap();
     let outcome = bench.run(stepwave_kernel::engine::EngineKind::Word, &mut []).unwrap();
     assert!(matches!(outcome.ending, stepwave::testbench::Ending::Stalled { .. }), "{outcome:?}");
@@ -263,7 +264,7 @@ fn unequal_presets_bring_an_arc_to_a_stand() {
 
 #[test]
 fn a_certificate_that_was_changed_is_refused() {
-    let subject = subject("ppc-line", &Choices::default());
+    let subject = subject("ppc-line", &Options::default());
     let kind = subject.kinds().remove(0);
     let (_, certificate) = subject.prove(&kind).unwrap();
     let text = certificate.to_string();
@@ -285,7 +286,7 @@ fn a_certificate_that_was_changed_is_refused() {
 
 #[test]
 fn a_deviation_that_is_twice_a_polynomial_is_not_taken_for_another() {
-    let pre = Choices { weights: Some(Weights::Pre), ..Choices::default() };
+    let pre = Options::default().with(&WEIGHTS, Weights::Pre);
     let subject = subject("cim-arc", &pre);
     let kind = subject.kinds().remove(0);
     let (proof, certificate) = subject.prove(&kind).unwrap();

@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use stepwave::study::proof::{Narrower, choices_at};
 use stepwave::testbench::{Ending, Testbench};
 use stepwave_kernel::{OnOverflow, Width};
-use stepwave_models::{Choices, Model, ModelError, find};
+use stepwave_models::options::{ON_OVERFLOW, WIDTH};
+use stepwave_models::{Model, ModelError, Options, find};
 
 use crate::cli::{Folder, Ran};
 
@@ -18,7 +19,7 @@ struct Facts {
     endless: bool,
 }
 
-fn facts(model: &'static Model, choices: &Choices, k: u32) -> Facts {
+fn facts(model: &'static Model, choices: &Options, k: u32) -> Facts {
     let claims = model.claims.unwrap();
     let hardware = match model.plan(&claims.geometries.largest(k).unwrap(), choices) {
         Ok(hardware) => hardware,
@@ -71,7 +72,7 @@ fn cases() -> Vec<(&'static str, &'static str, (&'static str, OnOverflow))> {
 
 /// The names with a width of their own: one, or one for each axis.
 fn known(model: &'static Model, register: &str) -> bool {
-    let plan = model.plan(&model.claims.unwrap().geometries.largest(4).unwrap(), &Choices::default()).unwrap();
+    let plan = model.plan(&model.claims.unwrap().geometries.largest(4).unwrap(), &Options::default()).unwrap();
     plan.widths.keys().any(|name| name == register || name.trim_end_matches(['x', 'y']) == register)
 }
 
@@ -85,7 +86,7 @@ fn what_is_proved_of_narrower_registers_is_true_of_every_geometry() {
             let words = format!("prove {name} --narrower {register}={bits} --on-overflow {mode}");
             let ran = Folder::new().run(&words);
             let model = find(name).unwrap();
-            let choices = Choices { on_overflow: Some(on_overflow), ..Choices::default() };
+            let choices = Options::default().with(&ON_OVERFLOW, on_overflow);
             let narrower = Narrower::from([(register.to_owned(), bits)]);
             for k in 3..=4 {
                 let own = choices_at(model, &model.claims.unwrap(), &choices, &narrower, k).unwrap();
@@ -106,7 +107,7 @@ fn a_verdict_on_one_hardware_is_what_every_geometry_of_its_box_shows() {
         .flat_map_iter(|(model, register, mode)| [-1, 0, 1].map(move |more| (model, register, mode, more)))
         .filter_map(|(name, register, (mode, on_overflow), more)| {
             let (model, k) = (find(name).unwrap(), 4);
-            let choices = Choices { on_overflow: Some(on_overflow), width: Width::new(4).ok(), ..Choices::default() };
+            let choices = Options::default().with(&ON_OVERFLOW, on_overflow).with_all(&WIDTH, Width::new(4).ok());
             let plan = model.plan(&model.claims.unwrap().geometries.largest(k).unwrap(), &choices).unwrap();
             let own =
                 plan.widths.iter().find(|(own, _)| own.trim_end_matches(['x', 'y']) == register || *own == register);
@@ -118,12 +119,12 @@ fn a_verdict_on_one_hardware_is_what_every_geometry_of_its_box_shows() {
             if ran.code == 2 {
                 // Registers that must be as wide as others, or ordered.
                 assert!(
-                    model.plan(&model.claims?.geometries.largest(k)?, &Choices { widths, ..choices }).is_err(),
+                    model.plan(&model.claims?.geometries.largest(k)?, &choices.with_single(&WIDTH, widths)).is_err(),
                     "{words}: {ran:?}"
                 );
                 return None;
             }
-            let facts = facts(model, &Choices { widths, ..choices }, k);
+            let facts = facts(model, &choices.with_single(&WIDTH, widths), k);
             assert_true(&ran, facts, &words);
             // All is proved, or refuted by a run: of so few geometries nothing is left open.
             assert_eq!(ran.code == 0, facts == Facts::default(), "{words}: {facts:?} {ran:?}");

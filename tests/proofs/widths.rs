@@ -7,12 +7,13 @@ use stepwave::study::widths::{Known, Widths, by_proof, ranges_alone, simulated};
 use stepwave::study::{Extent, Geometries};
 use stepwave::testbench::Testbench;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, Model, Weights, catalogue, find};
+use stepwave_models::options::WEIGHTS;
+use stepwave_models::{Model, Options, Weights, catalogue, find};
 use stepwave_nc::{Curve, Shape};
 
 use crate::cli::Folder;
 
-fn widths(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Widths, ProofError> {
+fn widths(model: &'static Model, choices: &Options, extent: &Extent) -> Result<Widths, ProofError> {
     stepwave::study::widths::widths(model, choices, extent, &|_| {})
 }
 
@@ -22,17 +23,17 @@ fn needed(found: &Widths, k: u32) -> BTreeMap<&str, i64> {
 
 #[test]
 fn the_least_widths_of_the_methods_are_those_of_the_literature() {
-    let pre = Choices { weights: Some(Weights::Pre), ..Choices::default() };
+    let pre = Options::default().with(&WEIGHTS, Weights::Pre);
     for (model, choices, rows) in [
-        ("ppc-line", Choices::default(), vec![("f", 1), ("e", 1), ("xe", 0), ("x", 1)]),
-        ("ppc-arc", Choices::default(), vec![("f", 2), ("xi", 0), ("yi", 0)]),
-        ("cim-line", Choices::default(), vec![("f", 1), ("a", 0), ("ex", 0)]),
+        ("ppc-line", Options::default(), vec![("f", 1), ("e", 1), ("xe", 0), ("x", 1)]),
+        ("ppc-arc", Options::default(), vec![("f", 2), ("xi", 0), ("yi", 0)]),
+        ("cim-line", Options::default(), vec![("f", 1), ("a", 0), ("ex", 0)]),
         ("cim-arc", pre, vec![("f", 1)]),
-        ("cim-arc", Choices::default(), vec![("f", 2)]),
-        ("dda-line", Choices::default(), vec![("jvx", 0), ("jrx", 0), ("e", 1)]),
-        ("dda-arc", Choices::default(), vec![("jvx", 0), ("jry", 0), ("ex", 0)]),
-        ("mindev-line", Choices::default(), vec![("f", 2), ("l", 0), ("e", 0)]),
-        ("bresenham", Choices::default(), vec![("cntx", 1), ("e", 0)]),
+        ("cim-arc", Options::default(), vec![("f", 2)]),
+        ("dda-line", Options::default(), vec![("jvx", 0), ("jrx", 0), ("e", 1)]),
+        ("dda-arc", Options::default(), vec![("jvx", 0), ("jry", 0), ("ex", 0)]),
+        ("mindev-line", Options::default(), vec![("f", 2), ("l", 0), ("e", 0)]),
+        ("bresenham", Options::default(), vec![("cntx", 1), ("e", 0)]),
     ] {
         let k = 5;
         let found = widths(find(model).unwrap(), &choices, &Extent::Bits(k)).unwrap();
@@ -50,8 +51,8 @@ fn the_least_widths_of_the_methods_are_those_of_the_literature() {
 
 /// Wants what lanes see over a box to be what single runs see.
 fn assert_as_alone(model: &'static Model, extent: &Extent) {
-    let found = widths(model, &Choices::default(), extent).unwrap();
-    let own = Geometries::of(model, &Choices::default(), extent).unwrap();
+    let found = widths(model, &Options::default(), extent).unwrap();
+    let own = Geometries::of(model, &Options::default(), extent).unwrap();
     assert_eq!((own.curves.len(), own.all), (found.simulated, found.all), "{}", model.name);
     let bench = Testbench::of_hardware(model, own.hardware).unwrap();
     let alone = ranges_alone(model, &bench, &own.curves, EngineKind::Word).unwrap();
@@ -63,7 +64,7 @@ fn assert_as_alone(model: &'static Model, extent: &Extent) {
 
 #[test]
 fn lanes_and_single_runs_of_every_model_see_the_same_ranges() {
-    for model in catalogue() {
+    for model in catalogue().iter() {
         assert_as_alone(model, &Extent::Bits(3));
         // Of four bits where a run takes few clocks.
         if !matches!(model.name, "stepgen" | "dpm-line" | "dda-helix" | "dda-conic" | "dda-arc") {
@@ -77,7 +78,7 @@ fn lanes_and_single_runs_of_every_model_see_the_same_ranges() {
 
 #[test]
 fn a_box_of_ranges_holds_its_own_points_alone() {
-    let of = |model: &str, extent: &str| widths(find(model).unwrap(), &Choices::default(), &extent.parse().unwrap());
+    let of = |model: &str, extent: &str| widths(find(model).unwrap(), &Options::default(), &extent.parse().unwrap());
     let grid = of("ppc-line", "0..7x0..7").unwrap();
     // 8 · 8 points, and the origin is none.
     assert_eq!((grid.simulated, grid.all, grid.k), (63, true, 3));
@@ -98,7 +99,7 @@ fn a_box_of_ranges_holds_its_own_points_alone() {
 #[test]
 fn boxes_of_conics_and_helices_hold_what_is_counted_by_hand() {
     let of =
-        |model: &str, k| Geometries::of(find(model).unwrap(), &Choices::default(), &Extent::Bits(k)).unwrap().curves;
+        |model: &str, k| Geometries::of(find(model).unwrap(), &Options::default(), &Extent::Bits(k)).unwrap().curves;
     let count = |curves: &[Curve], is: fn(&Shape) -> bool| {
         curves.iter().filter(|curve| matches!(curve, Curve::Conic(conic) if is(&conic.shape()))).count()
     };
@@ -114,7 +115,7 @@ fn boxes_of_conics_and_helices_hold_what_is_counted_by_hand() {
     // The quarters of radius 1, four of them both ways, with z from -1 to 1.
     assert_eq!(of("dda-helix", 1).len(), 4 * 2 * 3);
     for model in ["ppc-conic", "cim-conic", "dda-conic", "dda-helix"] {
-        let found = widths(find(model).unwrap(), &Choices::default(), &Extent::Bits(3)).unwrap();
+        let found = widths(find(model).unwrap(), &Options::default(), &Extent::Bits(3)).unwrap();
         assert!(found.all && found.registers.iter().all(|register| register.known == Known::Exhaustive), "{model}");
     }
 }
@@ -155,16 +156,16 @@ fn the_table_names_a_run_that_one_bit_less_does_not_hold() {
 
 #[test]
 fn a_large_box_of_bits_has_the_proved_width_and_a_run_that_needs_it() {
-    let pre = Choices { weights: Some(Weights::Pre), ..Choices::default() };
+    let pre = Options::default().with(&WEIGHTS, Weights::Pre);
     for (model, choices, rows) in [
         // Lines: F in [-b, a - 1], a + b steps. Arcs: F in [-(2R - 1), 2R - 2], at most 2R steps in a quadrant.
-        ("ppc-line", Choices::default(), vec![("f", 1), ("e", 1), ("xe", 0), ("ye", 0), ("x", 1), ("y", 1)]),
-        ("ppc-arc", Choices::default(), vec![("f", 2), ("xi", 0), ("yi", 0), ("e", 1), ("x", 1)]),
-        ("cim-line", Choices::default(), vec![("f", 1), ("a", 0), ("b", 0), ("ex", 0)]),
+        ("ppc-line", Options::default(), vec![("f", 1), ("e", 1), ("xe", 0), ("ye", 0), ("x", 1), ("y", 1)]),
+        ("ppc-arc", Options::default(), vec![("f", 2), ("xi", 0), ("yi", 0), ("e", 1), ("x", 1)]),
+        ("cim-line", Options::default(), vec![("f", 1), ("a", 0), ("b", 0), ("ex", 0)]),
         ("cim-arc", pre, vec![("f", 1), ("a", 0), ("ey", 0)]),
-        ("dda-line", Choices::default(), vec![("jvx", 0), ("jry", 0), ("e", 1), ("x", 1)]),
-        ("mindev-line", Choices::default(), vec![("f", 2), ("l", 0)]),
-        ("bresenham", Choices::default(), vec![("cntx", 1), ("e", 0), ("stepsy", 0)]),
+        ("dda-line", Options::default(), vec![("jvx", 0), ("jry", 0), ("e", 1), ("x", 1)]),
+        ("mindev-line", Options::default(), vec![("f", 2), ("l", 0)]),
+        ("bresenham", Options::default(), vec![("cntx", 1), ("e", 0), ("stepsy", 0)]),
     ] {
         for k in [9, 16, 40] {
             let found = widths(find(model).unwrap(), &choices, &Extent::Bits(k)).unwrap();
@@ -185,7 +186,7 @@ fn a_large_box_of_bits_has_the_proved_width_and_a_run_that_needs_it() {
 #[test]
 fn a_box_of_ranges_may_need_less_than_its_bits() {
     let of = |model: &str, extent: &str| {
-        let found = widths(find(model).unwrap(), &Choices::default(), &extent.parse().unwrap()).unwrap();
+        let found = widths(find(model).unwrap(), &Options::default(), &extent.parse().unwrap()).unwrap();
         let rows = found.registers.iter();
         rows.map(|register| (register.name.clone(), (register.needed, register.known))).collect::<BTreeMap<_, _>>()
     };
@@ -205,7 +206,7 @@ fn a_box_of_ranges_may_need_less_than_its_bits() {
 
 /// Wants a proof to give what the simulation of every geometry of a box gives, or more where it says so.
 fn assert_proof_agrees(model: &'static Model, extent: &str) {
-    let (choices, box_of) = (Choices::default(), extent.parse::<Extent>().unwrap());
+    let (choices, box_of) = (Options::default(), extent.parse::<Extent>().unwrap());
     let whole = Geometries::of(model, &choices, &box_of).unwrap();
     assert!(whole.all);
     let whole = simulated(model, &choices, &box_of, whole, &|_| {}).unwrap();
@@ -233,14 +234,14 @@ fn what_is_proved_of_a_box_is_what_all_of_its_geometries_need() {
 
 #[test]
 fn the_extreme_geometries_need_what_all_of_them_need() {
-    for model in catalogue() {
+    for model in catalogue().iter() {
         let ks: &[u32] = match model.name {
             "dda-helix" | "dda-conic" => &[3],
             "stepgen" | "dpm-line" | "ppc-conic" | "cim-conic" | "sampled-line" | "sampled-arc" => &[4],
             _ => &[4, 5],
         };
         for &k in ks {
-            let (choices, extent) = (Choices::default(), Extent::Bits(k));
+            let (choices, extent) = (Options::default(), Extent::Bits(k));
             let of = |set: Geometries| simulated(model, &choices, &extent, set, &|_| {}).unwrap();
             let all = Geometries::of(model, &choices, &extent).unwrap();
             let extremes = Geometries::extremes(model, &choices, &extent).unwrap();
@@ -257,7 +258,7 @@ fn the_extreme_geometries_need_what_all_of_them_need() {
 #[test]
 fn conics_of_the_largest_box_lie_on_their_curves() {
     for model in ["cim-conic", "ppc-conic"] {
-        let found = Geometries::extremes(find(model).unwrap(), &Choices::default(), &Extent::Bits(16)).unwrap();
+        let found = Geometries::extremes(find(model).unwrap(), &Options::default(), &Extent::Bits(16)).unwrap();
         let on = |curve: &Curve| matches!(curve, Curve::Conic(conic) if conic.ends_on_curve());
         assert!(found.curves.iter().all(on) && found.k == 16);
         let has = |is: fn(&Shape) -> bool| {
@@ -346,7 +347,7 @@ fn the_accumulations_of_a_step_generator_are_those_that_are_given() {
 #[test]
 fn a_box_of_more_points_than_are_listed_has_the_arcs_next_to_its_corners() {
     let model = find("ppc-arc").unwrap();
-    let of = |extent: &str| Geometries::of(model, &Choices::default(), &extent.parse().unwrap()).unwrap();
+    let of = |extent: &str| Geometries::of(model, &Options::default(), &extent.parse().unwrap()).unwrap();
     // 10,007,001 points, none of which is another one with x and y exchanged.
     let found = of("0..5000x60000..62000");
     assert!(!found.all && found.curves.len() > 100, "{} arcs", found.curves.len());

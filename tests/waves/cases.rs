@@ -1,7 +1,10 @@
 //! The runs whose waves are tested.
 
 use stepwave_kernel::OnOverflow;
-use stepwave_models::{Beats, Choices, EndPoint, Form, Preset, Radix};
+use stepwave_models::options::{
+    BEATS, CASCADE, END_POINT, FORM, NORMALIZE, ON_OVERFLOW, OVERRIDE, PRESET, RADIX, WIDTH,
+};
+use stepwave_models::{Beats, EndPoint, Form, Options, Preset, Radix};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
 
 use super::GOOD;
@@ -11,7 +14,7 @@ pub(super) struct Case {
     pub(super) what: &'static str,
     pub(super) model: &'static str,
     pub(super) curve: Curve,
-    pub(super) choices: Choices,
+    pub(super) choices: Options,
 }
 
 pub(super) fn line(to: &[i64]) -> Curve {
@@ -26,28 +29,25 @@ fn quarter([a, b]: [i64; 2]) -> Curve {
     Conic::ellipse([a, b], [a, 0], [0, b], [0, 0], Direction::CounterClockwise).expect(GOOD).into()
 }
 
-fn widths(list: &[(&str, u64)]) -> Choices {
+fn widths(list: &[(&str, u64)]) -> Options {
     let width = |bits| stepwave_kernel::Width::new(bits).expect(GOOD);
-    Choices {
-        widths: list.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits))).collect(),
-        ..Choices::default()
-    }
+    Options::default().with_single(&WIDTH, list.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits))).collect())
 }
 
 /// All models, in four beats and one, with every end-point scheme, overflows, negative positions and wide registers.
 pub(super) fn cases() -> Vec<Case> {
     use Direction::{Clockwise, CounterClockwise};
-    let (usual, one_beat) = (Choices::default(), Choices { beats: Some(Beats::One), ..Choices::default() });
-    let case = |what, model, curve, choices: &Choices| Case { what, model, curve, choices: choices.clone() };
-    let ending = |end_point| Choices { end_point: Some(end_point), ..Choices::default() };
-    let overflowing = |on_overflow| Choices { on_overflow: Some(on_overflow), ..widths(&[("f", 3)]) };
-    let preset = |preset| Choices { preset: Some(preset), ..Choices::default() };
+    let (usual, one_beat) = (Options::default(), Options::default().with(&BEATS, Beats::One));
+    let case = |what, model, curve, choices: &Options| Case { what, model, curve, choices: choices.clone() };
+    let ending = |end_point| Options::default().with(&END_POINT, end_point);
+    let overflowing = |on_overflow| widths(&[("f", 3)]).with(&ON_OVERFLOW, on_overflow);
+    let preset = |preset| Options::default().with_all(&PRESET, preset);
     let bits = |bits| stepwave_kernel::Width::new(bits).ok();
     let six_axes = [9, -30, 4, 0, -17, 31];
     vec![
         case("line in four beats", "ppc-line", line(&[6, 4]), &usual),
         case("line in one beat", "ppc-line", line(&[-5, 3]), &one_beat),
-        case("signed line", "ppc-line", line(&[-3, -7]), &Choices { form: Some(Form::Signed), ..usual.clone() }),
+        case("signed line", "ppc-line", line(&[-3, -7]), &usual.clone().with(&FORM, Form::Signed)),
         case("line counted per axis", "ppc-line", line(&[4, -4]), &ending(EndPoint::PerAxis)),
         case("line counted on the longest axis", "ppc-line", line(&[4, 9]), &ending(EndPoint::Longest)),
         case("line of one step", "ppc-line", line(&[0, -1]), &one_beat),
@@ -71,24 +71,14 @@ pub(super) fn cases() -> Vec<Case> {
         case("dda line of 256 iterations", "dda-line", line(&[200, -131]), &preset(Preset::Half)),
         case("dda line of six axes", "dda-line", line(&six_axes), &ending(EndPoint::PerAxis)),
         case("dda line of three axes", "dda-line", line(&[1, 2, -3]), &ending(EndPoint::Total)),
-        case(
-            "normalised dda line",
-            "dda-line",
-            line(&[3, 2]),
-            &Choices { normalize: true, ..widths(&[("jv", 9), ("jr", 9)]) },
-        ),
+        case("normalised dda line", "dda-line", line(&[3, 2]), &widths(&[("jv", 9), ("jr", 9)]).with(&NORMALIZE, true)),
         case("pulse multiplier", "dpm-line", line(&[5, -3]), &usual),
-        case(
-            "pulse multiplier of six axes",
-            "dpm-line",
-            line(&six_axes),
-            &Choices { cascade: bits(2), ..usual.clone() },
-        ),
+        case("pulse multiplier of six axes", "dpm-line", line(&six_axes), &usual.clone().with(&CASCADE, bits(2))),
         case(
             "decades at 35 per cent",
             "dpm-line",
             line(&[42, 7]),
-            &Choices { radix: Some(Radix::Decimal), feed_override: Some(35), ..usual.clone() },
+            &usual.clone().with(&RADIX, Radix::Decimal).with(&OVERRIDE, Some(35)),
         ),
         case("dda arc", "dda-arc", arc([5, 0], [0, 5], [0, 0], CounterClockwise), &usual),
         case("dda full circle", "dda-arc", arc([0, -9], [0, -9], [0, 0], Clockwise), &preset(Preset::Half)),
@@ -97,12 +87,10 @@ pub(super) fn cases() -> Vec<Case> {
             "normalised dda arc",
             "dda-arc",
             arc([5, 0], [0, 5], [0, 0], CounterClockwise),
-            &Choices {
-                normalize: true,
-                end_point: Some(EndPoint::Total),
-                preset: Some(Preset::Half),
-                ..widths(&[("jv", 6), ("jr", 6)])
-            },
+            &widths(&[("jv", 6), ("jr", 6)])
+                .with(&NORMALIZE, true)
+                .with(&END_POINT, EndPoint::Total)
+                .with_all(&PRESET, Preset::Half),
         ),
     ]
 }

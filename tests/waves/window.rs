@@ -1,7 +1,7 @@
 //! Windows, filters and depth, as given on the command line.
 
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::Choices;
+use stepwave_models::Options;
 
 use super::written::read;
 use super::{Case, Folder, Recording, Shown, TICKS, Truth, compare, compare_clock, line, record};
@@ -12,7 +12,7 @@ const WORDS: &str = "run dda-line --to 8,6 --vcd w.vcd";
 const LAST: u64 = 17;
 
 fn truth() -> Recording {
-    record(&Case { what: "", model: "dda-line", curve: line(&[8, 6]), choices: Choices::default() }, EngineKind::Word)
+    record(&Case { what: "", model: "dda-line", curve: line(&[8, 6]), choices: Options::default() }, EngineKind::Word)
 }
 
 fn shown(options: &str) -> Shown {
@@ -53,7 +53,7 @@ fn a_window_shows_its_clocks_at_their_true_times() {
 #[test]
 fn windows_of_a_long_run_begin_and_end_anywhere_in_a_block_of_samples() {
     // 500 steps of four clocks; samples go from the engine to the writer in blocks of 256 or so.
-    let case = Case { what: "", model: "ppc-line", curve: line(&[300, 200]), choices: Choices::default() };
+    let case = Case { what: "", model: "ppc-line", curve: line(&[300, 200]), choices: Options::default() };
     let recording = record(&case, EngineKind::Word);
     assert_eq!(recording.samples, 2002);
     for (first, last) in

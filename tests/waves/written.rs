@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::Choices;
+use stepwave_models::Options;
 use wellen::{SignalRef, TimescaleUnit};
 
 use super::{Case, Recording, Shown, Variable, cases, compare, compare_clock, line, record};
@@ -54,7 +54,7 @@ fn every_signal_reads_back_as_it_was_at_every_clock() {
 
 #[test]
 fn a_wave_longer_than_every_buffer_reads_back() {
-    let case = Case { what: "long line", model: "ppc-line", curve: line(&[-3500, 2500]), choices: Choices::default() };
+    let case = Case { what: "long line", model: "ppc-line", curve: line(&[-3500, 2500]), choices: Options::default() };
     for engine in EngineKind::ALL {
         let Recording { signals, samples, vcd } = record(&case, engine);
         // The writer holds 128 KiB back, and puts large outputs into a thread of their own from 1 MiB on.

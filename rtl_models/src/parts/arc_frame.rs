@@ -5,8 +5,8 @@ use stepwave_kernel::dsl::{Register, Scope, Signal};
 use super::{
     Block, EndCounters, Kind, axis_counter, negated, next_quadrant, quadrant_register, up_down_counter, x_grows,
 };
-use crate::choices::EndPoint;
 use crate::hardware::Hardware;
+use crate::options::{END_POINT, EndPoint};
 
 /// Coordinates, quadrant, end point and axes of an arc. The judgement between them says which axes a step takes.
 ///
@@ -37,7 +37,7 @@ impl<'m> ArcFrame<'m> {
         let ccw = block.held(m, "ccw", 1);
         let end = EndCounters::new(m, block, hardware);
         let q = m.scope("quadrant");
-        let entered = if hardware.end_point == EndPoint::PerAxis {
+        let entered = if hardware.get(&END_POINT) == EndPoint::PerAxis {
             quad.q
         } else {
             let (x_zero, y_zero) = (xi.q.is_zero(), yi.q.is_zero());

@@ -4,7 +4,7 @@ use stepwave_kernel::dsl::{Register, Scope, Signal};
 use stepwave_kernel::netlist::Format;
 
 use super::Block;
-use crate::choices::Beats;
+use crate::options::Beats;
 
 /// The beats of a step. In the four-beat form a one-hot ring counter gives each one clock; in the one-beat form all
 /// four are the same clock.

@@ -3,8 +3,8 @@
 use stepwave_kernel::dsl::{Register, Scope, Signal};
 use stepwave_kernel::netlist::Format;
 
-use crate::choices::Radix;
 use crate::machine::input_name;
+use crate::options::Radix;
 
 /// Block loader and sequencer.
 ///

@@ -5,8 +5,8 @@ use stepwave_kernel::formula::name;
 use stepwave_kernel::netlist::Format;
 
 use super::{BeatRing, Block, DeviationAccumulator, EndCounters, axis_counter, negated};
-use crate::choices::Weights;
 use crate::hardware::Hardware;
+use crate::options::{BEATS, WEIGHTS, Weights};
 
 /// What is particular to one axis of a curve.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +32,7 @@ pub struct Change<'m> {
 /// - `ex`, `ey`: end-point counters; an exhausted axis is inhibited, and the other forced.
 /// - What [`Weighing`] has.
 pub fn comparison_integral<'m>(m: Scope<'m>, block: Block<'m>, hardware: &Hardware, sides: [Side<'m>; 2]) {
-    let beat = BeatRing::new(m, hardware.beats, block.busy);
+    let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
     let weighing = Weighing::new(m, hardware);
     let end = EndCounters::new(m, &block, hardware);
 
@@ -47,7 +47,7 @@ pub fn comparison_integral<'m>(m: Scope<'m>, block: Block<'m>, hardware: &Hardwa
     }
 
     // Compute.
-    weighing.close(&block, hardware.weights, beat.compute, taken, sides.map(|side| side.change));
+    weighing.close(&block, hardware.get(&WEIGHTS), beat.compute, taken, sides.map(|side| side.change));
 
     // Compare.
     let last = end.count(beat.compare, taken);

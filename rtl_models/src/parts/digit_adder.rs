@@ -2,7 +2,7 @@
 
 use stepwave_kernel::dsl::{Scope, Signal};
 
-use crate::choices::Radix;
+use crate::options::Radix;
 
 /// Adds two digits and a carry of 1 bit; returns the carry to the next digit (1 bit) and the digit of the sum. A digit is
 /// 1 bit wide in radix 2, 4 bits (BCD) in radix 10.

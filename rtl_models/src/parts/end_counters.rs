@@ -3,8 +3,8 @@
 use stepwave_kernel::dsl::{Scope, Signal};
 
 use super::{Block, DownCounter};
-use crate::choices::EndPoint;
 use crate::hardware::Hardware;
+use crate::options::{END_POINT, EndPoint};
 
 /// End-point counters of two axes: `ex` and `ey` with [`EndPoint::PerAxis`], else `e`.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,7 @@ impl<'m> EndCounters<'m> {
     #[must_use]
     pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware) -> EndCounters<'m> {
         let counter = |name: &str| DownCounter::new(m, block, name, hardware.bits(name));
-        match hardware.end_point {
+        match hardware.get(&END_POINT) {
             EndPoint::PerAxis => EndCounters::PerAxis(["ex", "ey"].map(counter)),
             _ => EndCounters::Total(counter("e")),
         }

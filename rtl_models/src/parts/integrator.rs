@@ -4,9 +4,9 @@ use stepwave_kernel::dsl::{Scope, Signal};
 use stepwave_kernel::netlist::Format;
 
 use super::{Block, Iteration, decimal_adder, digit_adder};
-use crate::choices::{Adder, Radix};
 use crate::hardware::Hardware;
 use crate::hardware::names::JR;
+use crate::options::{ADDER, Adder, RADIX, Radix};
 
 /// One DDA integrator: in every iteration it adds the integrand J_V into the remainder register J_R of its axis (at least
 /// as wide as the integrand); returns the carry (1 bit), which is the axis's pulse.
@@ -24,12 +24,12 @@ pub fn integrator<'m>(
 ) -> Signal<'m> {
     let (name, bits) = (JR[axis], hardware.bits(JR[axis]));
     let remainder = m.reg(name, bits).shown(digits(hardware));
-    let word = block.word_in(hardware.radix, name, bits);
-    if hardware.adder == Adder::Serial {
+    let word = block.word_in(hardware.get(&RADIX), name, bits);
+    if hardware.get(&ADDER) == Adder::Serial {
         let carry = m.reg("carry", 1);
-        let low = |register: Signal<'m>| register.slice(0, hardware.radix.digit_bits());
+        let low = |register: Signal<'m>| register.slice(0, hardware.get(&RADIX).digit_bits());
         let [a, b] = [m.name("jv_low", low(integrand)), m.name("jr_low", low(remainder.q))];
-        let (over, sum) = digit_adder(m, hardware.radix, a, b, carry.q);
+        let (over, sum) = digit_adder(m, hardware.get(&RADIX), a, b, carry.q);
         let sum = m.name("sum_low", sum);
         remainder.when(block.load, word).when(step.add, shifted_in(remainder.q, sum)).else_hold();
         let no = m.lit(1, 0);
@@ -37,7 +37,7 @@ pub fn integrator<'m>(
         return m.name("pulse", over & step.complete);
     }
     let integrand = integrand.extend(bits);
-    let (carry, sum) = match hardware.radix {
+    let (carry, sum) = match hardware.get(&RADIX) {
         Radix::Binary => remainder.q.carrying_add(integrand),
         Radix::Decimal => decimal_adder(m, remainder.q, integrand),
     };
@@ -48,7 +48,7 @@ pub fn integrator<'m>(
 /// How the registers of integrators are shown: decimal digits in radix 10, bits where they shift, else a number.
 #[must_use]
 pub fn digits(hardware: &Hardware) -> Format {
-    match (hardware.radix, hardware.adder) {
+    match (hardware.get(&RADIX), hardware.get(&ADDER)) {
         (Radix::Decimal, _) => Format::Decimal,
         (Radix::Binary, Adder::Serial) => Format::Binary,
         (Radix::Binary, Adder::Parallel) => Format::Unsigned,
@@ -58,7 +58,7 @@ pub fn digits(hardware: &Hardware) -> Format {
 /// The integrand of a serial integrator one digit on: its lowest digit comes in again at the top.
 #[must_use]
 pub fn rotated<'m>(hardware: &Hardware, integrand: Signal<'m>) -> Signal<'m> {
-    shifted_in(integrand, integrand.slice(0, hardware.radix.digit_bits()))
+    shifted_in(integrand, integrand.slice(0, hardware.get(&RADIX).digit_bits()))
 }
 
 /// Shifted right by a digit, which comes in at the top; the lowest is lost.

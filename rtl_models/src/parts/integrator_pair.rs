@@ -3,9 +3,9 @@
 use stepwave_kernel::dsl::{Register, Scope, Signal};
 
 use super::{Block, DownCounter, Iteration, Normalized, axis_counter, integrator, population_count, up_down_counter};
-use crate::choices::EndPoint;
 use crate::hardware::Hardware;
 use crate::hardware::names::{END, JV, POSITION};
+use crate::options::{END_POINT, EndPoint};
 use crate::parts::shifted_left;
 
 /// What is particular to one axis of the curve.
@@ -54,7 +54,7 @@ impl<'m> IntegratorPair<'m> {
     pub fn close(self, hardware: &Hardware, normalized: Normalized<'m>, sides: [PairSide<'m>; 2]) -> Signal<'m> {
         let IntegratorPair { m, block, scopes, jv } = self;
         let counter = |axis: usize| DownCounter::new(scopes[axis], &block, END[axis], hardware.bits(END[axis]));
-        let counters = (hardware.end_point == EndPoint::PerAxis).then(|| [0, 1].map(counter));
+        let counters = (hardware.get(&END_POINT) == EndPoint::PerAxis).then(|| [0, 1].map(counter));
         let run = Iteration::new(m, &block, hardware, normalized.run);
         let steps = counters.map_or([run; 2], |counters| counters.map(|counter| run.only(counter.running())));
         let pulses = [0, 1].map(|axis| integrator(scopes[axis], &block, hardware, axis, jv[axis].q, steps[axis]));

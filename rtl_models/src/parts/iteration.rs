@@ -4,8 +4,8 @@ use stepwave_kernel::Width;
 use stepwave_kernel::dsl::{Scope, Signal};
 
 use super::Block;
-use crate::choices::Adder;
 use crate::hardware::Hardware;
+use crate::options::{ADDER, Adder, RADIX};
 
 /// When integrators add; 1 bit each.
 #[derive(Clone, Copy, Debug)]
@@ -21,10 +21,10 @@ impl<'m> Iteration<'m> {
     /// the next edge, from 0, the lowest.
     #[must_use]
     pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware, run: Signal<'m>) -> Iteration<'m> {
-        if hardware.adder == Adder::Parallel {
+        if hardware.get(&ADDER) == Adder::Parallel {
             return Iteration { add: run, complete: run };
         }
-        let highest = (hardware.bits("jrx") / hardware.radix.digit_bits()).saturating_sub(1);
+        let highest = (hardware.bits("jrx") / hardware.get(&RADIX).digit_bits()).saturating_sub(1);
         let bits = Width::needed_unsigned(highest.into());
         let place = m.reg("place", bits);
         let complete = run & place.q.equals(m.lit(bits, highest.into()));

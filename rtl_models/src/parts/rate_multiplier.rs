@@ -5,7 +5,7 @@ use stepwave_kernel::dsl::{Scope, Signal};
 use stepwave_kernel::netlist::Format;
 
 use super::Block;
-use crate::choices::Radix;
+use crate::options::Radix;
 
 /// The units that a counter is made of, each cascaded behind the one before it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -3,7 +3,7 @@
 use stepwave_kernel::Width;
 use stepwave_kernel::dsl::{Register, Scope, Signal};
 
-use crate::choices::StepTiming;
+use crate::options::StepTiming;
 
 /// A one-shot timer: started at an edge it runs for so many clocks behind it.
 #[derive(Clone, Copy, Debug)]

@@ -11,16 +11,15 @@
 //! On an arc a pulse changes the weight of its axis by one, on a line by nothing. The weight of a pulse is the middle of
 //! those before and behind it.
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 
 use super::{Family, HardwareBlock, Size, planar};
-use crate::choices::{Choices, Weights};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::ChoiceDoc;
+use crate::options::{ON_OVERFLOW, WIDTH, Weights};
 use crate::parts::{Change, Weighing};
+use crate::plan::Plan;
 use crate::words;
 
 pub(super) const FAMILY: Family = Family {
@@ -29,24 +28,23 @@ pub(super) const FAMILY: Family = Family {
     arcs: true,
     crossing: Crossing::RoundedRadius,
     direct: true,
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ON_OVERFLOW],
+    options: &[&WIDTH, &ON_OVERFLOW],
     plan,
-    netlist,
+    hardware,
     words: blocks,
     error_bound: |_, block| Some(planar::bound(block, 1.0)),
 };
 
-fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
-    let mut registers = planar::registers(&FAMILY, size, choices);
-    let n = planar::bits(size, choices);
-    registers.register("f", n + 2).register("a", n).register("b", n).shown("base");
-    planar::hardware(registers, size, n)
+fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
+    planar::first(plan);
+    let n = plan.magnitude_bits(size.magnitude);
+    plan.register("f", n + 2).register("a", n).register("b", n).shown("base");
+    planar::last(plan, size, n);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("cim_machine", hardware.on_overflow);
-    let frame = super::frame::plain(&module, hardware);
-    let m = frame.m;
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
+    let frame = super::frame::plain(m, hardware);
     let weighing = Weighing::new(m, hardware);
 
     // Judge.
@@ -58,7 +56,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     weighing.close(&frame.block, Weights::Mid, frame.step, taken, changes);
 
     frame.close(hardware, taken);
-    Ok(module.finish()?)
 }
 
 fn blocks(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {

@@ -14,18 +14,18 @@
 //! *next* block shift left in the buffer while the present one runs, until one has its highest bit set, on an arc its
 //! second highest.
 
-use stepwave_kernel::dsl::{Module, Register, Scope, Signal};
-use stepwave_kernel::{Netlist, Width};
+use stepwave_kernel::Width;
+use stepwave_kernel::dsl::{Register, Scope, Signal};
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 
 use super::frame::Frame;
 use super::{Family, HardwareBlock, Size, planar};
-use crate::choices::{Choice, Choices, Preset};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::hardware::names::{JR, JV};
-use crate::model::ChoiceDoc;
+use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{Buffer, Iteration, integrator, shifted_left, up_down_counter};
+use crate::plan::Plan;
 
 pub(super) const FAMILY: Family = Family {
     name: "dda",
@@ -33,36 +33,33 @@ pub(super) const FAMILY: Family = Family {
     arcs: true,
     crossing: Crossing::RoundedRadius,
     direct: false,
-    choices: &[
-        ChoiceDoc::WIDTH,
-        ChoiceDoc { choice: Choice::Preset, values: "half (default) | zero | full | N" },
-        ChoiceDoc { choice: Choice::Normalize, values: "left-shift normalisation (default: none)" },
-        ChoiceDoc::ON_OVERFLOW,
-    ],
+    options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N"), &NORMALIZE, &ON_OVERFLOW],
     plan,
-    netlist,
+    hardware,
     words,
     error_bound: |hardware, block| {
         // Each axis of a line is rounded to the nearest, or cut; an arc has no promise.
-        let off = if hardware.presets.first() == Some(&Preset::Half) { 0.5 } else { 1.0 };
+        let off = if hardware.presets.iter().all(|preset| *preset == Preset::Half) { 0.5 } else { 1.0 };
         matches!(block.curve, Curve::Line(_)).then(|| planar::bound(block, f64::hypot(off, off)))
     },
 };
 
-fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
-    let mut registers = planar::registers(&FAMILY, size, choices);
+fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
+    planar::first(plan);
+    let normalized = plan.get(&NORMALIZE);
     // Normalised, the integrands of an arc keep a bit free.
-    let n = planar::bits(size, choices) + u32::from(choices.normalize && choices.width.is_none());
+    let n = plan.magnitude_bits(size.magnitude);
+    let n = plan.bits_or(n + u32::from(normalized));
     for axis in [0, 1] {
-        registers.register(JV[axis], n).register(JR[axis], n);
+        plan.register(JV[axis], n).register(JR[axis], n);
     }
-    registers.shown("unit");
-    let mut hardware = planar::hardware(registers, size, n)?;
+    plan.shown("unit");
+    planar::last(plan, size, n);
     // Normalised, a block takes no more steps than its integrands need.
-    planar::one_scale(&FAMILY, &hardware, &[JV[0], JV[1], JR[0], JR[1]], !hardware.normalize)?;
-    hardware.scale = &["jv", "jr"];
-    hardware.stall_clocks = 0;
-    Ok(hardware)
+    planar::one_scale(plan, &[JV[0], JV[1], JR[0], JR[1]], !normalized)?;
+    plan.scale = &["jv", "jr"];
+    plan.stall_clocks = 0;
+    Ok(())
 }
 
 /// The words of the integrands in the buffer, normalised there.
@@ -97,12 +94,10 @@ fn normalized<'m>(m: Scope<'m>, buffer: &Buffer<'m>, bits: u32, normalize: bool)
     Normalized { integrands, unit: close(unit, m.lit(bits, 1)), shifting }
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("dda_machine", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let bits = hardware.bits(JV[0]);
     let buffer = Buffer::new(m);
-    let next = normalized(m, &buffer, bits, hardware.normalize);
+    let next = normalized(m, &buffer, bits, hardware.get(&NORMALIZE));
     let frame = Frame::new(m, hardware, buffer, next.shifting);
     let block = frame.block;
     let unit = m.reg("unit", bits);
@@ -129,7 +124,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     }
 
     frame.close(hardware, pulses);
-    Ok(module.finish()?)
 }
 
 fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
@@ -140,7 +134,7 @@ fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
         let mut words = vec![("jvx", x), ("jvy", y)];
         words.extend([("jrx", hardware.preset(0, "jrx")), ("jry", hardware.preset(1, "jry"))]);
         let mut shift = 0;
-        if hardware.normalize {
+        if hardware.get(&NORMALIZE) {
             words.push(("arc", i128::from(arc)));
             let needed = Width::needed_unsigned(x.max(y).unsigned_abs());
             shift = bits.saturating_sub(needed + u32::from(arc));

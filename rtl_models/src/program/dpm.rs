@@ -9,19 +9,17 @@
 //!
 //! A pulse multiplier draws lines: the control gives it the chords of an arc.
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, PulseBlock};
 
 use super::frame::program_words;
 use super::{Family, HardwareBlock, Size, planar};
-use crate::choices::{Choices, EndPoint, Radix};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::hardware::names::{COEFFICIENT, SIGN};
-use crate::model::ChoiceDoc;
+use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, Radix, WIDTH};
 use crate::parts::{Buffer, RateMultiplier, Units, axis_counter, pulse_source};
-use crate::registers::Registers;
+use crate::plan::Plan;
 
 pub(super) const FAMILY: Family = Family {
     name: "dpm",
@@ -29,9 +27,9 @@ pub(super) const FAMILY: Family = Family {
     arcs: false,
     crossing: Crossing::RoundedRadius,
     direct: false,
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ON_OVERFLOW],
+    options: &[&WIDTH, &ON_OVERFLOW],
     plan,
-    netlist,
+    hardware,
     words,
     error_bound: |hardware, block| {
         let moving = (0..3).filter(|&axis| block.from[axis] != block.to[axis]);
@@ -40,24 +38,21 @@ pub(super) const FAMILY: Family = Family {
     },
 };
 
-fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
-    let n = planar::bits(size, choices);
-    let mut registers = Registers::new(FAMILY.name, choices);
-    registers.register("q", n);
+fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
+    let n = plan.magnitude_bits(size.magnitude);
+    plan.register("q", n);
     for name in &COEFFICIENT[..3] {
-        registers.register(*name, n);
+        plan.register(*name, n);
     }
-    registers.positions(size.positions.iter().map(|reach| reach.to_vec()));
-    let mut hardware = registers.hardware(3, EndPoint::Iterations)?;
-    planar::one_scale(&FAMILY, &hardware, &["q", COEFFICIENT[0], COEFFICIENT[1], COEFFICIENT[2]], true)?;
-    hardware.scale = &["m"];
-    hardware.stall_clocks = 0;
-    Ok(hardware)
+    plan.positions(size.positions.iter().map(|reach| reach.to_vec()));
+    plan.fix(&END_POINT, EndPoint::Iterations);
+    planar::one_scale(plan, &["q", COEFFICIENT[0], COEFFICIENT[1], COEFFICIENT[2]], true)?;
+    plan.scale = &["m"];
+    plan.stall_clocks = 0;
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("dpm_machine", hardware.on_overflow);
-    let m = module.top();
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let bits = hardware.bits("q");
     let buffer = Buffer::new(m);
     let block = buffer.block(m.lit(1, 0));
@@ -73,7 +68,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
         axis_counter(scope, &block, letter, hardware.bits(letter), pulse, negative);
     }
     block.close(block.load, step, counter.carry);
-    Ok(module.finish()?)
 }
 
 fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {

@@ -1,6 +1,6 @@
 //! What every machine that runs whole programs has around its interpolator.
 
-use stepwave_kernel::dsl::{Module, Register, Scope, Signal};
+use stepwave_kernel::dsl::{Register, Scope, Signal};
 use stepwave_kernel::netlist::Format;
 
 use super::PROGRAM_WORDS;
@@ -100,8 +100,7 @@ pub(super) fn program_words<'m>(m: Scope<'m>, block: &Block<'m>) {
     }
 }
 
-/// A module with a buffer that is ready as soon as it is full.
-pub(super) fn plain<'m>(module: &'m Module, hardware: &Hardware) -> Frame<'m> {
-    let m = module.top();
+/// A frame with a buffer that is ready as soon as it is full.
+pub(super) fn plain<'m>(m: Scope<'m>, hardware: &Hardware) -> Frame<'m> {
     Frame::new(m, hardware, Buffer::new(m), m.lit(1, 0))
 }

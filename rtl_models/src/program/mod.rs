@@ -14,14 +14,14 @@ mod mindev;
 mod planar;
 mod ppc;
 
-use stepwave_kernel::Netlist;
+use stepwave_kernel::dsl::{Module, Scope};
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 
-use crate::choices::Choices;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
-use crate::model::ChoiceDoc;
+use crate::options::{ON_OVERFLOW, Options, Takes, chosen};
+use crate::plan::Plan;
 use crate::promise::Promise;
 
 /// Words of every machine that only people read, and their bits: the number of the block, which a program has up to 2^40,
@@ -51,8 +51,8 @@ impl Size {
         };
         let ways = (0..3).map(|axis| block.from[axis].abs_diff(block.to[axis]));
         let sectors = arc.map(|arc| arc.sectors(family.crossing)).unwrap_or_default();
-        let radius = arc.map_or(0, crate::plan::off_circle_radius);
-        let magnitude = crate::plan::largest_coordinate(&sectors).max(radius).max(ways.max().unwrap_or(0));
+        let radius = arc.map_or(0, crate::sizes::off_circle_radius);
+        let magnitude = crate::sizes::largest_coordinate(&sectors).max(radius).max(ways.max().unwrap_or(0));
         self.magnitude = self.magnitude.max(magnitude);
     }
 }
@@ -88,10 +88,10 @@ pub struct Family {
     /// A commanded feed sets the frequency of the pulse source, f_g = v / (60 δ), whatever the direction of the block;
     /// else it is a feed rate number: f_g makes the block take the time that the feed wants.
     pub direct: bool,
-    /// The choices that it takes.
-    pub choices: &'static [ChoiceDoc],
-    plan: fn(&Size, &Choices) -> Result<Hardware, ModelError>,
-    netlist: fn(&Hardware) -> Result<Netlist, ModelError>,
+    /// The options that it takes.
+    pub options: &'static [&'static dyn Takes],
+    plan: fn(&Size, &mut Plan) -> Result<(), ModelError>,
+    hardware: fn(Scope<'_>, &Hardware),
     words: fn(&Hardware, &PulseBlock) -> Vec<HardwareBlock>,
     /// Greatest distance from a curve whose ends lie on it that the method promises, in BLU, if it promises one.
     error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
@@ -101,17 +101,14 @@ pub struct Family {
 pub const FAMILIES: [&Family; 5] = [&ppc::FAMILY, &dda::FAMILY, &dpm::FAMILY, &cim::FAMILY, &mindev::FAMILY];
 
 impl Family {
-    /// Fixes every choice for a program of this size.
+    /// Fixes every option for a program of this size.
     ///
     /// # Errors
-    /// The family does not take a choice, or a width is impossible.
-    pub fn plan(&self, size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
-        let taken = |choice: &crate::choices::Choice| self.choices.iter().any(|doc| doc.choice == *choice);
-        if let Some(choice) = choices.given().into_iter().find(|choice| !taken(choice)) {
-            let options: Vec<_> = self.choices.iter().map(|doc| doc.choice.option()).collect();
-            return Err(ModelError::NotTaken { model: self.name, choice, takes: options.join(", ") });
-        }
-        (self.plan)(size, choices)
+    /// The family does not take an option, or a width is impossible.
+    pub fn plan(&self, size: &Size, options: &Options) -> Result<Hardware, ModelError> {
+        let mut plan = Plan::new(self.name, 3, chosen(self.name, self.options, options)?);
+        (self.plan)(size, &mut plan)?;
+        plan.finish()
     }
 
     /// The netlist of this hardware, elaborated.
@@ -119,7 +116,9 @@ impl Family {
     /// # Errors
     /// The machine itself is wrong.
     pub fn machine(&self, hardware: &Hardware) -> Result<Machine, ModelError> {
-        Machine::new((self.netlist)(hardware)?, hardware)
+        let module = Module::with_overflow(&format!("{}_machine", self.name), hardware.get(&ON_OVERFLOW));
+        (self.hardware)(module.top(), hardware);
+        Machine::new(module.finish()?, hardware)
     }
 
     /// Whether a helix is so steep that its third axis cannot follow: in one of its sectors it has more than half as many

@@ -3,12 +3,10 @@
 use stepwave_nc::{Arc, Curve, Direction, Plane, PulseBlock, Sector};
 
 use super::{Family, HardwareBlock, Size};
-use crate::choices::{Choices, EndPoint};
 use crate::error::ModelError;
-use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::plan;
-use crate::registers::Registers;
+use crate::options::{END_POINT, EndPoint, Preset};
+use crate::plan::Plan;
 
 /// A line, or one sector of an arc, as its machine starts it.
 pub(super) struct Start {
@@ -24,36 +22,27 @@ pub(super) struct Start {
     pub(super) angle: f64,
 }
 
-/// Bits of a magnitude register.
-pub(super) fn bits(size: &Size, choices: &Choices) -> u32 {
-    plan::magnitude_bits(choices, size.magnitude)
+/// The registers that come first in the step table.
+pub(super) fn first(plan: &mut Plan) {
+    plan.shown("mode").shown("plane").shown("quad");
 }
 
-/// The registers that stand first in the step table.
-pub(super) fn registers<'a>(family: &Family, _: &Size, choices: &'a Choices) -> Registers<'a> {
-    let mut registers = Registers::new(family.name, choices);
-    registers.shown("mode").shown("plane").shown("quad");
-    registers
-}
-
-/// Hardware with the registers of end point, third axis and positions.
-pub(super) fn hardware(mut registers: Registers<'_>, size: &Size, n: u32) -> Result<Hardware, ModelError> {
-    registers.end_counters(2, n);
-    registers.hidden("whole", n + 1);
-    registers.positions(size.positions.iter().map(|reach| reach.to_vec()));
-    let mut hardware = registers.hardware(3, EndPoint::PerAxis)?;
-    hardware.presets = vec![choices_preset(&registers); 3];
-    Ok(hardware)
+/// The registers of end point, third axis and positions.
+pub(super) fn last(plan: &mut Plan, size: &Size, n: u32) {
+    plan.end_counters(2, n).hidden("whole", n + 1);
+    plan.positions(size.positions.iter().map(|reach| reach.to_vec()));
+    plan.fix(&END_POINT, EndPoint::PerAxis);
+    plan.usual_preset(Preset::Half);
 }
 
 /// Most bits of a machine whose blocks take 2^n steps: at a step every second clock they end within 2^53 clocks.
 const SCALE_BITS: u32 = 52;
 
 /// Checks registers that share one scale: they are equally wide, and where it is `fixed` for all blocks, these end.
-pub(super) fn one_scale(family: &Family, hardware: &Hardware, names: &[&str], fixed: bool) -> Result<(), ModelError> {
-    let (Some((last, others)), name) = (names.split_last(), family.name) else { return Ok(()) };
-    let bits = hardware.bits(last);
-    if others.iter().any(|other| hardware.bits(other) != bits) {
+pub(super) fn one_scale(plan: &Plan, names: &[&str], fixed: bool) -> Result<(), ModelError> {
+    let (Some((last, others)), name) = (names.split_last(), plan.model()) else { return Ok(()) };
+    let bits = plan.bits(last);
+    if others.iter().any(|other| plan.bits(other) != bits) {
         let others = others.join(", ");
         return Err(ModelError::Widths(format!(
             "{name}: {others} and {last} share one scale and must be equally wide: give one --width"
@@ -66,10 +55,6 @@ pub(super) fn one_scale(family: &Family, hardware: &Hardware, names: &[&str], fi
         )));
     }
     Ok(())
-}
-
-fn choices_preset(registers: &Registers<'_>) -> crate::choices::Preset {
-    registers.preset().unwrap_or(crate::choices::Preset::Half)
 }
 
 /// The blocks of the machine for a block of the program: one for a line, one for each sector of an arc. `own` gives the

@@ -10,16 +10,15 @@
 //! `xi`, `yi` hold the ways of a line, or count the coordinates of an arc. A line takes F -= yi for a step of its first
 //! axis and F += xi for one of the second; an arc F -= 2c - 1 or F += 2c + 1. The loader splits arcs at the axes.
 
-use stepwave_kernel::Netlist;
-use stepwave_kernel::dsl::Module;
+use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 
 use super::{Family, HardwareBlock, Size, planar};
-use crate::choices::Choices;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::ChoiceDoc;
+use crate::options::{ON_OVERFLOW, WIDTH};
 use crate::parts::{DeviationAccumulator, square_gain};
+use crate::plan::Plan;
 
 pub(super) const FAMILY: Family = Family {
     name: "ppc",
@@ -27,24 +26,23 @@ pub(super) const FAMILY: Family = Family {
     arcs: true,
     crossing: Crossing::PathExtreme,
     direct: true,
-    choices: &[ChoiceDoc::WIDTH, ChoiceDoc::ON_OVERFLOW],
+    options: &[&WIDTH, &ON_OVERFLOW],
     plan,
-    netlist,
+    hardware,
     words,
     error_bound: |_, block| Some(planar::bound(block, 1.0)),
 };
 
-fn plan(size: &Size, choices: &Choices) -> Result<Hardware, ModelError> {
-    let mut registers = planar::registers(&FAMILY, size, choices);
-    let n = planar::bits(size, choices);
-    registers.register("f", n + 2).register("xi", n).register("yi", n);
-    planar::hardware(registers, size, n)
+fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
+    planar::first(plan);
+    let n = plan.magnitude_bits(size.magnitude);
+    plan.register("f", n + 2).register("xi", n).register("yi", n);
+    planar::last(plan, size, n);
+    Ok(())
 }
 
-fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
-    let module = Module::with_overflow("ppc_machine", hardware.on_overflow);
-    let frame = super::frame::plain(&module, hardware);
-    let m = frame.m;
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
+    let frame = super::frame::plain(m, hardware);
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let [xi, yi] = ["xi", "yi"].map(|name| m.reg(name, hardware.bits(name)));
 
@@ -63,7 +61,6 @@ fn netlist(hardware: &Hardware) -> Result<Netlist, ModelError> {
     frame.coordinates([(xi, "xi"), (yi, "yi")], taken);
 
     frame.close(hardware, taken);
-    Ok(module.finish()?)
 }
 
 fn words(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {

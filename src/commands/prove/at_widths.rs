@@ -2,8 +2,8 @@
 
 use std::cell::OnceCell;
 
-use stepwave::study::Extent;
-use stepwave::study::proof::{Block, Counterexample, Fault, Fixed, Tried, Way, narrowing_ks, search};
+use crate::study::Extent;
+use crate::study::proof::{Block, Counterexample, Fault, Fixed, Tried, Way, narrowing_ks, search};
 
 use super::counted::judge;
 use super::every_width::{attempts, keep};
@@ -131,7 +131,7 @@ fn attempt_any_box(job: &Job<'_>) -> Result<(), Failure> {
         }
         found = simulate(job, &job.fixed(Extent::Bits(k))?, false, SOME)?.0;
     }
-    let widths = choices.options();
+    let widths = choices.words();
     match found {
         Some(example) => {
             let below = example.k - 1;

@@ -4,10 +4,10 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Display, Path};
 
+use crate::models::find;
+use crate::study::proof::{Block, CertificateFile, MOST_BYTES, ProofError, Way};
 use clap::Parser;
 use rayon::prelude::*;
-use stepwave::models::find;
-use stepwave::study::proof::{Block, CertificateFile, MOST_BYTES, ProofError, Way};
 
 use super::counted::{followed, judge, scope, unfollowed};
 use super::verdict::{Attempt, Scope, names, proved, told, unproved};

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
+use crate::models::{Model, Options};
+use crate::study::proof::{Block, Narrower, ProofError, Way, blocks};
 use rayon::prelude::*;
-use stepwave::models::{Choices, Model};
-use stepwave::study::proof::{Block, Narrower, ProofError, Way, blocks};
 
 use super::replay::refuted;
 use super::verdict::{Claim, Scope};
@@ -19,7 +19,7 @@ const PROVED: RangeInclusive<u32> = 1..=16;
 /// Every kind of geometry at each of these widths.
 pub(super) fn followed(
     model: &'static Model,
-    choices: &Choices,
+    choices: &Options,
     narrower: &Narrower,
     ks: Vec<u32>,
     way: Way,

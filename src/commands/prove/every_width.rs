@@ -1,8 +1,9 @@
 //! Proofs for every width at once.
 
+use crate::models::options::PRESET;
+use crate::models::{Options, Preset};
+use crate::study::proof::{INDUCTION_KS, ProofError, Subject, choices_at};
 use rayon::prelude::*;
-use stepwave::models::{Choices, Preset};
-use stepwave::study::proof::{INDUCTION_KS, ProofError, Subject, choices_at};
 
 use super::replay::{not_inductive, refuted};
 use super::simulated::simulated;
@@ -102,11 +103,11 @@ fn undecided(
 }
 
 /// Every remainder register of these at 0 or full, in all combinations; nothing where there are none.
-fn extreme_presets(choices: &Choices, registers: &[String]) -> impl Iterator<Item = Choices> {
+fn extreme_presets(choices: &Options, registers: &[String]) -> impl Iterator<Item = Options> {
     let combinations = if registers.is_empty() { 0 } else { 1_u32 << registers.len().min(8) };
     (0..combinations).map(move |combination| {
         let preset = |place: usize| if combination >> place & 1 == 1 { Preset::Full } else { Preset::Zero };
         let presets = registers.iter().enumerate().map(|(place, register)| (register.clone(), preset(place)));
-        Choices { presets: presets.collect(), ..choices.clone() }
+        choices.clone().with_single(&PRESET, presets.collect())
     })
 }

@@ -4,13 +4,13 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
+use crate::kernel::trace::timescale::ClockTime;
+use crate::models::{Model, Options};
+use crate::nc::Curve;
+use crate::report::{self, run_command};
+use crate::study::proof::{Counterexample, CounterexampleToInduction, Fault};
+use crate::testbench::{Observer, OverflowWatch, Testbench};
 use clap::Parser;
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::models::{Choices, Model};
-use stepwave::nc::Curve;
-use stepwave::report::{self, run_command};
-use stepwave::study::proof::{Counterexample, CounterexampleToInduction, Fault};
-use stepwave::testbench::{Observer, OverflowWatch, Testbench};
 
 use super::super::run::{Finished, simulate};
 use super::super::wave::{Sinks, Waves};
@@ -24,7 +24,7 @@ fn replayed(
     args: &ProveArgs,
     model: &Model,
     curve: &Curve,
-    choices: &Choices,
+    choices: &Options,
 ) -> Result<(String, Box<RunArgs>), Failure> {
     let mut command = run_command(model, curve, choices);
     // No word of it holds a blank.
@@ -83,7 +83,7 @@ pub(super) fn not_inductive(
     args: &ProveArgs,
     model: &Model,
     step: &CounterexampleToInduction,
-    choices: &Choices,
+    choices: &Options,
 ) -> Result<String, Failure> {
     let CounterexampleToInduction { k, kind, curve, hardware, start, clocks, wrong, state } = step;
     let (_, run) = replayed(args, model, curve, choices)?;

@@ -1,6 +1,6 @@
 //! What was simulated of the least widths, in words.
 
-use stepwave::study::proof::Tried;
+use crate::study::proof::Tried;
 
 /// `1`, `1 and 2`, `1, 2 and 3`
 fn list(ks: &[u32]) -> String {

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use stepwave::kernel::prove::{Certificate, Proof};
-use stepwave::models::{Kind, Model};
-use stepwave::study::proof::{Narrower, Subject};
+use crate::kernel::prove::{Certificate, Proof};
+use crate::models::{Kind, Model};
+use crate::study::proof::{Narrower, Subject};
 
 /// A kind of geometry, and what came of its attempt.
 pub(super) type Attempt = (Kind, Proof, Certificate);
@@ -165,7 +165,7 @@ pub(super) fn told(scope: &Scope, attempts: &[Attempt], details: bool) -> String
 
 #[cfg(test)]
 mod tests {
-    use stepwave::models::find;
+    use crate::models::find;
 
     use super::*;
 

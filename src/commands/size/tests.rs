@@ -1,7 +1,7 @@
 use std::io::{BufReader, Cursor};
 
+use crate::program::{Pace, Survey};
 use clap::Parser;
-use stepwave::program::{Pace, Survey};
 
 use super::*;
 use crate::cli::{Cli, Command, ProgramArgs};
@@ -23,7 +23,7 @@ fn expected(args: &ProgramArgs) -> [f64; 2] {
     let preparation = program::preparation(args).expect("options");
     let text = || BufReader::new(Cursor::new(TEXT));
     let survey = Survey::of(text(), args.method, &preparation).expect("a program");
-    let hardware = args.method.plan(&survey.size, &args.hardware.choices().expect("choices")).expect("hardware");
+    let hardware = args.method.plan(&survey.size, &args.hardware.choices()).expect("hardware");
     let machine = args.method.machine(&hardware).expect("a machine");
     let bench = Testbench::of_machine(hardware, machine);
     let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };

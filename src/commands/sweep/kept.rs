@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use stepwave::study::{Row, Stage, StudyError, Sweep};
+use crate::study::{Row, Stage, StudyError, Sweep};
 
 use crate::failure::Failure;
 use crate::output::temporary;

@@ -8,7 +8,8 @@ use std::fmt;
 use std::str::FromStr;
 
 use stepwave_kernel::Width;
-use stepwave_models::{Choices, CurveKind, Hardware, Model, Region};
+use stepwave_models::options::{CASCADE, RADIX, WIDTH};
+use stepwave_models::{CurveKind, Hardware, Model, Options, Region};
 use stepwave_nc::{Curve, Line};
 
 use super::proof::ProofError;
@@ -101,13 +102,13 @@ pub struct Geometries {
     pub k: u32,
     /// The hardware.
     pub hardware: Hardware,
-    /// Choices with which a run of any of them is on such hardware, but for what the geometry tells.
-    pub choices: Choices,
+    /// Options with which a run of any of them is on such hardware, but for what the geometry tells.
+    pub choices: Options,
 }
 
 /// Which geometries a model's box is made of: the region over which something is claimed of it, or that of its curves.
 fn region(model: &Model) -> Option<Region> {
-    match (model.claims, model.curve) {
+    match (model.claims, model.curve()) {
         (Some(claims), _) => Some(claims.geometries),
         (None, CurveKind::Line { .. }) => Some(Region::Lines),
         (None, CurveKind::Arc) => Some(Region::QuadrantArcs),
@@ -121,7 +122,7 @@ impl Geometries {
     ///
     /// # Errors
     /// There is no such box for the model, there are none in it, or the hardware cannot be built.
-    pub fn of(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Geometries, ProofError> {
+    pub fn of(model: &'static Model, choices: &Options, extent: &Extent) -> Result<Geometries, ProofError> {
         Geometries::made(model, choices, extent, true)
     }
 
@@ -130,11 +131,11 @@ impl Geometries {
     ///
     /// # Errors
     /// See [`of`](Geometries::of).
-    pub fn extremes(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Geometries, ProofError> {
+    pub fn extremes(model: &'static Model, choices: &Options, extent: &Extent) -> Result<Geometries, ProofError> {
         Geometries::made(model, choices, extent, false)
     }
 
-    fn made(model: &'static Model, choices: &Choices, extent: &Extent, wanted: bool) -> Result<Geometries, ProofError> {
+    fn made(model: &'static Model, choices: &Options, extent: &Extent, wanted: bool) -> Result<Geometries, ProofError> {
         let k = extent.bits()?;
         let Some(region) = region(model) else { return Geometries::in_space(model, choices, extent, k, wanted) };
         let arcs = region == Region::QuadrantArcs;
@@ -181,14 +182,14 @@ impl Geometries {
                 region.describe()
             )));
         };
-        let choices = Choices { width: choices.width.or(width(model, choices, k)), ..choices.clone() };
+        let choices = choices.clone().with_all(&WIDTH, choices.of_all(&WIDTH).or(width(model, choices, k)));
         Ok(Geometries { curves, all, k, hardware: model.plan(&largest, &choices)?, choices })
     }
 
     /// Conics and helices.
     fn in_space(
         model: &'static Model,
-        choices: &Choices,
+        choices: &Options,
         extent: &Extent,
         k: u32,
         wanted: bool,
@@ -201,7 +202,7 @@ impl Geometries {
         }
         check_simulated(model, k)?;
         let integrates = model.method == "digital differential analyser";
-        let (whole, of): (_, fn(u32, bool) -> Vec<Curve>) = match model.curve {
+        let (whole, of): (_, fn(u32, bool) -> Vec<Curve>) = match model.curve() {
             CurveKind::Helix => (WHOLE_HELICES, helices::helices),
             _ if integrates => (WHOLE_INTEGRATED_CONICS, conics::conics),
             _ => (WHOLE_CONICS, conics::conics),
@@ -215,12 +216,12 @@ impl Geometries {
 
 /// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is not
 /// the width of coordinates, but of the ways of a period.
-fn width(model: &Model, choices: &Choices, k: u32) -> Option<Width> {
+fn width(model: &Model, choices: &Options, k: u32) -> Option<Width> {
     if model.method == "data sampling" {
         return None;
     }
-    let bits = choices.radix.unwrap_or_default().reading().needed((1_i128 << k) - 1);
-    let bits = bits.next_multiple_of(choices.cascade.map_or(1, Width::get));
+    let bits = choices.value(&RADIX).reading().needed((1_i128 << k) - 1);
+    let bits = bits.next_multiple_of(choices.value(&CASCADE).map_or(1, Width::get));
     Width::new(u64::from(bits)).ok()
 }
 
@@ -258,7 +259,7 @@ fn sizes(k: u32, all: bool) -> Vec<i64> {
 }
 
 /// The hardware whose registers are as wide as any of these curves needs them.
-fn widest(model: &Model, choices: &Choices, curves: &[Curve]) -> Result<Hardware, ProofError> {
+fn widest(model: &Model, choices: &Options, curves: &[Curve]) -> Result<Hardware, ProofError> {
     let mut plans = curves.iter().map(|curve| model.plan(curve, choices));
     let Some(first) = plans.next() else {
         return Err(ProofError::Box(format!("the box holds nothing for {}: give a larger one", model.name)));

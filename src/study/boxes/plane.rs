@@ -15,11 +15,11 @@ const CORNER: u64 = 256;
 
 /// The model takes geometries of as many axes as the grid has ranges.
 pub(super) fn check(model: &Model, Grid(ranges): &Grid, arcs: bool) -> Result<(), ProofError> {
-    let (axes, most) = (ranges.len(), model.curve.max_axes());
+    let (axes, most) = (ranges.len(), model.curve().max_axes());
     if axes <= most {
         return Ok(());
     }
-    let takes = if arcs { "arcs in the plane" } else { model.curve.describe() };
+    let takes = if arcs { "arcs in the plane" } else { model.curve().describe() };
     let ranges = vec!["0..9"; most].join("x");
     Err(ProofError::Box(format!(
         "the box has {axes} ranges, but {} interpolates {takes}: give --box {ranges}",

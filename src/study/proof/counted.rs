@@ -6,7 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use stepwave_kernel::bits::Reading;
 use stepwave_kernel::prove::{AxisNets, Followed, Sum, Word, follow, recount};
-use stepwave_models::{AXES, Choices, Claims, Kind, Model};
+use stepwave_models::{AXES, Claims, Kind, Model, Options};
 use stepwave_nc::Curve;
 
 use super::{Narrower, ProofError, choices_at, largest};
@@ -76,7 +76,7 @@ pub enum Way {
 pub fn blocks(
     model: &'static Model,
     claims: &Claims,
-    choices: &Choices,
+    choices: &Options,
     narrower: &Narrower,
     k: u32,
     way: Way,
@@ -88,7 +88,7 @@ pub fn blocks(
 fn block(
     model: &'static Model,
     claims: &Claims,
-    choices: &Choices,
+    choices: &Options,
     narrower: &Narrower,
     (k, kind): (u32, &Kind),
     way: Way,

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use stepwave_models::{Choices, Claims, Model, ModelError};
+use stepwave_models::{Claims, Model, ModelError, Options};
 use stepwave_nc::Curve;
 
 use super::{Narrower, choices_at, largest};
@@ -29,7 +29,7 @@ pub struct Counterexample {
     /// The geometry.
     pub curve: Curve,
     /// The choices with which a run shows it.
-    pub choices: Choices,
+    pub choices: Options,
     /// What it shows.
     pub fault: Fault,
 }
@@ -74,7 +74,7 @@ const CHUNK: usize = 1 << 13;
 pub fn search(
     model: &'static Model,
     claims: &Claims,
-    choices: &Choices,
+    choices: &Options,
     narrower: &Narrower,
     ks: RangeInclusive<u32>,
     wanted: impl Fn(Fault) -> bool,
@@ -94,7 +94,7 @@ pub fn search(
 fn search_at(
     model: &'static Model,
     claims: &Claims,
-    choices: &Choices,
+    choices: &Options,
     narrower: &Narrower,
     tried: &mut Tried,
     wanted: &impl Fn(Fault) -> bool,

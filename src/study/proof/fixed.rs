@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use stepwave_kernel::Width;
 use stepwave_kernel::engine::EngineKind;
-use stepwave_models::{Choices, Claims, Hardware, Model};
+use stepwave_models::options::WIDTH;
+use stepwave_models::{Claims, Hardware, Model, Options};
 use stepwave_nc::Curve;
 
 use super::counter::try_all;
@@ -29,7 +30,7 @@ pub struct Fixed {
     model: &'static Model,
     claims: Claims,
     /// All that makes the hardware, the width for coordinates among it.
-    choices: Choices,
+    choices: Options,
     /// Bits of coordinates that it is made for.
     k: u32,
     extent: Extent,
@@ -58,17 +59,17 @@ impl Fixed {
     ///
     /// # Errors
     /// The model claims nothing, there is no such box, or the hardware cannot be built.
-    pub fn new(model: &'static Model, choices: &Choices, extent: Extent) -> Result<Fixed, ProofError> {
+    pub fn new(model: &'static Model, choices: &Options, extent: Extent) -> Result<Fixed, ProofError> {
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
         let axes = extent.axes();
         if axes != 2 {
             return Err(ProofError::Box(format!("a box of {axes} axes is not proved: give two, such as 0..9x0..9")));
         }
         let bits = extent.bits()?;
-        let k = choices.width.map_or(bits, Width::get);
-        let choices = Choices { width: Width::new(u64::from(k)).ok(), ..choices.clone() };
-        let usual = model.plan(&largest(&claims, k)?, &Choices { widths: BTreeMap::new(), ..choices.clone() })?;
-        for name in choices.widths.keys() {
+        let k = choices.of_all(&WIDTH).map_or(bits, Width::get);
+        let choices = choices.clone().with_all(&WIDTH, Width::new(u64::from(k)).ok());
+        let usual = model.plan(&largest(&claims, k)?, &choices.clone().with_single(&WIDTH, BTreeMap::new()))?;
+        for name in choices.of_single(&WIDTH).keys() {
             registers_named(model, &usual, name)?;
         }
         let hardware = model.plan(&largest(&claims, k)?, &choices)?;
@@ -110,7 +111,7 @@ impl Fixed {
         if self.bits > self.k {
             return None;
         }
-        let free = Choices { width: None, widths: BTreeMap::new(), ..self.choices.clone() };
+        let free = self.choices.clone().with(&WIDTH, None);
         let subject = Subject::with(self.model, &free, &self.offsets).ok()?;
         let own = subject.members.iter().find(|(k, ..)| *k == self.k);
         own.is_some_and(|(_, hardware, _)| *hardware == self.hardware).then_some(subject)
@@ -138,7 +139,7 @@ impl Fixed {
         clocks: u64,
         progress: impl Fn(usize, usize),
     ) -> Result<(Option<Counterexample>, Tried), ProofError> {
-        let free = Choices { width: None, widths: BTreeMap::new(), ..self.choices.clone() };
+        let free = self.choices.clone().without(&WIDTH);
         let (mut curves, mut all) = match &self.extent {
             // Listed in a moment, though coordinates of so many bits may be far more.
             Extent::Grid(grid) if few && points(grid) < FEW as u128 => {
@@ -206,9 +207,9 @@ fn bit(number: u32) -> &'static str {
 ///
 /// # Errors
 /// The model claims nothing, or a register does not exist.
-pub fn narrowing_ks(model: &'static Model, choices: &Choices) -> Result<Vec<u32>, ProofError> {
+pub fn narrowing_ks(model: &'static Model, choices: &Options) -> Result<Vec<u32>, ProofError> {
     let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-    let free = Choices { width: None, widths: BTreeMap::new(), ..choices.clone() };
+    let free = choices.clone().with(&WIDTH, None);
     for k in 1..=52 {
         let own = choices_with(model, &claims, &free, &Offsets::new(), k)?;
         let usual = match model.plan(&largest(&claims, k)?, &own) {
@@ -216,7 +217,7 @@ pub fn narrowing_ks(model: &'static Model, choices: &Choices) -> Result<Vec<u32>
             Err(error) if k == 52 => return Err(error.into()),
             Err(_) => continue,
         };
-        for (name, width) in &choices.widths {
+        for (name, width) in &choices.of_single(&WIDTH) {
             if registers_named(model, &usual, name)?.iter().any(|(_, usual)| usual > width) {
                 return Ok((k..=k + 3).filter(|k| *k <= 52).collect());
             }

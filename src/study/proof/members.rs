@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use stepwave_kernel::{Width, did_you_mean};
-use stepwave_models::{AXES, Choices, Claims, Hardware, Model, ModelError};
+use stepwave_models::options::WIDTH;
+use stepwave_models::{AXES, Claims, Hardware, Model, ModelError, Options};
 use stepwave_nc::Curve;
 
 /// Bits by which registers are narrower than by default, by name.
@@ -23,10 +24,10 @@ pub(super) fn offsets(narrower: &Narrower) -> Offsets {
 pub fn choices_at(
     model: &Model,
     claims: &Claims,
-    choices: &Choices,
+    choices: &Options,
     narrower: &Narrower,
     k: u32,
-) -> Result<Choices, ModelError> {
+) -> Result<Options, ModelError> {
     choices_with(model, claims, choices, &offsets(narrower), k)
 }
 
@@ -34,16 +35,16 @@ pub fn choices_at(
 pub(super) fn choices_with(
     model: &Model,
     claims: &Claims,
-    choices: &Choices,
+    choices: &Options,
     offsets: &Offsets,
     k: u32,
-) -> Result<Choices, ModelError> {
-    let wide = Choices { width: Width::new(u64::from(k)).ok(), ..choices.clone() };
+) -> Result<Options, ModelError> {
+    let wide = choices.clone().with_all(&WIDTH, Width::new(u64::from(k)).ok());
     if offsets.is_empty() {
         return Ok(wide);
     }
     let default = model.plan(&largest(claims, k)?, &wide)?;
-    let mut widths = wide.widths.clone();
+    let mut widths = wide.of_single(&WIDTH);
     for (given, bits) in offsets {
         for (register, own) in registers_named(model, &default, given)? {
             let other = u64::try_from(i64::from(own.get()) + bits).ok().and_then(|bits| Width::new(bits).ok());
@@ -54,7 +55,7 @@ pub(super) fn choices_with(
             widths.insert(register, other);
         }
     }
-    Ok(Choices { widths, ..wide })
+    Ok(wide.with_single(&WIDTH, widths))
 }
 
 /// The registers of this name with their widths: one, or those of each axis (`jr` for `jrx`, `jry`, …).

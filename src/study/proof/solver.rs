@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use stepwave_kernel::export::{Checking, smt2_asking};
 use stepwave_kernel::{Net, Width};
-use stepwave_models::{Choices, Claims, Model};
+use stepwave_models::{Claims, Model, Options};
 
 use super::{Narrower, ProofError, choices_at, largest};
 use crate::testbench::Testbench;
@@ -87,7 +87,7 @@ fn too_long(k: u32) -> ProofError {
 pub fn question(
     model: &'static Model,
     claims: &Claims,
-    choices: &Choices,
+    choices: &Options,
     narrower: &Narrower,
     k: u32,
 ) -> Result<Question, ProofError> {

@@ -2,7 +2,7 @@
 
 use stepwave_kernel::Design;
 use stepwave_kernel::prove::{self, Certificate, Family, Proof, Strobes};
-use stepwave_models::{Choices, Claims, Hardware, Kind, Machine, Model, ModelError};
+use stepwave_models::{Claims, Hardware, Kind, Machine, Model, ModelError, Options};
 
 use super::ProofError;
 use super::learning::rows;
@@ -31,12 +31,12 @@ impl Subject {
     ///
     /// # Errors
     /// The model claims nothing, a choice is impossible, or the netlists of several k differ in more than widths.
-    pub fn new(model: &'static Model, choices: &Choices, narrower: &Narrower) -> Result<Subject, ProofError> {
+    pub fn new(model: &'static Model, choices: &Options, narrower: &Narrower) -> Result<Subject, ProofError> {
         Subject::with(model, choices, &offsets(narrower))
     }
 
     /// As [`new`](Subject::new), some registers narrower or wider.
-    pub(super) fn with(model: &'static Model, choices: &Choices, offsets: &Offsets) -> Result<Subject, ProofError> {
+    pub(super) fn with(model: &'static Model, choices: &Options, offsets: &Offsets) -> Result<Subject, ProofError> {
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
         let member = |k| -> Result<_, ModelError> {
             let curve = largest(&claims, k)?;

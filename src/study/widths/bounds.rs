@@ -146,7 +146,7 @@ fn of_clause(clause: &Clause, known: &BTreeMap<String, Bounds>) -> Option<(Optio
 
 #[cfg(test)]
 mod tests {
-    use stepwave_models::{Choices, find};
+    use stepwave_models::{Options, find};
 
     use super::*;
     use crate::testbench::Testbench;
@@ -157,7 +157,7 @@ mod tests {
         for (name, wanted) in [("ppc-line", (-200_000, 299_999)), ("mindev-line", (-600_000, 399_999))] {
             let model = find(name).expect("a model");
             let extent: Extent = "0..300000x0..200000".parse().expect("a box");
-            let set = Geometries::extremes(model, &Choices::default(), &extent).expect("geometries");
+            let set = Geometries::extremes(model, &Options::default(), &extent).expect("geometries");
             let bench = Testbench::of_hardware(model, set.hardware.clone()).expect("hardware");
             let found = bounds(model, bench.machine(), &set, &extent);
             assert_eq!(found["f"], wanted, "{name}");

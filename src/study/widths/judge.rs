@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use stepwave_kernel::Width;
-use stepwave_models::{Choices, Hardware, Model};
+use stepwave_models::options::{ON_OVERFLOW, WIDTH};
+use stepwave_models::{Hardware, Model, Options};
 
 use super::simulate::too_narrow;
 use super::{Known, Widths};
@@ -12,16 +13,16 @@ use crate::study::proof::ProofError;
 
 /// The choices of hardware that is wide enough for a box: without the widths that are given, unless registers of one scale
 /// are given more bits than the box needs. Those run otherwise on wider hardware, not only with room to spare.
-pub(super) fn ample(model: &'static Model, choices: &Choices, extent: &Extent) -> Result<Choices, ProofError> {
-    let default = Choices { width: None, widths: BTreeMap::new(), on_overflow: None, ..choices.clone() };
-    if choices.width.is_none() && choices.widths.is_empty() {
+pub(super) fn ample(model: &'static Model, choices: &Options, extent: &Extent) -> Result<Options, ProofError> {
+    let default = choices.clone().with(&WIDTH, None).with(&ON_OVERFLOW, None);
+    if choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty() {
         return Ok(default);
     }
     let least = Geometries::extremes(model, &default, extent)?;
     let given = given(model, choices, &least)?;
     let paces = paces(model, &least, &given);
     if !paces.is_empty() {
-        return Ok(Choices { widths: paces, ..default });
+        return Ok(default.with_single(&WIDTH, paces));
     }
     let scaled = |hardware: &Hardware| {
         let own = hardware.widths.iter().filter(|(name, _)| hardware.shares_a_scale(name));
@@ -38,9 +39,9 @@ pub(super) fn ample(model: &'static Model, choices: &Choices, extent: &Extent) -
         let wide = own.get(&name).copied().unwrap_or(width).max(width);
         Ok((name, wide))
     });
-    match choices.width {
-        Some(width) => Ok(Choices { width: Some(width), ..default }),
-        None if more > 0 => Ok(Choices { widths: widths.collect::<Result<_, ProofError>>()?, ..default }),
+    match choices.of_all(&WIDTH) {
+        Some(width) => Ok(default.with_all(&WIDTH, width)),
+        None if more > 0 => Ok(default.with_single(&WIDTH, widths.collect::<Result<_, ProofError>>()?)),
         None => Ok(default),
     }
 }
@@ -63,8 +64,11 @@ fn paces(model: &Model, least: &Geometries, given: &Hardware) -> BTreeMap<String
 }
 
 /// The hardware with the widths that are given.
-fn given(model: &'static Model, choices: &Choices, least: &Geometries) -> Result<Hardware, ProofError> {
-    let typed = Choices { width: choices.width.or(least.choices.width), on_overflow: None, ..choices.clone() };
+fn given(model: &'static Model, choices: &Options, least: &Geometries) -> Result<Hardware, ProofError> {
+    let typed = choices
+        .clone()
+        .with_all(&WIDTH, choices.of_all(&WIDTH).or(least.choices.of_all(&WIDTH)))
+        .with(&ON_OVERFLOW, None);
     let mut widest: Option<Hardware> = None;
     for curve in &least.curves {
         let plan = model.plan(curve, &typed)?;
@@ -83,11 +87,11 @@ fn given(model: &'static Model, choices: &Choices, least: &Geometries) -> Result
 /// Puts the widths that are given in the place of those by default, and looks for a run where they are too narrow.
 pub(super) fn judge(
     model: &'static Model,
-    choices: &Choices,
-    ample: &Choices,
+    choices: &Options,
+    ample: &Options,
     found: &mut Widths,
 ) -> Result<(), ProofError> {
-    if choices.width.is_none() && choices.widths.is_empty() {
+    if choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty() {
         return Ok(());
     }
     let set = Geometries::extremes(model, ample, &found.extent)?;

@@ -10,7 +10,8 @@ mod simulate;
 
 use rayon::prelude::*;
 use stepwave_kernel::Width;
-use stepwave_models::{AXES, Choices, Claims, Hardware, Model, ModelError};
+use stepwave_models::options::WIDTH;
+use stepwave_models::{AXES, Claims, Hardware, Model, ModelError, Options};
 use stepwave_nc::Curve;
 
 use super::Grid;
@@ -42,7 +43,7 @@ pub struct Witness {
     /// The geometry.
     pub curve: Curve,
     /// The choices of the run.
-    pub choices: Choices,
+    pub choices: Options,
     /// The run was made. Otherwise it takes too long: the position comes to where it does not fit at the end.
     pub ran: bool,
 }
@@ -108,14 +109,14 @@ const LEAST_PROVED: u32 = 3;
 ///
 /// # Errors
 /// There is no such box for the model, or the hardware cannot be built.
-pub fn widths(model: &'static Model, choices: &Choices, extent: &Extent, tick: Tick<'_>) -> Result<Widths, ProofError> {
+pub fn widths(model: &'static Model, choices: &Options, extent: &Extent, tick: Tick<'_>) -> Result<Widths, ProofError> {
     let ample = judge::ample(model, choices, extent)?;
     let mut found = needed(model, &ample, extent, tick)?;
     judge::judge(model, choices, &ample, &mut found)?;
     Ok(found)
 }
 
-fn needed(model: &'static Model, ample: &Choices, extent: &Extent, tick: Tick<'_>) -> Result<Widths, ProofError> {
+fn needed(model: &'static Model, ample: &Options, extent: &Extent, tick: Tick<'_>) -> Result<Widths, ProofError> {
     let k = extent.bits()?;
     let proved = if is_small(extent, k) { None } else { by_proof(model, ample, extent, tick)? };
     let Some(found) = proved else {
@@ -147,12 +148,12 @@ fn clocks(model: &Model, set: &Geometries) -> u64 {
 /// See [`widths`].
 pub fn by_proof(
     model: &'static Model,
-    choices: &Choices,
+    choices: &Options,
     extent: &Extent,
     tick: Tick<'_>,
 ) -> Result<Option<Widths>, ProofError> {
     let k = extent.bits()?;
-    let is_default = choices.width.is_none() && choices.widths.is_empty();
+    let is_default = choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty();
     if !is_default || extent.axes() != 2 || k < LEAST_PROVED {
         return Ok(None);
     }
@@ -178,7 +179,7 @@ fn is_small(extent: &Extent, k: u32) -> bool {
 /// See [`widths`].
 pub fn simulated(
     model: &'static Model,
-    ample: &Choices,
+    ample: &Options,
     extent: &Extent,
     set: Geometries,
     tick: Tick<'_>,
@@ -215,7 +216,7 @@ fn is_signed(bench: &Testbench, register: &str) -> bool {
 /// What a form that is proved gives at the k of the box, and whether runs of the box need it.
 fn by_form(
     model: &'static Model,
-    ample: &Choices,
+    ample: &Options,
     extent: &Extent,
     (form, narrow): (&KForm, &Hardware),
     tick: Tick<'_>,
@@ -281,7 +282,7 @@ pub(super) fn least_seen(model: &'static Model, set: &Geometries) -> Result<Vec<
 
 /// Marks what a proof for every k, or for this one, shows: the widths needed here, as so many bits less than by default,
 /// are enough.
-fn mark_proved(model: &'static Model, claims: &Claims, choices: &Choices, k: u32, registers: &mut [RegisterWidth]) {
+fn mark_proved(model: &'static Model, claims: &Claims, choices: &Options, k: u32, registers: &mut [RegisterWidth]) {
     use super::proof::{Block, Way, blocks};
     debug_assert_eq!(model.claims.map(|own| own.geometries), Some(claims.geometries));
     let less = |register: &RegisterWidth| register.given.saturating_sub(register.needed);

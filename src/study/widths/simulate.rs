@@ -7,7 +7,8 @@ use stepwave_kernel::bits::to_signed;
 use stepwave_kernel::engine::EngineKind;
 use stepwave_kernel::engine::lanes::{LaneProgram, LaneStop, LaneWatch, Observe};
 use stepwave_kernel::{Net, Width};
-use stepwave_models::{Choices, Model, ModelError};
+use stepwave_models::options::WIDTH;
+use stepwave_models::{Model, ModelError, Options};
 use stepwave_nc::Curve;
 
 use super::{Tick, Witness};
@@ -134,7 +135,7 @@ pub fn ranges_alone(
 /// where it does neither within some clocks, unless a proof says that it will (`certain`).
 pub(super) fn too_narrow(
     model: &Model,
-    wide: &Choices,
+    wide: &Options,
     (name, bits): (&str, u32),
     curve: &Curve,
     certain: bool,
@@ -160,8 +161,7 @@ pub(super) fn too_narrow(
     Some(Witness { curve: curve.clone(), choices, ran })
 }
 
-/// The same choices with a register of so many bits.
-fn with_width(mut choices: Choices, name: &str, bits: u32) -> Option<Choices> {
-    choices.widths.insert(name.to_owned(), Width::new(u64::from(bits)).ok()?);
-    Some(choices)
+/// The same options with a register of this many bits.
+fn with_width(choices: Options, name: &str, bits: u32) -> Option<Options> {
+    Some(choices.with_one(&WIDTH, name, Width::new(u64::from(bits)).ok()?))
 }

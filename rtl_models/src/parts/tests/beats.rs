@@ -5,7 +5,7 @@ use stepwave_kernel::netlist::Format;
 
 use super::super::{BeatRing, Block};
 use super::bench::{Bench, on_every_engine};
-use crate::choices::Beats;
+use crate::options::Beats;
 
 /// A ring with its block; what is decided is the input `choice`.
 fn ring(m: Scope<'_>, beats: Beats) {

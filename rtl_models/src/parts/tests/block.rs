@@ -5,7 +5,7 @@ use stepwave_kernel::dsl::Scope;
 
 use super::super::Block;
 use super::bench::{loader, numbers, on_every_engine};
-use crate::choices::Radix;
+use crate::options::Radix;
 
 fn sequencer(m: Scope<'_>) {
     let block = Block::new(m);

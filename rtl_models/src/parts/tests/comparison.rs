@@ -5,12 +5,13 @@ use stepwave_nc::{Arc, Curve, Direction};
 
 use super::super::{Block, Change, Side, comparison_integral};
 use super::bench::on_every_engine;
-use crate::{Beats, Choices, Hardware, Weights, find};
+use crate::options::{BEATS, WEIGHTS};
+use crate::{Beats, Hardware, Options, Weights, find};
 
 fn hardware(weights: Weights) -> Hardware {
     let arc = Curve::Arc(Arc::new([7, 0], [0, 7], [0, 0], Direction::CounterClockwise).unwrap());
-    let choices = Choices { weights: Some(weights), beats: Some(Beats::One), ..Choices::default() };
-    find("cim-arc").unwrap().plan(&arc, &choices).unwrap()
+    let options = Options::default().with(&WEIGHTS, weights).with(&BEATS, Beats::One);
+    find("cim-arc").unwrap().plan(&arc, &options).unwrap()
 }
 
 /// In the first quadrant, counter-clockwise: the weight of x shrinks, that of y grows.

@@ -5,13 +5,14 @@ use stepwave_nc::{Arc, Curve, Direction};
 
 use super::super::EndCounters;
 use super::bench::{loader, on_every_engine};
-use crate::{Choices, EndPoint, Hardware, find};
+use crate::options::END_POINT;
+use crate::{EndPoint, Hardware, Options, find};
 
 /// Hardware of an arc whose counters hold up to 7 pulses an axis.
 fn hardware(end_point: EndPoint) -> Hardware {
     let arc = Curve::Arc(Arc::new([7, 0], [0, 7], [0, 0], Direction::CounterClockwise).unwrap());
-    let choices = Choices { end_point: Some(end_point), ..Choices::default() };
-    find("ppc-arc").unwrap().plan(&arc, &choices).unwrap()
+    let options = Options::default().with(&END_POINT, end_point);
+    find("ppc-arc").unwrap().plan(&arc, &options).unwrap()
 }
 
 fn counters(m: Scope<'_>, end_point: EndPoint) {

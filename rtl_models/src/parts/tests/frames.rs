@@ -5,12 +5,13 @@ use stepwave_nc::{Arc, Curve, Direction, Line};
 
 use super::super::{ArcFrame, BeatRing, Block, LineFrame};
 use super::bench::{Bench, loader, on_every_engine};
-use crate::{Beats, Choices, EndPoint, Hardware, find};
+use crate::options::{BEATS, END_POINT};
+use crate::{Beats, EndPoint, Hardware, Options, find};
 
 fn arc_hardware(end_point: EndPoint) -> Hardware {
     let arc = Curve::Arc(Arc::new([7, 0], [0, 7], [0, 0], Direction::CounterClockwise).unwrap());
-    let choices = Choices { end_point: Some(end_point), ..Choices::default() };
-    find("ppc-arc").unwrap().plan(&arc, &choices).unwrap()
+    let options = Options::default().with(&END_POINT, end_point);
+    find("ppc-arc").unwrap().plan(&arc, &options).unwrap()
 }
 
 fn arc(m: Scope<'_>, end_point: EndPoint) {
@@ -108,8 +109,8 @@ fn a_step_moves_the_axes_taken_and_their_coordinates() {
 fn a_judged_line_steps_its_long_axis_always_and_the_short_one_on_the_diagonal() {
     let hardware = {
         let line = Curve::Line(Line::new(vec![0, 0], vec![7, 3]).unwrap());
-        let choices = Choices { beats: Some(Beats::One), ..Choices::default() };
-        find("mindev-line").unwrap().plan(&line, &choices).unwrap()
+        let options = Options::default().with(&BEATS, Beats::One);
+        find("mindev-line").unwrap().plan(&line, &options).unwrap()
     };
     let describe = |m: Scope<'_>| {
         let block = Block::new(m);

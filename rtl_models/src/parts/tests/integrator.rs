@@ -7,20 +7,19 @@ use stepwave_nc::{Curve, Line};
 
 use super::super::{Iteration, digits, integrator, rotated};
 use super::bench::{Bench, loader, numbers, on_every_engine};
-use crate::{Adder, Choices, Hardware, Radix, find};
+use crate::options::{ADDER, RADIX, WIDTH};
+use crate::{Adder, Hardware, Options, Radix, find};
 
 /// Integrators of `bits` bits, the integrand of x of `jv_bits`.
 fn hardware(bits: u32, jv_bits: u32, radix: Radix, adder: Adder) -> Hardware {
     let line = Curve::Line(Line::new(vec![0, 0], vec![1, 1]).unwrap());
     let width = |bits: u32| Width::new(bits.into()).unwrap();
-    let choices = Choices {
-        width: Some(width(bits)),
-        widths: [("jvx".to_owned(), width(jv_bits))].into(),
-        radix: Some(radix),
-        adder: Some(adder),
-        ..Choices::default()
-    };
-    find("dda-line").unwrap().plan(&line, &choices).unwrap()
+    let options = Options::default()
+        .with_all(&WIDTH, width(bits))
+        .with_single(&WIDTH, [("jvx".to_owned(), width(jv_bits))].into())
+        .with(&RADIX, radix)
+        .with(&ADDER, adder);
+    find("dda-line").unwrap().plan(&line, &options).unwrap()
 }
 
 /// Remainder `jrx`, integrand `jv`, and the pulse; one clock an iteration.
@@ -36,7 +35,7 @@ fn axis(m: Scope<'_>, hardware: &Hardware) {
 fn serial_axis(m: Scope<'_>, hardware: &Hardware) {
     let block = loader(m);
     let jv = m.reg("jv", hardware.bits("jvx")).shown(digits(hardware));
-    let word = block.word_in(hardware.radix, "jv", hardware.bits("jvx"));
+    let word = block.word_in(hardware.get(&RADIX), "jv", hardware.bits("jvx"));
     let step = Iteration::new(m, &block, hardware, m.input("step", 1));
     jv.when(block.load, word).when(step.add, rotated(hardware, jv.q)).else_hold();
     m.name("complete", step.complete);

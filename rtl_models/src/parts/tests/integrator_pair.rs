@@ -6,12 +6,13 @@ use stepwave_nc::{Arc, Curve, Direction};
 
 use super::super::{Block, IntegratorPair, Normalizer, PairSide};
 use super::bench::{Bench, on_every_engine};
-use crate::{Choices, EndPoint, Hardware, find};
+use crate::options::{END_POINT, WIDTH};
+use crate::{EndPoint, Hardware, Options, find};
 
 fn hardware(end_point: EndPoint) -> Hardware {
     let arc = Curve::Arc(Arc::new([5, 0], [0, 5], [0, 0], Direction::CounterClockwise).unwrap());
-    let choices = Choices { end_point: Some(end_point), width: Some(Width::new(4).unwrap()), ..Choices::default() };
-    find("dda-arc").unwrap().plan(&arc, &choices).unwrap()
+    let options = Options::default().with(&END_POINT, end_point).with_all(&WIDTH, Width::new(4).unwrap());
+    find("dda-arc").unwrap().plan(&arc, &options).unwrap()
 }
 
 /// A pair of 4 bits; how a pulse corrects are inputs.

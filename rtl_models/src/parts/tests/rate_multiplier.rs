@@ -6,7 +6,7 @@ use stepwave_kernel::dsl::Scope;
 
 use super::super::{RateMultiplier, Units};
 use super::bench::{Bench, loader, numbers, on_every_engine};
-use crate::choices::Radix;
+use crate::options::Radix;
 
 fn binary(bits: u32, count: u32) -> Units {
     Units { radix: Radix::Binary, bits, count }

@@ -4,7 +4,7 @@ use stepwave_kernel::dsl::Scope;
 
 use super::super::{StepOutput, Timer};
 use super::bench::{Bench, numbers, on_every_engine};
-use crate::choices::StepTiming;
+use crate::options::StepTiming;
 
 #[test]
 fn a_timer_runs_for_its_clocks_and_begins_anew_when_it_is_started() {

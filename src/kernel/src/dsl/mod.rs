@@ -210,24 +210,21 @@ impl<'m> Scope<'m> {
     #[track_caller]
     #[must_use]
     pub fn input(self, name: &str, bits: u32) -> Signal<'m> {
-        let signal = self.new_signal(Op::Input, bits, false);
-        self.name(name, signal)
+        self.name(name, self.of_width(name, Op::Input, bits, false))
     }
 
     /// A two's-complement input.
     #[track_caller]
     #[must_use]
     pub fn input_signed(self, name: &str, bits: u32) -> Signal<'m> {
-        let signal = self.new_signal(Op::Input, bits, true);
-        self.name(name, signal)
+        self.name(name, self.of_width(name, Op::Input, bits, true))
     }
 
     /// An input of decimal digits, 4 bits each.
     #[track_caller]
     #[must_use]
     pub fn input_decimal(self, name: &str, bits: u32) -> Signal<'m> {
-        let signal = self.new_signal(Op::Input, bits, false);
-        self.show(name, signal, Format::Decimal)
+        self.show(name, self.of_width(name, Op::Input, bits, false), Format::Decimal)
     }
 
     /// An unsigned register, 0 at reset.
@@ -245,7 +242,7 @@ impl<'m> Scope<'m> {
     #[track_caller]
     fn register(self, name: &str, bits: u32, signed: bool) -> Register<'m> {
         let op = Op::Register { next: None, reset: 0 };
-        let q = self.new_signal(op, bits, signed);
+        let q = self.of_width(name, op, bits, signed);
         self.name(name, q);
         Register { q }
     }
@@ -317,6 +314,18 @@ impl<'m> Scope<'m> {
     #[track_caller]
     fn new_signal(self, op: Op, bits: u32, signed: bool) -> Signal<'m> {
         Signal::new(self, self.module.push(op, bits), signed)
+    }
+
+    /// A signal that is declared with a name and a width: where no register can have it, the mistake bears the name.
+    #[track_caller]
+    fn of_width(self, name: &str, op: Op, bits: u32, signed: bool) -> Signal<'m> {
+        match Width::new(u64::from(bits)) {
+            Ok(_) => self.new_signal(op, bits, signed),
+            Err(error) => {
+                self.module.report(Code::BadWidth, format!("{name}: {error}"));
+                Signal::new(self, self.module.guess(), signed)
+            }
+        }
     }
 
     /// The signal, if it is of this module; else a diagnostic and a guess. Every signal that comes from outside goes

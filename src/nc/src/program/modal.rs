@@ -328,6 +328,8 @@ fn auxiliaries(block: &Block<'_>, place: Place, events: &mut VecDeque<Event>) ->
     if let Some(word) = block.word('T') {
         auxiliary(Auxiliary::Tool(word.count()?));
     }
+    // The length of a tool is counted as 0, but its number is one.
+    block.word('H').map(|word| word.count()).transpose()?;
     if block.tool_change.is_some() {
         auxiliary(Auxiliary::ToolChange);
     }

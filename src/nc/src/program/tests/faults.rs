@@ -82,6 +82,7 @@ fn every_message_tells_what_is_wrong_and_the_way_out() {
         ("G0 X000000000000000000000000000000001", 1, 4, "the number of X has more than 32 digits: round it".into()),
         ("T1.5", 1, 1, "T1.5 is not a whole number: the number of T counts, give it without a fraction".into()),
         ("T-1", 1, 1, "T-1 is negative and must be at least 0: remove the sign".into()),
+        ("G43 H1.5", 1, 5, "H1.5 is not a whole number: the number of H counts, give it without a fraction".into()),
         ("S - 1", 1, 1, "S-1 is negative and must be at least 0: remove the sign".into()),
         ("G4 P-1", 1, 4, "P-1 is negative and must be at least 0: remove the sign".into()),
         ("G0 N5", 1, 4, "N5 must be the first word of its block: move it to the front".into()),

@@ -1,0 +1,162 @@
+//! The list of models, to which a user adds his own.
+
+use std::sync::OnceLock;
+
+use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
+
+use crate::error::ModelError;
+use crate::model::{CurveKind, Model};
+use crate::options::{ALL, AnyOption, Options};
+use crate::{
+    bresenham, cim_arc, cim_conic, cim_line, dda_arc, dda_conic, dda_helix, dda_line, dpm_line, mindev_arc,
+    mindev_line, ppc_arc, ppc_conic, ppc_line, sampled_arc, sampled_line, stepgen, vector_arc, vector_line,
+};
+
+/// The models of this crate.
+static OWN: [&Model; 19] = [
+    &ppc_line::MODEL,
+    &ppc_arc::MODEL,
+    &ppc_conic::MODEL,
+    &dda_line::MODEL,
+    &dda_arc::MODEL,
+    &dda_conic::MODEL,
+    &dda_helix::MODEL,
+    &dpm_line::MODEL,
+    &cim_line::MODEL,
+    &cim_arc::MODEL,
+    &cim_conic::MODEL,
+    &mindev_line::MODEL,
+    &mindev_arc::MODEL,
+    &vector_line::MODEL,
+    &vector_arc::MODEL,
+    &sampled_line::MODEL,
+    &sampled_arc::MODEL,
+    &stepgen::MODEL,
+    &bresenham::MODEL,
+];
+
+/// Models, in the order of `stepwave list`.
+#[derive(Clone, Debug)]
+pub struct Catalogue {
+    models: Vec<&'static Model>,
+    options: Vec<&'static dyn AnyOption>,
+}
+
+/// The models of this crate.
+#[must_use]
+pub fn catalogue() -> Catalogue {
+    Catalogue { models: OWN.to_vec(), options: ALL.to_vec() }
+}
+
+#[cfg(test)]
+mod tests;
+
+static INSTALLED: OnceLock<Catalogue> = OnceLock::new();
+
+/// The catalogue of this process: the one [installed](Catalogue::install), or else that of this crate.
+#[must_use]
+pub fn installed() -> &'static Catalogue {
+    INSTALLED.get_or_init(catalogue)
+}
+
+/// The model of this name in the [installed] catalogue.
+///
+/// # Errors
+/// There is none; the message lists those there are.
+pub fn find(name: &str) -> Result<&'static Model, ModelError> {
+    let models = installed();
+    models.iter().find(|model| model.name == name).ok_or_else(|| ModelError::UnknownModel {
+        name: name.to_owned(),
+        known: models.iter().map(|model| model.name).collect::<Vec<_>>().join(", "),
+    })
+}
+
+impl Catalogue {
+    /// With one more model.
+    #[must_use]
+    pub fn with(mut self, model: &'static Model) -> Catalogue {
+        self.models.push(model);
+        for takes in model.options {
+            if self.options.iter().all(|known| known.name() != takes.name()) {
+                self.options.push(takes.option());
+            }
+        }
+        self
+    }
+
+    /// Every model.
+    pub fn iter(&self) -> impl Iterator<Item = &'static Model> + '_ {
+        self.models.iter().copied()
+    }
+
+    /// Number of models.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty, reason = "there are always those of this crate")]
+    pub fn len(&self) -> usize {
+        self.models.len()
+    }
+
+    /// Every option that a model takes, in the order of the command line.
+    #[must_use]
+    pub fn options(&self) -> &[&'static dyn AnyOption] {
+        &self.options
+    }
+
+    /// Makes these the models of the process, once, after a check of those that are not of this crate: names are unique,
+    /// and with every value of every option a small curve is planned, wired and loaded.
+    ///
+    /// # Errors
+    /// A model does not work, or models are installed or were looked up before.
+    pub fn install(self) -> Result<(), ModelError> {
+        for (index, model) in self.models.iter().enumerate().skip(OWN.len()) {
+            if self.models[..index].iter().any(|other| other.name == model.name) {
+                return Err(ModelError::defect(model.name, "another model has this name".to_owned()));
+            }
+            check(model)?;
+        }
+        let twice = |_| ModelError::defect("catalogue", "it is installed twice, or too late".to_owned());
+        INSTALLED.set(self).map_err(twice)
+    }
+}
+
+/// A small curve of each kind.
+fn sample(kind: CurveKind) -> Option<Curve> {
+    let turn = Direction::CounterClockwise;
+    match kind {
+        CurveKind::Line { .. } => Line::new(vec![0, 0], vec![8, 6]).ok().map(Curve::Line),
+        CurveKind::Arc => Arc::new([5, 0], [0, 5], [0, 0], turn).ok().map(Curve::Arc),
+        CurveKind::Conic => Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], turn).ok().map(Curve::Conic),
+        CurveKind::Helix => Helix::new([5, 0, 0], [0, 5, 3], [0, 0], turn).ok().map(Curve::Helix),
+    }
+}
+
+/// Plans, wires and loads a small curve with every word of every option.
+fn check(model: &'static Model) -> Result<(), ModelError> {
+    let Some(curve) = sample(model.curve()) else { return Ok(()) };
+    let mut given = vec![Options::default()];
+    for takes in model.options {
+        for (word, _) in takes.words() {
+            let mut options = Options::default();
+            let value = takes.option().parse(word).map_err(|reason| ModelError::defect(model.name, reason))?;
+            options.set(value);
+            given.push(options);
+        }
+    }
+    for options in given {
+        let words = options.words().join(" ");
+        let defect = |error: ModelError| ModelError::defect(model.name, format!("with '{words}': {error}"));
+        let hardware = match model.plan(&curve, &options) {
+            Ok(hardware) => hardware,
+            // What a model refuses by a rule of its own is no defect.
+            Err(ModelError::Value { .. } | ModelError::Widths(_)) if !options.given().is_empty() => continue,
+            Err(error) => return Err(defect(error)),
+        };
+        let machine = model.machine(&hardware).map_err(defect)?;
+        let blocks = model.words(&hardware, &curve);
+        if blocks.is_empty() {
+            return Err(ModelError::defect(model.name, format!("with '{words}': it loads no block")));
+        }
+        machine.load(&hardware, &blocks).map_err(defect)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,210 @@
+//! What a value may be: a word, a length, times, or something for every register.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// One of a few values, each with the word that a user writes.
+pub trait Named: Copy + PartialEq + 'static {
+    /// Every value with its word.
+    const ALL: &'static [(&'static str, Self)];
+
+    /// The word of this value.
+    #[must_use]
+    fn word(self) -> &'static str {
+        Self::ALL.iter().find(|(_, value)| *value == self).map_or("", |(word, _)| word)
+    }
+}
+
+/// A value for all registers, and values for single ones.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct PerRegister<T> {
+    /// For all registers.
+    pub all: Option<T>,
+    /// For single registers by name, or for all registers of a kind (`jr` is `jrx`, `jry`, …).
+    pub single: BTreeMap<String, T>,
+}
+
+impl<T> PerRegister<T> {
+    /// For no register.
+    pub(super) const NONE: PerRegister<T> = PerRegister { all: None, single: BTreeMap::new() };
+
+    /// The values of a text such as `8,f=9`; none may be given twice.
+    pub(super) fn parse(
+        option: &str,
+        text: &str,
+        value: impl Fn(&str) -> Result<T, String>,
+    ) -> Result<PerRegister<T>, String> {
+        let mut given = PerRegister::NONE;
+        for part in text.split(',') {
+            let (name, word) = part.split_once('=').map_or((None, part), |(name, word)| (Some(name.trim()), word));
+            let value = value(word.trim())?;
+            let before = match name {
+                Some(name) => given.single.insert(name.to_owned(), value),
+                None => given.all.replace(value),
+            };
+            if before.is_some() {
+                let whose = name.map_or_else(|| "all registers".to_owned(), |name| format!("'{name}'"));
+                return Err(format!("--{option} gives {whose} two values: leave one of them out"));
+            }
+        }
+        Ok(given)
+    }
+
+    /// `8,f=9`
+    pub(super) fn text(&self, word: impl Fn(&T) -> String) -> String {
+        let all = self.all.as_ref().map(&word);
+        let single = self.single.iter().map(|(name, value)| format!("{name}={}", word(value)));
+        all.into_iter().chain(single).collect::<Vec<_>>().join(",")
+    }
+}
+
+/// Value that a remainder register J_R starts from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Preset {
+    /// 0.
+    #[default]
+    Zero,
+    /// 2^(n-1): rounds to nearest.
+    Half,
+    /// 2^n - 1.
+    Full,
+    /// Any value that fits.
+    Value(u64),
+}
+
+/// A length in millionths of a BLU, or whatever else is written with up to six decimals.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub struct Millionths(pub u64);
+
+impl Millionths {
+    /// The length of a text in BLU with up to six decimals.
+    pub(super) fn parse(text: &str) -> Result<Millionths, String> {
+        let number = text.trim().parse().ok().filter(|number: &f64| *number > 0.0);
+        number
+            .and_then(Millionths::nearest)
+            .filter(|length| length.0 > 0)
+            .ok_or_else(|| format!("'{text}' is no length: give BLU from 0.000001 to 1e9, such as 80 or 102.4"))
+    }
+
+    /// As a number of units.
+    #[must_use]
+    pub fn units(self) -> f64 {
+        self.0 as f64 / 1e6
+    }
+
+    /// The nearest to a number of units, from 0 on, with as much as the type holds.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn saturating(units: f64) -> Millionths {
+        Millionths((units * 1e6).round() as u64)
+    }
+
+    /// The nearest to a number of units from 0 on; `None` where it is beyond all measure.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn nearest(units: f64) -> Option<Millionths> {
+        (0.0..1e9).contains(&units).then(|| Millionths((units * 1e6).round() as u64))
+    }
+}
+
+impl fmt::Display for Millionths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (whole, rest) = (self.0 / 1_000_000, self.0 % 1_000_000);
+        if rest == 0 {
+            return write!(f, "{whole}");
+        }
+        write!(f, "{whole}.{}", format!("{rest:06}").trim_end_matches('0'))
+    }
+}
+
+/// Times of a step and direction output, in clocks.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct StepTiming {
+    /// The step output is 1.
+    pub length: u64,
+    /// The step output is 0 between two steps, at least.
+    pub space: u64,
+    /// From a change of the direction output to the first step.
+    pub setup: u64,
+    /// From the end of the last step to a change of the direction output.
+    pub hold: u64,
+}
+
+impl Default for StepTiming {
+    fn default() -> StepTiming {
+        StepTiming::USUAL
+    }
+}
+
+impl StepTiming {
+    /// Where nothing is given.
+    pub(super) const USUAL: StepTiming = StepTiming { length: 2, space: 2, setup: 4, hold: 4 };
+
+    /// The times of `length=2,space=2,setup=4,hold=4`, or of some of them.
+    pub(super) fn parse(text: &str) -> Result<StepTiming, String> {
+        let way_out = "give clocks such as length=2,space=2,setup=4,hold=4";
+        let (mut timing, mut named) = (StepTiming::default(), Vec::new());
+        for part in text.split(',') {
+            let (name, clocks) = part.split_once('=').ok_or_else(|| format!("'{part}' is no time: {way_out}"))?;
+            let least = u64::from(matches!(name.trim(), "length" | "space"));
+            let number = clocks.trim().parse().ok().filter(|clocks| (least..=1 << 20).contains(clocks));
+            let number =
+                number.ok_or_else(|| format!("'{clocks}' is no time from {least} to {}: {way_out}", 1 << 20))?;
+            if named.contains(&name.trim()) {
+                return Err(format!("'{}' is given two times: leave one of them out", name.trim()));
+            }
+            named.push(name.trim());
+            match name.trim() {
+                "length" => timing.length = number,
+                "space" => timing.space = number,
+                "setup" => timing.setup = number,
+                "hold" => timing.hold = number,
+                name => return Err(format!("there is no time '{name}': {way_out}")),
+            }
+        }
+        Ok(timing)
+    }
+}
+
+impl fmt::Display for StepTiming {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "length={},space={},setup={},hold={}", self.length, self.space, self.setup, self.hold)
+    }
+}
+
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Preset::Zero => f.write_str("zero"),
+            Preset::Half => f.write_str("half"),
+            Preset::Full => f.write_str("full"),
+            Preset::Value(value) => write!(f, "{value}"),
+        }
+    }
+}
+
+impl Preset {
+    /// The preset of a word.
+    pub(super) fn parse(word: &str) -> Result<Preset, String> {
+        match word {
+            "zero" => Ok(Preset::Zero),
+            "half" => Ok(Preset::Half),
+            "full" => Ok(Preset::Full),
+            number => number
+                .parse()
+                .map(Preset::Value)
+                .map_err(|_| format!("'{number}' is no preset: give zero, half, full or a number from 0 on")),
+        }
+    }
+
+    /// The value in a register that counts modulo `modulus`; `None` where it does not fit.
+    #[must_use]
+    pub fn value(self, modulus: u128) -> Option<u128> {
+        match self {
+            Preset::Zero => Some(0),
+            Preset::Half => Some(modulus / 2),
+            Preset::Full => Some(modulus - 1),
+            Preset::Value(value) => (u128::from(value) < modulus).then_some(value.into()),
+        }
+    }
+}

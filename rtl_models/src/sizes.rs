@@ -1,0 +1,109 @@
+//! The size of a geometry, and the registers that several models plan alike.
+
+use stepwave_kernel::Width;
+use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Line, Sector, Weight};
+
+use crate::hardware::Pace;
+use crate::options::{END_POINT, EndPoint};
+use crate::plan::Plan;
+
+/// Bits that a weight needs.
+pub(crate) fn needed(weight: i128) -> u32 {
+    Width::needed_unsigned(weight.unsigned_abs())
+}
+
+/// What the registers of a conic must hold.
+pub(crate) struct ConicSize {
+    /// Greatest value of the function given, at the ends of all sectors and on both axes.
+    pub(crate) greatest: i128,
+    /// Bits of the slopes of the weights of x and y.
+    pub(crate) slopes: [u32; 2],
+    /// Bits of the steps of one axis in a sector.
+    pub(crate) steps: u32,
+    /// Positions of each axis.
+    pub(crate) positions: [Vec<i64>; 2],
+}
+
+impl ConicSize {
+    /// Of a conic; `value` gives what a register holds at a magnitude on an axis of this weight.
+    pub(crate) fn of(conic: &Conic, value: impl Fn(Weight, i64) -> i128) -> ConicSize {
+        let (sectors, weights, center) = (conic.sectors(), conic.weights(), conic.center());
+        let ends = || sectors.iter().flat_map(|sector| [sector.start, sector.end]);
+        let values = ends().flat_map(|end| [0, 1].map(|axis| value(weights[axis], end[axis].abs())));
+        let steps = sectors.iter().flat_map(ConicSector::steps).max().unwrap_or(0);
+        ConicSize {
+            greatest: values.max().unwrap_or(0),
+            slopes: weights.map(|weight| needed(weight.slope)),
+            steps: needed(steps.into()),
+            positions: [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect()),
+        }
+    }
+}
+
+/// Largest coordinate relative to the centre on the sectors of an arc.
+pub(crate) fn largest_coordinate(sectors: &[Sector]) -> u64 {
+    sectors
+        .iter()
+        .flat_map(|sector| sector.start.into_iter().chain(sector.end))
+        .map(i64::unsigned_abs)
+        .max()
+        .unwrap_or(0)
+}
+
+/// Displacement of the longest axis of a line.
+pub(crate) fn longest(line: &Line) -> u64 {
+    line.delta().iter().map(|d| d.unsigned_abs()).max().unwrap_or(0)
+}
+
+/// Positions of each axis at the ends of a line.
+pub(crate) fn end_positions(line: &Line) -> impl Iterator<Item = Vec<i64>> {
+    line.from().iter().zip(line.to()).map(|(&from, &to)| vec![from, to])
+}
+
+/// Positions of x and y at the ends of all sectors of an arc, in machine coordinates.
+pub(crate) fn arc_positions(arc: &Arc, sectors: &[Sector]) -> [Vec<i64>; 2] {
+    let center = arc.center();
+    let ends = || sectors.iter().flat_map(|sector| [sector.start, sector.end]);
+    [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect())
+}
+
+/// The n of a deviation register, where magnitudes have `n` bits. Forced steps lead to an end off the circle, where F is up
+/// to twice the radius, which may need a bit more than the coordinates between both ends.
+pub(crate) fn off_circle_bits(arc: &Arc, plan: &Plan, n: u32) -> u32 {
+    n.max(plan.magnitude_bits(off_circle_radius(arc)))
+}
+
+/// The radius of an arc whose end lies off the circle, in whole BLU, rounded up; 0 of others.
+pub(crate) fn off_circle_radius(arc: &Arc) -> u64 {
+    // Within 2^53.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    if arc.ends_on_circle() { 0 } else { arc.radius().ceil() as u64 }
+}
+
+/// Plans hardware that judges every step of an arc by its deviation: registers `f` of so many more bits than the largest
+/// coordinate (where the end point is on the circle, and where it is off it), `xi`, `yi`, `quad`, and `e` or `ex`, `ey`.
+pub(crate) fn judged_arc(arc: &Arc, plan: &mut Plan, crossing: Crossing, deviation: [u32; 2]) {
+    let on_circle = arc.ends_on_circle();
+    let end_point = plan.decide(&END_POINT, if on_circle { EndPoint::Total } else { EndPoint::PerAxis });
+    let sectors = arc.sectors(crossing);
+    let n = plan.magnitude_bits(largest_coordinate(&sectors));
+    let f = off_circle_bits(arc, plan, n) + deviation[usize::from(!on_circle)];
+    plan.register("f", f).register("xi", n).register("yi", n).shown("quad");
+    match end_point {
+        EndPoint::PerAxis => plan.end_counters(2, n),
+        _ => plan.register("e", n + 3),
+    };
+    plan.positions(arc_positions(arc, &sectors));
+}
+
+/// Plans hardware that decides at every step of a line whether it takes the long axis alone: registers `f` of `deviation`
+/// more bits than the long axis needs, `e`, and those of `held`.
+pub(crate) fn judged_line(line: &Line, plan: &mut Plan, held: [&str; 2], deviation: u32) {
+    let n = plan.magnitude_bits(longest(line));
+    for name in held {
+        plan.register(name, n);
+    }
+    plan.register("f", n + deviation).register("e", n).positions(end_positions(line));
+    plan.fix(&END_POINT, EndPoint::Longest);
+    plan.pace = Pace::Longest;
+}

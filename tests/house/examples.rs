@@ -1,0 +1,72 @@
+//! The examples are short, and the model of one's own has every command.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Lines that are neither blank nor a comment.
+fn code_lines(text: &str) -> usize {
+    text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//")).count()
+}
+
+#[test]
+fn examples_for_users_of_the_crates_are_at_most_60_lines_of_code() {
+    for (name, text) in [
+        ("own_model", include_str!("../../examples/own_model.rs")),
+        ("own_netlist", include_str!("../../examples/own_netlist.rs")),
+    ] {
+        assert!(code_lines(text) <= 60, "{name}: {} lines", code_lines(text));
+    }
+}
+
+/// The built example; `cargo test` builds all of them.
+fn example(name: &str) -> PathBuf {
+    let program = Path::new(env!("CARGO_BIN_EXE_stepwave"));
+    let built = program.with_file_name("examples").join(name).with_extension(std::env::consts::EXE_EXTENSION);
+    assert!(built.exists(), "{name} is not built: `cargo test` and `cargo build --examples` do it");
+    built
+}
+
+#[test]
+fn own_model_has_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |words: &str| {
+        let output = Command::new(example("own_model")).args(words.split(' ')).current_dir(&folder).output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        assert!(output.status.success(), "{words}: {}", text(output.stderr));
+        text(output.stdout)
+    };
+    assert!(run("list").contains("\n  borrow-line  Subtracting DDA, line of 2 axes\n"));
+    // 8/16 and 6/16, taken away: the first step borrows on both axes, and after 2^4 both remainders are 0 again.
+    let table = run("run borrow-line --to 8,6 --steps -");
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows[0], "step,clock,jvx,jrx,jvy,jry,e,dx,dy,x,y");
+    assert_eq!((rows[2], rows[17]), ("1,2,8,8,6,10,15,1,1,1,1", "16,17,8,0,6,0,0,0,0,8,6"));
+    assert!(run("run borrow-line --to -3,5 --vcd line.vcd").contains("end point (-3, 5) reached exactly"));
+    assert!(folder.path().join("line.gtkw").exists());
+    let proved = run("prove borrow-line --certificate line.cert");
+    assert_eq!(proved.matches("PROVED for all k: ").count(), 3, "{proved}");
+    assert!(run("prove check line.cert").contains("PROVED"));
+    assert!(
+        run("widths borrow-line --box 4").contains("jrx            4      4  k      0 to 15                  proved")
+    );
+    let rows = run("sweep borrow-line --to-grid -7..7x-7..7 --width 3..5 --csv -");
+    assert_eq!((rows.matches(",done,").count(), rows.matches(",true,").count()), (3 * 224, 3 * 224));
+    assert!(run("compare --to 8,6").contains("\nborrow-line "));
+    run("export borrow-line --to 8,6 --verilog line.v --testbench line_tb.v");
+    assert!(std::fs::read_to_string(folder.path().join("line.v")).unwrap().contains("module borrow_line"));
+    let case = "[[case]]\nname = \"own\"\nargs = [\"borrow-line\", \"--to\", \"8,6\"]\n";
+    std::fs::create_dir(folder.path().join("golden")).unwrap();
+    std::fs::write(folder.path().join("golden/cases.toml"), case).unwrap();
+    run("golden record golden");
+    assert!(run("golden check golden").contains("1 "), "one case");
+}
+
+#[test]
+fn own_netlist_goes_through_all_states_but_0() {
+    let output = Command::new(example("own_netlist")).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    // A sequence of 255 states has 128 ones, and is back at its first state.
+    assert!(text.contains("clock   0: state 00000001, 0 ones\nclock   1: state 00000010, 0 ones\n"), "{text}");
+    assert!(text.contains("clock 255: state 00000001, 128 ones\n"), "{text}");
+}
