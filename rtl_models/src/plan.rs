@@ -213,8 +213,10 @@ impl Plan {
         let kind = if self.names().any(|name| name == "accx") { "acc" } else { "jr" };
         let remainders: Vec<String> = AXES[..self.axes].iter().map(|axis| format!("{kind}{axis}")).collect();
         let single = self.options.of_single(&PRESET);
-        if let Some(unknown) = single.keys().find(|given| !remainders.contains(given)) {
-            return Err(self.unknown(PRESET.name, unknown, remainders.join(", ")));
+        // Of a third axis that follows the others there is none.
+        let known: Vec<&str> = self.names().filter(|name| remainders.iter().any(|known| known == name)).collect();
+        if let Some(unknown) = single.keys().find(|given| !known.contains(&given.as_str())) {
+            return Err(self.unknown(PRESET.name, unknown, known.join(", ")));
         }
         let all = self.options.of_all(&PRESET).unwrap_or_default();
         Ok(remainders.iter().map(|name| single.get(name).copied().unwrap_or(all)).collect())

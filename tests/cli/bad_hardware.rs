@@ -304,6 +304,19 @@ fn without_a_command_the_help_is_shown_and_the_exit_code_is_2() {
 }
 
 #[test]
+fn presets_of_a_program_are_those_of_the_registers_that_are_there() {
+    let folder = Folder::new();
+    folder.write("part.ngc", "G21 G90 F300\nG1 X0.005 Y0.003\nM2\n");
+    let program = |preset: &str| folder.run(&format!("program part.ngc --method dda --preset {preset} --steps -"));
+    // The third axis follows the pulses of the plane.
+    let ran = program("jrz=1");
+    assert!(ran.code == 2 && ran.err.contains("no register 'jrz'") && ran.err.contains("jrx, jry"), "{ran:?}");
+    let (zero, other) = (program("zero"), program("zero,jrx=7"));
+    assert_eq!((zero.code, other.code), (0, 0), "{} {}", zero.err, other.err);
+    assert_ne!(zero.out, other.out);
+}
+
+#[test]
 fn two_values_for_one_register_tool_or_time_are_refused() {
     for (words, hint) in [
         ("ppc-line --to 6,4 --width f=5,f=6", "--width gives 'f' two values"),

@@ -43,6 +43,8 @@ fn own_model_has_every_command() {
     assert_eq!((rows[2], rows[17]), ("1,2,8,8,6,10,15,1,1,1,1", "16,17,8,0,6,0,0,0,0,8,6"));
     assert!(run("run borrow-line --to -3,5 --vcd line.vcd").contains("end point (-3, 5) reached exactly"));
     assert!(folder.path().join("line.gtkw").exists());
+    let proved = run("prove borrow-line");
+    assert!(include_str!("../../README.md").contains(&proved), "{proved}");
     let proved = run("prove borrow-line --certificate line.cert");
     assert_eq!(proved.matches("PROVED for all k: ").count(), 3, "{proved}");
     assert!(run("prove check line.cert").contains("PROVED"));
