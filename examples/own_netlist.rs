@@ -1,4 +1,4 @@
-//! A netlist that is no interpolator: a linear feedback shift register of 8 bits and a counter of its ones, simulated clock
+//! A netlist that is not an interpolator: a linear feedback shift register of 8 bits and a counter of its ones, simulated clock
 //! by clock and written as Verilog.
 //!
 //! ```text

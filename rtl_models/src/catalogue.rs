@@ -147,7 +147,7 @@ fn check(model: &'static Model) -> Result<(), ModelError> {
         let defect = |error: ModelError| ModelError::defect(model.name, format!("with '{words}': {error}"));
         let hardware = match model.plan(&curve, &options) {
             Ok(hardware) => hardware,
-            // What a model refuses by a rule of its own is no defect.
+            // What a model refuses by a rule of its own is not a defect.
             Err(ModelError::Value { .. } | ModelError::Widths(_)) if !options.given().is_empty() => continue,
             Err(error) => return Err(defect(error)),
         };

@@ -36,7 +36,7 @@ pub struct OptionDef<T: 'static> {
     pub name: &'static str,
     /// What it is, for `--help`: a line without a full stop.
     pub help: &'static str,
-    /// What stands for a value in `--help`; empty where the option is given without one and means `yes`.
+    /// Placeholder of a value in `--help`; empty where the option is given without one and means `yes`.
     pub value_name: &'static str,
     /// What may be given.
     pub values: Values<T>,
@@ -103,7 +103,7 @@ pub trait AnyOption: Sync {
     fn name(&self) -> &'static str;
     /// What it is: a line without a full stop.
     fn help(&self) -> &'static str;
-    /// What stands for a value in `--help`; empty where the option is given without one.
+    /// Placeholder of a value in `--help`; empty where the option is given without one.
     fn value_name(&self) -> &'static str;
     /// What its values are like.
     fn shape(&self) -> Shape;

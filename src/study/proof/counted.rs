@@ -113,6 +113,12 @@ fn block(
             }
         }
     }
+    // Before the words are encoded, so that the answer is the same for every kind, whichever comes first.
+    let in_binary =
+        |register: &&&str| machine.inputs.get(**register).is_some_and(|port| port.reading == Reading::Unsigned);
+    if let Some(register) = claims.counted.iter().find(|register| !in_binary(register)) {
+        return Err(wrong(register));
+    }
     let encoded = machine.encode(&hardware, &model.words(&hardware, first))?.into_iter().next().unwrap_or_default();
     let (mut given, mut names, mut bounds) = (Vec::new(), Vec::new(), vec![0..0; claims.counted.len()]);
     for ((register, _), (net, bits)) in common.iter().zip(encoded) {
@@ -120,8 +126,7 @@ fn block(
             given.push((net, Word::Known(bits)));
             continue;
         };
-        let port = machine.inputs.get(*register).filter(|port| port.reading == Reading::Unsigned);
-        let width = port.ok_or_else(|| wrong(register))?.width.get();
+        let width = machine.inputs.get(*register).ok_or_else(|| wrong(register))?.width.get();
         bounds[axis] = names.len()..names.len() + width as usize;
         names.extend((0..width).map(|bit| format!("{register}.{bit}")));
         given.push((net, Word::Unknown));
