@@ -1,5 +1,5 @@
-//! Hardware options. Each is declared once, in [`table`]; the command line, lists of models, sweeps, titles, JSON and
-//! the command that repeats a run interpret the declaration.
+//! Hardware options. Each is declared once, in the table of [`ALL`]; the command line, lists of models, sweeps, titles,
+//! JSON and the command that repeats a run interpret the declaration.
 //!
 //! ```
 //! use stepwave_models::Options;
