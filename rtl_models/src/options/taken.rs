@@ -15,6 +15,8 @@ pub trait Takes: Sync {
     fn words(&'static self) -> Vec<(&'static str, &'static str)>;
     /// The value where none is given; `None` where it depends on the curve.
     fn default_value(&'static self) -> Option<Value>;
+    /// The default of the model, where it is not that of the option.
+    fn own_default(&'static self) -> Option<Value>;
     /// What values there are, and the default, for people: `4 (default) | 1`.
     fn about(&'static self) -> String;
     /// Why the model does not take this value, if it does not.
@@ -89,6 +91,10 @@ impl<T: Clone + PartialEq + Send + Sync + 'static> Takes for OptionDef<T> {
         matches!(self.values, Values::Words(_)).then(|| self.value(self.default.clone()))
     }
 
+    fn own_default(&'static self) -> Option<Value> {
+        None
+    }
+
     fn about(&'static self) -> String {
         if self.about.is_empty() { listed(self.words(), self.default_value()) } else { self.about.to_owned() }
     }
@@ -126,6 +132,10 @@ impl<T: Clone + PartialEq + Send + Sync + 'static> Takes for Taken<T> {
         self.default.clone().map(|value| self.option.value(value))
     }
 
+    fn own_default(&'static self) -> Option<Value> {
+        self.default.clone().filter(|value| *value != self.option.default).map(|value| self.option.value(value))
+    }
+
     fn about(&'static self) -> String {
         if self.about.is_empty() { listed(self.words(), self.default_value()) } else { self.about.to_owned() }
     }
@@ -155,7 +165,7 @@ pub(crate) fn taken(
     })
 }
 
-/// The options given to a model, with its defaults for those that are not.
+/// The options given to a model, with its own defaults for those that are not.
 ///
 /// # Errors
 /// The model does not take an option, or not this value of it.
@@ -172,6 +182,6 @@ pub(crate) fn chosen(
         }
     }
     let missing = |value: &Value| given.given().iter().all(|given| given.option().name() != value.option().name());
-    list.iter().filter_map(|takes| takes.default_value()).filter(missing).for_each(|value| chosen.set(value));
+    list.iter().filter_map(|takes| takes.own_default()).filter(missing).for_each(|value| chosen.set(value));
     Ok(chosen)
 }
