@@ -41,7 +41,7 @@
 //! to on a curve whose ends lie on it); and the counter `total` may miss the end.
 //!
 //! The quarter of the ellipse with semi-axes 6 and 4 from (6, 0) to (0, 4) with `--preset zero`, from the golden
-//! file `waves/dda-conic-ellipse.csv`; the wave stands beside it:
+//! file `waves/dda-conic-ellipse.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../../waves/dda-conic-ellipse.csv")]

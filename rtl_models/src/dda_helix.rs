@@ -33,8 +33,8 @@
 //! Limits are those of `dda-arc`: with a preset of zero or full the motion can stop one pulse before an axis, and then z
 //! still arrives; the default is `half`.
 //!
-//! A quarter turn from (5, 0, 0) to (0, 5, 3) with `--preset zero`, from the golden file `waves/dda-helix-quarter.csv`; the wave stands beside
-//! it:
+//! A quarter turn from (5, 0, 0) to (0, 5, 3) with `--preset zero`, from the golden file
+//! `waves/dda-helix-quarter.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../../waves/dda-helix-quarter.csv")]

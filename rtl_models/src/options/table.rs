@@ -113,12 +113,12 @@ impl Named for Adder {
 /// The interval weight with which comparison-integral counts a pulse.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Weights {
-    /// The sum of the weights before and behind the pulse: F is the exact implicit function.
+    /// The sum of the weights before and after the pulse: F is the exact implicit function.
     #[default]
     Mid,
     /// The weight before the pulse.
     Pre,
-    /// The weight behind the pulse.
+    /// The weight after the pulse.
     Post,
 }
 

@@ -12,12 +12,10 @@
 use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 
-use super::{Family, HardwareBlock, Size, planar};
-use crate::error::ModelError;
+use super::{Family, HardwareBlock, planar};
 use crate::hardware::Hardware;
 use crate::options::{ON_OVERFLOW, WIDTH};
 use crate::parts::{DeviationAccumulator, magnitude, negated, square_gain};
-use crate::plan::Plan;
 
 pub(super) const FAMILY: Family = Family {
     name: "mindev",
@@ -26,19 +24,11 @@ pub(super) const FAMILY: Family = Family {
     crossing: Crossing::RoundedRadius,
     direct: true,
     options: &[&WIDTH, &ON_OVERFLOW],
-    plan,
+    plan: planar::judged,
     hardware,
     words,
     error_bound: |_, block| Some(planar::bound(block, 0.5)),
 };
-
-fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
-    planar::first(plan);
-    let n = plan.magnitude_bits(size.magnitude);
-    plan.register("f", n + 2).register("xi", n).register("yi", n);
-    planar::last(plan, size, n);
-    Ok(())
-}
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let frame = super::frame::plain(m, hardware);

@@ -35,6 +35,15 @@ pub(super) fn last(plan: &mut Plan, size: &Size, n: u32) {
     plan.usual_preset(Preset::Half);
 }
 
+/// Plans a machine that judges its steps by a deviation `f`, with the coordinates or displacements `xi` and `yi`.
+pub(super) fn judged(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
+    first(plan);
+    let n = plan.magnitude_bits(size.magnitude);
+    plan.register("f", n + 2).register("xi", n).register("yi", n);
+    last(plan, size, n);
+    Ok(())
+}
+
 /// Most bits of a machine whose blocks take 2^n steps: at a step every second clock they end within 2^53 clocks.
 const SCALE_BITS: u32 = 52;
 
