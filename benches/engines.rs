@@ -7,7 +7,7 @@
 use std::io::{self, Write};
 use std::time::{Duration, Instant};
 
-use stepwave::kernel::engine::{EngineKind, Rows, Stop, Watch};
+use stepwave::engine::{EngineKind, Rows, Stop, Watch};
 use stepwave::models::{Options, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::testbench::Testbench;
@@ -38,7 +38,7 @@ fn run(bench: &Testbench, kind: EngineKind, columns: bool) -> Outcome<Duration> 
     let mut engine = kind.build(bench.design(), &Watch { columns, stops: vec![machine.done.net] });
     let stimulus = bench.stimulus();
     let mut steps = stimulus.steps.iter();
-    let mut set = |engine: &mut dyn stepwave::kernel::engine::Engine| {
+    let mut set = |engine: &mut dyn stepwave::engine::Engine| {
         for &(net, value) in steps.next().map_or(&[][..], |step| &step.set) {
             engine.set_input(net, value);
         }

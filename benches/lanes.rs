@@ -10,11 +10,11 @@
 use std::time::Instant;
 
 use stepwave::testbench::Testbench;
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::lanes::{Job, LaneProgram, LaneWatch, Observe};
+use stepwave_engine::lanes::{Job, LaneProgram, LaneWatch, Observe};
 use stepwave_models::options::WIDTH;
 use stepwave_models::{Options, find};
 use stepwave_nc::{Arc, Curve, Direction, Line};
+use stepwave_netlist::Width;
 
 const MODELS: [&str; 4] = ["dda-line", "ppc-line", "dda-arc", "ppc-arc"];
 /// Enough for every lane of both threads, twice.

@@ -9,14 +9,14 @@ use std::io::{self, Cursor, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use stepwave::kernel::engine::{EngineKind, Rows};
-use stepwave::kernel::trace::fst::FstHeader;
-use stepwave::kernel::trace::probe::{Probe, Selection};
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::kernel::trace::vcd::{Background, VcdHeader};
+use stepwave::engine::{EngineKind, Rows};
 use stepwave::models::{Options, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Testbench, WaveWriter, Window};
+use stepwave::trace::fst::FstHeader;
+use stepwave::trace::probe::{Probe, Selection};
+use stepwave::trace::timescale::ClockTime;
+use stepwave::trace::vcd::{Background, VcdHeader};
 
 #[path = "shared/time.rs"]
 mod time;

@@ -16,13 +16,13 @@
 
 use std::process::ExitCode;
 
-use stepwave::kernel::dsl::Scope;
 use stepwave::models::options::{ON_OVERFLOW, WIDTH};
 use stepwave::models::parts::{Block, DownCounter, axis_counter};
 use stepwave::models::{
     Claims, Hardware, Interpolates, Method, Model, ModelError, Pace, Plan, Region, RegisterDoc, Words, catalogue,
 };
 use stepwave::nc::Line;
+use stepwave::netlist::dsl::Scope;
 
 static BORROW_LINE: Model = Model {
     name: "borrow-line",

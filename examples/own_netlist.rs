@@ -7,10 +7,10 @@
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
-use stepwave::kernel::dsl::Module;
-use stepwave::kernel::engine::{EngineKind, Rows, Watch};
-use stepwave::kernel::export::{Options, verilog};
-use stepwave::kernel::{Diagnostics, elaborate};
+use stepwave::engine::{EngineKind, Rows, Watch};
+use stepwave::export::{Options, verilog};
+use stepwave::netlist::dsl::Module;
+use stepwave::netlist::{Diagnostics, elaborate};
 
 fn main() -> Result<(), Diagnostics> {
     let module = Module::new("noise");

@@ -16,12 +16,12 @@ use std::path::{Path, PathBuf};
 
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngSeed, TestRunner};
-use stepwave::kernel::engine::{EngineKind, Rows, Watch};
-use stepwave::kernel::export::{self, Checking, Options, Step, Stimulus};
-use stepwave::kernel::trace::probe::Selection;
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::kernel::trace::vcd::VcdHeader;
-use stepwave::kernel::{Bits, Design, Net, elaborate};
+use stepwave::engine::{EngineKind, Rows, Watch};
+use stepwave::export::{self, Checking, Options, Step, Stimulus};
+use stepwave::netlist::{Bits, Design, Net, elaborate};
+use stepwave::trace::probe::Selection;
+use stepwave::trace::timescale::ClockTime;
+use stepwave::trace::vcd::VcdHeader;
 
 /// Changes of the inputs.
 const STEPS: usize = 24;

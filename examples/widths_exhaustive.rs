@@ -9,7 +9,7 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use stepwave::kernel::engine::EngineKind;
+use stepwave::engine::EngineKind;
 use stepwave::models::{Options, find};
 use stepwave::study::widths::{ranges_alone, simulated};
 use stepwave::study::{Extent, Geometries};

@@ -2,12 +2,12 @@
 //!
 //! Registers, adders, integrators and end-point counters are clocked components of fixed width, wired into one netlist
 //! per interpolation method, simulated clock by clock and dumped as VCD. This crate is the bench on which geometry
-//! ([`nc`]), models ([`models`]) and engines ([`kernel`]) meet; the program `stepwave` is its command line.
+//! ([`nc`]), models ([`models`]), engines ([`engine`]) and waves ([`trace`]) meet; the program `stepwave` is its command line.
 //!
 //! A DDA line to (8, 6) in four bits, step by step:
 //!
 //! ```
-//! use stepwave::kernel::engine::EngineKind;
+//! use stepwave::engine::EngineKind;
 //! use stepwave::models::{Options, find};
 //! use stepwave::nc::{Curve, Line};
 //! use stepwave::testbench::{Observer, ObserverError, Step, Testbench};
@@ -33,9 +33,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub use stepwave_kernel as kernel;
+pub use stepwave_engine as engine;
+pub use stepwave_export as export;
 pub use stepwave_models as models;
 pub use stepwave_nc as nc;
+pub use stepwave_netlist as netlist;
+pub use stepwave_prove as prove;
+pub use stepwave_trace as trace;
 
 mod app;
 mod cli;

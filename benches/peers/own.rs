@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use serde_json::Value;
-use stepwave::kernel::bits::to_signed;
-use stepwave::kernel::engine::EngineKind;
-use stepwave::kernel::engine::lanes::{LaneEnd, LaneProgram, LaneWatch, Observe};
+use stepwave::engine::EngineKind;
+use stepwave::engine::lanes::{LaneEnd, LaneProgram, LaneWatch, Observe};
 use stepwave::models::Port;
 use stepwave::nc::Curve;
+use stepwave::netlist::bits::to_signed;
 use stepwave::testbench::{LaneOutcome, Testbench};
 
 use crate::Fallible;

@@ -1,7 +1,7 @@
 //! Netlists of any size: a chain of integrators, each with an integrand that grows with the carries of the one before.
 
-use stepwave::kernel::dsl::{Module, Scope, Signal};
-use stepwave::kernel::{Net, elaborate};
+use stepwave::netlist::dsl::{Module, Scope, Signal};
+use stepwave::netlist::{Net, elaborate};
 
 use crate::Fallible;
 use crate::unit::Unit;

@@ -4,14 +4,14 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use stepwave::kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
-use stepwave::kernel::export;
-use stepwave::kernel::trace::timescale::ClockTime;
-use stepwave::kernel::{Design, Net, Width, bits};
+use stepwave::engine::{Engine, EngineKind, Rows, Stop, Watch};
+use stepwave::export;
 use stepwave::models::options::{PRESET, WIDTH};
 use stepwave::models::{Model, Options, Preset, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
+use stepwave::netlist::{Design, Net, Width, bits};
 use stepwave::testbench::Testbench;
+use stepwave::trace::timescale::ClockTime;
 
 use crate::Fallible;
 

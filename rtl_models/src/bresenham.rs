@@ -38,10 +38,10 @@
 #![doc = include_str!("../../waves/bresenham-5-3.csv")]
 //! ```
 
-use stepwave_kernel::dsl::{Scope, Signal};
-use stepwave_kernel::formula::name;
-use stepwave_kernel::netlist::Format;
 use stepwave_nc::Line;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Scope, Signal};
+use stepwave_netlist::formula::name;
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;

@@ -36,9 +36,9 @@
 #![doc = include_str!("../../waves/cim-arc-nr1.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
-use stepwave_kernel::formula::{Formula, name};
 use stepwave_nc::{Arc, Crossing, Sector};
+use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::formula::{Formula, name};
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;

@@ -32,8 +32,8 @@
 #![doc = include_str!("../../waves/cim-conic-ellipse.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Conic, ConicSector, Shape};
+use stepwave_netlist::dsl::Scope;
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;

@@ -26,9 +26,9 @@
 #![doc = include_str!("../../waves/cim-line-5-3.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
-use stepwave_kernel::formula::{name, number};
 use stepwave_nc::Line;
+use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::formula::{name, number};
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;

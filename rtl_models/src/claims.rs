@@ -7,9 +7,9 @@ mod arc;
 pub mod extremes;
 mod line;
 
-use stepwave_kernel::formula::{Clause, Formula, name, number};
-use stepwave_kernel::prove::Symbol;
 use stepwave_nc::Curve;
+use stepwave_netlist::formula::Symbol;
+use stepwave_netlist::formula::{Clause, Formula, name, number};
 
 use crate::hardware::Hardware;
 use crate::options::{END_POINT, EndPoint};

@@ -38,8 +38,8 @@
 #![doc = include_str!("../../waves/dda-arc-nr1.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Arc, Crossing, Sector};
+use stepwave_netlist::dsl::Scope;
 
 use crate::claims::{Claims, Region};
 use crate::docs::INTEGRATED_END_POINT;

@@ -47,8 +47,8 @@
 #![doc = include_str!("../../waves/dda-conic-ellipse.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Conic, ConicSector};
+use stepwave_netlist::dsl::Scope;
 
 use crate::docs::INTEGRATED_END_POINT;
 use crate::error::ModelError;

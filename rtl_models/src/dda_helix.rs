@@ -40,8 +40,8 @@
 #![doc = include_str!("../../waves/dda-helix-quarter.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, Helix};
+use stepwave_netlist::dsl::Scope;
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;

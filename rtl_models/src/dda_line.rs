@@ -49,10 +49,10 @@
 #![doc = include_str!("../../waves/dda-line-serial.csv")]
 //! ```
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::Scope;
-use stepwave_kernel::formula::{Clause, Formula, name, number};
 use stepwave_nc::Line;
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::formula::{Clause, Formula, name, number};
 
 use crate::claims::{Claims, Region, steps_left};
 use crate::error::ModelError;

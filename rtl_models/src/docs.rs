@@ -1,6 +1,6 @@
 //! Sentences of the documentation that several models share.
 
-use stepwave_kernel::Width;
+use stepwave_netlist::Width;
 
 use crate::model::RegisterDoc;
 use crate::options::{END_POINT, EndPoint, PerRegister, SYSTEM, System, Taken, WIDTH};

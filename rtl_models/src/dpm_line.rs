@@ -46,9 +46,9 @@
 #![doc = include_str!("../../waves/dpm-line-5-3.csv")]
 //! ```
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::{Scope, Signal};
 use stepwave_nc::Line;
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;

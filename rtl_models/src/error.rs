@@ -1,7 +1,7 @@
 //! Why a model cannot be built or loaded for a geometry.
 
-use stepwave_kernel::diag::{Code, Diagnostic};
-use stepwave_kernel::{Diagnostics, Width, did_you_mean};
+use stepwave_netlist::diag::{Code, Diagnostic};
+use stepwave_netlist::{Diagnostics, Width, did_you_mean};
 
 /// A geometry or an option that a model does not take; every message names the value, the limit and the way out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -59,7 +59,7 @@ pub enum ModelError {
         /// Names that exist, with commas.
         known: String,
     },
-    /// A register would be wider than the kernel's limit.
+    /// A register would be wider than a netlist allows.
     #[error("register {register} would be {bits} bits wide, but a register holds 1 to 64 bits: {way_out}")]
     TooWide {
         /// The register.

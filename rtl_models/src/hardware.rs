@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use stepwave_kernel::Width;
+use stepwave_netlist::Width;
 
 use crate::options::{
     ADDER, Adder, AnyOption, CASCADE, NORMALIZE, OptionDef, Options, PRESET, Preset, RADIX, Radix, WIDTH,

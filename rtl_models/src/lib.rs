@@ -1,7 +1,7 @@
 //! The interpolators of numerical control as netlists: [`parts`] that more than one method uses, and one file per model
 //! that holds what is particular to its method.
 //!
-//! Models use the kernel's public interface only. [`catalogue`] is the one list of models.
+//! Models use the public interface of the netlist crate only. [`catalogue`] is the one list of models.
 //!
 //! ```
 //! use stepwave_models::{Options, find};
@@ -66,4 +66,4 @@ pub use model::{CurveKind, Interpolates, Method, Model, RegisterDoc};
 pub use plan::Plan;
 pub use promise::Promise;
 pub use sampling::Sampling;
-pub use stepwave_kernel::OnOverflow;
+pub use stepwave_netlist::OnOverflow;

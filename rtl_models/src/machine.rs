@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use stepwave_kernel::bits::Reading;
-use stepwave_kernel::prove::Strobes;
-use stepwave_kernel::{Design, Net, Netlist, OnOverflow, Width, elaborate};
+use stepwave_netlist::bits::Reading;
+use stepwave_netlist::{Design, Net, Netlist, OnOverflow, Width, elaborate};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
@@ -81,14 +80,6 @@ impl Machine {
             inputs: inputs.collect::<Result<_, ModelError>>()?,
             design: elaborate(netlist)?,
         })
-    }
-
-    /// The nets by which a proof follows a block.
-    #[must_use]
-    pub fn strobes(&self) -> Strobes {
-        let [load, preset_position, loaded, stepped, done] =
-            [self.load, self.preset_position, self.loaded, self.stepped, self.done].map(|port| port.net);
-        Strobes { load, preset_position, loaded, stepped, done }
     }
 
     /// The bits of every word of every block, each of which must fit: for whoever makes statements about all geometries.

@@ -29,8 +29,8 @@
 #![doc = include_str!("../../waves/mindev-arc-nr1.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Arc, Crossing};
+use stepwave_netlist::dsl::Scope;
 
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;

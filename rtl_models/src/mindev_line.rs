@@ -23,9 +23,9 @@
 #![doc = include_str!("../../waves/mindev-line-5-3.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
-use stepwave_kernel::formula::name;
 use stepwave_nc::Line;
+use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::formula::name;
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;

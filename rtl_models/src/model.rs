@@ -1,7 +1,7 @@
 //! What a model is: a description for people, and the functions that make it run.
 
-use stepwave_kernel::dsl::{Module, Scope};
 use stepwave_nc::{Arc, Conic, Curve, Helix, Line};
+use stepwave_netlist::dsl::{Module, Scope};
 
 use crate::claims::Claims;
 use crate::error::ModelError;

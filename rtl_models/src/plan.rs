@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use stepwave_kernel::Width;
-use stepwave_kernel::bits::Reading;
+use stepwave_netlist::Width;
+use stepwave_netlist::bits::Reading;
 
 use crate::error::ModelError;
 use crate::hardware::{AXES, Hardware, Pace};

@@ -30,9 +30,9 @@
 #![doc = include_str!("../../waves/ppc-arc-nr1.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
-use stepwave_kernel::formula::name;
 use stepwave_nc::{Arc, Crossing};
+use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::formula::name;
 
 use crate::claims::{Claims, Region};
 use crate::docs::ARC_END_POINT;

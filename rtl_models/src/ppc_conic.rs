@@ -28,8 +28,8 @@
 #![doc = include_str!("../../waves/ppc-conic-ellipse.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Conic, ConicSector, Shape, Weight};
+use stepwave_netlist::dsl::Scope;
 
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;

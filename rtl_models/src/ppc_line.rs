@@ -26,9 +26,9 @@
 #![doc = include_str!("../../waves/ppc-line-6-4.csv")]
 //! ```
 
-use stepwave_kernel::dsl::Scope;
-use stepwave_kernel::formula::{Formula, name, number};
 use stepwave_nc::Line;
+use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::formula::{Formula, name, number};
 
 use crate::claims::{Claims, Region, steps_left};
 use crate::error::ModelError;

@@ -59,8 +59,8 @@
 #![doc = include_str!("../../waves/sampled-arc-7360.csv")]
 //! ```
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
 use stepwave_nc::{Arc, Crossing, Direction};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use crate::docs::{SAMPLED_SYSTEM, SAMPLED_WIDTH};
 use crate::error::ModelError;

@@ -48,8 +48,8 @@
 
 use std::f64::consts::SQRT_2;
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::Line;
+use stepwave_netlist::dsl::Scope;
 
 use crate::docs::{SAMPLED_SYSTEM, SAMPLED_WIDTH};
 use crate::error::ModelError;

@@ -1,6 +1,6 @@
 //! The plan of data sampling: the way of a period in fixed point, and the widths of the coarse stage.
 
-use stepwave_kernel::Width;
+use stepwave_netlist::Width;
 
 use crate::error::ModelError;
 use crate::options::{END_POINT, EndPoint, FRACTION, Millionths, STEP, SYSTEM, System, TOLERANCE};

@@ -1,7 +1,7 @@
 //! The size of a geometry, and the registers that several models plan alike.
 
-use stepwave_kernel::Width;
 use stepwave_nc::{Arc, Conic, ConicSector, Crossing, Line, Sector, Weight};
+use stepwave_netlist::Width;
 
 use crate::hardware::Pace;
 use crate::options::{END_POINT, EndPoint};

@@ -49,9 +49,9 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::Line;
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::Scope;
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;

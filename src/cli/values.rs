@@ -1,6 +1,6 @@
 //! Values on the command line, each with the sentence that says what is wrong with a bad one.
 
-use crate::kernel::engine::EngineKind;
+use crate::engine::EngineKind;
 use crate::models::Millionths;
 use crate::nc::Opens;
 use clap::Args;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::kernel::engine::{EngineKind, Rows};
+use crate::engine::{EngineKind, Rows};
 use crate::models::{CurveKind, Millionths, Model, ModelError, Options, Preset, installed};
 use crate::nc::Curve;
 use crate::testbench::{Ending, Observer, ObserverError, PathWatch, Step, Testbench};

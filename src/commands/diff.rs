@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use crate::kernel::trace::diverge::{self, By, Options};
-use crate::kernel::trace::merge::write_merged;
-use crate::kernel::trace::read::{Wave, WaveError};
+use crate::trace::diverge::{self, By, Options};
+use crate::trace::merge::write_merged;
+use crate::trace::read::{Wave, WaveError};
 
 use crate::cli::{Format, file_of};
 use crate::failure::Failure;

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use crate::kernel::export::{self, Checking, Options};
-use crate::kernel::trace::timescale::ClockTime;
-use crate::kernel::{Design, Net};
+use crate::export::{self, Checking, Options};
 use crate::models::find;
+use crate::netlist::{Design, Net};
 use crate::report;
 use crate::testbench::Testbench;
+use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
 use crate::cli::ExportArgs;

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::kernel::engine::EngineKind;
+use crate::engine::EngineKind;
 use clap::Parser;
 
 use self::cases::Case;

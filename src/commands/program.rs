@@ -5,12 +5,12 @@ use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::Path;
 
-use crate::kernel::trace::timescale::ClockTime;
 use crate::models::options::TOLERANCE;
 use crate::nc::{Reading, ToolMove};
 use crate::program::{Control, Estimate, MoveReport, Onlooker, Pace, Preparation, Stream, Survey};
 use crate::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail};
 use crate::testbench::{Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, RangeWatch, Sample, Testbench};
+use crate::trace::timescale::ClockTime;
 
 use super::progress::Progress;
 use super::run::Finished;

@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use crate::kernel::engine::Rows;
+use crate::engine::Rows;
 use crate::nc::Curve;
 use crate::testbench::{Memory, Observer, ObserverError, Testbench};
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};

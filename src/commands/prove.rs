@@ -13,9 +13,9 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::kernel::prove::Certificate;
 use crate::models::options::WIDTH;
 use crate::models::{Claims, Model, Options, find};
+use crate::prove::Certificate;
 use crate::study::Extent;
 use crate::study::proof::{
     Answer, CertificateFile, Fault, Fixed, Narrower, ProofError, SolverError, Subject, Survey, ask, question, search,

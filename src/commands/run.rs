@@ -3,7 +3,6 @@
 use std::io::Write;
 use std::path::PathBuf;
 
-use crate::kernel::trace::timescale::ClockTime;
 use crate::models::find;
 use crate::report::plot::Plot;
 use crate::report::{self, CsvTable, Report, TEXTBOOK_STEPS, TextbookTable};
@@ -11,6 +10,7 @@ use crate::testbench::{
     CoarseWatch, Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, PathWatch, RangeWatch, SpacingWatch,
     Step, Testbench,
 };
+use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
 use super::progress::RunProgress;

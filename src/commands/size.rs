@@ -2,10 +2,10 @@
 
 use std::io::{self, Seek, SeekFrom, Write};
 
-use crate::kernel::trace::timescale::ClockTime;
 use crate::models::parts::RATE_BITS;
 use crate::program::Estimate;
 use crate::testbench::Testbench;
+use crate::trace::timescale::ClockTime;
 
 use super::wave::probes;
 use crate::cli::TraceArgs;

@@ -4,10 +4,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::kernel::did_you_mean;
 use crate::models::options::{AnyOption, Shape, TOLERANCE};
 use crate::models::{CurveKind, Millionths, Model, find};
 use crate::nc::Direction;
+use crate::netlist::did_you_mean;
 use crate::report::heat::HeatMap;
 use crate::study::{
     self, Cells, Dimension, Drawn, Grid, Kind, ParquetTable, Part, Range, Row, Space, Stage, StudyError, Summary,

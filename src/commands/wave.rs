@@ -3,14 +3,14 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use crate::kernel::netlist::Format;
-use crate::kernel::trace::fst::{FstBody, FstHeader};
-use crate::kernel::trace::gtkw::{View, side_files};
-use crate::kernel::trace::probe::{Probe, Selection};
-use crate::kernel::trace::timescale::ClockTime;
-use crate::kernel::trace::vcd::{Background, VcdBody, VcdHeader};
-use crate::kernel::{Net, Width, did_you_mean};
+use crate::netlist::cells::Format;
+use crate::netlist::{Net, Width, did_you_mean};
 use crate::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window};
+use crate::trace::fst::{FstBody, FstHeader};
+use crate::trace::gtkw::{View, side_files};
+use crate::trace::probe::{Probe, Selection};
+use crate::trace::timescale::ClockTime;
+use crate::trace::vcd::{Background, VcdBody, VcdHeader};
 
 use super::size::Limited;
 use crate::cli::{OutputArgs, TraceArgs};

@@ -1,10 +1,10 @@
 //! The JSON report.
 
 use serde_json::{Map, Value, json};
-use stepwave_kernel::bits::Reading;
-use stepwave_kernel::netlist::Arithmetic;
 use stepwave_models::{CutWord, Named, Promise};
 use stepwave_nc::{Curve, Shape};
+use stepwave_netlist::bits::Reading;
+use stepwave_netlist::cells::Arithmetic;
 
 use super::{Report, summary};
 use crate::testbench::{Ending, OverflowEvent, OverflowTally};

@@ -10,11 +10,11 @@ mod program;
 mod summary;
 mod table;
 
-use stepwave_kernel::OnOverflow;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_models::{CutWord, Hardware, Model, Preset, Promise};
 use stepwave_nc::Curve;
+use stepwave_netlist::OnOverflow;
 
 use crate::testbench::{
     CoarseError, Ending, Outcome, OverflowEvent, OverflowTally, PulseTrain, RegisterRange, WorstError,

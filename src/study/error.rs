@@ -1,7 +1,7 @@
 //! What can be wrong with a study.
 
-use stepwave_kernel::did_you_mean;
 use stepwave_models::ModelError;
+use stepwave_netlist::did_you_mean;
 
 /// Why a sweep cannot be made, gone on with, or joined; every message names the value and the way out.
 #[derive(Debug, thiserror::Error)]

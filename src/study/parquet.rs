@@ -15,7 +15,7 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::record::{Field, reader::RowIter};
 use parquet::schema::types::Type;
 
-use stepwave_kernel::guard::guarded;
+use stepwave_trace::guard::guarded;
 
 use super::parts::{Check, NOT_A_PART, PartHead};
 use super::table::{Column, Kind, Row, Value, write_line};

@@ -3,9 +3,9 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
-use stepwave_kernel::did_you_mean;
 use stepwave_models::{AXES, CurveKind, Millionths, Model};
 use stepwave_nc::{Direction, Opens};
+use stepwave_netlist::did_you_mean;
 
 use super::StudyError;
 use super::space::{Drawn, Site, Space};

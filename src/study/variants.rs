@@ -167,8 +167,8 @@ impl Variants {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stepwave_kernel::Width;
     use stepwave_models::options::{BEATS, Beats, END_POINT, EndPoint, NORMALIZE, OVERRIDE, PICK_OFF, PRESET, WIDTH};
+    use stepwave_netlist::Width;
 
     fn words(option: &'static dyn AnyOption, text: &str) -> Vec<String> {
         Dimension::parse(option, text).unwrap().values.iter().map(|value| value.text().to_owned()).collect()

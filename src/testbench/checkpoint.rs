@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use stepwave_kernel::Net;
-use stepwave_kernel::engine::Engine;
-use stepwave_kernel::text;
+use stepwave_engine::Engine;
+use stepwave_netlist::Net;
+use stepwave_netlist::text;
 
 use super::Testbench;
 

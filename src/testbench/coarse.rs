@@ -1,7 +1,7 @@
 //! Coarse points of data sampling: how far they lie off the ideal curve, fractions and all.
 
 use serde_json::json;
-use stepwave_kernel::engine::Rows;
+use stepwave_engine::Rows;
 use stepwave_models::Port;
 use stepwave_nc::Curve;
 

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use stepwave_kernel::Net;
-use stepwave_kernel::netlist::{Claim, Op};
 use stepwave_models::Machine;
+use stepwave_netlist::Net;
+use stepwave_netlist::cells::{Claim, Op};
 
 /// Nets in the order of a row, each once.
 #[derive(Clone, Debug)]

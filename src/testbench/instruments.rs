@@ -11,12 +11,12 @@
 //! The distance from a line is |d| over its length, that from a circle a function of d that only grows, so that the
 //! extremes of d over all steps give the greatest error, in real numbers from exact integers.
 
-use stepwave_kernel::dsl::{Module, Scope, Signal};
-use stepwave_kernel::engine::lanes::{Observe, ROOT_GAP_UNIT, root_gap};
-use stepwave_kernel::{Design, Net, OnOverflow, Width, elaborate};
+use stepwave_engine::lanes::{Observe, ROOT_GAP_UNIT, root_gap};
 use stepwave_models::CurveKind;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_nc::{Arc, Curve, Line};
+use stepwave_netlist::dsl::{Module, Scope, Signal};
+use stepwave_netlist::{Design, Net, OnOverflow, Width, elaborate};
 
 use super::measure::Measured;
 use super::{Ending, LaneOutcome, Testbench};
@@ -156,7 +156,7 @@ impl Instruments {
         }
         let ([least, greatest, sum, last], rest) = values.split_first_chunk::<4>()?;
         let width = Width::new(self.bits[0].into()).ok()?;
-        let signed = |bits: u64| stepwave_kernel::bits::to_signed(width, bits);
+        let signed = |bits: u64| stepwave_netlist::bits::to_signed(width, bits);
         if i128::from(signed(*last)) != reached(curve, &outcome.reached)? {
             return None;
         }

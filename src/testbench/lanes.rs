@@ -1,11 +1,11 @@
 //! Many geometries of one hardware at once.
 
-use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, Quiet};
-use stepwave_kernel::{Net, OnOverflow};
+use stepwave_engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, Quiet};
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_models::{Loaded, Machine, Model, ModelError, find};
 use stepwave_nc::Curve;
+use stepwave_netlist::bits::to_signed;
+use stepwave_netlist::{Net, OnOverflow};
 
 use super::instruments::Instruments;
 use super::measure::Measured;

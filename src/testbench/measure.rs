@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use stepwave_kernel::engine::lanes::{ROOT_GAP_UNIT, root_gap};
-use stepwave_kernel::engine::{EngineKind, Rows};
+use stepwave_engine::lanes::{ROOT_GAP_UNIT, root_gap};
+use stepwave_engine::{EngineKind, Rows};
 use stepwave_models::CutWord;
 use stepwave_nc::Curve;
 

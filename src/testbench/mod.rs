@@ -18,10 +18,10 @@ mod stimulus;
 mod tool;
 mod wave;
 
-use stepwave_kernel::engine::{self, Engine, EngineKind, Rows, Stop, Watch};
-use stepwave_kernel::{Design, Net, OnOverflow};
+use stepwave_engine::{self as engine, Engine, EngineKind, Rows, Stop, Watch};
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_models::{CutWord, Hardware, Machine, Model, ModelError};
+use stepwave_netlist::{Design, Net, OnOverflow};
 
 pub use checkpoint::{CheckpointError, Checkpoints, Memory, State};
 pub use coarse::{CoarseError, CoarseWatch};

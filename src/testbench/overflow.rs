@@ -4,12 +4,12 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use stepwave_kernel::bits;
-use stepwave_kernel::engine::Rows;
-use stepwave_kernel::netlist::{Arithmetic, Claim, Property};
-use stepwave_kernel::{OnOverflow, Width, elaborate};
+use stepwave_engine::Rows;
 use stepwave_models::Machine;
 use stepwave_models::options::ON_OVERFLOW;
+use stepwave_netlist::bits;
+use stepwave_netlist::cells::{Arithmetic, Claim, Property};
+use stepwave_netlist::{OnOverflow, Width, elaborate};
 
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Columns, Observer, ObserverError, Testbench};

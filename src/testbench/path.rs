@@ -2,10 +2,10 @@
 
 use fearless_simd::{Level, dispatch};
 use serde_json::json;
-use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::Rows;
+use stepwave_engine::Rows;
 use stepwave_models::Port;
 use stepwave_nc::{Curve, Gauge, Screen};
+use stepwave_netlist::bits::to_signed;
 
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::tool::Tool;

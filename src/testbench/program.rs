@@ -1,10 +1,10 @@
 //! A machine that runs a whole program: the host keeps its block buffer full.
 
-use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::{Engine, EngineKind, Idle, Rows, Stop, Watch};
-use stepwave_kernel::{Net, OnOverflow};
+use stepwave_engine::{Engine, EngineKind, Idle, Rows, Stop, Watch};
 use stepwave_models::ModelError;
 use stepwave_models::options::ON_OVERFLOW;
+use stepwave_netlist::bits::to_signed;
+use stepwave_netlist::{Net, OnOverflow};
 
 use super::load::CUT_CLOCKS;
 use super::steps::StepColumns;

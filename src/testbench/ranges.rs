@@ -3,10 +3,10 @@
 use std::fmt;
 
 use serde_json::json;
-use stepwave_kernel::bits::Reading;
-use stepwave_kernel::engine::{Extremes, Rows};
-use stepwave_kernel::netlist::{Arithmetic, Claim, Netlist, Op};
-use stepwave_kernel::{Net, Width};
+use stepwave_engine::{Extremes, Rows};
+use stepwave_netlist::bits::Reading;
+use stepwave_netlist::cells::{Arithmetic, Claim, Netlist, Op};
+use stepwave_netlist::{Net, Width};
 
 use super::checkpoint::{Memory, recalled};
 use super::{Observer, ObserverError, Testbench};

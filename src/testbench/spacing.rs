@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, dispatch};
 use serde_json::json;
-use stepwave_kernel::engine::Rows;
+use stepwave_engine::Rows;
 use stepwave_nc::Curve;
 
 use super::checkpoint::{GREATEST, Memory, recalled};

@@ -1,7 +1,7 @@
 //! The step table, read out of samples: row 0 is the state after load, row k that after step k.
 
-use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::Rows;
+use stepwave_engine::Rows;
+use stepwave_netlist::bits::to_signed;
 
 use serde_json::json;
 

@@ -1,10 +1,10 @@
 //! The loading of blocks as data, for a test bench in another language, and as hardware, for model checkers.
 
-use stepwave_kernel::engine::{EngineKind, Rows};
-use stepwave_kernel::export::{Driven, Stall, Step, Stimulus, driven};
-use stepwave_kernel::{Design, Diagnostics, Net, OnOverflow};
+use stepwave_engine::{EngineKind, Rows};
+use stepwave_export::{Driven, Stall, Step, Stimulus, driven};
 use stepwave_models::ModelError;
 use stepwave_models::options::ON_OVERFLOW;
+use stepwave_netlist::{Design, Diagnostics, Net, OnOverflow};
 
 use super::{Observer, ObserverError, Testbench};
 

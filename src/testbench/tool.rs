@@ -3,11 +3,11 @@
 //! The position counters of a machine say the same as long as none overflows. A counter that wraps or is held shows
 //! another place, though the drive was given every pulse.
 
-use stepwave_kernel::OnOverflow;
-use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::Rows;
+use stepwave_engine::Rows;
 use stepwave_models::Port;
 use stepwave_models::options::ON_OVERFLOW;
+use stepwave_netlist::OnOverflow;
+use stepwave_netlist::bits::to_signed;
 
 use super::{StepColumns, Testbench};
 

@@ -3,11 +3,11 @@
 use std::io::{self, Seek, Write};
 use std::ops::Range;
 
-use stepwave_kernel::Width;
-use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::Rows;
-use stepwave_kernel::trace::fst::FstBody;
-use stepwave_kernel::trace::vcd::VcdBody;
+use stepwave_engine::Rows;
+use stepwave_netlist::Width;
+use stepwave_netlist::bits::to_signed;
+use stepwave_trace::fst::FstBody;
+use stepwave_trace::vcd::VcdBody;
 
 use super::{Observer, ObserverError};
 

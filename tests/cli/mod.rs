@@ -32,7 +32,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-use stepwave::kernel::engine::EngineKind;
+use stepwave::engine::EngineKind;
 
 /// What a run of the program came to.
 #[derive(Clone, PartialEq, Eq, Debug)]

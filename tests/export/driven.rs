@@ -3,9 +3,9 @@
 use stepwave::models::{Options, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::testbench::{Observer, ObserverError, Testbench};
-use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::export::{Step, Stimulus, driven};
-use stepwave_kernel::{Design, Net};
+use stepwave_engine::{EngineKind, Rows, Watch};
+use stepwave_export::{Step, Stimulus, driven};
+use stepwave_netlist::{Design, Net};
 
 use super::design;
 

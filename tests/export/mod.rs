@@ -6,9 +6,9 @@ mod models;
 mod names;
 mod operators;
 
-use stepwave_kernel::dsl::{Module, Scope};
-use stepwave_kernel::export::{Options, verilog};
-use stepwave_kernel::{Design, elaborate};
+use stepwave_export::{Options, verilog};
+use stepwave_netlist::dsl::{Module, Scope};
+use stepwave_netlist::{Design, elaborate};
 
 /// A design described in place.
 fn design(name: &str, describe: impl FnOnce(Scope<'_>)) -> Design {

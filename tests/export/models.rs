@@ -1,7 +1,7 @@
 //! BTOR2 and SMT-LIB 2 as text; `.ci/solvers` gives them to model checkers and solvers.
 
-use stepwave_kernel::export::{Checking, btor2, smt2};
-use stepwave_kernel::{Design, elaborate, text};
+use stepwave_export::{Checking, btor2, smt2};
+use stepwave_netlist::{Design, elaborate, text};
 
 fn parsed(netlist: &str) -> Design {
     elaborate(text::parse(netlist).unwrap()).unwrap()

@@ -1,7 +1,7 @@
 //! Names are kept, whatever they are, and what is added never meets them.
 
-use stepwave_kernel::export::{Options, verilog};
-use stepwave_kernel::netlist::Format;
+use stepwave_export::{Options, verilog};
+use stepwave_netlist::cells::Format;
 
 use super::{design, text};
 

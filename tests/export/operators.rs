@@ -1,6 +1,6 @@
 //! Every operator, as exact as the netlist has it.
 
-use stepwave_kernel::{elaborate, text as netlist_text};
+use stepwave_netlist::{elaborate, text as netlist_text};
 
 use super::{design, text};
 

@@ -22,7 +22,9 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 
 fn sources() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let all = ["src", "rtl_models", "tests"].into_iter().flat_map(|folder| files(&root.join(folder)));
+    let all = ["src", "crates", "rtl_models", "tests", "examples", "benches"]
+        .into_iter()
+        .flat_map(|folder| files(&root.join(folder)));
     let rust = all.filter(|path| path.extension().is_some_and(|extension| extension == "rs"));
     rust.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
 }

@@ -1,7 +1,7 @@
 //! Diagnostics: every kind of mistake once, and what is said of it.
 
-use stepwave_kernel::dsl::{Module, Scope};
-use stepwave_kernel::{Code, Diagnostics, Place, elaborate, text};
+use stepwave_netlist::dsl::{Module, Scope};
+use stepwave_netlist::{Code, Diagnostics, Place, elaborate, text};
 
 use super::mistakes;
 

@@ -1,6 +1,6 @@
 //! A description with many mistakes at once; `mistakes.expect` holds what is said of them.
 
-use stepwave_kernel::dsl::Scope;
+use stepwave_netlist::dsl::Scope;
 
 /// A machine by someone in a hurry. Adding a line moves the line numbers in `mistakes.expect`.
 pub(super) fn describe(m: Scope<'_>) {

@@ -16,10 +16,10 @@ mod strict;
 mod text_form;
 mod unnamed;
 
-use stepwave_kernel::dsl::{Module, Scope};
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};
-use stepwave_kernel::netlist::Format;
-use stepwave_kernel::{Design, Net, OnOverflow, Width, elaborate, text};
+use stepwave_engine::{Engine, EngineKind, Rows, Watch};
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Module, Scope};
+use stepwave_netlist::{Design, Net, OnOverflow, Width, elaborate, text};
 
 fn design(describe: impl FnOnce(Scope<'_>)) -> Design {
     design_with(OnOverflow::Trap, describe)

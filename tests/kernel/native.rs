@@ -1,8 +1,8 @@
 //! Native code against the word engine, on machines made for its assumptions: registers that go round, that stand for a
 //! long time and then do something else, and inputs that change once the loop takes them for constants.
 
-use stepwave_kernel::Design;
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
+use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
+use stepwave_netlist::Design;
 
 use super::{design, net};
 

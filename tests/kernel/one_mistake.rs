@@ -1,8 +1,8 @@
 //! One mistake, one diagnostic: what follows from a mistake is not told.
 
-use stepwave_kernel::dsl::{Module, Scope, Signal};
-use stepwave_kernel::netlist::Format;
-use stepwave_kernel::{Code, Diagnostic, OnOverflow};
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Module, Scope, Signal};
+use stepwave_netlist::{Code, Diagnostic, OnOverflow};
 
 /// All that is said of a description in a module `m`, for every mode of its strict cells.
 fn said(describe: impl Fn(Scope<'_>)) -> Vec<Diagnostic> {

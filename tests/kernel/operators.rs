@@ -1,8 +1,8 @@
 //! The meaning of every operator, against exact integers: all operands of up to four bits, and edge values of all
 //! widths up to 64, on every engine.
 
-use stepwave_kernel::Net;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
+use stepwave_netlist::Net;
 
 use super::{Probe, decode, design, design_of_text, encode, net, outputs, values};
 

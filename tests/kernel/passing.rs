@@ -1,9 +1,9 @@
 //! Samples in which a machine is idle are passed over, and nothing is lost by it.
 
 use proptest::prelude::*;
-use stepwave_kernel::dsl::Module;
-use stepwave_kernel::engine::{Engine, EngineKind, Idle, Rows, Stop, Watch, passing_after};
-use stepwave_kernel::{Design, Net, elaborate};
+use stepwave_engine::{Engine, EngineKind, Idle, Rows, Stop, Watch, passing_after};
+use stepwave_netlist::dsl::Module;
+use stepwave_netlist::{Design, Net, elaborate};
 
 /// A phase that steps a counter, which goes round and is kept in a copy at every second step; and a flag.
 struct Stepper {
@@ -43,7 +43,7 @@ fn stepper() -> Stepper {
 #[derive(Default)]
 struct Seen {
     rows: Vec<(u64, Vec<u64>)>,
-    phase: Option<stepwave_kernel::engine::Extremes>,
+    phase: Option<stepwave_engine::Extremes>,
 }
 
 impl Seen {

@@ -7,10 +7,10 @@ use std::collections::{BTreeMap, HashMap};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngSeed, TestRunner};
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
-use stepwave_kernel::netlist::Op;
-use stepwave_kernel::passes::simplify;
-use stepwave_kernel::{Design, Net, elaborate, text};
+use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
+use stepwave_netlist::cells::Op;
+use stepwave_netlist::passes::simplify;
+use stepwave_netlist::{Design, Net, elaborate, text};
 
 use recipe::{build, recipe, value};
 

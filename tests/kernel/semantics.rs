@@ -1,7 +1,7 @@
 //! Clocks and samples: what an engine shows, and when. Each test says one sentence of the engine's contract.
 
-use stepwave_kernel::Design;
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch};
+use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch};
+use stepwave_netlist::Design;
 
 use super::{design, net};
 

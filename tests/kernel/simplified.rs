@@ -4,10 +4,10 @@
 
 use std::collections::HashMap;
 
-use stepwave_kernel::engine::EngineKind;
-use stepwave_kernel::engine::lanes::{Job, LaneProgram, LaneWatch, Observe};
-use stepwave_kernel::passes::simplify;
-use stepwave_kernel::{Design, elaborate, text};
+use stepwave_engine::EngineKind;
+use stepwave_engine::lanes::{Job, LaneProgram, LaneWatch, Observe};
+use stepwave_netlist::passes::simplify;
+use stepwave_netlist::{Design, elaborate, text};
 
 use super::{Probe, design_of_text, net, values};
 

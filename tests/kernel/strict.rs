@@ -1,10 +1,10 @@
 //! Strict and saturating arithmetic against exact integers: all operand widths up to four bits, both readings of both
 //! operands, every mode, every value, on every engine.
 
-use stepwave_kernel::dsl::{Scope, Signal};
-use stepwave_kernel::engine::EngineKind;
-use stepwave_kernel::netlist::{Arithmetic, Claim, Operand};
-use stepwave_kernel::{Design, Net, OnOverflow};
+use stepwave_engine::EngineKind;
+use stepwave_netlist::cells::{Arithmetic, Claim, Operand};
+use stepwave_netlist::dsl::{Scope, Signal};
+use stepwave_netlist::{Design, Net, OnOverflow};
 
 use super::{Probe, decode, design_with, encode, net, values, width};
 

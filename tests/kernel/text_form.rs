@@ -1,6 +1,6 @@
 //! The text form: what is refused, and that a line which cannot be read does not spoil those behind it.
 
-use stepwave_kernel::{elaborate, text};
+use stepwave_netlist::{elaborate, text};
 
 /// What is said of a text, line by line, without the code that all of them bear.
 fn said(text: &str) -> Vec<String> {

@@ -1,8 +1,8 @@
 //! Nets without a name, and nets that nothing depends on: they are worth as much as any other to who watches them.
 
-use stepwave_kernel::engine::lanes::{Job, LaneProgram, LaneStop, LaneWatch, Observe};
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
-use stepwave_kernel::{Design, Net};
+use stepwave_engine::lanes::{Job, LaneProgram, LaneStop, LaneWatch, Observe};
+use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
+use stepwave_netlist::{Design, Net};
 
 use super::{design, net};
 

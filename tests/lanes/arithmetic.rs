@@ -1,9 +1,9 @@
 //! What lanes make of sums under conditions: the counters and accumulators of interpolators, all widths of up to three
 //! bits and all values, against the word engine.
 
-use stepwave_kernel::engine::lanes::{Job, LaneProgram, LaneWatch, Observe};
-use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::{Design, Net, OnOverflow};
+use stepwave_engine::lanes::{Job, LaneProgram, LaneWatch, Observe};
+use stepwave_engine::{EngineKind, Rows, Watch};
+use stepwave_netlist::{Design, Net, OnOverflow};
 
 use crate::kernel::{design_with, net, values};
 

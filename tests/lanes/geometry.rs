@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use stepwave::testbench::{Ending, LaneOutcome, Observer, ObserverError, Testbench};
-use stepwave_kernel::engine::{EngineKind, Rows};
-use stepwave_kernel::{OnOverflow, Width};
+use stepwave_engine::{EngineKind, Rows};
 use stepwave_models::options::{BEATS, CASCADE, END_POINT, NORMALIZE, ON_OVERFLOW, OVERRIDE, PRESET, RADIX, WIDTH};
 use stepwave_models::{Beats, EndPoint, ModelError, Options, Preset, Radix, find};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
+use stepwave_netlist::{OnOverflow, Width};
 
 const LIMIT: u64 = 1 << 20;
 

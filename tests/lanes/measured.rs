@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use proptest::prelude::*;
 use stepwave::testbench::{Ending, Measured, Observer, ObserverError, Step, Testbench};
-use stepwave_kernel::engine::{EngineKind, Rows};
-use stepwave_kernel::{OnOverflow, Width};
+use stepwave_engine::{EngineKind, Rows};
 use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
 use stepwave_models::{CurveKind, Model, Options, Preset, catalogue, find};
 use stepwave_nc::{Arc, Curve, Direction, Line};
+use stepwave_netlist::{OnOverflow, Width};
 
 use crate::kernel::random::config;
 

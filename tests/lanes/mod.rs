@@ -6,11 +6,11 @@ mod measured;
 mod programs;
 mod random;
 
-use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, root_gap};
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};
-use stepwave_kernel::netlist::Op;
-use stepwave_kernel::{Design, Net};
+use stepwave_engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, root_gap};
+use stepwave_engine::{Engine, EngineKind, Rows, Watch};
+use stepwave_netlist::bits::to_signed;
+use stepwave_netlist::cells::Op;
+use stepwave_netlist::{Design, Net};
 
 /// One job on an engine of its own, clock by clock, as the documentation of lanes tells it.
 struct Alone<'d> {

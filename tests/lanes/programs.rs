@@ -2,10 +2,10 @@
 
 use std::convert::Infallible;
 
-use stepwave_kernel::dsl::Module;
-use stepwave_kernel::engine::EngineKind;
-use stepwave_kernel::engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe};
-use stepwave_kernel::{Design, elaborate};
+use stepwave_engine::EngineKind;
+use stepwave_engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe};
+use stepwave_netlist::dsl::Module;
+use stepwave_netlist::{Design, elaborate};
 
 use super::assert_each_as_alone;
 

@@ -1,10 +1,10 @@
 //! Random netlists with random jobs.
 
 use proptest::prelude::*;
-use stepwave_kernel::engine::EngineKind;
-use stepwave_kernel::engine::lanes::{Job, LaneStop, LaneWatch, Observe, Quiet};
-use stepwave_kernel::netlist::Op;
-use stepwave_kernel::{Design, Net, elaborate};
+use stepwave_engine::EngineKind;
+use stepwave_engine::lanes::{Job, LaneStop, LaneWatch, Observe, Quiet};
+use stepwave_netlist::cells::Op;
+use stepwave_netlist::{Design, Net, elaborate};
 
 use super::assert_each_as_alone;
 use crate::kernel::random::config;

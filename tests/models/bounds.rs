@@ -6,11 +6,11 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 use stepwave::testbench::{Ending, Observer, ObserverError, PathWatch, SpacingWatch, Step};
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, COMPARE, END_POINT, FORM, NORMALIZE, PRESET, RADIX, WEIGHTS, WIDTH};
 use stepwave_models::{Beats, Compare, EndPoint, Form, Options, Preset, Radix, Weights, find};
 use stepwave_nc::{Conic, Curve, Direction};
+use stepwave_netlist::Width;
 
 use super::conics::every_quarter_ellipse;
 use super::dda_helix::helix;

@@ -1,7 +1,7 @@
 //! Comparison-integral.
 
 use proptest::prelude::*;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, WEIGHTS};
 use stepwave_models::{Beats, Options, Weights};
 

@@ -1,7 +1,7 @@
 //! Conics for the models that interpolate them, and point-by-point comparison along them.
 
 use rayon::prelude::*;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, END_POINT};
 use stepwave_models::{Beats, EndPoint, Options};
 use stepwave_nc::{Conic, Curve, Direction};

@@ -2,11 +2,11 @@
 //! otherwise, whatever the model and the register; position counters that overflow, and the pulses that do not.
 
 use stepwave::testbench::{Ending, PathWatch, Testbench};
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{ON_OVERFLOW, WIDTH};
 use stepwave_models::{CurveKind, ModelError, OnOverflow, Options, catalogue, find};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix};
+use stepwave_netlist::Width;
 
 use super::line;
 use super::modern::widths;

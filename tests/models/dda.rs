@@ -2,11 +2,11 @@
 
 use proptest::prelude::*;
 use stepwave::testbench::Ending;
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{END_POINT, NORMALIZE, PRESET, WIDTH};
 use stepwave_models::{EndPoint, Options, Preset, find};
 use stepwave_nc::Curve;
+use stepwave_netlist::Width;
 
 use super::{arc, assert_equal, check, every_line, lattice, line, run};
 use crate::reference::{self, Table, dda_arc, dda_line};

@@ -1,7 +1,7 @@
 //! Digital differential analyser along conics.
 
 use stepwave::testbench::Ending;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::{EndPoint, Options, Preset, find};
 
 use super::conics::{Case, every_quarter_ellipse, various};

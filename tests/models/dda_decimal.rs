@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use stepwave::testbench::Ending;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{ADDER, RADIX};
 use stepwave_models::{Adder, EndPoint, Options, Preset, Radix};
 

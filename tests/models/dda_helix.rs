@@ -1,11 +1,11 @@
 //! Digital differential analyser along helices.
 
 use proptest::prelude::*;
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{PRESET, WIDTH};
 use stepwave_models::{Options, Preset, find};
 use stepwave_nc::{Curve, Direction, Helix};
+use stepwave_netlist::Width;
 
 use super::dda::{check_hang, preset_value};
 use super::{check, every_lattice_arc, run};

@@ -1,7 +1,7 @@
 //! Digital differential analyser with serial adders: the step table of the parallel ones.
 
 use proptest::prelude::*;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::Adder;
 use stepwave_models::options::ADDER;
 

@@ -8,11 +8,11 @@ use std::path::Path;
 
 use stepwave::report::{run_command, title};
 use stepwave::study::{Dimension, Variants};
-use stepwave_kernel::text;
 use stepwave_models::options::AnyOption;
 use stepwave_models::program::{FAMILIES, Size};
 use stepwave_models::{CurveKind, Model, catalogue};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
+use stepwave_netlist::text;
 
 /// Values of each option, of which at least one is refused where there can be one.
 fn values(option: &dyn AnyOption) -> &'static [&'static str] {

@@ -1,10 +1,10 @@
 //! Digital pulse multiplier.
 
 use proptest::prelude::*;
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{CASCADE, NORMALIZE, OVERRIDE, RADIX, WIDTH};
 use stepwave_models::{ModelError, Options, Radix, find};
+use stepwave_netlist::Width;
 
 use super::{check, line, run};
 use crate::reference::{dpm_line, dpm_line_cascade, dpm_line_decade, dpm_line_override};

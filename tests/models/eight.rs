@@ -1,7 +1,7 @@
 //! Minimum deviation and vector discrimination.
 
 use proptest::prelude::*;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, END_POINT};
 use stepwave_models::{Beats, EndPoint, Options};
 

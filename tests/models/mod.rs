@@ -24,7 +24,7 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 use stepwave::testbench::{Ending, Observer, ObserverError, Outcome, Step, Testbench};
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::{Options, find};
 use stepwave_nc::{Arc, Curve, Direction, Line};
 

@@ -2,10 +2,10 @@
 
 use proptest::prelude::*;
 use stepwave::testbench::{Ending, Observer, ObserverError};
-use stepwave_kernel::engine::{EngineKind, Rows};
-use stepwave_kernel::{OnOverflow, Width};
+use stepwave_engine::{EngineKind, Rows};
 use stepwave_models::options::{COMPARE, FORM, ON_OVERFLOW, PICK_OFF, PRESET, TIMING, WIDTH};
 use stepwave_models::{Compare, Form, ModelError, Options, Preset, StepTiming, find};
+use stepwave_netlist::{OnOverflow, Width};
 
 use super::{Ran, assert_equal, bench, check, every_line, line, run};
 use crate::reference::{self, Table, Timing, bresenham, stepgen, stepgen_clocks};

@@ -1,7 +1,7 @@
 //! Point-by-point comparison.
 
 use proptest::prelude::*;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, END_POINT, FORM};
 use stepwave_models::{Beats, EndPoint, Form, Options};
 

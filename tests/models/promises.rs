@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use stepwave::testbench::{Ending, PathWatch, Testbench};
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{END_POINT, FORM, ON_OVERFLOW};
 use stepwave_models::{EndPoint, Form, OnOverflow, Options, Promise, catalogue, find};
 use stepwave_nc::{Arc, Curve, Direction};

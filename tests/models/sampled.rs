@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 use stepwave::testbench::{CoarseWatch, Ending, SpacingWatch};
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{FRACTION, PRESET, STEP, SYSTEM, TOLERANCE, WIDTH};
 use stepwave_models::{Millionths, ModelError, Options, Preset, System, find};
 use stepwave_nc::Curve;
+use stepwave_netlist::Width;
 
 use super::{Ran, arc, bench, lattice, line, run};
 use crate::reference::{self, sampled_arc, sampled_line, step_factor_points};

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use stepwave::testbench::{Observer, ObserverError, PulseTrain, RateDeviation, SpacingWatch, Testbench};
-use stepwave_kernel::engine::{EngineKind, Rows};
+use stepwave_engine::{EngineKind, Rows};
 use stepwave_models::options::{BEATS, END_POINT, NORMALIZE, OVERRIDE, PRESET, WIDTH};
 use stepwave_models::{Beats, EndPoint, Options, Preset};
 use stepwave_nc::Curve;
@@ -140,7 +140,7 @@ proptest! {
         prop_assume!(to != [0, 0, 0]);
         let longest = to.iter().map(|way| way.unsigned_abs()).max().unwrap();
         let cycle = (longest + 1).next_power_of_two() << wider;
-        let width = stepwave_kernel::Width::new(u64::from(cycle.ilog2())).unwrap();
+        let width = stepwave_netlist::Width::new(u64::from(cycle.ilog2())).unwrap();
         let choices = Options::default().with_all(&WIDTH, width);
         check("dda-line", &line(&[0; 3], &to), &choices, EngineKind::Compiled, Some(cycle));
         let choices = choices.with(&OVERRIDE, percent);

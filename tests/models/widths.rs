@@ -1,6 +1,5 @@
 //! Whatever widths are chosen, a model builds, or refuses them with the user's way out: its netlist is never wrong.
 
-use stepwave_kernel::Width;
 use stepwave_models::options::{
     ADDER, BEATS, CASCADE, COMPARE, END_POINT, FORM, FRACTION, NORMALIZE, ON_OVERFLOW, OVERRIDE, PICK_OFF, RADIX, STEP,
     SYSTEM, TIMING, WIDTH,
@@ -10,6 +9,7 @@ use stepwave_models::{
     System, catalogue,
 };
 use stepwave_nc::{Conic, Curve, Direction, Helix};
+use stepwave_netlist::Width;
 
 use super::{arc, line};
 

@@ -5,7 +5,7 @@ use stepwave::testbench::{
     Ending, Host, Next, ObserverError, Outcome, OverflowEvent, OverflowWatch, RangeWatch, RegisterRange, Sample,
     Testbench,
 };
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
 use stepwave_models::program::{FAMILIES, Family, Size};
 use stepwave_models::{Hardware, OnOverflow, Options, Preset, Promise};
@@ -292,7 +292,7 @@ fn an_integrator_that_would_stand_beside_an_axis_steps_at_once() {
     let blocks =
         [block(Curve::Line(line), [0; 3], [3, 14, 0]), block(Curve::Arc(arc), [3, 14, 0], [15, 0, 0])].to_vec();
     for preset in [Preset::Half, Preset::Zero, Preset::Full] {
-        let width = Some(stepwave_kernel::Width::new(8).unwrap());
+        let width = Some(stepwave_netlist::Width::new(8).unwrap());
         let choices = choices(false).with_all(&PRESET, preset).with_all(&WIDTH, width);
         let ran = run_blocks(family("dda"), blocks.clone(), &choices, EngineKind::Word);
         assert_eq!((ran.outcome.ending, ran.outcome.reached), (Ending::Done, vec![15, 0, 0]), "{preset}");
@@ -306,7 +306,7 @@ proptest! {
     fn a_report_is_the_same_where_idle_clocks_are_passed_over(moves in moves(), slow in 6u32..9, narrow: bool) {
         for family in FAMILIES {
             // The position overflows on its way; the loops are compiled behind 16384 clocks.
-            let widths = [("x".to_owned(), stepwave_kernel::Width::new(4).unwrap())].into_iter().filter(|_| narrow);
+            let widths = [("x".to_owned(), stepwave_netlist::Width::new(4).unwrap())].into_iter().filter(|_| narrow);
             let choices = Options::default().with(&ON_OVERFLOW, OnOverflow::Wrap).with_single(&WIDTH, widths.collect());
             let moves: Vec<ToolMove> = moves.iter().cycle().take(if family.name == "dpm" { 3 } else { 12 }).copied().collect();
             let all = reports(family, &moves, &choices, slow, true);

@@ -1,12 +1,12 @@
 //! Proofs at one width at a time, of machines whose clocks do not depend on their coefficients.
 
-use stepwave::study::proof::{Narrower, Way, blocks};
-use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::netlist::Op;
-use stepwave_kernel::prove::{AxisNets, Lost, Word, follow, recount};
-use stepwave_kernel::{Net, Width, elaborate};
+use stepwave::study::proof::{Narrower, Way, blocks, strobes};
+use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_models::options::{CASCADE, OVERRIDE, WIDTH};
 use stepwave_models::{Machine, Options, find};
+use stepwave_netlist::cells::Op;
+use stepwave_netlist::{Net, Width, elaborate};
+use stepwave_prove::{AxisNets, Lost, Word, follow, recount};
 
 use crate::cli::Folder;
 
@@ -74,7 +74,7 @@ fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) 
     }
     engine.run(1 << 13, &mut rows);
     let mut told = 0;
-    let judge = |clock: u64, sample: &stepwave_kernel::prove::Sample<'_>| {
+    let judge = |clock: u64, sample: &stepwave_prove::Sample<'_>| {
         let row = rows.row(usize::try_from(clock).unwrap());
         for net in netlist.nets() {
             if let Some(value) = sample.value(net, unknowns) {
@@ -83,7 +83,7 @@ fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) 
             }
         }
     };
-    follow(design, machine.strobes(), &words, &[], 1 << 13, judge).unwrap();
+    follow(design, strobes(&machine), &words, &[], 1 << 13, judge).unwrap();
     told
 }
 
@@ -127,7 +127,7 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
             _ => Word::Known(0),
         };
         let words: Vec<(Net, Word)> = machine.inputs.iter().map(|(name, port)| (port.net, word(name))).collect();
-        let lost = follow(&machine.design, machine.strobes(), &words, &[], 100, |_, _| {}).unwrap_err().to_string();
+        let lost = follow(&machine.design, strobes(&machine), &words, &[], 100, |_, _| {}).unwrap_err().to_string();
         assert!(lost.contains(&format!("dpm_line.axis_x.x may overflow at clock {clock}")), "{lost}");
     }
     // A comparison of coordinates is no sum of unknown bits.
@@ -135,7 +135,7 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
     let largest = model.claims.unwrap().geometries.largest(3).unwrap();
     let machine = model.machine(&model.plan(&largest, &Options::default()).unwrap()).unwrap();
     let words: Vec<(Net, Word)> = machine.inputs.values().map(|port| (port.net, Word::Unknown)).collect();
-    let lost = follow(&machine.design, machine.strobes(), &words, &[], 100, |_, _| {}).unwrap_err();
+    let lost = follow(&machine.design, strobes(&machine), &words, &[], 100, |_, _| {}).unwrap_err();
     assert!(matches!(lost, Lost::Claim { .. } | Lost::End { .. }), "{lost}");
 }
 
@@ -228,7 +228,7 @@ fn what_is_counted_pulse_by_pulse_is_so_for_every_coefficient_of_machines_that_w
         let axes = machine.pulses.iter().zip(&machine.positions);
         let axes: Vec<AxisNets> =
             axes.map(|(pulse, position)| AxisNets { pulse: pulse.net, position: position.net }).collect();
-        let Ok(found) = recount(&machine.design, machine.strobes(), &words, &axes, 64) else {
+        let Ok(found) = recount(&machine.design, strobes(&machine), &words, &axes, 64) else {
             refused += 1;
             continue;
         };

@@ -2,9 +2,9 @@
 
 use stepwave::study::proof::{CounterexampleToInduction, InductionSearch, Narrower, Subject};
 use stepwave::testbench::Start;
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};
-use stepwave_kernel::formula::{Clause, name};
+use stepwave_engine::{Engine, EngineKind, Rows, Watch};
 use stepwave_models::{Kind, Machine, Options, find};
+use stepwave_netlist::formula::{Clause, name};
 
 use super::{beats, narrower, subject};
 

@@ -1,10 +1,10 @@
 //! Invariants that were proved or claimed, looked at in runs.
 
 use stepwave::study::proof::{Subject, states};
-use stepwave_kernel::formula::Clause;
 use stepwave_models::options::{BEATS, END_POINT, FORM, PRESET, WEIGHTS};
 use stepwave_models::{Beats, EndPoint, Form, Model, Options, Preset, Weights, catalogue};
 use stepwave_nc::Curve;
+use stepwave_netlist::formula::Clause;
 
 use super::subject;
 use crate::models::{arc, line};
@@ -38,7 +38,7 @@ fn assert_hold(
     what: &str,
     clauses: &[Clause],
     machine: &stepwave_models::Machine,
-    blocks: &[Vec<(stepwave_kernel::Net, u64)>],
+    blocks: &[Vec<(stepwave_netlist::Net, u64)>],
 ) -> u32 {
     let mut looked_at = 0;
     for words in blocks {

@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use stepwave::study::proof::{Counterexample, Fault, Narrower, Subject, search};
-use stepwave_kernel::formula::{Clause, name};
-use stepwave_kernel::prove::{Certificate, Proof};
 use stepwave_models::options::{BEATS, COMPARE, END_POINT, FORM, PRESET, WEIGHTS, WIDTH};
 use stepwave_models::{Beats, EndPoint, Form, Kind, Options, Preset, Weights, find};
+use stepwave_netlist::formula::{Clause, name};
+use stepwave_prove::{Certificate, Proof};
 
 /// Attempts at every kind of geometry, each checked again from its certificate alone.
 fn proofs(subject: &Subject) -> Vec<(Kind, Proof)> {
@@ -255,9 +255,9 @@ fn unequal_presets_bring_an_arc_to_a_stand() {
     assert_eq!(example.k, 4);
     // The one of the literature is among them, by the simulator.
     let arc = crate::models::arc([3, 4], [0, 5], [0, 0], false);
-    let wide = choices.with_all(&WIDTH, stepwave_kernel::Width::new(4).ok());
+    let wide = choices.with_all(&WIDTH, stepwave_netlist::Width::new(4).ok());
     let bench = stepwave::testbench::Testbench::new(model, &arc, &wide).unwrap();
-    let outcome = bench.run(stepwave_kernel::engine::EngineKind::Word, &mut []).unwrap();
+    let outcome = bench.run(stepwave_engine::EngineKind::Word, &mut []).unwrap();
     assert!(matches!(outcome.ending, stepwave::testbench::Ending::Stalled { .. }), "{outcome:?}");
     assert_eq!(outcome.reached, [0, 4]);
 }

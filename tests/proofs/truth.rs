@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use stepwave::study::proof::{Narrower, choices_at};
 use stepwave::testbench::{Ending, Testbench};
-use stepwave_kernel::{OnOverflow, Width};
 use stepwave_models::options::{ON_OVERFLOW, WIDTH};
 use stepwave_models::{Model, ModelError, Options, find};
+use stepwave_netlist::{OnOverflow, Width};
 
 use crate::cli::{Folder, Ran};
 

@@ -6,7 +6,7 @@ use stepwave::study::proof::ProofError;
 use stepwave::study::widths::{Known, Widths, by_proof, ranges_alone, simulated};
 use stepwave::study::{Extent, Geometries};
 use stepwave::testbench::Testbench;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::WEIGHTS;
 use stepwave_models::{Model, Options, Weights, catalogue, find};
 use stepwave_nc::{Curve, Shape};

@@ -1,11 +1,11 @@
 //! The runs whose waves are tested.
 
-use stepwave_kernel::OnOverflow;
 use stepwave_models::options::{
     BEATS, CASCADE, END_POINT, FORM, NORMALIZE, ON_OVERFLOW, OVERRIDE, PRESET, RADIX, WIDTH,
 };
 use stepwave_models::{Beats, EndPoint, Form, Options, Preset, Radix};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
+use stepwave_netlist::OnOverflow;
 
 use super::GOOD;
 
@@ -30,7 +30,7 @@ fn quarter([a, b]: [i64; 2]) -> Curve {
 }
 
 fn widths(list: &[(&str, u64)]) -> Options {
-    let width = |bits| stepwave_kernel::Width::new(bits).expect(GOOD);
+    let width = |bits| stepwave_netlist::Width::new(bits).expect(GOOD);
     Options::default().with_single(&WIDTH, list.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits))).collect())
 }
 
@@ -42,7 +42,7 @@ pub(super) fn cases() -> Vec<Case> {
     let ending = |end_point| Options::default().with(&END_POINT, end_point);
     let overflowing = |on_overflow| widths(&[("f", 3)]).with(&ON_OVERFLOW, on_overflow);
     let preset = |preset| Options::default().with_all(&PRESET, preset);
-    let bits = |bits| stepwave_kernel::Width::new(bits).ok();
+    let bits = |bits| stepwave_netlist::Width::new(bits).ok();
     let six_axes = [9, -30, 4, 0, -17, 31];
     vec![
         case("line in four beats", "ppc-line", line(&[6, 4]), &usual),

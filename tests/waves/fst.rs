@@ -3,13 +3,13 @@
 use std::io::Cursor;
 
 use stepwave::testbench::{Testbench, WaveWriter, Window};
-use stepwave_kernel::dsl::Module;
-use stepwave_kernel::elaborate;
-use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::trace::fst::FstHeader;
-use stepwave_kernel::trace::probe::Selection;
-use stepwave_kernel::trace::timescale::ClockTime;
+use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_models::find;
+use stepwave_netlist::dsl::Module;
+use stepwave_netlist::elaborate;
+use stepwave_trace::fst::FstHeader;
+use stepwave_trace::probe::Selection;
+use stepwave_trace::timescale::ClockTime;
 
 use super::written::read;
 use super::{Case, Folder, Shown, cases, compare, compare_clock, record};

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 
 use super::{TICKS, cases, record};
 

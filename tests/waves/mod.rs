@@ -13,13 +13,13 @@ mod written;
 use std::collections::HashMap;
 
 use stepwave::testbench::{Observer, ObserverError, Testbench, WaveWriter, Window};
-use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::netlist::{NamedNet, Netlist, Op};
-use stepwave_kernel::trace::probe::Selection;
-use stepwave_kernel::trace::timescale::ClockTime;
-use stepwave_kernel::trace::vcd::VcdHeader;
-use stepwave_kernel::{Design, Net};
+use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_models::find;
+use stepwave_netlist::cells::{NamedNet, Netlist, Op};
+use stepwave_netlist::{Design, Net};
+use stepwave_trace::probe::Selection;
+use stepwave_trace::timescale::ClockTime;
+use stepwave_trace::vcd::VcdHeader;
 
 use crate::cli::Folder;
 use cases::{Case, cases, line};

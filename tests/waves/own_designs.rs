@@ -1,8 +1,8 @@
 //! Designs that no model has: aliases, every width, quiet nets.
 
-use stepwave_kernel::dsl::Module;
-use stepwave_kernel::elaborate;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
+use stepwave_netlist::dsl::Module;
+use stepwave_netlist::elaborate;
 
 use super::written::read;
 use super::{compare, compare_clock, record_design};

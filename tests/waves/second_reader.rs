@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use vcd::{Command, Header, IdCode, ReferenceIndex, ScopeItem, ScopeType, SimulationCommand, Var};
 
 use super::{Shown, Variable, cases, compare, compare_clock, record};

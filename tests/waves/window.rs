@@ -1,6 +1,6 @@
 //! Windows, filters and depth, as given on the command line.
 
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::Options;
 
 use super::written::read;

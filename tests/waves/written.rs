@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::Options;
 use wellen::{SignalRef, TimescaleUnit};
 

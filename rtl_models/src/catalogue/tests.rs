@@ -2,8 +2,8 @@
 //!
 //! None of these installs succeeds, so that other tests of this process have the catalogue of this crate.
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::Line;
+use stepwave_netlist::dsl::Scope;
 
 use super::catalogue;
 use crate::machine::Words;

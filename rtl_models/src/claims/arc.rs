@@ -1,7 +1,7 @@
 //! Arcs about the origin inside one quadrant, with both ends on the same circle.
 
-use stepwave_kernel::formula::{Clause, name};
 use stepwave_nc::{Arc, Curve, Direction};
+use stepwave_netlist::formula::{Clause, name};
 
 use super::extremes::{self, Reach};
 use super::{Kind, coordinate, spread};

@@ -1,7 +1,7 @@
 //! Lines of two axes from the origin.
 
-use stepwave_kernel::formula::{Clause, name};
 use stepwave_nc::{Curve, Line};
+use stepwave_netlist::formula::{Clause, name};
 
 use super::extremes::{self, Reach};
 use super::{Kind, coordinate, spread};

@@ -2,8 +2,8 @@
 //!
 //! An option that is added here is on every command line, in sweeps, titles, reports and the command that repeats a run.
 
-use stepwave_kernel::bits::Reading;
-use stepwave_kernel::{OnOverflow, Width};
+use stepwave_netlist::bits::Reading;
+use stepwave_netlist::{OnOverflow, Width};
 
 use super::{AnyOption, Millionths, Named, OptionDef, PerRegister, Preset, Shape, StepTiming, Values};
 

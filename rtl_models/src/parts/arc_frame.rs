@@ -1,6 +1,6 @@
 //! What every interpolator that judges the steps of an arc has around its judgement.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{
     Block, EndCounters, Kind, axis_counter, negated, next_quadrant, quadrant_register, up_down_counter, x_grows,

@@ -1,6 +1,6 @@
 //! The arithmetic unit of a coarse stage: serial components that a sequencer puts to work one after another.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::{Sequencer, SerialDivider, SerialMultiplier, SerialRoot};
 

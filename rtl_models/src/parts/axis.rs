@@ -1,7 +1,7 @@
 //! An axis: its pulse and its machine position.
 
-use stepwave_kernel::dsl::{Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::{Block, up_down_counter};
 

@@ -1,7 +1,7 @@
 //! The four-beat ring counter of point-by-point methods: judge, feed, compute, compare.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::Block;
 use crate::options::Beats;

@@ -1,7 +1,7 @@
 //! The block loader: inputs for the words of a block, and the registers that say how far it is.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use crate::machine::input_name;
 use crate::options::Radix;

@@ -1,8 +1,8 @@
 //! The comparison-integral interpolator between its load words and its axes.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
-use stepwave_kernel::formula::name;
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
+use stepwave_netlist::formula::name;
 
 use super::{BeatRing, Block, DeviationAccumulator, EndCounters, axis_counter, negated};
 use crate::hardware::Hardware;

@@ -1,6 +1,6 @@
 //! Up/down counters: coordinates, integrands and positions.
 
-use stepwave_kernel::dsl::{Register, Signal};
+use stepwave_netlist::dsl::{Register, Signal};
 
 /// Closes an up/down counter: an arm of `loads` (condition, value) wins; else it counts `unit` up or down, which must
 /// not leave its range: `register` keeps its width and reading, and the two counts are strict cells, flagged only at an

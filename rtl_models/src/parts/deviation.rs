@@ -1,6 +1,6 @@
 //! The deviation accumulator F of point-by-point comparison.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::Block;
 

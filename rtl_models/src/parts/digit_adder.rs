@@ -1,6 +1,6 @@
 //! Adders made of digits: the binary full adder, and the decimal digit adder with its correction.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use crate::options::Radix;
 

@@ -1,7 +1,7 @@
 //! From the axes of an interpolator to those of the machine.
 
-use stepwave_kernel::dsl::{Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::{Block, axis_counter};
 use crate::hardware::Hardware;

@@ -1,6 +1,6 @@
 //! End-point down-counters.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Block, shifted_right};
 

@@ -1,6 +1,6 @@
 //! The end point of a motion in two axes: one counter of all pulses, or one for each axis.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::{Block, DownCounter};
 use crate::hardware::Hardware;

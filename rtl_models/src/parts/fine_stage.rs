@@ -1,7 +1,7 @@
 //! The fine stage of data sampling: DDA integrators that draw the way of a period while the next one is calculated.
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Block, Iteration, axis_counter, integrator, magnitude};
 use crate::hardware::Hardware;

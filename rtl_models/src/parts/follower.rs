@@ -1,6 +1,6 @@
 //! The third axis of a machine that interpolates in a plane.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::Block;
 

@@ -1,7 +1,7 @@
 //! The DDA integrator.
 
-use stepwave_kernel::dsl::{Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::{Block, Iteration, decimal_adder, digit_adder};
 use crate::hardware::Hardware;

@@ -1,6 +1,6 @@
 //! The pair of integrators that draws a curve of second order.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Block, DownCounter, Iteration, Normalized, axis_counter, integrator, population_count, up_down_counter};
 use crate::hardware::Hardware;

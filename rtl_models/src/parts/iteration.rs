@@ -1,7 +1,7 @@
 //! The iteration of integrators: one clock, or one clock for each digit where they add serially.
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::Block;
 use crate::hardware::Hardware;

@@ -1,6 +1,6 @@
 //! What every interpolator has that judges, step by step, whether a line takes its long axis alone or both axes.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::{BeatRing, Block, DownCounter, axis_counter};
 use crate::hardware::Hardware;

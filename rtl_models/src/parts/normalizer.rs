@@ -1,6 +1,6 @@
 //! Left-shift normalisation of integrands.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::Block;
 
@@ -34,7 +34,7 @@ impl<'m> Normalizer<'m> {
     }
 
     /// Closes it: shifts until the or of all integrands, which are equally wide, has a 1 among its `top` highest bits.
-    /// More bits than they have, or none, are a mistake that [`finish`](stepwave_kernel::dsl::Module::finish) tells.
+    /// More bits than they have, or none, are a mistake that [`finish`](stepwave_netlist::dsl::Module::finish) tells.
     #[track_caller]
     #[must_use]
     pub fn close(self, integrands: &[Signal<'m>], top: u32) -> Normalized<'m> {

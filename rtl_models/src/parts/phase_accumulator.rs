@@ -1,7 +1,7 @@
 //! The phase accumulator of a step generator.
 
-use stepwave_kernel::OnOverflow;
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::OnOverflow;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::Block;
 

@@ -1,6 +1,6 @@
 //! The pulse source of a whole machine: a rate generator on the clock.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::Block;
 

@@ -1,7 +1,7 @@
 //! Quadrant logic of arcs: from quadrant and direction to the kind of arc and the signs of its motion.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Block, PairSide};
 

@@ -1,8 +1,8 @@
 //! The digital pulse multiplier, or rate multiplier: a counter whose stages offer pulses, and the gates by which a
 //! coefficient lets them through.
 
-use stepwave_kernel::dsl::{Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::Block;
 use crate::options::Radix;

@@ -1,8 +1,8 @@
 //! The control sequence of a unit that works in several steps, and the choice among its operands.
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::{Register, Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::Width;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 /// A state register whose states are steps of a calculation, 0 the idle one. In the first clock of a state its component
 /// takes its operands; in those behind it the state waits for the result.

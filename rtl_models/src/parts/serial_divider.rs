@@ -1,6 +1,6 @@
 //! The sequential divider: restoring, one bit of the quotient a clock.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Timer, operand};
 

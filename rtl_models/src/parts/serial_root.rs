@@ -1,6 +1,6 @@
 //! The sequential square root: restoring, one bit of the root a clock.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Timer, operand};
 

@@ -1,6 +1,6 @@
 //! Signs: negation and magnitude in two's complement.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
 /// The negative of a number in two's complement; the least number stays what it is.
 #[must_use]

@@ -1,7 +1,7 @@
 //! The step and direction output of an axis, and the timers that keep to what a motor drive asks for.
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::{Register, Scope, Signal};
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use crate::options::StepTiming;
 

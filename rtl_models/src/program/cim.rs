@@ -11,8 +11,8 @@
 //! On an arc a pulse changes the weight of its axis by one, on a line by nothing. The weight of a pulse is the middle of
 //! those before and behind it.
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, Curve, PulseBlock};
+use stepwave_netlist::dsl::Scope;
 
 use super::{Family, HardwareBlock, Size, planar};
 use crate::error::ModelError;

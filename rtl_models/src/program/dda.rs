@@ -14,9 +14,9 @@
 //! *next* block shift left in the buffer while the present one runs, until one has its highest bit set, on an arc its
 //! second highest.
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::{Register, Scope, Signal};
 use stepwave_nc::{Crossing, Curve, PulseBlock};
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::frame::Frame;
 use super::{Family, HardwareBlock, Size, planar};

@@ -9,8 +9,8 @@
 //!
 //! A pulse multiplier draws lines: the control gives it the chords of an arc.
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, PulseBlock};
+use stepwave_netlist::dsl::Scope;
 
 use super::frame::program_words;
 use super::{Family, HardwareBlock, Size, planar};

@@ -1,7 +1,7 @@
 //! What every machine that runs whole programs has around its interpolator.
 
-use stepwave_kernel::dsl::{Register, Scope, Signal};
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::PROGRAM_WORDS;
 use crate::hardware::Hardware;

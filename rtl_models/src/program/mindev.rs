@@ -9,8 +9,8 @@
 //!
 //! `xi`, `yi` hold the ways of a line, or count the coordinates of an arc. F is D = 2S - L of a line, or x² + y² - R².
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, Curve, PulseBlock};
+use stepwave_netlist::dsl::Scope;
 
 use super::{Family, HardwareBlock, planar};
 use crate::hardware::Hardware;

@@ -14,8 +14,8 @@ mod mindev;
 mod planar;
 mod ppc;
 
-use stepwave_kernel::dsl::{Module, Scope};
 use stepwave_nc::{Crossing, Curve, PulseBlock};
+use stepwave_netlist::dsl::{Module, Scope};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;

@@ -10,8 +10,8 @@
 //! `xi`, `yi` hold the ways of a line, or count the coordinates of an arc. A line takes F -= yi for a step of its first
 //! axis and F += xi for one of the second; an arc F -= 2c - 1 or F += 2c + 1. The loader splits arcs at the axes.
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Crossing, Curve, PulseBlock};
+use stepwave_netlist::dsl::Scope;
 
 use super::{Family, HardwareBlock, planar};
 use crate::hardware::Hardware;

@@ -1,7 +1,7 @@
 //! In what recorded files differ from simulated ones, in words.
 
-use crate::kernel::trace::diverge::{self, Options};
-use crate::kernel::trace::read::Wave;
+use crate::trace::diverge::{self, Options};
+use crate::trace::read::Wave;
 
 /// Clocks shown before a divergence.
 const CONTEXT: usize = 5;

@@ -4,12 +4,12 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
-use crate::kernel::trace::timescale::ClockTime;
 use crate::models::{Model, Options};
 use crate::nc::Curve;
 use crate::report::{self, run_command};
 use crate::study::proof::{Counterexample, CounterexampleToInduction, Fault};
 use crate::testbench::{Observer, OverflowWatch, Testbench};
+use crate::trace::timescale::ClockTime;
 use clap::Parser;
 
 use super::super::run::{Finished, simulate};

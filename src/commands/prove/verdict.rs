@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::kernel::prove::{Certificate, Proof};
 use crate::models::{Kind, Model};
+use crate::prove::{Certificate, Proof};
 use crate::study::proof::{Narrower, Subject};
 
 /// A kind of geometry, and what came of its attempt.

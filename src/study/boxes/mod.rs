@@ -7,10 +7,10 @@ mod plane;
 use std::fmt;
 use std::str::FromStr;
 
-use stepwave_kernel::Width;
 use stepwave_models::options::{CASCADE, RADIX, WIDTH};
 use stepwave_models::{CurveKind, Hardware, Model, Options, Region};
 use stepwave_nc::{Curve, Line};
+use stepwave_netlist::Width;
 
 use super::proof::ProofError;
 use super::{Grid, Range};

@@ -4,10 +4,10 @@ use std::fmt;
 use std::ops::Range;
 
 use rayon::prelude::*;
-use stepwave_kernel::bits::Reading;
-use stepwave_kernel::prove::{AxisNets, Followed, Sum, Word, follow, recount};
 use stepwave_models::{AXES, Claims, Kind, Model, Options};
 use stepwave_nc::Curve;
+use stepwave_netlist::bits::Reading;
+use stepwave_prove::{AxisNets, Followed, Sum, Word, follow, recount};
 
 use super::{Narrower, ProofError, choices_at, largest};
 
@@ -131,7 +131,7 @@ fn block(
         names.extend((0..width).map(|bit| format!("{register}.{bit}")));
         given.push((net, Word::Unknown));
     }
-    let strobes = machine.strobes();
+    let strobes = super::strobes(&machine);
     let (design, limit) = (&machine.design, hardware.stall_clocks);
     let ends: Vec<_> = machine.positions.iter().map(|port| port.net).collect();
     let axes = machine.pulses.iter().zip(&ends).map(|(pulse, end)| AxisNets { pulse: pulse.net, position: *end });

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use stepwave_kernel::prove::{Certificate, CertificateError};
+use stepwave_prove::{Certificate, CertificateError};
 
 /// First line of a file of certificates.
 const TITLE: &str = "stepwave certificate 1";

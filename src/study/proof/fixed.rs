@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use stepwave_kernel::Width;
-use stepwave_kernel::engine::EngineKind;
+use stepwave_engine::EngineKind;
 use stepwave_models::options::WIDTH;
 use stepwave_models::{Claims, Hardware, Model, Options};
 use stepwave_nc::Curve;
+use stepwave_netlist::Width;
 
 use super::counter::try_all;
 use super::members::{Offsets, choices_with, largest, registers_named};

@@ -2,11 +2,11 @@
 //! end, or comes to a state that they do not allow. Whether any run comes to such a state is not known.
 
 use rayon::prelude::*;
-use stepwave_kernel::Net;
-use stepwave_kernel::engine::{EngineKind, Rows, Watch};
-use stepwave_kernel::prove::{Certificate, InvariantStates, Row};
+use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_models::{Hardware, Kind, Machine};
 use stepwave_nc::Curve;
+use stepwave_netlist::Net;
+use stepwave_prove::{Certificate, InvariantStates, Row};
 
 use super::learning::rows;
 use super::{ProofError, Subject, number};
@@ -119,7 +119,7 @@ struct Stepped {
 /// Runs steps of a machine from any states, its inputs those of a block that runs.
 struct Stepper<'m> {
     machine: &'m Machine,
-    engine: Box<dyn stepwave_kernel::engine::Engine>,
+    engine: Box<dyn stepwave_engine::Engine>,
     rows: Rows,
     inputs: Vec<u64>,
 }

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use stepwave_kernel::Net;
-use stepwave_kernel::formula::{self, Formula};
-use stepwave_kernel::prove::{self, Case, Row, Symbol};
 use stepwave_models::{Kind, Machine};
 use stepwave_nc::Curve;
+use stepwave_netlist::Net;
+use stepwave_netlist::formula::Symbol;
+use stepwave_netlist::formula::{self, Formula};
+use stepwave_prove::{self as prove, Case, Row};
 
 use super::{ProofError, State, Subject, states};
 

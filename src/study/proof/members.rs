@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use stepwave_kernel::{Width, did_you_mean};
 use stepwave_models::options::WIDTH;
 use stepwave_models::{AXES, Claims, Hardware, Model, ModelError, Options};
 use stepwave_nc::Curve;
+use stepwave_netlist::{Width, did_you_mean};
 
 /// Bits by which registers are narrower than by default, by name.
 pub type Narrower = BTreeMap<String, u32>;

@@ -12,8 +12,8 @@ mod runs;
 mod solver;
 mod subject;
 
-use stepwave_kernel::prove::{CaseError, FamilyError, Lost};
 use stepwave_models::ModelError;
+use stepwave_prove::{CaseError, FamilyError, Lost};
 
 pub use counted::{Block, Way, blocks};
 pub use counter::{Counterexample, Fault, Survey, Tried, search};
@@ -25,7 +25,7 @@ pub use members::{Narrower, choices_at};
 use runs::number;
 pub use runs::{State, states};
 pub use solver::{Answer, Question, SolverError, ask, question};
-pub use subject::Subject;
+pub use subject::{Subject, strobes};
 
 /// Why nothing can be attempted.
 #[derive(Debug, thiserror::Error)]

@@ -1,8 +1,8 @@
 //! Recorded runs: what every net holds between two steps.
 
-use stepwave_kernel::Net;
-use stepwave_kernel::engine::{EngineKind, Rows, Watch};
+use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_models::Machine;
+use stepwave_netlist::Net;
 
 /// What every net holds in a row of a block that runs.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,9 +5,9 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use stepwave_kernel::export::{Checking, smt2_asking};
-use stepwave_kernel::{Net, Width};
+use stepwave_export::{Checking, smt2_asking};
 use stepwave_models::{Claims, Model, Options};
+use stepwave_netlist::{Net, Width};
 
 use super::{Narrower, ProofError, choices_at, largest};
 use crate::testbench::Testbench;

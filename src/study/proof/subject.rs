@@ -1,8 +1,8 @@
 //! The family of a model's netlists, and attempts at proofs of it.
 
-use stepwave_kernel::Design;
-use stepwave_kernel::prove::{self, Certificate, Family, Proof, Strobes};
 use stepwave_models::{Claims, Hardware, Kind, Machine, Model, ModelError, Options};
+use stepwave_netlist::Design;
+use stepwave_prove::{self as prove, Certificate, Family, Proof, Strobes};
 
 use super::ProofError;
 use super::learning::rows;
@@ -58,7 +58,7 @@ impl Subject {
         let designs: Vec<(u32, Design)> = members.iter().map(|(k, _, machine)| (*k, machine.design.clone())).collect();
         let family = Family::of(&designs)?;
         let machine = &members[0].2;
-        let strobes = machine.strobes();
+        let strobes = strobes(machine);
         let claims = claims.of_hardware(&members[0].1);
         let is_whole = family.ks().iter().copied().eq(LEAST_K..=GREATEST_K) && (1..LEAST_K).all(|k| member(k).is_ok());
         Ok(Subject { model, claims, family, strobes, any_preset: false, is_whole, members })
@@ -154,4 +154,12 @@ impl Subject {
             None => Ok(rows.len()),
         }
     }
+}
+
+/// The nets by which a proof follows a block of a machine.
+#[must_use]
+pub fn strobes(machine: &Machine) -> Strobes {
+    let [load, preset_position, loaded, stepped, done] =
+        [machine.load, machine.preset_position, machine.loaded, machine.stepped, machine.done].map(|port| port.net);
+    Strobes { load, preset_position, loaded, stepped, done }
 }

@@ -6,11 +6,11 @@
 
 use std::collections::BTreeMap;
 
-use stepwave_kernel::formula::{Clause, Formula};
-use stepwave_kernel::netlist::Op;
-use stepwave_kernel::{Net, Netlist};
 use stepwave_models::{AXES, Machine, Model};
 use stepwave_nc::Curve;
+use stepwave_netlist::cells::Op;
+use stepwave_netlist::formula::{Clause, Formula};
+use stepwave_netlist::{Net, Netlist};
 
 use crate::study::boxes::{Extent, Geometries};
 use crate::study::{Grid, Range};

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use stepwave_kernel::Width;
 use stepwave_models::options::{ON_OVERFLOW, WIDTH};
 use stepwave_models::{Hardware, Model, Options};
+use stepwave_netlist::Width;
 
 use super::simulate::too_narrow;
 use super::{Known, Widths};

@@ -9,10 +9,10 @@ mod judge;
 mod simulate;
 
 use rayon::prelude::*;
-use stepwave_kernel::Width;
 use stepwave_models::options::WIDTH;
 use stepwave_models::{AXES, Claims, Hardware, Model, ModelError, Options};
 use stepwave_nc::Curve;
+use stepwave_netlist::Width;
 
 use super::Grid;
 use super::boxes::{Extent, Geometries, check_simulated};

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use stepwave_kernel::bits::to_signed;
-use stepwave_kernel::engine::EngineKind;
-use stepwave_kernel::engine::lanes::{LaneProgram, LaneStop, LaneWatch, Observe};
-use stepwave_kernel::{Net, Width};
+use stepwave_engine::EngineKind;
+use stepwave_engine::lanes::{LaneProgram, LaneStop, LaneWatch, Observe};
 use stepwave_models::options::WIDTH;
 use stepwave_models::{Model, ModelError, Options};
 use stepwave_nc::Curve;
+use stepwave_netlist::bits::to_signed;
+use stepwave_netlist::{Net, Width};
 
 use super::{Tick, Witness};
 use crate::testbench::{Ending, RangeWatch, Testbench};

@@ -4,9 +4,9 @@
 //! of the first, so that every recipe describes a netlist without mistakes.
 
 use proptest::prelude::*;
-use stepwave_kernel::dsl::{Module, Register, Scope, Signal};
-use stepwave_kernel::netlist::Format;
-use stepwave_kernel::{Netlist, OnOverflow};
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::{Module, Register, Scope, Signal};
+use stepwave_netlist::{Netlist, OnOverflow};
 
 /// A random netlist.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! The axis: pulse and position.
 
-use stepwave_kernel::dsl::Scope;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::axis_counter;
 use super::bench::{loader, numbers, on_every_engine, wrapped};

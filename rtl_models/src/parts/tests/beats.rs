@@ -1,7 +1,7 @@
 //! The four-beat ring and its one-beat form.
 
-use stepwave_kernel::dsl::Scope;
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::{BeatRing, Block};
 use super::bench::{Bench, on_every_engine};

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use stepwave_kernel::dsl::{Module, Scope, Signal};
-use stepwave_kernel::engine::{Engine, EngineKind, Rows, Watch};
-use stepwave_kernel::{Bits, Design, Net, OnOverflow, elaborate};
+use stepwave_engine::{Engine, EngineKind, Rows, Watch};
+use stepwave_netlist::dsl::{Module, Scope, Signal};
+use stepwave_netlist::{Bits, Design, Net, OnOverflow, elaborate};
 
 use super::super::Block;
 

@@ -1,7 +1,7 @@
 //! The block loader and sequencer.
 
-use stepwave_kernel::bits::Reading;
-use stepwave_kernel::dsl::Scope;
+use stepwave_netlist::bits::Reading;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::Block;
 use super::bench::{loader, numbers, on_every_engine};

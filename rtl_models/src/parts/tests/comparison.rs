@@ -1,7 +1,7 @@
 //! The comparison-integral part.
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Arc, Curve, Direction};
+use stepwave_netlist::dsl::Scope;
 
 use super::super::{Block, Change, Side, comparison_integral};
 use super::bench::on_every_engine;

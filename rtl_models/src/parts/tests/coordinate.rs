@@ -1,7 +1,7 @@
 //! The up/down counter.
 
-use stepwave_kernel::OnOverflow;
-use stepwave_kernel::dsl::Scope;
+use stepwave_netlist::OnOverflow;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::up_down_counter;
 use super::bench::{Bench, input, numbers, on_every_engine, on_every_engine_with, wrapped};

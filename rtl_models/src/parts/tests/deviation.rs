@@ -1,6 +1,6 @@
 //! The deviation accumulator.
 
-use stepwave_kernel::dsl::Scope;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::DeviationAccumulator;
 use super::bench::{Bench, input, loader, numbers, on_every_engine, wrapped};

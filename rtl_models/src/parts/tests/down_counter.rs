@@ -1,6 +1,6 @@
 //! End-point down-counters and the count of pulses.
 
-use stepwave_kernel::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::super::{DownCounter, population_count};
 use super::bench::{Bench, loader, numbers, on_every_engine};

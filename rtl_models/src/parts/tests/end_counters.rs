@@ -1,7 +1,7 @@
 //! End-point counters of two axes.
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Arc, Curve, Direction};
+use stepwave_netlist::dsl::Scope;
 
 use super::super::EndCounters;
 use super::bench::{loader, on_every_engine};

@@ -1,7 +1,7 @@
 //! The frames of judged arcs and judged lines.
 
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Arc, Curve, Direction, Line};
+use stepwave_netlist::dsl::Scope;
 
 use super::super::{ArcFrame, BeatRing, Block, LineFrame};
 use super::bench::{Bench, loader, on_every_engine};

@@ -1,9 +1,9 @@
 //! The DDA integrator.
 
-use stepwave_kernel::Width;
-use stepwave_kernel::bits::Reading;
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Curve, Line};
+use stepwave_netlist::Width;
+use stepwave_netlist::bits::Reading;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::{Iteration, digits, integrator, rotated};
 use super::bench::{Bench, loader, numbers, on_every_engine};

@@ -1,8 +1,8 @@
 //! The pair of integrators that draws a curve.
 
-use stepwave_kernel::Width;
-use stepwave_kernel::dsl::Scope;
 use stepwave_nc::{Arc, Curve, Direction};
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::{Block, IntegratorPair, Normalizer, PairSide};
 use super::bench::{Bench, on_every_engine};

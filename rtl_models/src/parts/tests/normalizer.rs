@@ -1,7 +1,7 @@
 //! Left-shift normalisation.
 
-use stepwave_kernel::Code;
-use stepwave_kernel::dsl::{Module, Scope};
+use stepwave_netlist::Code;
+use stepwave_netlist::dsl::{Module, Scope};
 
 use super::super::{Block, Normalizer, shifted_left, shifted_right};
 use super::bench::{Bench, numbers, on_every_engine};

@@ -1,7 +1,7 @@
 //! The phase accumulator.
 
-use stepwave_kernel::OnOverflow;
-use stepwave_kernel::dsl::Scope;
+use stepwave_netlist::OnOverflow;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::PhaseAccumulator;
 use super::bench::{loader, numbers, on_every_engine, on_every_engine_with, wrapped};

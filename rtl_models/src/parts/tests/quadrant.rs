@@ -1,6 +1,6 @@
 //! Quadrant logic against the sign tables of the textbooks, typed in as they stand there.
 
-use stepwave_kernel::netlist::Format;
+use stepwave_netlist::cells::Format;
 
 use super::super::{Kind, next_quadrant, quadrant_register, x_grows};
 use super::bench::{Bench, on_every_engine};

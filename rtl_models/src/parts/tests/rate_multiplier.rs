@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use stepwave_kernel::dsl::Scope;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::{RateMultiplier, Units};
 use super::bench::{Bench, loader, numbers, on_every_engine};

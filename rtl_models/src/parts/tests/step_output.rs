@@ -1,6 +1,6 @@
 //! Step and direction outputs, and their timers.
 
-use stepwave_kernel::dsl::Scope;
+use stepwave_netlist::dsl::Scope;
 
 use super::super::{StepOutput, Timer};
 use super::bench::{Bench, numbers, on_every_engine};

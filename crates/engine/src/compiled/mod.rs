@@ -1,0 +1,334 @@
+//! The compiled engine: native code for long runs, the word engine for everything else.
+//!
+//! A run begins in the word engine. Once it has proved long, the clock loop is compiled (a millisecond or so) with
+//! what is known by then folded in: inputs of one bit (`load` = 0), and registers of few bits that have gone round in a
+//! short period all the time (a beat ring, `busy`). Guards leave the native loop where such a register does something
+//! else; the word engine then takes over, and a loop for the new circumstances is compiled, or one without assumptions
+//! after some tries. Every sample is recorded, so the outside sees no difference; or, where that is asked for, every sample in
+//! which a machine behind a pulse source is not idle.
+//!
+//! When inputs have changed (a block was loaded), a loop that was compiled for such inputs is entered at once.
+
+mod codegen;
+mod native;
+mod operation;
+mod passing;
+mod specialise;
+
+use std::collections::HashMap;
+
+use super::word::WordEngine;
+use super::{Engine, Extremes, Idle, Rows, Stop, Watch};
+use native::Native;
+use specialise::{History, Specialised};
+use stepwave_netlist::Design;
+use stepwave_netlist::cells::{Net, Op};
+
+/// Clocks in the word engine before anything is compiled: they take about as long as compiling.
+const WARM_UP: u64 = 16 * 1024;
+/// Clocks looked back on when a loop is compiled.
+const LOOK_BACK: u64 = 1024;
+/// Clocks that inputs must have stayed before a loop is compiled for them that assumes nothing else.
+const STEADY: u64 = 16;
+/// Loops compiled with assumptions on registers before one without is used.
+const TRIES: usize = 6;
+
+/// A compiled loop and what it takes for granted.
+struct Variant {
+    native: Native,
+    /// Values of the folded inputs.
+    inputs: HashMap<Net, u64>,
+    /// Values of the fixed registers in the last phase: a call may begin behind it.
+    last_phase: HashMap<Net, u64>,
+    assumes_registers: bool,
+    /// Times that a guard was left through.
+    guards: u64,
+    /// Clocks run.
+    clocks: u64,
+}
+
+impl Variant {
+    /// It leaves through its guards too often to pay.
+    fn is_poor(&self, warm_up: u64) -> bool {
+        self.guards >= 4 && self.clocks / self.guards < warm_up
+    }
+}
+
+pub(super) struct Compiled {
+    word: WordEngine,
+    design: Design,
+    watch: Watch,
+    /// Samples that are passed over.
+    idle: Option<Idle>,
+    registers: Vec<(Net, Net)>,
+    history: History,
+    warm_up: u64,
+    /// Clocks since an input changed or a guard failed.
+    quiet: u64,
+    /// Inputs have changed since a loop was left, and there is one for them.
+    known: bool,
+    variants: Vec<Variant>,
+    /// No code generator for this machine.
+    unavailable: bool,
+    state: Vec<u64>,
+}
+
+impl Compiled {
+    pub(super) fn new(design: &Design, watch: &Watch) -> Compiled {
+        Compiled::after(design, watch, WARM_UP)
+    }
+
+    /// Compiles once `warm_up` clocks were alike.
+    pub(super) fn after(design: &Design, watch: &Watch, warm_up: u64) -> Compiled {
+        let netlist = design.netlist();
+        let registers: Vec<(Net, Net)> = design
+            .registers()
+            .iter()
+            .filter_map(|&register| match netlist.cell(register).op {
+                Op::Register { next: Some(next), .. } => Some((register, next)),
+                _ => None,
+            })
+            .collect();
+        let words = registers.len() + design.inputs().len() + 1;
+        Compiled {
+            word: WordEngine::new(design, watch),
+            design: design.clone(),
+            watch: watch.clone(),
+            idle: None,
+            history: History::new(netlist, &registers, LOOK_BACK.min(warm_up)),
+            warm_up,
+            registers,
+            quiet: 0,
+            known: false,
+            variants: Vec::new(),
+            unavailable: false,
+            state: vec![0; words],
+        }
+    }
+
+    /// Passes over the samples in which the machine is idle, in sparse rows.
+    pub(super) fn passing(mut self, idle: &Idle) -> Compiled {
+        // Of what no cell drives by itself nothing is known while samples are passed over.
+        let registers: Vec<Net> = self.registers.iter().map(|&(net, _)| net).collect();
+        let running: Vec<Net> = idle.running.iter().copied().filter(|net| registers.contains(net)).collect();
+        let words = passing::HEAD + passing::EXTREMES * running.len();
+        self.state.resize(registers.len() + self.design.inputs().len() + words, 0);
+        self.history = History::new(self.design.netlist(), &self.registers, STEADY.min(self.warm_up));
+        self.idle = (!running.is_empty() && !self.watch.columns.is_empty())
+            .then(|| Idle { running, flags: idle.flags.clone() });
+        self
+    }
+
+    /// One clock in the word engine, remembered.
+    fn step(&mut self, rows: &mut Rows) -> Stop {
+        let changes = self.word.input_pending();
+        if changes {
+            // A loop that passes over samples takes nothing for granted but inputs: they need not stay for long.
+            let kept = self.idle.as_ref().map_or(0, |_| self.warm_up.saturating_sub(self.history.window()));
+            self.quiet = self.quiet.min(kept);
+        }
+        let stop = self.word.run(1, rows);
+        if changes {
+            self.known =
+                self.variants.iter().any(|variant| !variant.is_poor(self.warm_up) && self.holds(&variant.inputs));
+        }
+        self.quiet += 1;
+        if self.quiet + self.history.window() > self.warm_up {
+            self.history.remember(|net| self.word.value(net));
+        }
+        stop
+    }
+
+    /// These nets have these values.
+    fn holds(&self, values: &HashMap<Net, u64>) -> bool {
+        values.iter().all(|(&net, &value)| self.word.value(net) == value)
+    }
+
+    /// The loop that may be entered behind the present sample and fills rows of this room.
+    fn fitting(&self, stride: usize) -> Option<usize> {
+        let fits = |variant: &Variant| {
+            variant.native.stride() == stride && self.holds(&variant.inputs) && self.holds(&variant.last_phase)
+        };
+        self.variants.iter().position(|variant| !variant.is_poor(self.warm_up) && fits(variant))
+    }
+
+    /// Compiles a loop for what the recent clocks were like.
+    fn compile(&mut self, stride: usize) {
+        let assumes_registers = self.variants.iter().filter(|variant| variant.assumes_registers).count() < TRIES;
+        let value = |net: Net| self.word.value(net);
+        let period = if assumes_registers && self.idle.is_none() { self.history.period() } else { None };
+        let specialised =
+            Specialised::new(self.design.netlist(), self.design.inputs(), &self.registers, period, value, |nets| {
+                nets.extend(&self.watch.columns);
+                nets.extend(&self.watch.stops);
+                nets.extend(self.idle.iter().flat_map(|idle| &idle.flags));
+            });
+        let plan = codegen::Plan {
+            entry: &specialised.entry,
+            phases: &specialised.phases,
+            registers: &self.registers,
+            inputs: self.design.inputs(),
+            columns: &self.watch.columns,
+            stride,
+            stops: &self.watch.stops,
+            running: self.idle.as_ref().map_or(&[], |idle| &idle.running),
+            flags: self.idle.as_ref().map_or(&[], |idle| &idle.flags),
+        };
+        match Native::compile(&plan) {
+            Some(native) => {
+                let last_phase = specialised.phases.last().map(|phase| phase.fixed.clone()).unwrap_or_default();
+                let assumes_registers = !last_phase.is_empty();
+                let inputs = specialised.inputs;
+                self.variants.push(Variant { native, inputs, last_phase, assumes_registers, guards: 0, clocks: 0 });
+            }
+            None => self.unavailable = true,
+        }
+    }
+
+    /// Runs a loop behind the present sample, at most `clocks` clocks.
+    fn run_native(&mut self, variant: usize, clocks: u64, rows: &mut Rows) -> Option<Stop> {
+        let count = self.registers.len();
+        for (word, &(net, _)) in self.state.iter_mut().zip(&self.registers) {
+            *word = self.word.value(net);
+        }
+        for (word, &net) in self.state[count..].iter_mut().zip(self.design.inputs()) {
+            *word = self.word.value(net);
+        }
+        if self.idle.is_some() {
+            return self.run_passing(variant, clocks, rows);
+        }
+        let (values, first) = rows.spare();
+        let recorded = self.variants[variant].native.call(&mut self.state, values, first, clocks);
+        for &column in self.variants[variant].native.resting() {
+            rows.fill(column, recorded, self.word.value(self.watch.columns[column]));
+        }
+        rows.grow(self.word.clock() + 1, recorded);
+        let edge = self.state[self.state.len() - 1] == 1;
+        self.word.continue_from(recorded, &self.state[..count]);
+        self.variants[variant].clocks += recorded;
+        if edge {
+            self.variants[variant].guards += 1;
+            // The word engine records the sample behind the edge that the loop left at.
+            self.word.finish_edge(rows);
+            self.quiet = self.warm_up.saturating_sub(self.history.window());
+            self.history.clear();
+        }
+        self.known = false;
+        self.word.stopped()
+    }
+
+    /// The same, passing over idle samples: rows and clocks are counted apart.
+    fn run_passing(&mut self, variant: usize, clocks: u64, rows: &mut Rows) -> Option<Stop> {
+        let count = self.registers.len();
+        let base = count + self.design.inputs().len();
+        let clock = self.word.clock();
+        (self.state[base + passing::ROOM], self.state[base + passing::CLOCK]) = (rows.room(), clock);
+        let (values, first) = rows.spare();
+        let done = self.variants[variant].native.call(&mut self.state, values, first, clocks);
+        let recorded = self.state[base + passing::ROOM];
+        for &column in self.variants[variant].native.resting() {
+            rows.fill(column, recorded, self.word.value(self.watch.columns[column]));
+        }
+        rows.grow(clock + 1, recorded);
+        let running = self.idle.iter().flat_map(|idle| &idle.running);
+        let (words, _) = self.state[base + passing::HEAD..].as_chunks::<{ passing::EXTREMES }>();
+        for (&net, &[least, greatest, any, all]) in running.zip(words) {
+            // Some column, or nobody looks at it; and something was passed over, or the least is above the greatest.
+            if let Some(column) = self.watch.columns.iter().position(|&column| column == net)
+                && least <= greatest
+            {
+                rows.pass(column, Extremes { least, greatest, first: least, toggled: any & !all });
+            }
+        }
+        self.word.continue_from(done, &self.state[..count]);
+        self.variants[variant].clocks += done;
+        self.word.stopped()
+    }
+}
+
+impl Engine for Compiled {
+    fn set_input(&mut self, input: Net, value: u64) {
+        self.word.set_input(input, value);
+    }
+
+    fn reset(&mut self, rows: &mut Rows) {
+        (self.quiet, self.known) = (0, false);
+        self.history.clear();
+        self.word.reset(rows);
+    }
+
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]) {
+        (self.quiet, self.known) = (0, false);
+        self.history.clear();
+        self.word.restore(clock, registers, inputs);
+    }
+
+    fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop {
+        let end = self.word.clock().saturating_add(clocks);
+        let records = !self.watch.columns.is_empty();
+        while self.word.clock() < end {
+            if records && rows.is_full() {
+                return Stop::RowsFull;
+            }
+            let fills = self.idle.is_none() || rows.is_sparse();
+            if fills && (self.known || self.quiet >= self.warm_up) && !self.unavailable && !self.word.input_pending() {
+                let left = end - self.word.clock();
+                let bounded = records && self.idle.is_none();
+                let room = if bounded { rows.room().min(left) } else { left.min(i64::MAX as u64) };
+                match self.fitting(rows.stride()) {
+                    Some(variant) if self.variants[variant].native.phases() <= room => {
+                        if let Some(stop) = self.run_native(variant, room, rows) {
+                            return stop;
+                        }
+                        continue;
+                    }
+                    None if self.quiet >= self.warm_up && self.history.is_full() => {
+                        self.compile(rows.stride());
+                        self.history.clear();
+                    }
+                    _ => {}
+                }
+            }
+            if let Stop::Net(index) = self.step(rows) {
+                return Stop::Net(index);
+            }
+        }
+        Stop::Clocks
+    }
+
+    fn clock(&self) -> u64 {
+        self.word.clock()
+    }
+
+    fn value(&self, net: Net) -> u64 {
+        self.word.value(net)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepwave_netlist::dsl::Module;
+    use stepwave_netlist::elaborate;
+
+    /// Every other test would pass too if nothing were ever compiled.
+    #[test]
+    fn a_long_run_is_in_native_code() {
+        let module = Module::new("counter");
+        let m = module.top();
+        let count = m.reg("count", 16);
+        count.set(count.q.wrapping_add(m.lit(16, 1)));
+        let count = count.q.net();
+        let design = elaborate(module.finish().unwrap()).unwrap();
+        let watch = Watch { columns: vec![count], stops: Vec::new() };
+        let mut engine = Compiled::after(&design, &watch, 100);
+        engine.reset(&mut Rows::new(1, 0));
+        for _ in 0..100 {
+            engine.run(100, &mut Rows::new(1, 256));
+        }
+        assert!(!engine.unavailable);
+        let native: u64 = engine.variants.iter().map(|variant| variant.clocks).sum();
+        assert!(native > 9_000, "{native} of 10000 clocks in {} loops", engine.variants.len());
+        assert_eq!((engine.clock(), engine.value(count)), (10_000, 10_000));
+    }
+}

@@ -1,0 +1,135 @@
+//! Native code of a single cell. One-bit nets are bytes of 0 or 1, wider ones 64-bit words with zeros above the width.
+
+use std::collections::HashMap;
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{InstBuilder, Value, types};
+
+use super::codegen::{Generator, immediate, kind};
+use stepwave_netlist::bits::Width;
+use stepwave_netlist::cells::{Cell, Net, Netlist, Op};
+
+impl Generator<'_, '_> {
+    /// The value of a combinational cell or a constant.
+    pub(super) fn operation(&mut self, netlist: &Netlist, cell: &Cell, values: &HashMap<Net, Value>) -> Value {
+        let at = |net: Net| values[&net];
+        let width_of = |net: Net| netlist.width(net);
+        let width = cell.width;
+        match cell.op {
+            // Inputs and registers are given before; nothing else is without operands but a constant.
+            Op::Input | Op::Register { .. } => self.f.ins().iconst(kind(width), 0),
+            Op::Const(value) => self.f.ins().iconst(kind(width), immediate(value)),
+            Op::Not(a) if width == Width::ONE => match netlist.cell(a).op {
+                Op::Equal(a, b) => self.f.ins().icmp(IntCC::NotEqual, at(a), at(b)),
+                _ => self.f.ins().bxor_imm(at(a), 1),
+            },
+            Op::Not(a) => {
+                let ones = self.f.ins().iconst(types::I64, immediate(width.mask()));
+                self.f.ins().bxor(at(a), ones)
+            }
+            Op::And(a, b) => self.f.ins().band(at(a), at(b)),
+            Op::Or(a, b) => self.f.ins().bor(at(a), at(b)),
+            Op::Xor(a, b) => self.f.ins().bxor(at(a), at(b)),
+            Op::Mux { select, high, low } => self.f.ins().select(at(select), at(high), at(low)),
+            Op::Add(a, b) => {
+                let sum = self.f.ins().iadd(at(a), at(b));
+                self.masked(sum, width)
+            }
+            Op::Sub(a, b) => {
+                let difference = self.f.ins().isub(at(a), at(b));
+                self.masked(difference, width)
+            }
+            Op::Carry(a, b) => self.carry(at(a), at(b), width_of(a)),
+            Op::Borrow(a, b) => self.f.ins().icmp(IntCC::UnsignedLessThan, at(a), at(b)),
+            Op::AddOverflow(a, b) => {
+                // The sign of the sum differs from both operands'.
+                let sum = self.f.ins().iadd(at(a), at(b));
+                let (x, y) = (self.f.ins().bxor(at(a), sum), self.f.ins().bxor(at(b), sum));
+                self.sign_of_and(x, y, width_of(a))
+            }
+            Op::SubOverflow(a, b) => {
+                let difference = self.f.ins().isub(at(a), at(b));
+                let (x, y) = (self.f.ins().bxor(at(a), at(b)), self.f.ins().bxor(at(a), difference));
+                self.sign_of_and(x, y, width_of(a))
+            }
+            Op::Equal(a, b) => self.f.ins().icmp(IntCC::Equal, at(a), at(b)),
+            Op::LessSigned(a, b) => {
+                let (x, y) = (self.signed(at(a), width_of(a)), self.signed(at(b), width_of(b)));
+                self.f.ins().icmp(IntCC::SignedLessThan, x, y)
+            }
+            Op::Slice { of, low } => {
+                let whole = self.wide(at(of));
+                let shifted = self.f.ins().ushr_imm(whole, i64::from(low));
+                let top = u32::from(low) + width.get();
+                if width == Width::ONE {
+                    let byte = self.f.ins().ireduce(types::I8, shifted);
+                    if top == width_of(of).get() { byte } else { self.f.ins().band_imm(byte, 1) }
+                } else if top == width_of(of).get() {
+                    shifted
+                } else {
+                    self.masked(shifted, width)
+                }
+            }
+            Op::Concat { high, low } => {
+                let (high, low_value) = (self.wide(at(high)), self.wide(at(low)));
+                let high = self.f.ins().ishl_imm(high, i64::from(width_of(low).get()));
+                self.f.ins().bor(high, low_value)
+            }
+            Op::ZeroExtend(a) if width == Width::ONE => at(a),
+            Op::ZeroExtend(a) => self.wide(at(a)),
+            Op::SignExtend(a) if width == Width::ONE => at(a),
+            Op::SignExtend(a) => {
+                let signed = self.signed(at(a), width_of(a));
+                self.masked(signed, width)
+            }
+        }
+    }
+
+    fn masked(&mut self, value: Value, width: Width) -> Value {
+        match width {
+            Width::ONE => self.f.ins().band_imm(value, 1),
+            Width::MAX => value,
+            _ => {
+                let mask = self.f.ins().iconst(types::I64, immediate(width.mask()));
+                self.f.ins().band(value, mask)
+            }
+        }
+    }
+
+    fn carry(&mut self, a: Value, b: Value, width: Width) -> Value {
+        match width {
+            Width::ONE => self.f.ins().band(a, b),
+            Width::MAX => {
+                let sum = self.f.ins().iadd(a, b);
+                self.f.ins().icmp(IntCC::UnsignedLessThan, sum, a)
+            }
+            _ => {
+                let sum = self.f.ins().iadd(a, b);
+                let carry = self.f.ins().ushr_imm(sum, i64::from(width.get()));
+                self.f.ins().ireduce(types::I8, carry)
+            }
+        }
+    }
+
+    /// The sign bit of `x & y`, as a byte.
+    fn sign_of_and(&mut self, x: Value, y: Value, width: Width) -> Value {
+        let both = self.f.ins().band(x, y);
+        if width == Width::ONE {
+            return self.f.ins().band_imm(both, 1);
+        }
+        let shifted = self.f.ins().ushr_imm(both, i64::from(width.get()) - 1);
+        let byte = self.f.ins().ireduce(types::I8, shifted);
+        self.f.ins().band_imm(byte, 1)
+    }
+
+    /// The number in two's complement of 64 bits.
+    fn signed(&mut self, value: Value, width: Width) -> Value {
+        let value = self.wide(value);
+        let unused = 64 - i64::from(width.get());
+        if unused == 0 {
+            return value;
+        }
+        let top = self.f.ins().ishl_imm(value, unused);
+        self.f.ins().sshr_imm(top, unused)
+    }
+}

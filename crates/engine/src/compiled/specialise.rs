@@ -1,0 +1,163 @@
+//! What a loop takes for granted: which inputs and registers are folded in, and with which values.
+
+use std::collections::HashMap;
+
+use super::codegen::Phase;
+use stepwave_netlist::cells::{Net, Netlist, Op};
+use stepwave_netlist::passes::{Simplified, simplify};
+
+/// Widest register that is considered for being fixed.
+const FEW_BITS: u32 = 4;
+/// Longest period considered.
+const LONGEST_PERIOD: usize = 8;
+
+/// Values that registers of few bits had in recent clocks.
+pub(super) struct History {
+    registers: Vec<Net>,
+    /// One sample after another.
+    samples: Vec<u8>,
+    /// Clocks to look back on.
+    window: u64,
+}
+
+/// A register and its values, one a phase.
+pub(super) type Periodic = Vec<(Net, Vec<u64>)>;
+
+impl History {
+    /// Remembers the registers of few bits that the machine itself reads. One that is only looked at from outside, such
+    /// as a pulse, would be guarded for nothing.
+    pub(super) fn new(netlist: &Netlist, registers: &[(Net, Net)], window: u64) -> History {
+        let read = read_by_the_machine(netlist, registers);
+        let few = |net: &Net| netlist.width(*net).get() <= FEW_BITS && read[net.index()];
+        History {
+            registers: registers.iter().map(|&(net, _)| net).filter(|net| few(net)).collect(),
+            samples: Vec::new(),
+            window,
+        }
+    }
+
+    pub(super) fn window(&self) -> u64 {
+        self.window
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.samples.clear();
+    }
+
+    pub(super) fn is_full(&self) -> bool {
+        self.len() as u64 >= self.window
+    }
+
+    fn len(&self) -> usize {
+        self.samples.len().checked_div(self.registers.len()).unwrap_or(usize::MAX)
+    }
+
+    /// Takes a sample; when full, the older half goes.
+    pub(super) fn remember(&mut self, value: impl Fn(Net) -> u64) {
+        if self.len() as u64 >= 2 * self.window.max(1) {
+            self.samples.drain(..self.samples.len() / 2);
+        }
+        // At most four bits.
+        self.samples.extend(self.registers.iter().map(|&net| u8::try_from(value(net)).unwrap_or(0)));
+    }
+
+    /// The shortest period in which most registers went round, and those registers with their values, the last one
+    /// being that of the present sample.
+    pub(super) fn period(&self) -> Option<Periodic> {
+        let len = self.len();
+        let width = self.registers.len();
+        let at = |sample: usize, index: usize| self.samples[sample * width + index];
+        let goes_round =
+            |index: usize, period: usize| (period..len).all(|sample| at(sample, index) == at(sample - period, index));
+        let best = (1..=LONGEST_PERIOD)
+            .map(|period| (period, (0..width).filter(|&index| goes_round(index, period)).collect::<Vec<_>>()))
+            // The first of the greatest: `max_by_key` would give the last.
+            .rev()
+            .max_by_key(|(_, indices)| indices.len());
+        let (period, indices) = best.filter(|(period, indices)| !indices.is_empty() && *period <= len)?;
+        let values = |index: usize| (len - period..len).map(|sample| u64::from(at(sample, index))).collect();
+        Some(indices.into_iter().map(|index| (self.registers[index], values(index))).collect())
+    }
+}
+
+/// The nets that the next value of a register depends on, of another one than the net itself.
+fn read_by_the_machine(netlist: &Netlist, registers: &[(Net, Net)]) -> Vec<bool> {
+    let mut read = vec![false; netlist.cells.len()];
+    for &(register, next) in registers {
+        let mut seen = vec![false; netlist.cells.len()];
+        let mut pending = vec![next];
+        while let Some(net) = pending.pop() {
+            if !std::mem::replace(&mut seen[net.index()], true) {
+                read[net.index()] |= net != register;
+                netlist.cell(net).op.visit_inputs(|input| pending.push(input));
+            }
+        }
+    }
+    read
+}
+
+/// Netlists with everything folded in that a loop takes for granted.
+pub(super) struct Specialised {
+    pub(super) inputs: HashMap<Net, u64>,
+    pub(super) entry: Simplified,
+    pub(super) phases: Vec<Phase>,
+}
+
+impl Specialised {
+    /// Folds in the inputs of one bit that matter, at their present values, and the registers of `period`. `watched`
+    /// adds the nets observed beside the registers.
+    pub(super) fn new(
+        netlist: &Netlist,
+        inputs: &[Net],
+        registers: &[(Net, Net)],
+        period: Option<Periodic>,
+        value: impl Fn(Net) -> u64,
+        watched: impl Fn(&mut Vec<Net>),
+    ) -> Specialised {
+        let mut roots: Vec<Net> = registers.iter().map(|&(_, next)| next).collect();
+        watched(&mut roots);
+        let mut fixed: HashMap<Net, u64> = HashMap::new();
+        let mut entry = simplify(netlist, &fixed);
+        // The input with most readers first: `load` makes all others idle.
+        while let Some(input) = busiest_input(&entry, inputs, &roots, netlist, &fixed) {
+            fixed.insert(input, value(input));
+            entry = simplify(netlist, &fixed);
+        }
+        let period = period.unwrap_or_default();
+        let phases = period.first().map_or(1, |(_, values)| values.len());
+        let phase = |number: usize| {
+            let here: HashMap<Net, u64> = period.iter().map(|(net, values)| (*net, values[number])).collect();
+            let mut all = fixed.clone();
+            all.extend(&here);
+            Phase { logic: simplify(netlist, &all), fixed: here }
+        };
+        let phases = (0..phases).map(phase).collect();
+        Specialised { inputs: fixed, entry, phases }
+    }
+}
+
+/// The input of one bit that most live cells read, among those not fixed yet.
+fn busiest_input(
+    logic: &Simplified,
+    inputs: &[Net],
+    roots: &[Net],
+    netlist: &Netlist,
+    fixed: &HashMap<Net, u64>,
+) -> Option<Net> {
+    let new = &logic.netlist;
+    let mut live = vec![false; new.cells.len()];
+    let mut readers = vec![0u32; new.cells.len()];
+    let mut pending: Vec<Net> = roots.iter().map(|&net| logic.net(net)).collect();
+    while let Some(net) = pending.pop() {
+        if !std::mem::replace(&mut live[net.index()], true) {
+            new.cell(net).op.visit_inputs(|input| {
+                readers[input.index()] += 1;
+                pending.push(input);
+            });
+        }
+    }
+    let candidates = inputs.iter().copied().filter(|net| netlist.width(*net).get() == 1 && !fixed.contains_key(net));
+    let read = candidates
+        .filter(|&net| matches!(new.cell(logic.net(net)).op, Op::Input) && readers[logic.net(net).index()] > 0);
+    read.max_by_key(|&net| readers[logic.net(net).index()])
+}

@@ -1,0 +1,215 @@
+//! Puts values into an order and into rows: dead ones are dropped, and a row is used again when its value was read for
+//! the last time, so that the working set stays small.
+
+use std::collections::HashMap;
+
+use super::code::{Code, Do, Operation, RegisterRow, Slot};
+use super::lower::{Lowering, Node, Value};
+use super::watch::Reduce;
+use stepwave_netlist::cells::{Net, Netlist, Op};
+
+/// What a machine is to compute; all nets are of `netlist`.
+pub(super) struct Wanted<'a> {
+    /// A netlist as `passes::simplify` gives it.
+    pub(super) netlist: &'a Netlist,
+    /// Its inputs; one that is fixed is a constant here.
+    pub(super) inputs: &'a [Net],
+    /// The registers that it has, whether it needs them or not.
+    pub(super) registers: &'a [Net],
+    /// The accumulators: how, and of which nets.
+    pub(super) accumulators: &'a [(Reduce, Vec<Net>)],
+    /// Nets to be seen in each sample.
+    pub(super) outputs: &'a [Net],
+    /// Nets of which the code is to say whether one is 1, in an output of its own behind the others.
+    pub(super) any: &'a [Net],
+}
+
+impl Wanted<'_> {
+    /// The code.
+    pub(super) fn build(&self) -> Code {
+        let mut lowering = Lowering::new(self.netlist);
+        let registers: Vec<Value> = self.registers.iter().map(|&net| lowering.net(net)).collect();
+        let mut outputs: Vec<Value> = self.outputs.iter().map(|&net| lowering.net(net)).collect();
+        if !self.any.is_empty() {
+            let values: Vec<Value> = self.any.iter().map(|&net| lowering.net(net)).collect();
+            outputs.push(lowering.any(values));
+        }
+        let next: Vec<Option<Value>> =
+            self.registers.iter().zip(&registers).map(|(&net, &own)| self.next(&mut lowering, net, own)).collect();
+        let next = unshare(&mut lowering, next, &outputs);
+        let accumulators: Vec<(Value, Do<Value>)> = self
+            .accumulators
+            .iter()
+            .enumerate()
+            .map(|(index, (reduce, nets))| accumulate(&mut lowering, index, *reduce, nets))
+            .collect();
+        let roots = next.iter().flatten().chain(&outputs).copied();
+        let mut rows = Rows::new(&lowering, roots.collect(), &accumulators);
+        let mut code = Code::default();
+        let leaves: Vec<Value> = registers.iter().copied().chain(accumulators.iter().map(|(own, _)| *own)).collect();
+        leaves.iter().for_each(|&leaf| _ = rows.keep(leaf));
+        for (index, node) in lowering.nodes.iter().enumerate() {
+            let value = Value(index);
+            match *node {
+                _ if !rows.is_live(value) => {}
+                Node::Constant(pattern) => code.constants.push((rows.keep(value), pattern)),
+                Node::Input(net) => {
+                    let row = rows.keep(value);
+                    code.inputs.extend(self.inputs.iter().position(|&input| input == net).map(|index| (index, row)));
+                }
+                Node::Register(_) | Node::Accumulator(_) => {}
+                Node::Do(what) => {
+                    let operation = rows.place(value, what);
+                    code.operations.push(operation);
+                }
+            }
+        }
+        code.observers = code.operations.len();
+        for (own, what) in accumulators {
+            let target = rows.of(own);
+            code.operations.push(Operation { target, what: what.map(|value| rows.of(value)) });
+            code.accumulators.push(target);
+        }
+        code.outputs = outputs.iter().map(|&value| rows.of(value)).collect();
+        for ((&net, own), next) in self.registers.iter().zip(registers).zip(next) {
+            let cell = self.netlist.cell(net);
+            if let Op::Register { reset, .. } = cell.op {
+                let next = next.map(|value| rows.of(value));
+                code.registers.push(RegisterRow { width: cell.width, reset, row: rows.of(own), next });
+            }
+        }
+        code.rows = rows.count;
+        code
+    }
+
+    /// The next value of a register, unless it keeps its own.
+    fn next(&self, lowering: &mut Lowering, register: Net, own: Value) -> Option<Value> {
+        let Op::Register { next: Some(next), .. } = self.netlist.cell(register).op else { return None };
+        let next = lowering.net(next);
+        (next != own).then_some(next)
+    }
+}
+
+/// Gives every next value a row of its own, so that an edge is an exchange of rows.
+fn unshare(lowering: &mut Lowering, next: Vec<Option<Value>>, outputs: &[Value]) -> Vec<Option<Value>> {
+    let mut taken: Vec<Value> = outputs.to_vec();
+    let mut own = |value: Value| {
+        if matches!(lowering.nodes[value.0], Node::Do(_)) && !taken.contains(&value) {
+            taken.push(value);
+            value
+        } else {
+            lowering.unshared(Node::Do(Do::Copy(value)))
+        }
+    };
+    next.into_iter().map(|value| value.map(&mut own)).collect()
+}
+
+/// The row of an accumulator and the operation that updates it.
+fn accumulate(lowering: &mut Lowering, index: usize, reduce: Reduce, nets: &[Net]) -> (Value, Do<Value>) {
+    let own = lowering.leaf(Node::Accumulator(index));
+    let what = match reduce {
+        Reduce::Count => {
+            let any = lowering.any_set(nets);
+            Do::Count(own, any)
+        }
+        Reduce::Idle => {
+            let half = nets.len() / 2;
+            let (a, b) = (lowering.any_set(&nets[..half]), lowering.any_set(&nets[half..]));
+            Do::Idle(own, a, b)
+        }
+        Reduce::Least { signed } | Reduce::Greatest { signed } => {
+            let value = lowering.net(nets[0]);
+            match (reduce, signed) {
+                (Reduce::Least { .. }, false) => Do::Least(own, value),
+                (Reduce::Least { .. }, true) => Do::LeastSigned(own, value),
+                (_, false) => Do::Greatest(own, value),
+                (_, true) => Do::GreatestSigned(own, value),
+            }
+        }
+        Reduce::Sum => {
+            let [(value, bits)] = numbers(lowering, [nets[0]]);
+            Do::Sum(own, value, bits)
+        }
+        Reduce::RootGaps => Do::RootGaps(own, numbers(lowering, [nets[0], nets[1]])),
+        Reduce::LeastGap { since } | Reduce::GreatestGap { since } => {
+            let (since, at) = (lowering.leaf(Node::Accumulator(since)), lowering.net(nets[0]));
+            match reduce {
+                Reduce::LeastGap { .. } => Do::LeastWhere(own, since, at),
+                _ => Do::GreatestWhere(own, since, at),
+            }
+        }
+        Reduce::Since => Do::Since(own, lowering.net(nets[0])),
+    };
+    (own, what)
+}
+
+/// The values of nets, each with its number of bits.
+fn numbers<const N: usize>(lowering: &mut Lowering, nets: [Net; N]) -> [(Value, u32); N] {
+    nets.map(|net| (lowering.net(net), lowering.width(net).get()))
+}
+
+/// Which value stands in which row, and until when.
+struct Rows {
+    last_use: Vec<Option<usize>>,
+    row: HashMap<Value, Slot>,
+    free: Vec<Slot>,
+    count: usize,
+}
+
+/// A value that is still needed when all operations are done.
+const END: usize = usize::MAX;
+
+impl Rows {
+    fn new(lowering: &Lowering, mut roots: Vec<Value>, accumulators: &[(Value, Do<Value>)]) -> Rows {
+        for (_, what) in accumulators {
+            what.map(|value| roots.push(value));
+        }
+        let mut last_use = vec![None; lowering.nodes.len()];
+        roots.iter().for_each(|root| last_use[root.0] = Some(END));
+        // Operands come before their users, so that one walk from the end reaches all that is needed.
+        for index in (0..lowering.nodes.len()).rev() {
+            if let (Some(_), Node::Do(what)) = (last_use[index], lowering.nodes[index]) {
+                what.map(|operand| {
+                    let last = &mut last_use[operand.0];
+                    *last = Some(last.map_or(index, |last| last.max(index)));
+                });
+            }
+        }
+        Rows { last_use, row: HashMap::new(), free: Vec::new(), count: 0 }
+    }
+
+    fn is_live(&self, value: Value) -> bool {
+        self.last_use[value.0].is_some()
+    }
+
+    fn of(&self, value: Value) -> Slot {
+        self.row[&value]
+    }
+
+    /// A row for good.
+    fn keep(&mut self, value: Value) -> Slot {
+        self.last_use[value.0] = Some(END);
+        *self.row.entry(value).or_insert_with(|| {
+            self.count += 1;
+            self.count - 1
+        })
+    }
+
+    /// The operation with its rows. An operand read for the last time gives its row to the result.
+    fn place(&mut self, value: Value, what: Do<Value>) -> Operation {
+        let mut ended = Vec::new();
+        let what = what.map(|operand| {
+            if self.last_use[operand.0] == Some(value.0) && !ended.contains(&operand) {
+                ended.push(operand);
+            }
+            self.of(operand)
+        });
+        self.free.extend(ended.iter().map(|operand| self.row[operand]));
+        let target = self.free.pop().unwrap_or_else(|| {
+            self.count += 1;
+            self.count - 1
+        });
+        self.row.insert(value, target);
+        Operation { target, what }
+    }
+}

@@ -1,0 +1,165 @@
+//! Engines: what runs a [`Design`] clock by clock. They know nets and values, no names, no files, no methods.
+//!
+//! One clock is an edge, at which all registers take their next values at once from the old ones, and the settling of
+//! the combinational nets behind it. *Sample k* is the value of every net settled after edge k; sample 0 is the state
+//! after reset. An input set between two calls changes right behind the next edge, as the output of a register outside
+//! would: the edge itself still sees the old value.
+//!
+//! A counter of four bits, in every sample of 18 clocks:
+//!
+//! ```
+//! use stepwave_engine::{EngineKind, Rows, Watch};
+//! use stepwave_netlist::{dsl::Module, elaborate};
+//!
+//! let module = Module::new("counter");
+//! let m = module.top();
+//! let enable = m.input("enable", 1);
+//! let count = m.reg("count", 4);
+//! count.when(enable, count.q.wrapping_add(m.lit(4, 1))).else_hold();
+//! let (enable, count) = (enable.net(), count.q.net());
+//!
+//! let design = elaborate(module.finish().unwrap()).unwrap();
+//! let watch = Watch { columns: vec![count], stops: vec![] };
+//! let mut engine = EngineKind::Gates.build(&design, &watch);
+//! let mut rows = Rows::new(1, 32);
+//! engine.set_input(enable, 1);
+//! engine.reset(&mut rows);
+//! engine.run(18, &mut rows);
+//! assert_eq!(rows.row(18), [2]); // 18 modulo 16
+//! ```
+
+mod compiled;
+mod gates;
+pub mod lanes;
+mod word;
+
+use stepwave_netlist::Design;
+use stepwave_netlist::cells::{Net, Op};
+
+pub use stepwave_netlist::{Extremes, Rows};
+
+/// What an engine is to observe, fixed before it is built so that it can be compiled in.
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    /// Nets recorded in every row; where there are none, nothing is recorded and rows never fill.
+    pub columns: Vec<Net>,
+    /// Nets (1 bit) that stop a run as soon as one of them is 1 in a sample.
+    pub stops: Vec<Net>,
+}
+
+/// When a machine is idle: in a sample in which no register but the running ones has just changed or is about to, and no
+/// flag or stop is 1. An engine that is [told](EngineKind::build_passing) may pass over such a sample, recording only what
+/// the running registers came to.
+#[derive(Clone, Debug)]
+pub struct Idle {
+    /// Registers that go on at every clock, read as unsigned numbers: the phase of a pulse source.
+    pub running: Vec<Net>,
+    /// Nets (1 bit) whose 1 is always recorded.
+    pub flags: Vec<Net>,
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Stop {
+    /// The clocks asked for are done.
+    Clocks,
+    /// No room for a further row.
+    RowsFull,
+    /// The net `Watch::stops[_]` of this index is 1 in the last sample.
+    Net(usize),
+}
+
+/// A machine that runs one design.
+pub trait Engine: Send {
+    /// Sets an input from behind the next edge (or from reset) on. Bits above its width are ignored, and so is a net
+    /// that is no input.
+    fn set_input(&mut self, input: Net, value: u64);
+
+    /// Registers take their reset values, clock 0; `rows` forgets what it holds, whose clocks end here, and sample 0 is
+    /// recorded if there is room for a row.
+    fn reset(&mut self, rows: &mut Rows);
+
+    /// Takes the state that an engine of the same design had in the sample of `clock`: the values of all registers and
+    /// of all inputs, in the order of the design. Records nothing.
+    ///
+    /// # Panics
+    /// If there are not as many values.
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]);
+
+    /// Runs until `clocks` clocks are done, `rows` is full, or a stop net is 1 in a sample; at least one clock is done
+    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded that is not passed over; what `rows`
+    /// holds already must be the samples right before.
+    fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
+
+    /// Number of edges since reset.
+    fn clock(&self) -> u64;
+
+    /// Value of any net in the present sample, watched or not, named or not.
+    fn value(&self, net: Net) -> u64;
+}
+
+/// No register will change any more, as long as no input does: the present sample is how it stays.
+#[must_use]
+pub fn at_rest(engine: &dyn Engine, design: &Design) -> bool {
+    design.registers().iter().all(|&register| match design.netlist().cell(register).op {
+        Op::Register { next: Some(next), .. } => engine.value(next) == engine.value(register),
+        _ => true,
+    })
+}
+
+/// The engines, for a choice at run time.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum EngineKind {
+    /// Bit by bit through full adders: slow, and obviously right. The judge of the others.
+    Gates,
+    /// Word by word from a flat array of operations.
+    Word,
+    /// Native code for long runs.
+    Compiled,
+}
+
+impl EngineKind {
+    /// Every engine; tests loop over it.
+    pub const ALL: [EngineKind; 3] = [EngineKind::Gates, EngineKind::Word, EngineKind::Compiled];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            EngineKind::Gates => "gates",
+            EngineKind::Word => "word",
+            EngineKind::Compiled => "compiled",
+        }
+    }
+
+    /// An engine of this kind for a design, reset, all inputs 0.
+    #[must_use]
+    pub fn build(self, design: &Design, watch: &Watch) -> Box<dyn Engine> {
+        match self {
+            EngineKind::Gates => Box::new(gates::Gates::new(design, watch)),
+            EngineKind::Word => Box::new(word::WordEngine::new(design, watch)),
+            EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch)),
+        }
+    }
+
+    /// As [`build`](Self::build), an engine that may pass over idle samples where it gets [sparse rows](Rows::sparse).
+    #[must_use]
+    pub fn build_passing(self, design: &Design, watch: &Watch, idle: &Idle) -> Box<dyn Engine> {
+        match self {
+            EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch).passing(idle)),
+            EngineKind::Gates | EngineKind::Word => self.build(design, watch),
+        }
+    }
+}
+
+/// The compiled engine, but compiling as soon as `warm_up` clocks were alike: for tests and measurements.
+#[must_use]
+pub fn compiled_after(design: &Design, watch: &Watch, warm_up: u64) -> Box<dyn Engine> {
+    Box::new(compiled::Compiled::after(design, watch, warm_up))
+}
+
+/// As [`compiled_after`], passing over idle samples.
+#[must_use]
+pub fn passing_after(design: &Design, watch: &Watch, idle: &Idle, warm_up: u64) -> Box<dyn Engine> {
+    Box::new(compiled::Compiled::after(design, watch, warm_up).passing(idle))
+}

@@ -1,0 +1,265 @@
+//! The word-level engine: one `u64` per net, and a flat array of operations in levelled order. A clock walks the array
+//! once; nothing is allocated, hashed or chased through a tree.
+
+use super::{Engine, Rows, Stop, Watch};
+use stepwave_netlist::Design;
+use stepwave_netlist::bits::{self, Width};
+use stepwave_netlist::cells::{Net, Op};
+
+/// One operation: where its result goes, and the operator with its operands.
+struct Operation {
+    target: u32,
+    /// Width of the result, or of the operands where the result is a flag.
+    width: Width,
+    kind: Kind,
+}
+
+/// Operators on indices into the array of values. Those that need a second width or constant carry it.
+enum Kind {
+    Not(u32),
+    And(u32, u32),
+    Or(u32, u32),
+    Xor(u32, u32),
+    Mux(u32, u32, u32),
+    Add(u32, u32),
+    Sub(u32, u32),
+    Carry(u32, u32),
+    Borrow(u32, u32),
+    AddOverflow(u32, u32),
+    SubOverflow(u32, u32),
+    Equal(u32, u32),
+    LessSigned(u32, u32),
+    Slice(u32, u8),
+    Concat(u32, u32, u8),
+    Copy(u32),
+    SignExtend(u32, Width),
+}
+
+pub(super) struct WordEngine {
+    design: Design,
+    clock: u64,
+    values: Vec<u64>,
+    /// Of every cell, so that any net can be watched.
+    operations: Vec<Operation>,
+    /// Each register and the net of its next value.
+    registers: Vec<(u32, u32)>,
+    /// Next values between the two phases of an edge; same index as `registers`.
+    next: Vec<u64>,
+    columns: Vec<u32>,
+    stops: Vec<u32>,
+    /// Inputs that change behind the next edge.
+    pending: Vec<(u32, u64)>,
+}
+
+fn lower(design: &Design, net: Net) -> Option<Operation> {
+    let netlist = design.netlist();
+    let cell = netlist.cell(net);
+    let of = |net: Net| netlist.width(net);
+    let (kind, width) = match cell.op {
+        Op::Input | Op::Const(_) | Op::Register { .. } => return None,
+        Op::Not(a) => (Kind::Not(a.0), cell.width),
+        Op::And(a, b) => (Kind::And(a.0, b.0), cell.width),
+        Op::Or(a, b) => (Kind::Or(a.0, b.0), cell.width),
+        Op::Xor(a, b) => (Kind::Xor(a.0, b.0), cell.width),
+        Op::Mux { select, high, low } => (Kind::Mux(select.0, high.0, low.0), cell.width),
+        Op::Add(a, b) => (Kind::Add(a.0, b.0), cell.width),
+        Op::Sub(a, b) => (Kind::Sub(a.0, b.0), cell.width),
+        Op::Carry(a, b) => (Kind::Carry(a.0, b.0), of(a)),
+        Op::Borrow(a, b) => (Kind::Borrow(a.0, b.0), of(a)),
+        Op::AddOverflow(a, b) => (Kind::AddOverflow(a.0, b.0), of(a)),
+        Op::SubOverflow(a, b) => (Kind::SubOverflow(a.0, b.0), of(a)),
+        Op::Equal(a, b) => (Kind::Equal(a.0, b.0), of(a)),
+        Op::LessSigned(a, b) => (Kind::LessSigned(a.0, b.0), of(a)),
+        Op::Slice { of, low } => (Kind::Slice(of.0, low), cell.width),
+        Op::Concat { high, low } => {
+            // A part is at least 1 bit, so the shift is at most 63.
+            (Kind::Concat(high.0, low.0, u8::try_from(of(low).get()).unwrap_or(63)), cell.width)
+        }
+        Op::ZeroExtend(a) => (Kind::Copy(a.0), cell.width),
+        Op::SignExtend(a) => (Kind::SignExtend(a.0, of(a)), cell.width),
+    };
+    Some(Operation { target: net.0, width, kind })
+}
+
+impl WordEngine {
+    pub(super) fn new(design: &Design, watch: &Watch) -> WordEngine {
+        let netlist = design.netlist();
+        let registers: Vec<(u32, u32)> = design
+            .registers()
+            .iter()
+            .filter_map(|&register| match netlist.cell(register).op {
+                Op::Register { next: Some(next), .. } => Some((register.0, next.0)),
+                _ => None,
+            })
+            .collect();
+        let mut values = vec![0; netlist.cells.len()];
+        for (value, cell) in values.iter_mut().zip(&netlist.cells) {
+            if let Op::Const(constant) = cell.op {
+                *value = constant;
+            }
+        }
+        // Cells that nothing depends on stand behind all others; a description leaves next to none.
+        let mut seen = vec![false; netlist.cells.len()];
+        design.order().iter().for_each(|net| seen[net.index()] = true);
+        let order = design.order().iter().copied().chain(netlist.nets().filter(|net| !seen[net.index()]));
+        let indices = |nets: &[Net]| nets.iter().map(|net| net.0).collect();
+        let mut engine = WordEngine {
+            design: design.clone(),
+            clock: 0,
+            values,
+            operations: order.filter_map(|net| lower(design, net)).collect(),
+            next: vec![0; registers.len()],
+            registers,
+            columns: indices(&watch.columns),
+            stops: indices(&watch.stops),
+            pending: Vec::with_capacity(design.inputs().len()),
+        };
+        engine.reset(&mut Rows::new(0, 0));
+        engine
+    }
+
+    #[inline]
+    fn settle(&mut self) {
+        let v = &mut self.values[..];
+        for Operation { target, width, kind } in &self.operations {
+            let w = *width;
+            let at = |index: u32| v[index as usize];
+            let result = match *kind {
+                Kind::Not(a) => !at(a) & w.mask(),
+                Kind::And(a, b) => at(a) & at(b),
+                Kind::Or(a, b) => at(a) | at(b),
+                Kind::Xor(a, b) => at(a) ^ at(b),
+                Kind::Mux(select, high, low) => {
+                    if at(select) == 1 {
+                        at(high)
+                    } else {
+                        at(low)
+                    }
+                }
+                Kind::Add(a, b) => bits::add(w, at(a), at(b)),
+                Kind::Sub(a, b) => bits::sub(w, at(a), at(b)),
+                Kind::Carry(a, b) => u64::from(bits::carry(w, at(a), at(b))),
+                Kind::Borrow(a, b) => u64::from(bits::borrow(at(a), at(b))),
+                Kind::AddOverflow(a, b) => u64::from(bits::add_overflow(w, at(a), at(b))),
+                Kind::SubOverflow(a, b) => u64::from(bits::sub_overflow(w, at(a), at(b))),
+                Kind::Equal(a, b) => u64::from(at(a) == at(b)),
+                Kind::LessSigned(a, b) => u64::from(bits::less_signed(w, at(a), at(b))),
+                Kind::Slice(of, low) => at(of) >> low & w.mask(),
+                Kind::Concat(high, low, shift) => at(high) << shift | at(low),
+                Kind::Copy(a) => at(a),
+                Kind::SignExtend(a, from) => bits::sign_extend(from, w, at(a)),
+            };
+            v[*target as usize] = result;
+        }
+    }
+
+    #[inline]
+    fn edge(&mut self) {
+        for (next, &(_, source)) in self.next.iter_mut().zip(&self.registers) {
+            *next = self.values[source as usize];
+        }
+        for (&next, &(register, _)) in self.next.iter().zip(&self.registers) {
+            self.values[register as usize] = next;
+        }
+        self.clock += 1;
+    }
+
+    #[inline]
+    fn apply_inputs(&mut self) {
+        for &(input, value) in &self.pending {
+            self.values[input as usize] = value;
+        }
+        self.pending.clear();
+    }
+
+    #[inline]
+    fn record(&self, rows: &mut Rows) {
+        rows.push(self.clock, |column| self.values[self.columns[column] as usize]);
+    }
+}
+
+/// What the compiled engine needs to hand a run over and take it back.
+impl WordEngine {
+    /// An input changes behind the next edge.
+    pub(super) fn input_pending(&self) -> bool {
+        !self.pending.is_empty()
+    }
+
+    /// Takes the registers as they are `clocks` clocks later, and settles.
+    pub(super) fn continue_from(&mut self, clocks: u64, registers: &[u64]) {
+        self.clock += clocks;
+        for (&(register, _), &value) in self.registers.iter().zip(registers) {
+            self.values[register as usize] = value;
+        }
+        self.settle();
+    }
+
+    /// Counts and records the edge whose register values were taken over last.
+    pub(super) fn finish_edge(&mut self, rows: &mut Rows) {
+        self.clock += 1;
+        self.record(rows);
+    }
+
+    /// The stop net that is 1 in the present sample.
+    pub(super) fn stopped(&self) -> Option<Stop> {
+        self.stops.iter().position(|&net| self.values[net as usize] == 1).map(Stop::Net)
+    }
+}
+
+impl Engine for WordEngine {
+    fn set_input(&mut self, input: Net, value: u64) {
+        let cell = self.design.netlist().cell(input);
+        if cell.op == Op::Input {
+            self.pending.push((input.0, value & cell.width.mask()));
+        }
+    }
+
+    fn reset(&mut self, rows: &mut Rows) {
+        rows.clear();
+        self.clock = 0;
+        for &(register, _) in &self.registers {
+            if let Op::Register { reset, .. } = self.design.netlist().cell(Net(register)).op {
+                self.values[register as usize] = reset;
+            }
+        }
+        self.apply_inputs();
+        self.settle();
+        self.record(rows);
+    }
+
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]) {
+        let design = self.design.clone();
+        assert_eq!((registers.len(), inputs.len()), (design.registers().len(), design.inputs().len()));
+        for (&net, &value) in design.registers().iter().chain(design.inputs()).zip(registers.iter().chain(inputs)) {
+            self.values[net.index()] = value;
+        }
+        self.pending.clear();
+        self.clock = clock;
+        self.settle();
+    }
+
+    fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop {
+        let records = !self.columns.is_empty();
+        for _ in 0..clocks {
+            if records && rows.is_full() {
+                return Stop::RowsFull;
+            }
+            self.edge();
+            self.apply_inputs();
+            self.settle();
+            self.record(rows);
+            if let Some(stop) = self.stopped() {
+                return stop;
+            }
+        }
+        Stop::Clocks
+    }
+
+    fn clock(&self) -> u64 {
+        self.clock
+    }
+
+    fn value(&self, net: Net) -> u64 {
+        self.values[net.index()]
+    }
+}

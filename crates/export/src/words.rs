@@ -1,0 +1,136 @@
+//! The operators in the languages of model checkers and solvers: one table for both.
+//!
+//! Every net is a bit vector, in SMT-LIB too: what is a truth value there becomes one bit. Carries and overflows are
+//! taken from a sum or difference with one more bit, for not every tool knows operators of their own for them.
+
+use std::collections::HashSet;
+
+use stepwave_netlist::cells::{Net, Netlist, Op, Property};
+
+/// An operator in both languages.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Word {
+    /// In BTOR2; operands and then numbers follow.
+    pub(super) btor2: &'static str,
+    /// In SMT-LIB, with `$0` for the first operand and `#0` for the first number.
+    pub(super) smt2: &'static str,
+}
+
+const fn word(btor2: &'static str, smt2: &'static str) -> Word {
+    Word { btor2, smt2 }
+}
+
+const NOT: Word = word("not", "(bvnot $0)");
+const AND: Word = word("and", "(bvand $0 $1)");
+const OR: Word = word("or", "(bvor $0 $1)");
+const XOR: Word = word("xor", "(bvxor $0 $1)");
+const MUX: Word = word("ite", "(ite (= $0 #b1) $1 $2)");
+const ADD: Word = word("add", "(bvadd $0 $1)");
+const SUB: Word = word("sub", "(bvsub $0 $1)");
+const LESS: Word = word("ult", "(ite (bvult $0 $1) #b1 #b0)");
+const LESS_SIGNED: Word = word("slt", "(ite (bvslt $0 $1) #b1 #b0)");
+const EQUAL: Word = word("eq", "(bvcomp $0 $1)");
+const CONCAT: Word = word("concat", "(concat $0 $1)");
+/// Highest and lowest bit.
+const SLICE: Word = word("slice", "((_ extract #0 #1) $0)");
+/// Bits added.
+const ZERO_EXTEND: Word = word("uext", "((_ zero_extend #0) $0)");
+const SIGN_EXTEND: Word = word("sext", "((_ sign_extend #0) $0)");
+
+/// What a net is made of.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) enum Term {
+    /// Another net.
+    Net(Net),
+    /// An operator: its word, its width in bits, operands, numbers.
+    Apply(Word, u32, Vec<Term>, Vec<u32>),
+}
+
+impl Term {
+    fn slice(self, high: u32, low: u32) -> Term {
+        Term::Apply(SLICE, high - low + 1, vec![self], vec![high, low])
+    }
+}
+
+/// What a combinational cell computes. Inputs, constants and registers are given as themselves.
+pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
+    let (op, width) = (netlist.cell(net).op, netlist.width(net).get());
+    let bits = |net: Net| netlist.width(net).get();
+    let apply = |word: Word, numbers: Vec<u32>| {
+        let mut operands = Vec::new();
+        op.visit_inputs(|input| operands.push(Term::Net(input)));
+        Term::Apply(word, width, operands, numbers)
+    };
+    // One bit more, and what stands in it.
+    let wider = |word: Word, extend: Word, a: Net, b: Net| {
+        let wide = bits(a) + 1;
+        let operand = |net: Net| Term::Apply(extend, wide, vec![Term::Net(net)], vec![1]);
+        Term::Apply(word, wide, vec![operand(a), operand(b)], vec![])
+    };
+    // The added bit holds the sign of the exact result.
+    let overflow = |word: Word, a: Net, b: Net| {
+        let sign = |bit: u32| wider(word, SIGN_EXTEND, a, b).slice(bit, bit);
+        Term::Apply(XOR, 1, vec![sign(bits(a)), sign(bits(a) - 1)], vec![])
+    };
+    match op {
+        Op::Input | Op::Const(_) | Op::Register { .. } => Term::Net(net),
+        Op::Not(_) => apply(NOT, vec![]),
+        Op::And(..) => apply(AND, vec![]),
+        Op::Or(..) => apply(OR, vec![]),
+        Op::Xor(..) => apply(XOR, vec![]),
+        Op::Mux { .. } => apply(MUX, vec![]),
+        Op::Add(..) => apply(ADD, vec![]),
+        Op::Sub(..) => apply(SUB, vec![]),
+        Op::Carry(a, b) => wider(ADD, ZERO_EXTEND, a, b).slice(bits(a), bits(a)),
+        Op::Borrow(..) => apply(LESS, vec![]),
+        Op::AddOverflow(a, b) => overflow(ADD, a, b),
+        Op::SubOverflow(a, b) => overflow(SUB, a, b),
+        Op::Equal(..) => apply(EQUAL, vec![]),
+        Op::LessSigned(..) => apply(LESS_SIGNED, vec![]),
+        Op::Slice { low, .. } => apply(SLICE, vec![u32::from(low) + width - 1, u32::from(low)]),
+        Op::Concat { .. } => apply(CONCAT, vec![]),
+        Op::ZeroExtend(a) => apply(ZERO_EXTEND, vec![width - bits(a)]),
+        Op::SignExtend(a) => apply(SIGN_EXTEND, vec![width - bits(a)]),
+    }
+}
+
+/// What nets and properties are called.
+pub(super) struct Symbols {
+    /// Of each net: its first path, if it has a name.
+    pub(super) nets: Vec<Option<String>>,
+    /// Further paths of nets that have one.
+    pub(super) further: Vec<(Net, String)>,
+    /// Of each property: `never.` and the path of its net, or where that has none the words of the property's author, with
+    /// a line below for whatever is no part of a name.
+    pub(super) properties: Vec<String>,
+}
+
+impl Symbols {
+    pub(super) fn new(netlist: &Netlist) -> Symbols {
+        let mut nets: Vec<Option<String>> = vec![None; netlist.cells.len()];
+        let (mut further, mut taken) = (Vec::new(), HashSet::new());
+        for named in &netlist.names {
+            let path = netlist.path(named);
+            taken.insert(path.clone());
+            match &mut nets[named.net.index()] {
+                Some(_) => further.push((named.net, path)),
+                first => *first = Some(path),
+            }
+        }
+        let fit = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '_' };
+        let property = |property: &Property| {
+            let words = || property.name.chars().map(fit).collect();
+            let name = format!("never.{}", nets[property.never.index()].clone().unwrap_or_else(words));
+            let numbered = (1u64..).map(|number| format!("{name}_{number}"));
+            let free = std::iter::once(name.clone()).chain(numbered).find(|name| taken.insert(name.clone()));
+            free.unwrap_or(name)
+        };
+        let properties = netlist.properties.iter().map(property).collect();
+        Symbols { nets, further, properties }
+    }
+}
+
+/// Inputs and registers in creation order.
+pub(super) fn leaves(netlist: &Netlist) -> impl Iterator<Item = Net> {
+    netlist.nets().filter(|&net| matches!(netlist.cell(net).op, Op::Input | Op::Register { .. }))
+}

@@ -1,0 +1,488 @@
+//! The netlist: cells in one arena, and side tables for names, scopes, properties and source lines.
+//!
+//! A [`Net`] is the index of the cell that drives it. Only registers may refer to a net created later, so creation
+//! order is evaluation order and a combinational loop cannot be written. `Op::visit_inputs` is the only place that
+//! lists the operands of each operator.
+
+use std::panic::Location;
+
+use crate::bits::{Reading, Width};
+use crate::diag::Code;
+use crate::formula::Clause;
+
+/// A net, named by the cell that drives it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Net(
+    /// Index of the cell in the arena.
+    pub u32,
+);
+
+impl Net {
+    /// Index of the driving cell in the arena.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// What a cell does. Unless said otherwise operands and result are equally wide.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Op {
+    /// Set by the test bench.
+    Input,
+    /// A constant.
+    Const(u64),
+    /// A clocked register: takes `next` at every edge; `reset` before the first.
+    Register {
+        /// Net of the next value; `None` only while the netlist is being built.
+        next: Option<Net>,
+        /// Value before the first edge.
+        reset: u64,
+    },
+    /// Bitwise complement.
+    Not(Net),
+    /// Bitwise and.
+    And(Net, Net),
+    /// Bitwise or.
+    Or(Net, Net),
+    /// Bitwise exclusive or.
+    Xor(Net, Net),
+    /// `select` (1 bit) = 1 gives `high`, 0 gives `low`.
+    Mux {
+        /// One bit.
+        select: Net,
+        /// Result where `select` is 1.
+        high: Net,
+        /// Result where `select` is 0.
+        low: Net,
+    },
+    /// Sum modulo 2^width.
+    Add(Net, Net),
+    /// Difference modulo 2^width.
+    Sub(Net, Net),
+    /// Carry out of the sum of two equally wide operands; 1 bit.
+    Carry(Net, Net),
+    /// Borrow of the difference (first < second, unsigned); 1 bit.
+    Borrow(Net, Net),
+    /// The sum leaves the two's-complement range of the operands; 1 bit.
+    AddOverflow(Net, Net),
+    /// The difference leaves the two's-complement range of the operands; 1 bit.
+    SubOverflow(Net, Net),
+    /// Equal; 1 bit.
+    Equal(Net, Net),
+    /// First < second in two's complement; 1 bit.
+    LessSigned(Net, Net),
+    /// Bits `low .. low + width` of a net.
+    Slice {
+        /// The net that is cut.
+        of: Net,
+        /// Its lowest bit in the result.
+        low: u8,
+    },
+    /// `high` above `low`; the widths add up.
+    Concat {
+        /// Most significant part.
+        high: Net,
+        /// Least significant part.
+        low: Net,
+    },
+    /// Zeros above a net that is at most as wide.
+    ZeroExtend(Net),
+    /// The sign bit repeated above a net that is at most as wide.
+    SignExtend(Net),
+}
+
+impl Op {
+    /// Calls `visit` with every combinational operand; the next value of a register is not one.
+    pub fn visit_inputs(&self, mut visit: impl FnMut(Net)) {
+        match *self {
+            Op::Input | Op::Const(_) | Op::Register { .. } => {}
+            Op::Not(a) | Op::ZeroExtend(a) | Op::SignExtend(a) | Op::Slice { of: a, .. } => visit(a),
+            Op::And(a, b)
+            | Op::Or(a, b)
+            | Op::Xor(a, b)
+            | Op::Add(a, b)
+            | Op::Sub(a, b)
+            | Op::Carry(a, b)
+            | Op::Borrow(a, b)
+            | Op::AddOverflow(a, b)
+            | Op::SubOverflow(a, b)
+            | Op::Equal(a, b)
+            | Op::LessSigned(a, b)
+            | Op::Concat { high: a, low: b } => {
+                visit(a);
+                visit(b);
+            }
+            Op::Mux { select, high, low } => {
+                visit(select);
+                visit(high);
+                visit(low);
+            }
+        }
+    }
+}
+
+/// One cell: an operator and the width of its result.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct Cell {
+    /// What it does.
+    pub op: Op,
+    /// Width of the net that it drives.
+    pub width: Width,
+}
+
+/// Index of a scope; 0 is the top.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct ScopeId(
+    /// Index into [`Netlist::scopes`].
+    pub u32,
+);
+
+impl ScopeId {
+    /// The top scope, which bears the netlist's own name.
+    pub const TOP: ScopeId = ScopeId(0);
+
+    /// Index into [`Netlist::scopes`].
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A level of the hierarchy: an instance of a part.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct ScopeData {
+    /// The scope around this one; `None` for the top.
+    pub parent: Option<ScopeId>,
+    /// Its own name.
+    pub name: String,
+}
+
+/// How a person wants to read a named net.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Format {
+    /// Unsigned decimal.
+    Unsigned,
+    /// Two's-complement decimal.
+    Signed,
+    /// Two's-complement decimal, drawn as a curve.
+    Analog,
+    /// Ones and zeros.
+    Binary,
+    /// Decimal digits, 4 bits each.
+    Decimal,
+    /// A name for each value.
+    States(Vec<(u64, String)>),
+}
+
+impl Format {
+    /// Read as two's complement.
+    #[must_use]
+    pub fn is_signed(&self) -> bool {
+        self.reading().is_signed()
+    }
+
+    /// What number the bits mean.
+    #[must_use]
+    pub fn reading(&self) -> Reading {
+        match self {
+            Format::Signed | Format::Analog => Reading::Signed,
+            Format::Decimal => Reading::Decimal,
+            Format::Unsigned | Format::Binary | Format::States(_) => Reading::Unsigned,
+        }
+    }
+}
+
+/// A name for a net; a net may have several.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct NamedNet {
+    /// The net.
+    pub net: Net,
+    /// Scope that the name stands in.
+    pub scope: ScopeId,
+    /// The name, unique in its scope.
+    pub name: String,
+    /// How to show it.
+    pub format: Format,
+}
+
+/// What a strict cell does when its exact result does not fit.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum OnOverflow {
+    /// The run stops at that clock.
+    #[default]
+    Trap,
+    /// The result is the nearest value that fits.
+    Saturate,
+    /// The result is taken modulo 2^width.
+    Wrap,
+}
+
+/// Addition or subtraction.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Arithmetic {
+    /// left + right
+    Add,
+    /// left - right
+    Sub,
+}
+
+/// An operand of a strict cell, with the reading that makes it a number.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Operand {
+    /// The net.
+    pub net: Net,
+    /// Two's complement.
+    pub signed: bool,
+}
+
+/// Where a property comes from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Claim {
+    /// A strict cell: the exact result fits in the register that `left` stands for.
+    NoOverflow {
+        /// Operator.
+        operation: Arithmetic,
+        /// The register; its width and sign are those of the result.
+        left: Operand,
+        /// What is added or subtracted.
+        right: Operand,
+    },
+    /// An invariant that the model's author claims.
+    Invariant,
+}
+
+/// A net that must never be 1. The simulator watches it, a prover proves it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Property {
+    /// Path of the component that it is about.
+    pub name: String,
+    /// One bit; 1 is a violation.
+    pub never: Net,
+    /// What is claimed.
+    pub claim: Claim,
+}
+
+/// A netlist, complete or while it is being built.
+#[derive(Clone, Debug, Default)]
+pub struct Netlist {
+    /// All cells in creation order.
+    pub cells: Vec<Cell>,
+    /// The hierarchy; index 0 is the top.
+    pub scopes: Vec<ScopeData>,
+    /// Names of nets, in the order in which a wave shows them.
+    pub names: Vec<NamedNet>,
+    /// What must never happen.
+    pub properties: Vec<Property>,
+    /// What holds of registers between two steps of a block, in formulas of their leaf names: for tests and proofs. No
+    /// hardware comes of it.
+    pub invariants: Vec<Clause>,
+    /// Source line of each cell, where it is known; same index as `cells`.
+    pub sources: Vec<Option<&'static Location<'static>>>,
+}
+
+/// Equal in all but source lines, which the text form does not carry.
+impl PartialEq for Netlist {
+    fn eq(&self, other: &Netlist) -> bool {
+        self.cells == other.cells
+            && self.scopes == other.scopes
+            && self.names == other.names
+            && self.properties == other.properties
+            && self.invariants == other.invariants
+    }
+}
+
+impl Netlist {
+    /// An empty netlist with its top scope.
+    #[must_use]
+    pub fn new(name: &str) -> Netlist {
+        Netlist { scopes: vec![ScopeData { parent: None, name: name.to_owned() }], ..Netlist::default() }
+    }
+
+    /// The cell that drives a net.
+    #[must_use]
+    pub fn cell(&self, net: Net) -> Cell {
+        self.cells[net.index()]
+    }
+
+    /// Width of a net.
+    #[must_use]
+    pub fn width(&self, net: Net) -> Width {
+        self.cell(net).width
+    }
+
+    /// All nets in creation order.
+    pub fn nets(&self) -> impl Iterator<Item = Net> + use<> {
+        (0..u32::try_from(self.cells.len()).unwrap_or(u32::MAX)).map(Net)
+    }
+
+    /// The same netlist with a further scope `trap` that shows the operands of a strict cell, `left` and `right`, and the
+    /// exact result, `exact`, at every clock; `None` where the property is of no strict cell, or the result of operands of
+    /// 63 bits and more would need more than 64. The nets that were there keep their numbers.
+    #[must_use]
+    pub fn showing_operands(&self, property: &Property) -> Option<Netlist> {
+        let Claim::NoOverflow { operation, left, right } = property.claim else { return None };
+        // A bit for the carry, and one for the sign of a difference.
+        let bits = self.width(left.net).max(self.width(right.net)).get() + 2;
+        let width = Width::new(u64::from(bits)).ok()?;
+        let mut netlist = self.clone();
+        let mut add = |op: Op, width: Width| {
+            netlist.cells.push(Cell { op, width });
+            netlist.sources.push(None);
+            u32::try_from(netlist.cells.len() - 1).ok().map(Net)
+        };
+        let mut wide = |operand: Operand| {
+            add(if operand.signed { Op::SignExtend(operand.net) } else { Op::ZeroExtend(operand.net) }, width)
+        };
+        let (a, b) = (wide(left)?, wide(right)?);
+        let exact = match operation {
+            Arithmetic::Add => Op::Add(a, b),
+            Arithmetic::Sub => Op::Sub(a, b),
+        };
+        let exact = add(exact, width)?;
+        // Nets of their own: a register keeps the one name that reports know it by.
+        let mut copy = |of: Net| add(Op::ZeroExtend(of), self.width(of));
+        let (left_shown, right_shown) = (copy(left.net)?, copy(right.net)?);
+        let scope = ScopeId(u32::try_from(netlist.scopes.len()).ok()?);
+        netlist.scopes.push(ScopeData { parent: Some(ScopeId::TOP), name: "trap".to_owned() });
+        let shown = |signed: bool| if signed { Format::Signed } else { Format::Unsigned };
+        let names = [("left", left_shown, left.signed), ("right", right_shown, right.signed), ("exact", exact, true)];
+        netlist.names.extend(names.map(|(name, net, signed)| NamedNet {
+            net,
+            scope,
+            name: name.to_owned(),
+            format: shown(signed),
+        }));
+        Some(netlist)
+    }
+
+    /// Dotted path of a scope, beginning with the netlist's name.
+    #[must_use]
+    pub fn scope_path(&self, scope: ScopeId) -> String {
+        let data = &self.scopes[scope.index()];
+        match data.parent {
+            Some(parent) => format!("{}.{}", self.scope_path(parent), data.name),
+            None => data.name.clone(),
+        }
+    }
+
+    /// Dotted path of a name.
+    #[must_use]
+    pub fn path(&self, named: &NamedNet) -> String {
+        format!("{}.{}", self.scope_path(named.scope), named.name)
+    }
+
+    /// The first name given to a net.
+    #[must_use]
+    pub fn name_of(&self, net: Net) -> Option<&NamedNet> {
+        self.names.iter().find(|named| named.net == net)
+    }
+
+    /// The net that bears this name, given as leaf name or as dotted path.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<&NamedNet> {
+        self.names.iter().find(|named| named.name == name || self.path(named) == name)
+    }
+
+    /// The rule of widths for a cell whose operands exist: the one place where they are checked.
+    ///
+    /// # Errors
+    /// The broken rule, with the widths concerned.
+    pub fn check_cell(&self, cell: &Cell) -> Result<(), (Code, String)> {
+        let w = |net: Net| self.width(net);
+        let equal = |a: Net, b: Net| {
+            if w(a) == w(b) {
+                Ok(())
+            } else {
+                let message = format!("{} and {} are not equally wide", self.describe(a), self.describe(b));
+                Err((Code::WidthMismatch, message))
+            }
+        };
+        let is = |net: Net, width: Width| {
+            if w(net) == width {
+                Ok(())
+            } else {
+                let message = format!("{} stands where {width} belong", self.describe(net));
+                Err((Code::WidthMismatch, message))
+            }
+        };
+        let one_bit = |width: Width| {
+            if width == Width::ONE {
+                Ok(())
+            } else {
+                Err((Code::NotOneBit, format!("a yes-or-no result is 1 bit wide, not {width}")))
+            }
+        };
+        match cell.op {
+            Op::Input => Ok(()),
+            Op::Const(value) | Op::Register { reset: value, .. } if value > cell.width.mask() => {
+                Err((Code::ValueTooWide, format!("the value {value} does not fit in {}", cell.width)))
+            }
+            Op::Const(_) | Op::Register { next: None, .. } => Ok(()),
+            Op::Register { next: Some(next), .. } => is(next, cell.width),
+            Op::Not(a) => is(a, cell.width),
+            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Add(a, b) | Op::Sub(a, b) => {
+                equal(a, b)?;
+                is(a, cell.width)
+            }
+            Op::Mux { select, high, low } => {
+                if w(select) != Width::ONE {
+                    return Err((Code::NotOneBit, format!("{} selects, so it must be 1 bit", self.describe(select))));
+                }
+                equal(high, low)?;
+                is(high, cell.width)
+            }
+            Op::Carry(a, b)
+            | Op::Borrow(a, b)
+            | Op::AddOverflow(a, b)
+            | Op::SubOverflow(a, b)
+            | Op::Equal(a, b)
+            | Op::LessSigned(a, b) => {
+                equal(a, b)?;
+                one_bit(cell.width)
+            }
+            Op::Slice { of, low } => {
+                if u32::from(low) + cell.width.get() <= w(of).get() {
+                    Ok(())
+                } else {
+                    let what = format!("{} from bit {low} of {}", cell.width, self.describe(of));
+                    Err((Code::OutOfRange, format!("a slice of {what} reaches past its top")))
+                }
+            }
+            Op::Concat { high, low } => {
+                if w(high).get() + w(low).get() == cell.width.get() {
+                    Ok(())
+                } else {
+                    let parts = format!("{} above {}", self.describe(high), self.describe(low));
+                    Err((Code::WidthMismatch, format!("{parts} do not make {}", cell.width)))
+                }
+            }
+            Op::ZeroExtend(a) | Op::SignExtend(a) => {
+                if w(a) <= cell.width {
+                    Ok(())
+                } else {
+                    let message = format!("{} cannot be extended to {}", self.describe(a), cell.width);
+                    Err((Code::OutOfRange, message))
+                }
+            }
+        }
+    }
+
+    /// A net in words: path and width.
+    #[must_use]
+    pub fn describe(&self, net: Net) -> String {
+        let name = self.name_of(net).map_or_else(|| format!("net %{}", net.0), |named| self.path(named));
+        format!("{name} ({})", self.width(net))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_stays_small() {
+        assert_eq!(size_of::<Net>(), 4);
+        assert!(size_of::<Cell>() <= 32, "{}", size_of::<Cell>());
+    }
+}

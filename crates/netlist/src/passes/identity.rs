@@ -1,0 +1,163 @@
+//! Algebraic identities: a cell that is one of its operands, a constant, or a simpler operator.
+
+use super::share::Builder;
+use crate::bits::Width;
+use crate::cells::{Net, Op};
+
+/// What a cell is better written as.
+pub(super) enum Simpler {
+    /// An existing net.
+    Same(Net),
+    /// A constant of the cell's width.
+    Constant(u64),
+    /// Another operator of the same width.
+    As(Op),
+}
+
+use Simpler::{As, Constant, Same};
+
+/// A simpler form of a cell, if there is one.
+pub(super) fn simpler(builder: &mut Builder, op: Op, width: Width) -> Option<Simpler> {
+    let ones = width.mask();
+    let known = |builder: &Builder, net: Net| builder.known(net);
+    match op {
+        Op::Not(a) => match builder.op(a) {
+            Op::Not(inner) => Some(Same(inner)),
+            _ => None,
+        },
+        Op::And(a, b) => match (known(builder, a), known(builder, b)) {
+            (Some(0), _) | (_, Some(0)) => Some(Constant(0)),
+            (Some(value), _) if value == ones => Some(Same(b)),
+            (_, Some(value)) if value == ones => Some(Same(a)),
+            _ if a == b => Some(Same(a)),
+            _ if complements(builder, a, b) => Some(Constant(0)),
+            _ => None,
+        },
+        Op::Or(a, b) => match (known(builder, a), known(builder, b)) {
+            (Some(0), _) => Some(Same(b)),
+            (_, Some(0)) => Some(Same(a)),
+            (Some(value), _) | (_, Some(value)) if value == ones => Some(Constant(ones)),
+            _ if a == b => Some(Same(a)),
+            _ if complements(builder, a, b) => Some(Constant(ones)),
+            _ => None,
+        },
+        Op::Xor(a, b) => match (known(builder, a), known(builder, b)) {
+            (Some(0), _) => Some(Same(b)),
+            (_, Some(0)) => Some(Same(a)),
+            (Some(value), _) if value == ones => Some(As(Op::Not(b))),
+            (_, Some(value)) if value == ones => Some(As(Op::Not(a))),
+            _ if a == b => Some(Constant(0)),
+            _ => None,
+        },
+        Op::Add(a, b) => match (known(builder, a), known(builder, b)) {
+            (Some(0), _) => Some(Same(b)),
+            (_, Some(0)) => Some(Same(a)),
+            _ => None,
+        },
+        Op::Sub(a, b) if a == b => Some(Constant(0)),
+        Op::Sub(a, b) => (known(builder, b) == Some(0)).then_some(Same(a)),
+        Op::Carry(a, b) | Op::AddOverflow(a, b) => {
+            (known(builder, a) == Some(0) || known(builder, b) == Some(0)).then_some(Constant(0))
+        }
+        Op::Borrow(a, b) | Op::SubOverflow(a, b) if a == b || known(builder, b) == Some(0) => Some(Constant(0)),
+        Op::LessSigned(a, b) if a == b => Some(Constant(0)),
+        Op::Equal(a, b) if a == b => Some(Constant(1)),
+        Op::Equal(a, b) if builder.width(a) == Width::ONE => match (known(builder, a), known(builder, b)) {
+            (Some(1), _) => Some(Same(b)),
+            (_, Some(1)) => Some(Same(a)),
+            (Some(0), _) => Some(As(Op::Not(b))),
+            (_, Some(0)) => Some(As(Op::Not(a))),
+            _ => None,
+        },
+        Op::Mux { select, high, low } => mux(builder, select, high, low, width),
+        Op::Slice { of, low } => slice(builder, of, low, width),
+        Op::Concat { high, low } => (known(builder, high) == Some(0)).then_some(As(Op::ZeroExtend(low))),
+        Op::ZeroExtend(a) | Op::SignExtend(a) if builder.width(a) == width => Some(Same(a)),
+        Op::ZeroExtend(a) => match builder.op(a) {
+            Op::ZeroExtend(inner) => Some(As(Op::ZeroExtend(inner))),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn complements(builder: &Builder, a: Net, b: Net) -> bool {
+    builder.op(a) == Op::Not(b) || builder.op(b) == Op::Not(a)
+}
+
+fn mux(builder: &mut Builder, select: Net, high: Net, low: Net, width: Width) -> Option<Simpler> {
+    match builder.known(select) {
+        Some(1) => return Some(Same(high)),
+        Some(_) => return Some(Same(low)),
+        None if high == low => return Some(Same(high)),
+        None => {}
+    }
+    if let Op::Not(inner) = builder.op(select) {
+        return Some(As(Op::Mux { select: inner, high: low, low: high }));
+    }
+    // A multiplexer behind another one with the same select never shows the other side.
+    if let Op::Mux { select: inner, high: shown, .. } = builder.op(high)
+        && inner == select
+    {
+        return Some(As(Op::Mux { select, high: shown, low }));
+    }
+    if let Op::Mux { select: inner, low: shown, .. } = builder.op(low)
+        && inner == select
+    {
+        return Some(As(Op::Mux { select, high, low: shown }));
+    }
+    if width == Width::ONE {
+        return match (builder.known(high), builder.known(low)) {
+            (Some(1), Some(0)) => Some(Same(select)),
+            (Some(0), Some(1)) => Some(As(Op::Not(select))),
+            (Some(1), None) => Some(As(Op::Or(select, low))),
+            (None, Some(0)) => Some(As(Op::And(select, high))),
+            (Some(0), None) => {
+                let not = builder.make(Op::Not(select), Width::ONE);
+                Some(As(Op::And(not, low)))
+            }
+            (None, Some(1)) => {
+                let not = builder.make(Op::Not(select), Width::ONE);
+                Some(As(Op::Or(not, high)))
+            }
+            _ => None,
+        };
+    }
+    // Counting by one under a condition is adding the condition.
+    let counted = |builder: &mut Builder, make: fn(Net, Net) -> Op| {
+        let bit = builder.make(Op::ZeroExtend(select), width);
+        Some(As(make(low, bit)))
+    };
+    match builder.op(high) {
+        Op::Add(a, b) if a == low && builder.known(b) == Some(1) => counted(builder, Op::Add),
+        Op::Add(b, a) if a == low && builder.known(b) == Some(1) => counted(builder, Op::Add),
+        Op::Sub(a, b) if a == low && builder.known(b) == Some(1) => counted(builder, Op::Sub),
+        _ => None,
+    }
+}
+
+fn slice(builder: &mut Builder, of: Net, low: u8, width: Width) -> Option<Simpler> {
+    if low == 0 && builder.width(of) == width {
+        return Some(Same(of));
+    }
+    let (from, top) = (u32::from(low), u32::from(low) + width.get());
+    match builder.op(of) {
+        Op::Slice { of: inner, low: below } => Some(As(Op::Slice { of: inner, low: below + low })),
+        Op::Concat { high, low: part } => {
+            let split = builder.width(part).get();
+            if top <= split {
+                Some(As(Op::Slice { of: part, low }))
+            } else if from >= split {
+                // At most 63 bits lie below the high part.
+                Some(As(Op::Slice { of: high, low: low - u8::try_from(split).unwrap_or(low) }))
+            } else {
+                None
+            }
+        }
+        Op::ZeroExtend(part) => {
+            let split = builder.width(part).get();
+            if from >= split { Some(Constant(0)) } else { (top <= split).then_some(As(Op::Slice { of: part, low })) }
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,148 @@
+//! Passes over netlists: the same behaviour from fewer and simpler cells.
+//!
+//! [`simplify`] walks the cells once in creation order and builds them anew. Each cell goes through three short steps:
+//! `constant` computes it if its operands are known, `identity` replaces it by an operand or a simpler operator,
+//! `share` finds an equal cell that exists already.
+
+pub mod constant;
+mod identity;
+mod share;
+
+use std::collections::HashMap;
+
+use crate::cells::{Cell, Claim, Net, Netlist, Op, Property};
+use share::Builder;
+
+/// A simplified netlist, and where each net of the original one went.
+#[derive(Clone, Debug)]
+pub struct Simplified {
+    /// The new netlist, with all names, properties and invariants.
+    pub netlist: Netlist,
+    /// New net of each old one.
+    pub map: Vec<Net>,
+}
+
+impl Simplified {
+    /// Where a net of the original went.
+    #[must_use]
+    pub fn net(&self, old: Net) -> Net {
+        self.map[old.index()]
+    }
+
+    /// The value of a net of the original, if it is always the same.
+    #[must_use]
+    pub fn constant(&self, old: Net) -> Option<u64> {
+        match self.netlist.cell(self.net(old)).op {
+            Op::Const(value) => Some(value),
+            _ => None,
+        }
+    }
+}
+
+/// Simplifies an elaborated netlist. Inputs and registers in `fixed` are taken to have the given values: the result
+/// behaves as the original only while they do.
+#[must_use]
+pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
+    let mut builder = Builder::default();
+    let mut map: Vec<Net> = Vec::with_capacity(netlist.cells.len());
+    for (net, cell) in netlist.nets().zip(&netlist.cells) {
+        let new = match (fixed.get(&net), cell.op) {
+            (Some(&value), _) => builder.constant(value, cell.width),
+            (None, Op::Input | Op::Register { .. }) => builder.leaf(*cell),
+            (None, op) => builder.make(moved(op, |old| map[old.index()]), cell.width),
+        };
+        map.push(new);
+    }
+    let mut new = Netlist {
+        cells: builder.into_cells(),
+        scopes: netlist.scopes.clone(),
+        names: netlist.names.clone(),
+        properties: netlist.properties.clone(),
+        invariants: netlist.invariants.clone(),
+        sources: Vec::new(),
+    };
+    new.sources = vec![None; new.cells.len()];
+    for (old, cell) in netlist.nets().zip(&netlist.cells) {
+        if let Op::Register { next: Some(next), reset } = cell.op
+            && !fixed.contains_key(&old)
+        {
+            let op = Op::Register { next: Some(map[next.index()]), reset };
+            new.cells[map[old.index()].index()] = Cell { op, width: cell.width };
+        }
+    }
+    for named in &mut new.names {
+        named.net = map[named.net.index()];
+    }
+    for property in &mut new.properties {
+        move_property(property, |net| map[net.index()]);
+    }
+    Simplified { netlist: new, map }
+}
+
+/// A property about other nets.
+pub fn move_property(property: &mut Property, go: impl Fn(Net) -> Net) {
+    property.never = go(property.never);
+    if let Claim::NoOverflow { left, right, .. } = &mut property.claim {
+        for operand in [left, right] {
+            operand.net = go(operand.net);
+        }
+    }
+}
+
+/// The operator on other nets.
+pub fn moved(op: Op, go: impl Fn(Net) -> Net) -> Op {
+    match op {
+        Op::Input | Op::Const(_) | Op::Register { .. } => op,
+        Op::Not(a) => Op::Not(go(a)),
+        Op::And(a, b) => Op::And(go(a), go(b)),
+        Op::Or(a, b) => Op::Or(go(a), go(b)),
+        Op::Xor(a, b) => Op::Xor(go(a), go(b)),
+        Op::Mux { select, high, low } => Op::Mux { select: go(select), high: go(high), low: go(low) },
+        Op::Add(a, b) => Op::Add(go(a), go(b)),
+        Op::Sub(a, b) => Op::Sub(go(a), go(b)),
+        Op::Carry(a, b) => Op::Carry(go(a), go(b)),
+        Op::Borrow(a, b) => Op::Borrow(go(a), go(b)),
+        Op::AddOverflow(a, b) => Op::AddOverflow(go(a), go(b)),
+        Op::SubOverflow(a, b) => Op::SubOverflow(go(a), go(b)),
+        Op::Equal(a, b) => Op::Equal(go(a), go(b)),
+        Op::LessSigned(a, b) => Op::LessSigned(go(a), go(b)),
+        Op::Slice { of, low } => Op::Slice { of: go(of), low },
+        Op::Concat { high, low } => Op::Concat { high: go(high), low: go(low) },
+        Op::ZeroExtend(a) => Op::ZeroExtend(go(a)),
+        Op::SignExtend(a) => Op::SignExtend(go(a)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::{parse, print};
+
+    /// Cells of the simplified text, without those that nothing uses.
+    fn simplified(text: &str) -> String {
+        let simplified = simplify(&parse(text).unwrap(), &HashMap::new());
+        print(&simplified.netlist)
+    }
+
+    #[test]
+    fn constants_are_computed_and_equal_cells_shared() {
+        let before = "netlist m\n%0:4 = input\n%1:4 = const 0x3\n%2:4 = const 0x2\n%3:4 = add %1 %2\n\
+                      %4:4 = add %0 %3\n%5:4 = add %3 %0\n%6:1 = equal %4 %5\nname %6 in 0 \"e\" unsigned\n";
+        let after = "netlist m\n%0:4 = input\n%1:4 = const 0x3\n%2:4 = const 0x2\n%3:4 = const 0x5\n\
+                     %4:4 = add %0 %3\n%5:1 = const 0x1\nname %5 in 0 \"e\" unsigned\n";
+        assert_eq!(simplified(before), after);
+    }
+
+    #[test]
+    fn a_fixed_register_becomes_a_constant_and_its_enable_logic_goes() {
+        let before = parse(
+            "netlist m\n%0:1 = register reset 0x0 next %1\n%1:1 = not %0\n%2:4 = register reset 0x0 next %4\n\
+             %3:4 = not %2\n%4:4 = mux %0 %3 %2\n",
+        )
+        .unwrap();
+        let fixed = HashMap::from([(Net(0), 0)]);
+        let after = simplify(&before, &fixed);
+        assert_eq!(after.constant(Net(1)), Some(1));
+        assert_eq!(after.net(Net(4)), after.net(Net(2)));
+    }
+}

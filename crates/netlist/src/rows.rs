@@ -1,0 +1,326 @@
+//! Recorded samples: a block with a column for each net, filled by an engine, read by observers, and used again.
+//!
+//! Column by column, because whoever looks for a change, a least value or a flag reads one net over many clocks. Rows may
+//! be sparse: then each has its own clock, and of the samples between them only extremes are told.
+
+use fearless_simd::{Level, dispatch};
+
+/// What the values of a column came to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Extremes {
+    /// The least.
+    pub least: u64,
+    /// The greatest.
+    pub greatest: u64,
+    /// The first.
+    pub first: u64,
+    /// Bits in which one of them was not as the first.
+    pub toggled: u64,
+}
+
+impl Extremes {
+    /// Those of these values and of later ones.
+    #[inline]
+    #[must_use]
+    pub fn and(self, later: Extremes) -> Extremes {
+        Extremes {
+            least: self.least.min(later.least),
+            greatest: self.greatest.max(later.greatest),
+            first: self.first,
+            toggled: self.toggled | later.toggled | self.first ^ later.first,
+        }
+    }
+}
+
+/// Rows of equally many values, one row a sample, with room for a fixed number.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    columns: usize,
+    capacity: usize,
+    /// From one column to the next.
+    stride: usize,
+    len: usize,
+    first_clock: u64,
+    /// Column `c` begins at `c * stride`. Behind the last one stand the clocks of sparse rows.
+    values: Vec<u64>,
+    sparse: bool,
+    /// What columns came to in samples that were passed over.
+    passed: Vec<(usize, Extremes)>,
+    level: Level,
+}
+
+impl Rows {
+    /// Room for `capacity` rows of `columns` values.
+    #[must_use]
+    pub fn new(columns: usize, capacity: usize) -> Rows {
+        // A line of the cache more, so that the columns of one row do not all fall into the same set of it.
+        let stride = capacity + 8;
+        let values = vec![0; columns * stride];
+        let level = Level::new();
+        Rows { columns, capacity, stride, len: 0, first_clock: 0, values, sparse: false, passed: Vec::new(), level }
+    }
+
+    /// As [`new`](Self::new), for an engine that passes over idle samples.
+    #[must_use]
+    pub fn sparse(columns: usize, capacity: usize) -> Rows {
+        let rows = Rows::new(columns, capacity);
+        Rows { values: vec![0; (columns + 1) * rows.stride], sparse: true, ..rows }
+    }
+
+    /// Number of rows held.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// No row is held.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// No further row fits.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.len == self.capacity
+    }
+
+    /// Clock of row 0.
+    #[must_use]
+    pub fn first_clock(&self) -> u64 {
+        self.first_clock
+    }
+
+    /// Clock of a row.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    #[inline]
+    #[must_use]
+    pub fn clock(&self, row: usize) -> u64 {
+        assert!(row < self.len, "row {row} of {}", self.len);
+        if self.sparse { self.values[self.columns * self.stride + row] } else { self.first_clock + row as u64 }
+    }
+
+    /// The values of a column, one a row held.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[inline]
+    #[must_use]
+    pub fn column(&self, column: usize) -> &[u64] {
+        assert!(column < self.columns, "column {column} of {}", self.columns);
+        &self.values[column * self.stride..][..self.len]
+    }
+
+    /// One of the values of a column is not 0.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[must_use]
+    pub fn any(&self, column: usize) -> bool {
+        self.column(column).iter().fold(0, |seen, value| seen | value) != 0
+    }
+
+    /// A bit for each of the next 64 rows from `first` on, or of those there are, the first the lowest: 1 where the value
+    /// of a column is not 0.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[inline]
+    #[must_use]
+    pub fn nonzero(&self, column: usize, first: usize) -> u64 {
+        let values = self.column(column).get(first..).unwrap_or_default();
+        dispatch!(self.level, _simd => nonzero(&values[..values.len().min(64)]))
+    }
+
+    /// What the values of a column came to, those passed over among them, all taken with the bits of `turned` turned over;
+    /// `None` without a sample. With the sign bit turned over, two's complement sorts as unsigned numbers do; what runs on
+    /// while samples are passed over is unsigned.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    #[must_use]
+    pub fn extremes(&self, column: usize, turned: u64) -> Option<Extremes> {
+        let values = self.column(column);
+        let recorded = values.first().map(|first| {
+            let first = first ^ turned;
+            let (least, greatest, toggled) = dispatch!(self.level, _simd => extremes(values, turned, first));
+            Extremes { least, greatest, first, toggled }
+        });
+        let passed = self.passed.iter().filter(|(passed, _)| *passed == column).map(|(_, extremes)| *extremes);
+        passed.chain(recorded).reduce(Extremes::and)
+    }
+
+    /// The value of a column in a row.
+    ///
+    /// # Panics
+    /// If there is no such column, or no such row.
+    #[inline]
+    #[must_use]
+    pub fn value(&self, column: usize, row: usize) -> u64 {
+        assert!(row < self.len, "row {row} of {}", self.len);
+        self.values[column * self.stride + row]
+    }
+
+    /// The values of a row, in the order of the columns; gathered one by one, so not for hot loops.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    #[must_use]
+    pub fn row(&self, index: usize) -> Vec<u64> {
+        assert!(index < self.len, "row {index} of {}", self.len);
+        (0..self.columns).map(|column| self.values[column * self.stride + index]).collect()
+    }
+
+    /// Every row with its clock, as [`row`](Self::row).
+    pub fn iter(&self) -> impl Iterator<Item = (u64, Vec<u64>)> {
+        (0..self.len).map(|index| (self.clock(index), self.row(index)))
+    }
+
+    /// Forgets the rows; the room stays.
+    pub fn clear(&mut self) {
+        self.len = 0;
+        self.passed.clear();
+    }
+
+    /// Samples between the rows may be left out.
+    pub fn is_sparse(&self) -> bool {
+        self.sparse
+    }
+
+    /// Takes what a column came to in samples that were passed over.
+    pub fn pass(&mut self, column: usize, later: Extremes) {
+        match self.passed.iter_mut().find(|(passed, _)| *passed == column) {
+            Some((_, extremes)) => *extremes = extremes.and(later),
+            None => self.passed.push((column, later)),
+        }
+    }
+
+    /// From one column to the next, in values.
+    pub fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// Number of rows that still fit.
+    pub fn room(&self) -> u64 {
+        (self.capacity - self.len) as u64
+    }
+
+    /// All values, and the index of the next row, to be filled by native code.
+    pub fn spare(&mut self) -> (&mut [u64], usize) {
+        (&mut self.values, self.len)
+    }
+
+    /// Gives a column the same value in the next `rows` rows, which fit.
+    pub fn fill(&mut self, column: usize, rows: u64, value: u64) {
+        // No more than `room`, which is a usize.
+        let rows = usize::try_from(rows).unwrap_or(0);
+        self.values[column * self.stride + self.len..][..rows].fill(value);
+    }
+
+    /// Counts `rows` more as held, which native code has filled; the first is the sample of `clock`.
+    pub fn grow(&mut self, clock: u64, rows: u64) {
+        if self.columns == 0 || rows == 0 {
+            return;
+        }
+        if self.len == 0 {
+            self.first_clock = clock;
+        }
+        debug_assert!(self.sparse || self.first_clock + self.len as u64 == clock, "a row of another time");
+        // No more than `room`, which is a usize.
+        self.len += usize::try_from(rows).unwrap_or(0);
+    }
+
+    /// Records the sample of `clock`, if there is room and something to record: `value` gives that of each column.
+    #[inline]
+    pub fn push(&mut self, clock: u64, value: impl Fn(usize) -> u64) {
+        if self.len == self.capacity || self.columns == 0 {
+            return;
+        }
+        if self.len == 0 {
+            self.first_clock = clock;
+        }
+        debug_assert!(self.sparse || self.first_clock + self.len as u64 == clock, "a row of another time");
+        if self.sparse {
+            self.values[self.columns * self.stride + self.len] = clock;
+        }
+        for (column, place) in self.values[self.len..].iter_mut().step_by(self.stride).take(self.columns).enumerate() {
+            *place = value(column);
+        }
+        self.len += 1;
+    }
+}
+
+/// Least and greatest of the values with the bits of `turned` turned over, and the bits in which one differs from `first`.
+#[inline(always)]
+fn extremes(values: &[u64], turned: u64, first: u64) -> (u64, u64, u64) {
+    // Vector units compare signed numbers; with the highest bit turned over they are in the order of the unsigned ones.
+    const HIGHEST: u64 = 1 << 63;
+    let turn = |value: &u64| (value ^ turned ^ HIGHEST).cast_signed();
+    let first = (first ^ HIGHEST).cast_signed();
+    let start = (i64::MAX, i64::MIN, 0);
+    let (least, greatest, toggled) = values.iter().map(turn).fold(start, |(least, greatest, toggled), value| {
+        (least.min(value), greatest.max(value), toggled | value ^ first)
+    });
+    (least.cast_unsigned() ^ HIGHEST, greatest.cast_unsigned() ^ HIGHEST, toggled.cast_unsigned())
+}
+
+#[inline(always)]
+fn nonzero(values: &[u64]) -> u64 {
+    let mut flags = [0; 64];
+    for (flag, value) in flags.iter_mut().zip(values) {
+        *flag = u8::from(*value != 0);
+    }
+    packed(&flags)
+}
+
+/// Flags of a byte each, 0 or 1, as bits, the first the lowest.
+#[inline(always)]
+pub fn packed(flags: &[u8; 64]) -> u64 {
+    // Eight of them into eight bits: the product gathers them in its highest byte.
+    let octets = flags.as_chunks::<8>().0.iter().enumerate();
+    octets.fold(0, |bits, (index, octet)| {
+        bits | (u64::from_le_bytes(*octet).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * index)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extremes_are_those_of_all_values_and_of_all_their_bits() {
+        let mut rows = Rows::new(1, 300);
+        assert_eq!(rows.extremes(0, 0), None);
+        for (clock, value) in (0..).zip([0b0110, 0b0111, 0b1110].repeat(100)) {
+            rows.push(clock, |_| value);
+        }
+        let all = Extremes { least: 6, greatest: 14, first: 6, toggled: 0b1001 };
+        assert_eq!(rows.extremes(0, 0), Some(all));
+        // In four bits of two's complement: 6, 7 and -2, with 8 added to each.
+        let signed = Extremes { least: 6, greatest: 15, first: 14, toggled: 0b1001 };
+        assert_eq!(rows.extremes(0, 0b1000), Some(signed));
+        let later = Extremes { least: 3, greatest: 4, first: 4, toggled: 0b0111 };
+        assert_eq!(all.and(later), Extremes { least: 3, greatest: 14, first: 6, toggled: 0b1111 });
+        let same = Extremes { least: 4, greatest: 4, first: 4, toggled: 0 };
+        assert_eq!(all.and(same).toggled, 0b1011);
+    }
+
+    #[test]
+    fn every_row_whose_value_is_not_0_has_its_bit() {
+        let value = |clock: u64| [0, 1, u64::MAX, 1 << 63][usize::try_from(clock * clock % 11 % 4).unwrap()];
+        let mut rows = Rows::new(2, 150);
+        for clock in 7..137 {
+            rows.push(clock, |column| if column == 0 { clock } else { value(clock) });
+        }
+        for first in [0, 1, 63, 64, 66, 129, 130, 200] {
+            let bits = rows.nonzero(1, first);
+            for index in 0..64 {
+                let row = first + index;
+                let expected = row < rows.len() && value(7 + row as u64) != 0;
+                assert_eq!(bits >> index & 1 == 1, expected, "row {row}");
+            }
+        }
+    }
+}

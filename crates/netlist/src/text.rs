@@ -1,0 +1,465 @@
+//! The text form of a netlist, for tests and for people: one cell a line, printed and parsed without loss (source
+//! lines excepted).
+//!
+//! ```text
+//! netlist counter
+//! scope 1 in 0 "x"
+//! %0:1 = input
+//! %1:4 = register reset 0x0 next %3
+//! %2:4 = const 0x1
+//! %3:4 = add %1 %2
+//! %4:1 = carry %1 %2
+//! name %1 in 1 "count" unsigned
+//! property "counter.x.count" never %4 add %1 unsigned %2 unsigned
+//! between-steps "counter.x.even" count - 2 | -count
+//! ```
+//!
+//! `name` ends in the format: `unsigned`, `signed`, `analog`, `binary` or `states 0x1 "JUDGE" 0x2 "FEED"`. `property`
+//! ends in `invariant` or in the strict operation with its operands, `between-steps` in formulas with `|` between them. Text in quotes is escaped as in Rust.
+
+use std::fmt::{self, Write as _};
+use std::str::CharIndices;
+
+use crate::bits::Width;
+use crate::cells::{
+    Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Operand, Property, ScopeData, ScopeId,
+};
+use crate::diag::{Code, Diagnostic, Diagnostics, Place};
+use crate::formula::{Clause, Formula};
+
+/// Makes a two-operand operator.
+type Make = fn(Net, Net) -> Op;
+
+/// Two-operand operators and their words.
+const BINARY: [(&str, Make); 11] = [
+    ("and", Op::And),
+    ("or", Op::Or),
+    ("xor", Op::Xor),
+    ("add", Op::Add),
+    ("sub", Op::Sub),
+    ("carry", Op::Carry),
+    ("borrow", Op::Borrow),
+    ("add-overflow", Op::AddOverflow),
+    ("sub-overflow", Op::SubOverflow),
+    ("equal", Op::Equal),
+    ("less-signed", Op::LessSigned),
+];
+
+impl fmt::Display for Net {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "%{}", self.0)
+    }
+}
+
+impl fmt::Display for Op {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Op::Input => f.write_str("input"),
+            Op::Const(value) => write!(f, "const {value:#x}"),
+            Op::Register { next: Some(next), reset } => write!(f, "register reset {reset:#x} next {next}"),
+            Op::Register { next: None, reset } => write!(f, "register reset {reset:#x}"),
+            Op::Not(a) => write!(f, "not {a}"),
+            Op::Mux { select, high, low } => write!(f, "mux {select} {high} {low}"),
+            Op::Slice { of, low } => write!(f, "slice {of} {low}"),
+            Op::Concat { high, low } => write!(f, "concat {high} {low}"),
+            Op::ZeroExtend(a) => write!(f, "zero-extend {a}"),
+            Op::SignExtend(a) => write!(f, "sign-extend {a}"),
+            Op::And(a, b)
+            | Op::Or(a, b)
+            | Op::Xor(a, b)
+            | Op::Add(a, b)
+            | Op::Sub(a, b)
+            | Op::Carry(a, b)
+            | Op::Borrow(a, b)
+            | Op::AddOverflow(a, b)
+            | Op::SubOverflow(a, b)
+            | Op::Equal(a, b)
+            | Op::LessSigned(a, b) => {
+                let word = BINARY.iter().find(|(_, make)| make(a, b) == *self).map_or("?", |(word, _)| word);
+                write!(f, "{word} {a} {b}")
+            }
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Format::Unsigned => f.write_str("unsigned"),
+            Format::Signed => f.write_str("signed"),
+            Format::Analog => f.write_str("analog"),
+            Format::Binary => f.write_str("binary"),
+            Format::Decimal => f.write_str("decimal"),
+            Format::States(states) => {
+                f.write_str("states")?;
+                states.iter().try_for_each(|(value, name)| write!(f, " {value:#x} {name:?}"))
+            }
+        }
+    }
+}
+
+fn reading(signed: bool) -> &'static str {
+    if signed { "signed" } else { "unsigned" }
+}
+
+impl fmt::Display for Netlist {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, scope) in self.scopes.iter().enumerate() {
+            match scope.parent {
+                None => writeln!(f, "netlist {}", scope.name)?,
+                Some(parent) => writeln!(f, "scope {index} in {} {:?}", parent.0, scope.name)?,
+            }
+        }
+        for (net, cell) in self.nets().zip(&self.cells) {
+            writeln!(f, "{net}:{} = {}", cell.width.get(), cell.op)?;
+        }
+        for named in &self.names {
+            writeln!(f, "name {} in {} {:?} {}", named.net, named.scope.0, named.name, named.format)?;
+        }
+        for property in &self.properties {
+            write!(f, "property {:?} never {}", property.name, property.never)?;
+            match property.claim {
+                Claim::Invariant => writeln!(f, " invariant")?,
+                Claim::NoOverflow { operation, left, right } => {
+                    let word = match operation {
+                        Arithmetic::Add => "add",
+                        Arithmetic::Sub => "sub",
+                    };
+                    let (l, r) = (reading(left.signed), reading(right.signed));
+                    writeln!(f, " {word} {} {l} {} {r}", left.net, right.net)?;
+                }
+            }
+        }
+        for Clause { name, any } in &self.invariants {
+            let any: Vec<String> = any.iter().map(Formula::to_string).collect();
+            writeln!(f, "between-steps {name:?} {}", any.join(" | "))?;
+        }
+        Ok(())
+    }
+}
+
+/// Reads the text form. Only the form is checked here; [`elaborate`](crate::elaborate) checks the netlist.
+///
+/// # Errors
+/// Every line that cannot be read, once.
+pub fn parse(text: &str) -> Result<Netlist, Diagnostics> {
+    let mut parser = Parser { netlist: Netlist::new(""), named: false, next_net: Some(0), next_scope: Some(1) };
+    let mut diagnostics = Vec::new();
+    let mut report = |line: usize, message: String| {
+        diagnostics.push(Diagnostic { code: Code::Syntax, place: Place::Line(line), message });
+    };
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()).peekable();
+    match lines.peek() {
+        None => report(1, "expected 'netlist NAME' in the first line".to_owned()),
+        Some((index, line)) if line.split_whitespace().next() != Some("netlist") => {
+            report(index + 1, format!("expected 'netlist NAME' first in '{line}'"));
+            // Whatever else it is, it has been told of.
+            let (_, line) = lines.next().unwrap_or_default();
+            _ = parser.line(line);
+        }
+        Some(_) => {}
+    }
+    for (index, line) in lines {
+        if let Err(expected) = parser.line(line) {
+            report(index + 1, format!("expected {expected} in '{line}'"));
+        }
+    }
+    if diagnostics.is_empty() { Ok(parser.netlist) } else { Err(Diagnostics(diagnostics)) }
+}
+
+/// What was expected but not found.
+type Expected = String;
+
+/// What has been read. Behind a line whose number is wrong or cannot be read the next one is not known, and what is
+/// given is taken for right, so that the line alone is told of.
+struct Parser {
+    netlist: Netlist,
+    /// The line `netlist` was there.
+    named: bool,
+    /// The number that the next net must have, if it is known.
+    next_net: Option<u32>,
+    /// The number that the next scope must have, if it is known.
+    next_scope: Option<u32>,
+}
+
+impl Parser {
+    fn line(&mut self, line: &str) -> Result<(), Expected> {
+        let mut words = Words { rest: line.trim() };
+        if words.rest.starts_with('%') { self.cell(&mut words) } else { self.other(&mut words) }
+    }
+
+    fn other(&mut self, words: &mut Words<'_>) -> Result<(), Expected> {
+        match words.word()? {
+            "netlist" if !self.named => {
+                self.named = true;
+                words.word()?.clone_into(&mut self.netlist.scopes[0].name);
+            }
+            "scope" => {
+                let next = self.next_scope.take();
+                let index: u32 = words.number()?;
+                let next = next.unwrap_or(index);
+                if index != next {
+                    return Err(format!("scope {next} in an earlier one"));
+                }
+                self.next_scope = index.checked_add(1);
+                words.keyword("in")?;
+                let parent: u32 = words.number()?;
+                if parent >= index {
+                    return Err(format!("scope {next} in an earlier one"));
+                }
+                self.netlist.scopes.push(ScopeData { parent: Some(ScopeId(parent)), name: words.quoted()? });
+            }
+            "name" => {
+                let net = words.net()?;
+                words.keyword("in")?;
+                let scope = ScopeId(words.number()?);
+                let name = words.quoted()?;
+                let format = words.format()?;
+                self.netlist.names.push(NamedNet { net, scope, name, format });
+            }
+            "property" => {
+                let name = words.quoted()?;
+                words.keyword("never")?;
+                let never = words.net()?;
+                let claim = match words.word()? {
+                    "invariant" => Claim::Invariant,
+                    "add" => words.strict(Arithmetic::Add)?,
+                    "sub" => words.strict(Arithmetic::Sub)?,
+                    _ => return Err("'invariant', 'add' or 'sub'".to_owned()),
+                };
+                self.netlist.properties.push(Property { name, never, claim });
+            }
+            "between-steps" => {
+                let name = words.quoted()?;
+                let any = std::mem::take(&mut words.rest).split('|').map(Formula::parse);
+                let any = any.collect::<Option<_>>().ok_or("formulas such as 'f + 2*a - 1', with '|' between them")?;
+                self.netlist.invariants.push(Clause { name, any });
+            }
+            _ => {
+                // It may have been meant for a cell or a scope.
+                (self.next_net, self.next_scope) = (None, None);
+                return Err(
+                    "a cell, 'netlist' (once, first), 'scope', 'name', 'property' or 'between-steps'".to_owned()
+                );
+            }
+        }
+        words.end()
+    }
+
+    fn cell(&mut self, words: &mut Words<'_>) -> Result<(), Expected> {
+        let next = self.next_net.take();
+        let (head, rest) = words.rest.split_once('=').ok_or("'='")?;
+        let (net, bits) = head.trim().split_once(':').ok_or("':' and a width")?;
+        let net = Words { rest: net }.net()?;
+        if let Some(next) = next.filter(|next| *next != net.0) {
+            return Err(format!("the next net, %{next}"));
+        }
+        self.next_net = net.0.checked_add(1);
+        let bits = digits(bits, 10).ok_or("a width")?;
+        let width = Width::new(bits).map_err(|error| format!("a width of 1 to 64 bits ({error})"))?;
+        words.rest = rest.trim_start();
+        let op = words.op()?;
+        self.netlist.cells.push(Cell { op, width });
+        self.netlist.sources.push(None);
+        words.end()
+    }
+}
+
+/// A number, written in digits and nothing else.
+fn digits(word: &str, radix: u32) -> Option<u64> {
+    let all = word.chars().all(|c| c.is_digit(radix));
+    u64::from_str_radix(word, radix).ok().filter(|_| all)
+}
+
+/// The rest of a line, taken word by word.
+struct Words<'a> {
+    rest: &'a str,
+}
+
+impl<'a> Words<'a> {
+    fn word(&mut self) -> Result<&'a str, Expected> {
+        let (word, rest) = self.rest.split_once(' ').unwrap_or((self.rest, ""));
+        self.rest = rest.trim_start();
+        if word.is_empty() { Err("more words".to_owned()) } else { Ok(word) }
+    }
+
+    fn keyword(&mut self, keyword: &str) -> Result<(), Expected> {
+        if self.word()? == keyword { Ok(()) } else { Err(format!("'{keyword}'")) }
+    }
+
+    fn number<T: TryFrom<u64>>(&mut self) -> Result<T, Expected> {
+        let number = digits(self.word()?, 10).and_then(|number| T::try_from(number).ok());
+        number.ok_or_else(|| "a number".to_owned())
+    }
+
+    fn value(&mut self) -> Result<u64, Expected> {
+        let word = self.word()?;
+        let value = word.strip_prefix("0x").ok_or("a value that begins with 0x")?;
+        digits(value, 16).ok_or_else(|| "a hexadecimal value of at most 64 bits".to_owned())
+    }
+
+    fn net(&mut self) -> Result<Net, Expected> {
+        let number = self.word()?.strip_prefix('%').and_then(|number| digits(number, 10));
+        number.and_then(|number| u32::try_from(number).ok()).map(Net).ok_or_else(|| "a net such as %4".to_owned())
+    }
+
+    fn op(&mut self) -> Result<Op, Expected> {
+        Ok(match self.word()? {
+            "input" => Op::Input,
+            "const" => Op::Const(self.value()?),
+            "register" => {
+                self.keyword("reset")?;
+                let reset = self.value()?;
+                let next = if self.rest.is_empty() {
+                    None
+                } else {
+                    self.keyword("next")?;
+                    Some(self.net()?)
+                };
+                Op::Register { next, reset }
+            }
+            "not" => Op::Not(self.net()?),
+            "mux" => Op::Mux { select: self.net()?, high: self.net()?, low: self.net()? },
+            "slice" => Op::Slice { of: self.net()?, low: self.number()? },
+            "concat" => Op::Concat { high: self.net()?, low: self.net()? },
+            "zero-extend" => Op::ZeroExtend(self.net()?),
+            "sign-extend" => Op::SignExtend(self.net()?),
+            word => {
+                let (_, make) = BINARY.iter().find(|(known, _)| *known == word).ok_or("an operator")?;
+                make(self.net()?, self.net()?)
+            }
+        })
+    }
+
+    fn quoted(&mut self) -> Result<String, Expected> {
+        let inner = self.rest.strip_prefix('"').ok_or("a name in quotes")?;
+        let mut name = String::new();
+        let mut chars = inner.char_indices();
+        while let Some((index, c)) = chars.next() {
+            match c {
+                '"' => {
+                    self.rest = inner[index + 1..].trim_start();
+                    return Ok(name);
+                }
+                '\\' => name.push(escaped(&mut chars).ok_or("an escape of Rust's strings, and the end of the quotes")?),
+                c => name.push(c),
+            }
+        }
+        Err("the end of the quotes".to_owned())
+    }
+
+    fn signed(&mut self) -> Result<bool, Expected> {
+        match self.word()? {
+            "signed" => Ok(true),
+            "unsigned" => Ok(false),
+            _ => Err("'signed' or 'unsigned'".to_owned()),
+        }
+    }
+
+    fn strict(&mut self, operation: Arithmetic) -> Result<Claim, Expected> {
+        let left = Operand { net: self.net()?, signed: self.signed()? };
+        let right = Operand { net: self.net()?, signed: self.signed()? };
+        Ok(Claim::NoOverflow { operation, left, right })
+    }
+
+    fn format(&mut self) -> Result<Format, Expected> {
+        Ok(match self.word()? {
+            "unsigned" => Format::Unsigned,
+            "signed" => Format::Signed,
+            "analog" => Format::Analog,
+            "binary" => Format::Binary,
+            "decimal" => Format::Decimal,
+            "states" => {
+                let mut states = Vec::new();
+                while !self.rest.is_empty() {
+                    states.push((self.value()?, self.quoted()?));
+                }
+                Format::States(states)
+            }
+            _ => return Err("a format".to_owned()),
+        })
+    }
+
+    fn end(&self) -> Result<(), Expected> {
+        if self.rest.is_empty() { Ok(()) } else { Err("the end of the line".to_owned()) }
+    }
+}
+
+/// The character behind a backslash: those escapes that the `Debug` form of a string uses.
+fn escaped(chars: &mut CharIndices<'_>) -> Option<char> {
+    Some(match chars.next()?.1 {
+        'n' => '\n',
+        'r' => '\r',
+        't' => '\t',
+        '0' => '\0',
+        'u' => {
+            let (_, '{') = chars.next()? else { return None };
+            let code: String = chars.map(|(_, c)| c).take_while(|&c| c != '}').collect();
+            char::from_u32(u32::try_from(digits(&code, 16)?).ok()?)?
+        }
+        c @ ('"' | '\\' | '\'') => c,
+        _ => return None,
+    })
+}
+
+/// The text form, as a string.
+#[must_use]
+pub fn print(netlist: &Netlist) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write!(text, "{netlist}");
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dsl::Module;
+
+    #[test]
+    fn a_described_netlist_prints_as_one_line_a_cell() {
+        let module = Module::new("counter");
+        let m = module.top();
+        let x = m.scope("x");
+        let enable = m.input("enable", 1);
+        let count = x.reg("count", 4).reset(3);
+        let next = count.q.strict_add(m.lit(4, 1), enable);
+        count.when(enable, next).else_hold();
+        let netlist = module.finish().unwrap();
+        assert_eq!(
+            print(&netlist),
+            r#"netlist counter
+scope 1 in 0 "x"
+%0:1 = input
+%1:4 = register reset 0x3 next %7
+%2:4 = const 0x1
+%3:4 = add %1 %2
+%4:1 = const 0x0
+%5:1 = carry %1 %2
+%6:1 = and %0 %5
+%7:4 = mux %0 %3 %1
+name %0 in 0 "enable" unsigned
+name %1 in 1 "count" unsigned
+name %6 in 1 "count_add_overflow" unsigned
+property "counter.x.count" never %6 add %1 unsigned %2 unsigned
+"#
+        );
+        assert_eq!(parse(&print(&netlist)).unwrap(), netlist);
+    }
+
+    #[test]
+    fn a_line_that_cannot_be_read_is_named() {
+        for (text, message) in [
+            ("", "line 1: expected 'netlist NAME' in the first line [Syntax]"),
+            ("netlist m\n%1:1 = input", "line 2: expected the next net, %0 in '%1:1 = input' [Syntax]"),
+            (
+                "netlist m\n%0:65 = input",
+                "line 2: expected a width of 1 to 64 bits (a width of 65 bits is not possible: a register holds 1 to 64 bits) in '%0:65 = input' [Syntax]",
+            ),
+            ("netlist m\n%0:1 = spin %0", "line 2: expected an operator in '%0:1 = spin %0' [Syntax]"),
+            ("netlist m\nname %0 in 0 \"a", "line 2: expected the end of the quotes in 'name %0 in 0 \"a' [Syntax]"),
+        ] {
+            assert_eq!(parse(text).unwrap_err().to_string(), message);
+        }
+    }
+}

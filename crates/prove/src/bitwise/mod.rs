@@ -1,0 +1,10 @@
+//! Proofs at one width, for what no polynomial says: one block is followed clock by clock with the bits of its load words
+//! unknown ([`follow()`]), and a second way that shares nothing with it but the question counts the pulses again
+//! ([`recount()`]).
+
+mod follow;
+mod recount;
+mod three_valued;
+
+pub use follow::{Followed, Lost, Sample, Sum, Word, follow};
+pub use recount::{AxisNets, recount};

@@ -1,0 +1,244 @@
+//! The FST writer: the names, times and samples of the VCD writer in a compressed file, through the crate `fst-writer`.
+//!
+//! As there, edge k stands at k periods, the clock falls half a period later, and the same run gives the same bytes on
+//! any machine: the header's date is empty. FST has no comment, so model and choices are not told in the file.
+
+use std::io::{self, Cursor, Seek, SeekFrom, Write};
+use std::ops::Range;
+
+use ::vcd::VarType;
+use fst_writer::{
+    FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType, FstVarDirection,
+    FstVarType, FstWriteError,
+};
+
+use super::moves::{Moves, SPAN};
+use super::probe::Probe;
+use super::timescale::ClockTime;
+use super::vcd::{digits, has_range, variable_type};
+use stepwave_netlist::Rows;
+
+/// Changes are gathered in memory up to so many bytes; then a section of the file is written.
+const SECTION: usize = 32 << 20;
+/// Type of a block that holds changes.
+const CHANGES: u8 = 8;
+/// Place of the time at which the file begins, in the header block.
+const START_TIME: u64 = 9;
+
+/// What the header says.
+#[derive(Clone, Debug)]
+pub struct FstHeader<'a> {
+    /// Names to dump, grouped by scope, all below one top scope.
+    pub probes: &'a [Probe],
+    /// Time of a clock.
+    pub time: ClockTime,
+    /// Dump the clock as `clk` in the top scope.
+    pub clk: bool,
+}
+
+/// One dumped net.
+struct Change {
+    column: usize,
+    width: u32,
+    id: FstSignalId,
+}
+
+/// What the header declares.
+struct Declared<W: Write + Seek> {
+    body: FstBodyWriter<W>,
+    clk: Option<FstSignalId>,
+    changes: Vec<Change>,
+}
+
+/// Takes samples, block by block.
+pub struct FstBody<W: Write + Seek> {
+    body: FstBodyWriter<W>,
+    clk: Option<FstSignalId>,
+    changes: Vec<Change>,
+    moves: Moves,
+    ticks: u64,
+    /// Place of the first block of changes in the file.
+    first_section: u64,
+    /// First and last clock written.
+    written: Option<(u64, u64)>,
+}
+
+fn io_error(error: FstWriteError) -> io::Error {
+    match error {
+        FstWriteError::Io(error) => error,
+        other => io::Error::other(format!("cannot write the FST file: {other}")),
+    }
+}
+
+fn fst_type(probe: &Probe) -> FstVarType {
+    match variable_type(probe) {
+        VarType::Integer => FstVarType::Integer,
+        VarType::Parameter => FstVarType::Parameter,
+        VarType::Reg => FstVarType::Reg,
+        _ => FstVarType::Wire,
+    }
+}
+
+impl FstHeader<'_> {
+    /// Writes the header.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn write<W: Write + Seek>(&self, out: W) -> io::Result<FstBody<W>> {
+        // The crate does not tell where the changes begin; an empty wave with the same header does.
+        let empty = self.declare(Cursor::new(Vec::new())).and_then(|empty| empty.body.finish()).map_err(io_error)?;
+        let first_section =
+            first_section(empty.get_ref()).ok_or_else(|| io::Error::other("the FST header is broken"))?;
+        let Declared { mut body, clk, changes } = self.declare(out).map_err(io_error)?;
+        // Only changes are handed over.
+        body.set_deduplicate(false);
+        let moves = Moves::new(changes.iter().map(|change| change.column).collect());
+        Ok(FstBody { body, clk, changes, moves, ticks: self.time.ticks(), first_section, written: None })
+    }
+
+    fn declare<W: Write + Seek>(&self, out: W) -> Result<Declared<W>, FstWriteError> {
+        let info = FstInfo {
+            start_time: 0,
+            timescale_exponent: self.time.exponent(),
+            version: format!("stepwave {}", env!("CARGO_PKG_VERSION")),
+            date: String::new(),
+            file_type: FstFileType::Verilog,
+        };
+        let mut head = FstHeaderWriter::new(out, &info)?;
+        let mut open: Vec<&str> = Vec::new();
+        let mut changes: Vec<Change> = Vec::new();
+        let mut clk = None;
+        let top = self.probes.first().map_or("top", |probe| probe.scopes[0].as_str());
+        if self.clk {
+            head.scope(top, "", FstScopeType::Module)?;
+            open.push(top);
+            let bit = FstSignalType::bit_vec(1);
+            clk = Some(head.var("clk", bit, FstVarType::Wire, FstVarDirection::Implicit, None)?);
+        }
+        for probe in self.probes {
+            let common = open.iter().zip(&probe.scopes).take_while(|(a, b)| *a == b).count();
+            for _ in common..open.len() {
+                head.up_scope()?;
+            }
+            open.truncate(common);
+            for scope in &probe.scopes[common..] {
+                head.scope(scope, "", FstScopeType::Module)?;
+                open.push(scope);
+            }
+            let width = probe.width.get();
+            let name = if has_range(probe) { format!("{} [{}:0]", probe.name, width - 1) } else { probe.name.clone() };
+            let known = changes.iter().find(|change| change.column == probe.column).map(|change| change.id);
+            let bits = FstSignalType::bit_vec(width);
+            let id = head.var(name, bits, fst_type(probe), FstVarDirection::Implicit, known)?;
+            if known.is_none() {
+                changes.push(Change { column: probe.column, width, id });
+            }
+        }
+        for _ in 0..open.len() {
+            head.up_scope()?;
+        }
+        Ok(Declared { body: head.finish()?, clk, changes })
+    }
+}
+
+/// Where the first block of changes begins. A block is its type in a byte, its length behind that byte, and the rest.
+fn first_section(file: &[u8]) -> Option<u64> {
+    let mut at = 0;
+    while *file.get(at)? != CHANGES {
+        let length = u64::from_be_bytes(*file.get(at + 1..)?.first_chunk()?);
+        at += 1 + usize::try_from(length).ok()?;
+    }
+    Some(at as u64)
+}
+
+impl<W: Write + Seek> FstBody<W> {
+    /// Writes some rows of a block, which follow those written before.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
+        if range.is_empty() {
+            return Ok(());
+        }
+        let clock = |row: usize| rows.first_clock() + row as u64;
+        let last = clock(range.end - 1);
+        if self.written.is_none() {
+            self.first(clock(range.start), rows, range.start).map_err(io_error)?;
+            self.written = Some((clock(range.start), last));
+            range.start += 1;
+        }
+        for start in range.clone().step_by(SPAN) {
+            let end = range.end.min(start + SPAN);
+            self.moves.scan(rows, start..end);
+            for row in start..end {
+                self.row(clock(row), rows, row, row - start).map_err(io_error)?;
+            }
+        }
+        self.written = self.written.map(|(first, _)| (first, last));
+        // The crate takes the end of a section only in front of a new time.
+        if self.body.size() >= SECTION { self.body.flush().map_err(io_error) } else { Ok(()) }
+    }
+
+    /// The state with which the file begins. What is told before the first time counts from the beginning, which
+    /// `finish` sets.
+    fn first(&mut self, clock: u64, rows: &Rows, row: usize) -> Result<(), FstWriteError> {
+        if let Some(clk) = self.clk {
+            self.body.signal_change(clk, if clock == 0 { b"0" } else { b"1" })?;
+        }
+        self.moves.start(rows, row);
+        for change in &self.changes {
+            let now = rows.value(change.column, row);
+            self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
+        }
+        if let (Some(clk), true) = (self.clk, clock > 0) {
+            self.body.time_change(clock * self.ticks + self.ticks / 2)?;
+            self.body.signal_change(clk, b"0")?;
+        }
+        Ok(())
+    }
+
+    /// Writes a row, the `sample`th of those scanned last.
+    fn row(&mut self, clock: u64, rows: &Rows, row: usize, sample: usize) -> Result<(), FstWriteError> {
+        let time = clock * self.ticks;
+        let groups = self.changes.chunks(SPAN).enumerate();
+        if self.clk.is_some() || groups.clone().any(|(group, _)| self.moves.bits(group, sample) != 0) {
+            self.body.time_change(time)?;
+        }
+        if let Some(clk) = self.clk {
+            self.body.signal_change(clk, b"1")?;
+        }
+        for (group, changes) in groups {
+            let mut bits = self.moves.bits(group, sample);
+            while bits != 0 {
+                let change = &changes[bits.trailing_zeros() as usize];
+                bits &= bits - 1;
+                let now = rows.value(change.column, row);
+                self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
+            }
+        }
+        if let Some(clk) = self.clk {
+            self.body.time_change(time + self.ticks / 2)?;
+            self.body.signal_change(clk, b"0")?;
+        }
+        Ok(())
+    }
+
+    /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn finish(mut self) -> io::Result<W> {
+        let (first, last) = self.written.unwrap_or_default();
+        self.body.time_change((last + 1) * self.ticks).map_err(io_error)?;
+        let mut out = self.body.finish().map_err(io_error)?;
+        // The crate lets every file begin at 0.
+        let start = (first * self.ticks).to_be_bytes();
+        for place in [START_TIME, self.first_section + START_TIME] {
+            out.seek(SeekFrom::Start(place))?;
+            out.write_all(&start)?;
+        }
+        out.seek(SeekFrom::End(0))?;
+        out.flush()?;
+        Ok(out)
+    }
+}

@@ -1,0 +1,13 @@
+//! Waves: which nets are shown, how they are written, read back and compared.
+
+pub mod diverge;
+pub mod fst;
+pub mod gtkw;
+pub mod guard;
+pub mod merge;
+mod moves;
+mod pattern;
+pub mod probe;
+pub mod read;
+pub mod timescale;
+pub mod vcd;

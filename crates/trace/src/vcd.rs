@@ -1,0 +1,269 @@
+//! The VCD writer: a header through the crate `vcd`, then value changes written by hand, since they are the hot path.
+//!
+//! Edge k stands at k periods; the clock falls half a period later. Only changes are written, apart from the first
+//! sample, which holds every variable. There is no date: the same run gives the same bytes on any machine.
+//!
+//! Samples come in blocks, in which `Moves` finds the nets that change; a row costs what changes in it.
+
+mod background;
+mod text;
+
+use std::io::{self, Write};
+use std::ops::Range;
+
+use ::vcd::{IdCode, ReferenceIndex, VarType, Writer};
+
+use super::moves::{Moves, SPAN};
+use super::probe::{Probe, Role};
+use super::timescale::ClockTime;
+use stepwave_netlist::Rows;
+use text::{Line, Stamps, Tail, WINDOW};
+
+pub use background::Background;
+pub(super) use text::digits;
+
+/// Bytes gathered before they go to the output.
+const BUFFER: usize = 128 * 1024;
+
+/// What the header says.
+#[derive(Clone, Debug)]
+pub struct VcdHeader<'a> {
+    /// One line for people: model, geometry, choices. Must not hold `$end`.
+    pub comment: &'a str,
+    /// Names to dump, grouped by scope, all below one top scope.
+    pub probes: &'a [Probe],
+    /// Time of a clock.
+    pub time: ClockTime,
+    /// Dump the clock as `clk` in the top scope.
+    pub clk: bool,
+}
+
+/// One dumped net.
+struct Change {
+    column: usize,
+    line: Line,
+}
+
+/// Takes samples, one after another.
+pub struct VcdBody<W: Write> {
+    out: W,
+    /// Room for `BUFFER` bytes and the longest row behind them; the first `filled` bytes wait to be written.
+    buffer: Vec<u8>,
+    filled: usize,
+    changes: Vec<Change>,
+    moves: Moves,
+    /// Value lines of the clock, high and low, if it is dumped.
+    clk: Option<[Tail; 2]>,
+    /// Times of the next rising edge and of the falling one behind it.
+    rise: Stamps,
+    fall: Stamps,
+    ticks: u64,
+    last_clock: Option<u64>,
+}
+
+pub(super) fn variable_type(probe: &Probe) -> VarType {
+    match (probe.role, probe.format.is_signed()) {
+        (Role::Constant, _) => VarType::Parameter,
+        // Viewers show an integer of any width as signed decimal without being told.
+        (_, true) => VarType::Integer,
+        (Role::Register, false) => VarType::Reg,
+        (Role::Input | Role::Wire | Role::Flag, false) => VarType::Wire,
+    }
+}
+
+/// A bit range stands behind vectors, except where viewers want the bare name.
+pub(super) fn has_range(probe: &Probe) -> bool {
+    probe.width.get() > 1 && probe.role != Role::Constant && !probe.format.is_signed()
+}
+
+impl VcdHeader<'_> {
+    /// Writes the header.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn write<W: Write>(&self, mut out: W) -> io::Result<VcdBody<W>> {
+        let mut head = Writer::new(Vec::new());
+        // The crate spreads these two over three lines, which some readers do not take.
+        writeln!(head.writer(), "$version stepwave {} $end", env!("CARGO_PKG_VERSION"))?;
+        writeln!(head.writer(), "$comment schema 1; clock {} Hz; {} $end", self.time.hz(), self.comment)?;
+        head.timescale(self.time.magnitude(), self.time.unit())?;
+        let mut open: Vec<String> = Vec::new();
+        let mut changes: Vec<Change> = Vec::new();
+        let mut next = IdCode::FIRST;
+        let mut ids: Vec<(usize, IdCode)> = Vec::new();
+        let mut clk = None;
+        let top = self.probes.first().map_or_else(|| "top".to_owned(), |probe| probe.scopes[0].clone());
+        if self.clk {
+            head.add_module(&top)?;
+            open.push(top);
+            head.var_def(VarType::Wire, 1, next, "clk", None)?;
+            clk = Some([Tail::new(&format!("\n1{next}\n")), Tail::new(&format!("\n0{next}\n"))]);
+            next = next.next();
+        }
+        for probe in self.probes {
+            let common = open.iter().zip(&probe.scopes).take_while(|(a, b)| a == b).count();
+            for _ in common..open.len() {
+                head.upscope()?;
+            }
+            open.truncate(common);
+            for scope in &probe.scopes[common..] {
+                head.add_module(scope)?;
+                open.push(scope.clone());
+            }
+            let width = probe.width.get();
+            let known = ids.iter().find(|(column, _)| *column == probe.column).map(|(_, id)| *id);
+            let id = known.unwrap_or(next);
+            let top_bit = i32::try_from(width).unwrap_or(64) - 1;
+            let index = has_range(probe).then_some(ReferenceIndex::Range(top_bit, 0));
+            head.var_def(variable_type(probe), width, id, &probe.name, index)?;
+            if known.is_none() {
+                ids.push((probe.column, id));
+                next = next.next();
+                let scalar = width == 1 && !probe.format.is_signed();
+                let line = Line::new(width, scalar, &id.to_string());
+                changes.push(Change { column: probe.column, line });
+            }
+        }
+        for _ in 0..open.len() {
+            head.upscope()?;
+        }
+        head.enddefinitions()?;
+        out.write_all(head.writer())?;
+        let longest: usize = changes.iter().map(|change| change.line.len()).sum();
+        let ticks = self.time.ticks();
+        Ok(VcdBody {
+            out,
+            // Two stamps and `$dumpvars` fit into a window too.
+            buffer: vec![0; BUFFER + longest + 3 * WINDOW],
+            filled: 0,
+            moves: Moves::new(changes.iter().map(|change| change.column).collect()),
+            changes,
+            clk,
+            rise: Stamps::new(ticks),
+            fall: Stamps::new(ticks),
+            ticks,
+            last_clock: None,
+        })
+    }
+}
+
+impl<W: Write> VcdBody<W> {
+    /// Writes some rows of a block, which are later than those written before; a row holds every column of the probes.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
+        if range.is_empty() {
+            return Ok(());
+        }
+        let clock = |row: usize| rows.first_clock() + row as u64;
+        if self.seek(clock(range.start)) {
+            self.first(clock(range.start), rows, range.start);
+            range.start += 1;
+        }
+        for start in range.clone().step_by(SPAN) {
+            let end = range.end.min(start + SPAN);
+            self.moves.scan(rows, start..end);
+            for row in start..end {
+                self.row(rows, row, row - start);
+                self.spill()?;
+            }
+        }
+        self.last_clock = Some(clock(range.end) - 1);
+        Ok(())
+    }
+
+    /// Sets the stamps to a clock, where they do not stand there; true before the first sample.
+    fn seek(&mut self, clock: u64) -> bool {
+        if self.last_clock.is_none_or(|last| clock != last + 1) {
+            self.rise.set(clock * self.ticks);
+            self.fall.set(clock * self.ticks + self.ticks / 2);
+        }
+        self.last_clock.is_none()
+    }
+
+    fn first(&mut self, clock: u64, rows: &Rows, row: usize) {
+        self.filled += self.rise.put(Tail::new("\n"), &mut self.buffer[self.filled..]);
+        self.text(b"$dumpvars\n");
+        if let Some([high, low]) = self.clk {
+            // Without its newline, which ends the line of the time elsewhere.
+            let line = if clock == 0 { low } else { high };
+            self.filled -= 1;
+            self.filled += line.put(&mut self.buffer[self.filled..]);
+        }
+        self.moves.start(rows, row);
+        for change in &self.changes {
+            change.line.put(rows.value(change.column, row), window(&mut self.buffer, self.filled));
+            self.filled += change.line.len();
+        }
+        self.text(b"$end\n");
+        self.rise.advance();
+        // Before the first rising edge the clock is low anyway.
+        if let (Some([_, low]), true) = (self.clk, clock > 0) {
+            self.filled += self.fall.put(low, &mut self.buffer[self.filled..]);
+        }
+        self.fall.advance();
+    }
+
+    /// Writes a row, the `sample`th of those scanned last.
+    #[inline]
+    fn row(&mut self, rows: &Rows, row: usize, sample: usize) {
+        let start = self.filled;
+        let buffer = &mut self.buffer[..];
+        let stamp = self.clk.map_or_else(|| Tail::new("\n"), |[high, _]| high);
+        let mut at = start + self.rise.put(stamp, &mut buffer[start..]);
+        let changed = at;
+        for (group, changes) in self.changes.chunks(SPAN).enumerate() {
+            let mut bits = self.moves.bits(group, sample);
+            while bits != 0 {
+                let change = &changes[bits.trailing_zeros() as usize];
+                bits &= bits - 1;
+                change.line.put(rows.value(change.column, row), window(buffer, at));
+                at += change.line.len();
+            }
+        }
+        match self.clk {
+            Some([_, low]) => at += self.fall.put(low, &mut buffer[at..]),
+            // Nothing happens at this time.
+            None if at == changed => at = start,
+            None => {}
+        }
+        self.filled = at;
+        self.rise.advance();
+        self.fall.advance();
+    }
+
+    fn text(&mut self, text: &[u8]) {
+        self.buffer[self.filled..self.filled + text.len()].copy_from_slice(text);
+        self.filled += text.len();
+    }
+
+    /// Writes the buffer if it is full.
+    #[inline]
+    fn spill(&mut self) -> io::Result<()> {
+        if self.filled >= BUFFER {
+            self.out.write_all(&self.buffer[..self.filled])?;
+            self.filled = 0;
+        }
+        Ok(())
+    }
+
+    /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn finish(mut self) -> io::Result<W> {
+        let end = self.last_clock.map_or(0, |clock| clock + 1);
+        self.rise.set(end * self.ticks);
+        self.filled += self.rise.put(Tail::new("\n"), &mut self.buffer[self.filled..]);
+        self.out.write_all(&self.buffer[..self.filled])?;
+        self.out.flush()?;
+        Ok(self.out)
+    }
+}
+
+/// Room for a line. The buffer holds the longest row behind any place where a row may begin.
+#[inline]
+fn window(buffer: &mut [u8], at: usize) -> &mut [u8; WINDOW] {
+    buffer[at..].first_chunk_mut().expect("the buffer holds the longest row")
+}
