@@ -83,7 +83,7 @@ fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) 
             }
         }
     };
-    follow(design, strobes(&machine), &words, &[], 1 << 13, judge).unwrap();
+    follow(design, strobes(machine), &words, &[], 1 << 13, judge).unwrap();
     told
 }
 
