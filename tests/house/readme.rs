@@ -1,8 +1,19 @@
-//! Every `stepwave run` and `stepwave program` in the README is run, and what the README shows of it is compared.
+//! Every `stepwave run`, `program` and `compare` in the README and in `docs/` is run, and what they show of it is compared.
 
+use std::fs;
+use std::path::Path;
 use std::process::Command;
 
-/// Fenced blocks of the README: language and content.
+/// The README and the pages of `docs/`, by name.
+fn pages() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let docs = fs::read_dir(root.join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let pages =
+        docs.filter(|path| path.extension().is_some_and(|ending| ending == "md")).chain([root.join("README.md")]);
+    pages.map(|path| (path.display().to_string(), fs::read_to_string(path).unwrap())).collect()
+}
+
+/// Fenced blocks of a page: language and content.
 fn blocks(text: &str) -> Vec<(String, String)> {
     let mut blocks = Vec::new();
     let mut open: Option<(String, String)> = None;
@@ -18,9 +29,8 @@ fn blocks(text: &str) -> Vec<(String, String)> {
 }
 
 #[test]
-fn the_commands_of_the_readme_print_what_it_shows() {
-    let readme = include_str!("../../README.md");
-    let blocks = blocks(readme);
+fn commands_of_the_documents_print_what_is_shown() {
+    let blocks: Vec<_> = pages().iter().flat_map(|(_, text)| blocks(text)).collect();
     let dir = tempfile::tempdir().unwrap();
     std::fs::create_dir(dir.path().join("examples")).unwrap();
     std::fs::write(dir.path().join("examples/part.ngc"), include_str!("../../examples/part.ngc")).unwrap();
@@ -75,9 +85,9 @@ fn tables(text: &str) -> Vec<(String, String)> {
 }
 
 #[test]
-fn the_tables_of_the_readme_are_those_that_compare_prints() {
+fn tables_of_the_documents_are_those_that_compare_prints() {
     let mut compared = 0;
-    for (command, table) in tables(include_str!("../../README.md")) {
+    for (command, table) in pages().iter().flat_map(|(_, text)| tables(text)) {
         let Some(arguments) = command.trim().strip_prefix("stepwave compare ") else { continue };
         let words = ["compare"].into_iter().chain(arguments.split_whitespace());
         let output = Command::new(env!("CARGO_BIN_EXE_stepwave")).args(words).output().unwrap();
@@ -85,6 +95,20 @@ fn the_tables_of_the_readme_are_those_that_compare_prints() {
         compared += 1;
     }
     assert!(compared >= 2, "{compared}");
+}
+
+#[test]
+fn readme_is_short_and_links_to_pages_that_exist() {
+    assert!(include_str!("../../README.md").lines().count() <= 150);
+    for (page, text) in pages() {
+        let folder = Path::new(&page).parent().unwrap();
+        for target in text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next()) {
+            assert!(
+                target.starts_with("http") || target.is_empty() || folder.join(target).exists(),
+                "{page}: {target}"
+            );
+        }
+    }
 }
 
 #[test]
