@@ -68,7 +68,8 @@ use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{Interpolates, Method, Model, RegisterDoc};
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System, TOLERANCE};
-use crate::parts::{ArithmeticUnit, Block, FineStage, magnitude, negated, with_sign};
+use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
+use crate::parts::{Block, FineStage, Microprogram, Row, magnitude, negated, row, with_sign};
 use crate::plan::Plan;
 use crate::sampling::Sampling;
 use crate::sizes;
@@ -137,227 +138,117 @@ fn growth(sampling: &Sampling, radius: f64) -> f64 {
     }
 }
 
-/// States of the coarse stage that both systems have; the others follow.
+/// States of the coarse stage: common ones, those of `7m`, those of `7360`.
 mod at {
-    pub(super) const SQUARE_X: u64 = 1;
-    pub(super) const SQUARE_Y: u64 = 2;
-    pub(super) const SIDE_X: u64 = 3;
-    pub(super) const SIDE_Y: u64 = 4;
-    pub(super) const HAND: u64 = 5;
-    pub(super) const HALF: u64 = 6;
-    pub(super) const TANGENT: u64 = 7;
-    pub(super) const SQUARE_TANGENT: u64 = 8;
-    pub(super) const SECANT: u64 = 9;
-    pub(super) const COSINE: u64 = 10;
-    pub(super) const DRIVE: u64 = 11;
-    pub(super) const SQUARE: u64 = 12;
-    pub(super) const ROOT: u64 = 13;
-    pub(super) const RADIUS: u64 = 6;
-    pub(super) const LAMBDA: u64 = 7;
-    pub(super) const MIDDLE_X: u64 = 8;
-    pub(super) const MIDDLE_Y: u64 = 9;
-    pub(super) const STEP_X: u64 = 10;
-    pub(super) const STEP_Y: u64 = 11;
+    use crate::parts::states;
+
+    states! { IDLE = 0, SQUARE_X = 1, SQUARE_Y = 2, SIDE_X = 3, SIDE_Y = 4, HAND_OVER = 5 }
+    states! { HALF_STEP = 6, TANGENT = 7, SQUARE_TAN = 8, SECANT = 9, COSINE = 10, DRIVE = 11, SQUARE = 12, ROOT = 13 }
+    states! { RADIUS = 6, LAMBDA = 7, MIDDLE_X = 8, MIDDLE_Y = 9, STEP_X = 10, STEP_Y = 11 }
 }
 
-const COMMON: [(u64, &str); 6] = [
-    (0, "IDLE"),
-    (at::SQUARE_X, "SQUARE_X"),
-    (at::SQUARE_Y, "SQUARE_Y"),
-    (at::SIDE_X, "SIDE_X"),
-    (at::SIDE_Y, "SIDE_Y"),
-    (at::HAND, "HAND_OVER"),
-];
-const DIRECTION: [(u64, &str); 8] = [
-    (at::HALF, "HALF_STEP"),
-    (at::TANGENT, "TANGENT"),
-    (at::SQUARE_TANGENT, "SQUARE_TAN"),
-    (at::SECANT, "SECANT"),
-    (at::COSINE, "COSINE"),
-    (at::DRIVE, "DRIVE"),
-    (at::SQUARE, "SQUARE"),
-    (at::ROOT, "ROOT"),
-];
-const STEP_FACTOR: [(u64, &str); 6] = [
-    (at::RADIUS, "RADIUS"),
-    (at::LAMBDA, "LAMBDA"),
-    (at::MIDDLE_X, "MIDDLE_X"),
-    (at::MIDDLE_Y, "MIDDLE_Y"),
-    (at::STEP_X, "STEP_X"),
-    (at::STEP_Y, "STEP_Y"),
-];
-
-/// The coarse point and the units that calculate, in the scope `coarse`.
+/// The coarse point and what calculates it, in the scope `coarse`.
 struct Coarse<'m> {
     m: Scope<'m>,
-    block: Block<'m>,
-    sampling: Sampling,
+    bits: u32,
     f: Signal<'m>,
     ccw: Signal<'m>,
     /// Both axes of the point.
     point: [Register<'m>; 2],
-    /// R², whole.
-    square: Register<'m>,
-    unit: ArithmeticUnit<'m>,
-}
-
-/// What a system adds to the common sequence.
-struct Way<'m> {
-    /// Operands of the multiplier.
-    products: Vec<(Signal<'m>, Signal<'m>, Signal<'m>)>,
-    /// From state to state.
-    moves: Vec<(Signal<'m>, u64)>,
-    /// First state of the block, first state of a period.
-    first: [u64; 2],
-    /// 1 bit: the next point stands behind this edge.
-    stands: Signal<'m>,
+    /// R² with the fraction of a square.
+    radicand: Signal<'m>,
+    program: Microprogram<'m>,
 }
 
 impl<'m> Coarse<'m> {
-    fn held(&self, name: &str, condition: Signal<'m>, value: Signal<'m>) -> Signal<'m> {
-        let register = self.m.reg(name, value.bits());
-        register.when(condition, value).else_hold();
-        register.q
-    }
-
     /// Magnitude of a coordinate, n+q bits.
     fn magnitude(&self, value: Signal<'m>) -> Signal<'m> {
-        magnitude(self.m, value).slice(0, self.sampling.magnitude())
-    }
-
-    /// The start of the block, of an axis.
-    fn start(&self, axis: usize) -> Signal<'m> {
-        self.block.word_signed(["px", "py"][axis], self.point[axis].q.bits())
-    }
-
-    /// R² with the fraction of a square.
-    fn radicand(&self) -> Signal<'m> {
-        self.square.q.concat(self.m.lit(2 * self.sampling.fraction, 0))
+        magnitude(self.m, value).slice(0, self.bits)
     }
 
     /// tan α = (u + f/2·cos 45°) / (v - f/2·sin 45°) of the axis u that is driven and the other, v; u moves by f·cos α,
     /// and v is what the circle leaves of R².
-    fn by_direction(&self) -> Way<'m> {
-        let (m, bits) = (self.m, self.sampling.magnitude());
-        let begins = |state| self.unit.begins(state);
-        let product = self.unit.multiplier.product();
-        let f_bits = self.f.bits();
-        // Bits of the fraction of tan and sec.
-        let p = f_bits.min(bits - 2);
-
-        // ½·cos 45° with as many bits as f has.
-        let k = f_bits.min(40);
+    fn by_direction(&self) -> Vec<Row<'m>> {
+        let Coarse { m, bits, f, point: [px, py], program, .. } = *self;
+        let (product, quotient, root) = (program.multiplier.product(), program.divider.quotient(), program.root.root());
+        // Bits of the fraction of tan and sec; ½·cos 45° with as many bits as f has.
+        let (p, k) = (f.bits().min(bits - 2), f.bits().min(40));
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let half_cosine = m.lit(k, (std::f64::consts::FRAC_1_SQRT_2 / 2.0 * (1_u64 << k) as f64).round() as u64);
-        let half = self.held("half_step", self.unit.multiplied(at::HALF), product.slice(k, f_bits));
+        let half_step = m.reg("half_step", f.bits());
+        let [drives_x, backwards, other_negative] =
+            ["x_is_driven", "backwards", "other_negative"].map(|name| m.reg(name, 1));
+        let tangent = m.reg("tangent", p + 1);
 
-        let [x, y] = self.point.map(|axis| axis.q);
+        let (x, y) = (px.q, py.q);
         let [ax, ay] = [x, y].map(|coordinate| self.magnitude(coordinate));
         let x_is_driven = !ay.less_than(ax);
         let [driven, other] = [x_is_driven.mux(x, y), x_is_driven.mux(y, x)];
         let [u, v] = [x_is_driven.mux(ax, ay), x_is_driven.mux(ay, ax)];
         // Clockwise x goes with y, and y against x.
-        let backwards = x_is_driven.mux(y.msb(), !x.msb()) ^ self.ccw;
-        let outwards = u.is_zero() | !(driven.msb() ^ backwards);
-        let wide_half = half.extend(bits);
-        let ahead = outwards.mux(u.wrapping_add(wide_half), magnitude_of_difference(m, u, wide_half));
-        let below = outwards.mux(v.wrapping_sub(wide_half), v.wrapping_add(wide_half));
-        let begun = begins(at::TANGENT);
-        let drives_x = self.held("x_is_driven", begun, x_is_driven);
-        let backwards = self.held("backwards", begun, backwards);
-        let other_negative = self.held("other_negative", begun, other.msb());
+        let against = x_is_driven.mux(y.msb(), !x.msb()) ^ self.ccw;
+        let outwards = u.is_zero() | !(driven.msb() ^ against);
+        let half = half_step.q.extend(bits);
+        let ahead = outwards.mux(u.wrapping_add(half), magnitude_of_difference(m, u, half));
+        let below = outwards.mux(v.wrapping_sub(half), v.wrapping_add(half));
+        let kept = [(drives_x, x_is_driven), (backwards, against), (other_negative, other.msb())];
 
-        let tangent =
-            self.held("tangent", self.unit.divided(at::TANGENT), self.unit.divider.quotient().slice(0, p + 1));
         let one = m.lit(1, 1).concat(m.lit(2 * p, 0)).extend(2 * bits);
         let above_one = product.slice(0, 2 * p + 2).extend(2 * bits).wrapping_add(one);
-        let secant = self.unit.root.root().slice(0, p + 2);
-        let way = self.unit.divider.quotient().slice(0, f_bits);
-        let driven = drives_x.mux(x, y);
-        let wide = way.extend(driven.bits()).as_signed();
-        let moved = backwards.mux(driven.wrapping_sub(wide), driven.wrapping_add(wide));
-        let left = self.radicand().saturating_sub(product);
-        let found = with_sign(m, self.unit.root.root(), bits + 1, other_negative);
-        let drive = self.unit.sequence.at(at::DRIVE);
-        for (axis, name) in [(0, drives_x), (1, !drives_x)] {
-            self.point[axis]
-                .when(self.block.load, self.start(axis))
-                .when(drive & name, moved)
-                .when(self.unit.rooted(at::ROOT) & !name, found)
-                .else_hold();
-        }
-        self.unit.divider.close(&[
-            (begun, ahead.concat(m.lit(p, 0)), below),
-            (begins(at::COSINE), self.f.concat(m.lit(p, 0)), secant),
-        ]);
-        self.unit.root.close(&[(begins(at::SECANT), above_one), (begins(at::ROOT), left)]);
-        let coordinate = self.magnitude(driven);
-        Way {
-            products: vec![
-                (begins(at::HALF), self.f, half_cosine),
-                (begins(at::SQUARE_TANGENT), tangent, tangent),
-                (begins(at::SQUARE), coordinate, coordinate),
-            ],
-            moves: vec![
-                (self.unit.multiplied(at::HALF), at::SIDE_X),
-                (self.unit.divided(at::TANGENT), at::SQUARE_TANGENT),
-                (self.unit.multiplied(at::SQUARE_TANGENT), at::SECANT),
-                (self.unit.rooted(at::SECANT), at::COSINE),
-                (self.unit.divided(at::COSINE), at::DRIVE),
-                (drive, at::SQUARE),
-                (self.unit.multiplied(at::SQUARE), at::ROOT),
-            ],
-            first: [at::HALF, at::TANGENT],
-            stands: self.unit.rooted(at::ROOT),
-        }
+        let driven = drives_x.q.mux(x, y);
+        let way = quotient.slice(0, f.bits()).extend(bits + 1).as_signed();
+        let moved = backwards.q.mux(driven.wrapping_sub(way), driven.wrapping_add(way));
+        let found = with_sign(m, root, bits + 1, other_negative.q);
+        let drive = [(px, drives_x.q.mux(moved, x)), (py, drives_x.q.mux(y, moved))];
+        let follow = [(px, drives_x.q.mux(x, found)), (py, drives_x.q.mux(found, y))];
+        let [ahead, scaled_f] = [ahead, f].map(|value| value.concat(m.lit(p, 0)));
+        let (cosine, tan, coordinate) = (product.slice(k, f.bits()), quotient.slice(0, p + 1), self.magnitude(driven));
+        vec![
+            row(at::HALF_STEP, Multiply(f, half_cosine), [(half_step, cosine)], at::SIDE_X),
+            row(at::TANGENT, Divide(ahead, below), [(tangent, tan)], at::SQUARE_TAN).keeping(kept),
+            row(at::SQUARE_TAN, Multiply(tangent.q, tangent.q), [], at::SECANT),
+            row(at::SECANT, Root(above_one), [], at::COSINE),
+            row(at::COSINE, Divide(scaled_f, root.slice(0, p + 2)), [], at::DRIVE),
+            row(at::DRIVE, Wait(m.lit(1, 1)), drive, at::SQUARE),
+            row(at::SQUARE, Multiply(coordinate, coordinate), [], at::ROOT),
+            row(at::ROOT, Root(self.radicand.saturating_sub(product)), follow, at::SIDE_X),
+        ]
     }
 
-    /// λ = f/R, and clockwise Δx = λ(y - ½λx), Δy = -λ(x + ½λy); counter-clockwise λ is negative.
-    fn by_step_factor(&self) -> Way<'m> {
-        let (m, bits) = (self.m, self.sampling.magnitude());
-        let begins = |state| self.unit.begins(state);
-        let product = self.unit.multiplier.product();
-        let lambda = self.held("lambda", self.unit.divided(at::LAMBDA), self.unit.divider.quotient().slice(0, bits));
-        let [x, y] = self.point.map(|axis| axis.q);
-        // Half of λ times a coordinate, with the coordinate's sign.
-        let half = |coordinate: Signal<'m>| with_sign(m, product.slice(bits + 1, bits - 1), bits + 1, coordinate.msb());
+    /// λ = f/R, and clockwise Δx = λ(y - ½λx), Δy = -λ(x + ½λy); counter-clockwise λ is negative. `rests` is what a step
+    /// leaves below the fraction.
+    fn by_step_factor(&self) -> (Vec<Row<'m>>, [Register<'m>; 2]) {
+        let Coarse { m, bits, f, ccw, point: [px, py], program, .. } = *self;
+        let product = program.multiplier.product();
         let plus =
             |a: Signal<'m>, b: Signal<'m>, subtract: Signal<'m>| subtract.mux(a.wrapping_sub(b), a.wrapping_add(b));
-        let middle_y = plus(y, half(x), !self.ccw);
-        let middle_x = plus(x, half(y), self.ccw);
-        let middle_y = self.held("middle_y", self.unit.multiplied(at::MIDDLE_X), middle_y).as_signed();
-        let middle_x = self.held("middle_x", self.unit.multiplied(at::MIDDLE_Y), middle_x).as_signed();
-        for (axis, state, middle, against) in
-            [(0, at::STEP_X, middle_y, self.ccw), (1, at::STEP_Y, middle_x, !self.ccw)]
-        {
-            let rest = m.reg(["remx", "remy"][axis], bits);
-            let whole = self.point[axis].q.concat(rest.q);
+        let lambda = m.reg("lambda", bits);
+        let [middle_y, middle_x] = ["middle_y", "middle_x"].map(|name| m.reg(name, bits + 1));
+        // From a coordinate, half of λ times the other.
+        let middle = |from: Register<'m>, other: Register<'m>, subtract| {
+            let half = with_sign(m, product.slice(bits + 1, bits - 1), bits + 1, other.q.msb());
+            plus(from.q, half, subtract)
+        };
+        let step = |axis: Register<'m>, rest: Register<'m>, middle: Register<'m>, against| {
             let way = product.extend(2 * bits + 1).as_signed();
-            let sum = plus(whole, way, middle.msb() ^ against);
-            let stepped = self.unit.multiplied(state);
-            let point = sum.slice(bits, bits + 1).as_signed();
-            self.point[axis].when(self.block.load, self.start(axis)).when(stepped, point).else_hold();
-            rest.when(self.block.load, m.lit(bits, 0)).when(stepped, sum.slice(0, bits)).else_hold();
-        }
-        self.unit.divider.close(&[(begins(at::LAMBDA), self.f.concat(m.lit(bits, 0)), self.unit.root.root())]);
-        self.unit.root.close(&[(begins(at::RADIUS), self.radicand())]);
-        Way {
-            products: vec![
-                (begins(at::MIDDLE_X), self.magnitude(x), lambda),
-                (begins(at::MIDDLE_Y), self.magnitude(y), lambda),
-                (begins(at::STEP_X), self.magnitude(middle_y), lambda),
-                (begins(at::STEP_Y), self.magnitude(middle_x), lambda),
-            ],
-            moves: vec![
-                (self.unit.rooted(at::RADIUS), at::LAMBDA),
-                (self.unit.divided(at::LAMBDA), at::SIDE_X),
-                (self.unit.multiplied(at::MIDDLE_X), at::MIDDLE_Y),
-                (self.unit.multiplied(at::MIDDLE_Y), at::STEP_X),
-                (self.unit.multiplied(at::STEP_X), at::STEP_Y),
-            ],
-            first: [at::RADIUS, at::MIDDLE_X],
-            stands: self.unit.multiplied(at::STEP_Y),
-        }
+            let sum = plus(axis.q.concat(rest.q), way, middle.q.msb() ^ against);
+            [(axis, sum.slice(bits, bits + 1).as_signed()), (rest, sum.slice(0, bits))]
+        };
+        let [rest_x, rest_y] = ["remx", "remy"].map(|name| m.reg(name, bits));
+        let (to_y, to_x) = (middle(py, px, !ccw), middle(px, py, ccw));
+        let (step_x, step_y) = (step(px, rest_x, middle_y, ccw), step(py, rest_y, middle_x, !ccw));
+        let [x, y, at_y, at_x] =
+            [px.q, py.q, middle_y.q, middle_x.q].map(|coordinate| self.magnitude(coordinate.as_signed()));
+        let (scaled_f, found) = (f.concat(m.lit(bits, 0)), program.divider.quotient().slice(0, bits));
+        let rows = vec![
+            row(at::RADIUS, Root(self.radicand), [], at::LAMBDA),
+            row(at::LAMBDA, Divide(scaled_f, program.root.root()), [(lambda, found)], at::SIDE_X),
+            row(at::MIDDLE_X, Multiply(x, lambda.q), [(middle_y, to_y)], at::MIDDLE_Y),
+            row(at::MIDDLE_Y, Multiply(y, lambda.q), [(middle_x, to_x)], at::STEP_X),
+            row(at::STEP_X, Multiply(at_y, lambda.q), step_x, at::STEP_Y),
+            row(at::STEP_Y, Multiply(at_x, lambda.q), step_y, at::SIDE_X),
+        ];
+        (rows, [rest_x, rest_y])
     }
 }
 
@@ -369,71 +260,55 @@ fn magnitude_of_difference<'m>(m: Scope<'m>, a: Signal<'m>, b: Signal<'m>) -> Si
 
 fn hardware(top: Scope<'_>, hardware: &Hardware) {
     let Some(sampling) = hardware.sampling else { return };
-    let by_direction = sampling.system == System::Direction;
     let (q, n, bits) = (sampling.fraction, sampling.whole, sampling.magnitude());
     let block = Block::new(top);
     let fine = FineStage::new(top.scope("fine"), hardware.bits("jvx"));
     let m = top.scope("coarse");
-    let own = if by_direction { &DIRECTION[..] } else { &STEP_FACTOR };
-    let coarse = Coarse {
-        m,
-        block,
-        sampling,
-        f: block.held(m, "f", sampling.word_bits()),
-        ccw: block.held(m, "ccw", 1),
-        point: ["px", "py"].map(|name| m.reg_signed(name, bits + 1)),
-        square: m.reg("square", 2 * n),
-        unit: ArithmeticUnit::new(m, &[&COMMON[..], own].concat(), [bits; 2], [2 * bits, bits], bits),
-    };
+    let [f, ccw] = [("f", sampling.word_bits()), ("ccw", 1)].map(|(name, bits)| block.held(m, name, bits));
+    let point = ["px", "py"].map(|name| m.reg_signed(name, bits + 1));
+    let square = m.reg("square", 2 * n);
+    let program = Microprogram::new(m, [bits; 2], [2 * bits, bits], bits);
     let ends = ["xe", "ye"].map(|name| block.held_signed(m, name, n + 1));
-    let Way { products, moves, first, stands } =
-        if by_direction { coarse.by_direction() } else { coarse.by_step_factor() };
-
-    let product = coarse.unit.multiplier.product();
-    let of_square = product.slice(0, 2 * n);
-    let [squared_x, squared_y] = [at::SQUARE_X, at::SQUARE_Y].map(|state| coarse.unit.multiplied(state));
-    let sum = coarse.square.q.wrapping_add(of_square);
-    coarse.square.when(squared_x, of_square).when(squared_y, sum).else_hold();
+    let coarse = Coarse { m, bits, f, ccw, point, radicand: square.q.concat(m.lit(2 * q, 0)), program };
+    let [start_x, start_y] = ["px", "py"].map(|name| block.word_signed(name, bits + 1));
+    let (own, rests, [after_square, period]) = match sampling.system {
+        System::Direction => (coarse.by_direction(), vec![], [at::HALF_STEP, at::TANGENT]),
+        System::StepFactor => {
+            let (rows, rests) = coarse.by_step_factor();
+            (rows, rests.to_vec(), [at::RADIUS, at::MIDDLE_X])
+        }
+    };
 
     // On which side of the end's radius the point lies: xe·y - ye·x.
-    let [x, y] = coarse.point.map(|axis| axis.q);
+    let [x, y] = point.map(|axis| axis.q);
     let [ax, ay] = [x, y].map(|coordinate| coarse.magnitude(coordinate));
     let [ex, ey] = ends.map(|end| magnitude(m, end).slice(0, n));
-    let wide = bits + n + 2;
-    let turned = |negative| with_sign(m, product.slice(0, bits + n), wide, negative);
-    let [side_x, side_y] = [at::SIDE_X, at::SIDE_Y].map(|state| coarse.unit.multiplied(state));
-    let half_side = coarse.held("side", side_x, turned(ends[0].msb() ^ y.msb()));
-    let side = half_side.as_signed().wrapping_sub(turned(ends[1].msb() ^ x.msb()));
+    let product = program.multiplier.product();
+    let turned = |negative| with_sign(m, product.slice(0, bits + n), bits + n + 2, negative);
+    let half_side = m.reg("side", bits + n + 2);
+    let side = half_side.q.as_signed().wrapping_sub(turned(ends[1].msb() ^ x.msb()));
     // Before it, in the sense of the motion.
-    let before = coarse.ccw.mux(side.msb(), !side.msb() & side.is_nonzero());
-    let was_before = coarse.held("before", side_y, before);
-    let arrives = m.reg("arrives", 1);
-    let first_side = m.reg("first", 1);
-    let [yes, no] = [m.lit(1, 1), m.lit(1, 0)];
-    arrives.when(block.load, no).when(side_y, was_before & !before & !first_side.q).else_hold();
-    first_side.when(block.load, yes).when(side_y, no).else_hold();
+    let before = ccw.mux(side.msb(), !side.msb() & side.is_nonzero());
+    let [was_before, arrives, first_side] = ["before", "arrives", "first"].map(|name| m.reg(name, 1));
+    let passed = was_before.q & !before & !first_side.q;
+    let hand = m.name("hand", program.at(at::HAND_OVER) & fine.free());
 
-    let begins = |state| coarse.unit.begins(state);
+    let [yes, no] = [m.lit(1, 1), m.lit(1, 0)];
+    let start = [(point[0], start_x), (point[1], start_y), (arrives, no), (first_side, yes)];
     let [whole_x, whole_y] = [ax, ay].map(|coordinate| coordinate.slice(q, n));
+    let squared = product.slice(0, 2 * n);
+    let sum = square.q.wrapping_add(squared);
+    let part = turned(ends[0].msb() ^ y.msb());
+    let judged = [(was_before, before), (arrives, passed), (first_side, no)];
     let common = [
-        (begins(at::SQUARE_X), whole_x, whole_x),
-        (begins(at::SQUARE_Y), whole_y, whole_y),
-        (begins(at::SIDE_X), ay, ex),
-        (begins(at::SIDE_Y), ax, ey),
+        row(at::IDLE, Start(block.load), start, at::SQUARE_X).clearing(m, &rests),
+        row(at::SQUARE_X, Multiply(whole_x, whole_x), [(square, squared)], at::SQUARE_Y),
+        row(at::SQUARE_Y, Multiply(whole_y, whole_y), [(square, sum)], after_square),
+        row(at::SIDE_X, Multiply(ay, ex), [(half_side, part)], at::SIDE_Y),
+        row(at::SIDE_Y, Multiply(ax, ey), judged, at::HAND_OVER).unless(first_side.q, period),
+        row(at::HAND_OVER, Wait(fine.free()), [], period).unless(arrives.q, at::IDLE),
     ];
-    coarse.unit.multiplier.close(&[&common[..], &products].concat());
-    let hand = m.name("hand", coarse.unit.sequence.at(at::HAND) & fine.free());
-    let common = [
-        (squared_x, at::SQUARE_Y),
-        (squared_y, first[0]),
-        (stands, at::SIDE_X),
-        (side_x, at::SIDE_Y),
-        (side_y & first_side.q, first[1]),
-        (side_y, at::HAND),
-        (hand & !arrives.q, first[1]),
-        (hand, 0),
-    ];
-    coarse.unit.sequence.close(block.load, &[&common[..], &moves].concat());
+    program.close(&[&common[..], &own].concat());
     // As wide as the points that the fine stage takes.
     let points = [x, y].map(|coordinate| coordinate.extend(bits + 2));
     fine.close(block, hardware, [hand, arrives.q], points, q, ends);

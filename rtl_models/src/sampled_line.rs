@@ -49,7 +49,7 @@
 use std::f64::consts::SQRT_2;
 
 use stepwave_nc::Line;
-use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use crate::docs::{SAMPLED_SYSTEM, SAMPLED_WIDTH};
 use crate::error::ModelError;
@@ -57,7 +57,8 @@ use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{Interpolates, Method, Model, RegisterDoc};
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System};
-use crate::parts::{ArithmeticUnit, Block, FineStage, with_sign};
+use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
+use crate::parts::{Block, FineStage, Microprogram, Row, row, with_sign};
 use crate::plan::Plan;
 use crate::sampling::Sampling;
 use crate::{sizes, words};
@@ -99,13 +100,12 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Clocks from one hand-over to the next: a component takes a bit a clock, and its state two more.
+/// Clocks from one hand-over to the next, with its own: a component takes a bit a clock, and its state two more.
 fn coarse_clocks(sampling: &Sampling) -> u32 {
     let product = sampling.whole + 2;
-    let hand = 1;
     match sampling.system {
-        System::Direction => product + dividend_bits(sampling) + 2 + hand,
-        System::StepFactor => 2 * product + hand,
+        System::Direction => product + dividend_bits(sampling) + 2 + 1,
+        System::StepFactor => 2 * product + 1,
     }
 }
 
@@ -113,142 +113,100 @@ fn dividend_bits(sampling: &Sampling) -> u32 {
     sampling.magnitude() + sampling.word_bits().max(sampling.whole + 1)
 }
 
-/// States of the coarse stage; SHARE is one of `7m` alone.
+/// States of the coarse stage: common ones, those of `7m`, those of `7360`.
 mod at {
-    pub(super) const SQUARE_FAR: u64 = 1;
-    pub(super) const SQUARE_NEAR: u64 = 2;
-    pub(super) const LENGTH: u64 = 3;
-    pub(super) const SHARE: u64 = 4;
-    pub(super) const FACTOR: u64 = 5;
-    pub(super) const FIRST: u64 = 6;
-    pub(super) const SECOND: u64 = 7;
-    pub(super) const HAND: u64 = 8;
-}
+    use crate::parts::states;
 
-const DIRECTION: [(u64, &str); 9] = [
-    (0, "IDLE"),
-    (at::SQUARE_FAR, "SQUARE_FAR"),
-    (at::SQUARE_NEAR, "SQUARE_NEAR"),
-    (at::LENGTH, "LENGTH"),
-    (at::SHARE, "SHARE"),
-    (at::FACTOR, "STEP"),
-    (at::FIRST, "SLOPE"),
-    (at::SECOND, "RATIO"),
-    (at::HAND, "HAND_OVER"),
-];
-const STEP_FACTOR: [(u64, &str); 8] = [
-    (0, "IDLE"),
-    (at::SQUARE_FAR, "SQUARE_FAR"),
-    (at::SQUARE_NEAR, "SQUARE_NEAR"),
-    (at::LENGTH, "LENGTH"),
-    (at::FACTOR, "LAMBDA"),
-    (at::FIRST, "STEP_FAR"),
-    (at::SECOND, "STEP_NEAR"),
-    (at::HAND, "HAND_OVER"),
-];
+    states! { IDLE = 0, SQUARE_FAR = 1, SQUARE_NEAR = 2, LENGTH = 3, HAND_OVER = 8 }
+    states! { SHARE = 4, STEP = 5, SLOPE = 6, RATIO = 7 }
+    states! { LAMBDA = 5, STEP_FAR = 6, STEP_NEAR = 7 }
+}
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let Some(sampling) = hardware.sampling else { return };
-    let by_direction = sampling.system == System::Direction;
     let (q, n, bits) = (sampling.fraction, sampling.whole, sampling.magnitude());
     let block = Block::new(m);
     let fine = FineStage::new(m.scope("fine"), hardware.bits("jvx"));
+    let m = m.scope("coarse");
+    let f = block.held(m, "f", sampling.word_bits());
+    let [long, short] = ["long", "short"].map(|name| block.held(m, name, n));
+    let x_is_longest = block.held(m, "x_is_longest", 1);
+    let program = Microprogram::new(m, [bits + 1, n], [dividend_bits(&sampling), bits.max(n)], bits);
+    let square = m.reg("square", 2 * n);
+    let (after_length, period) = match sampling.system {
+        System::Direction => (at::SHARE, at::SLOPE),
+        System::StepFactor => (at::LAMBDA, at::STEP_FAR),
+    };
+    let ([far, near], cleared, own) = own_rows(m, &sampling, program, f, [long, short]);
 
-    let coarse = m.scope("coarse");
-    let f = block.held(coarse, "f", sampling.word_bits());
-    let [long, short] = ["long", "short"].map(|name| block.held(coarse, name, n));
-    let x_is_longest = block.held(coarse, "x_is_longest", 1);
-    let states = if by_direction { &DIRECTION[..] } else { &STEP_FACTOR };
-    let dividend = [dividend_bits(&sampling), bits.max(n)];
-    let unit = ArithmeticUnit::new(coarse, states, [bits + 1, n], dividend, bits);
+    let last = m.name("arrived", !far.less_than(long.concat(m.lit(q, 0)).extend(bits + 1)));
+    let hand = m.name("hand", program.at(at::HAND_OVER) & fine.free());
+    let product = program.multiplier.product().slice(0, 2 * n);
+    let (sum, radicand) = (square.q.wrapping_add(product), square.q.concat(m.lit(2 * q, 0)));
+    let common = [
+        row(at::IDLE, Start(block.load), [], at::SQUARE_FAR).clearing(m, &cleared),
+        row(at::SQUARE_FAR, Multiply(long, long), [(square, product)], at::SQUARE_NEAR),
+        row(at::SQUARE_NEAR, Multiply(short, short), [(square, sum)], at::LENGTH),
+        row(at::LENGTH, Root(radicand), [], after_length),
+        row(at::HAND_OVER, Wait(fine.free()), [], period).unless(last, at::IDLE),
+    ];
+    program.close(&[&common[..], &own].concat());
 
-    // The length of the line, once a block.
-    let square = coarse.reg("square", 2 * n);
-    let product = unit.multiplier.product();
-    let of_square = product.slice(0, 2 * n);
-    square
-        .when(unit.multiplied(at::SQUARE_FAR), of_square)
-        .when(unit.multiplied(at::SQUARE_NEAR), square.q.wrapping_add(of_square))
-        .else_hold();
-    let measured = unit.rooted(at::LENGTH);
-    let radicand = square.q.concat(coarse.lit(2 * q, 0));
+    let signs = ["negative_x", "negative_y"].map(|name| block.held(m, name, 1));
+    let ways = [x_is_longest.mux(far, near), x_is_longest.mux(near, far)];
+    let wholes = [x_is_longest.mux(long, short), x_is_longest.mux(short, long)];
+    let points = [0, 1].map(|axis| with_sign(m, ways[axis], bits + 2, signs[axis]));
+    let ends = [0, 1].map(|axis| with_sign(m, wholes[axis], n + 2, signs[axis]));
+    fine.close(block, hardware, [hand, last], points, q, ends);
+}
 
-    // The way of the long axis, or the step factor: both once a block.
-    let factor = coarse.reg(if by_direction { "step" } else { "lambda" }, bits + 1);
-    let quotient = unit.divider.quotient();
+/// The coarse way of the long and the short axis, the registers that a block begins with as 0, and the rows that a system
+/// has for itself.
+fn own_rows<'m>(
+    m: Scope<'m>,
+    sampling: &Sampling,
+    program: Microprogram<'m>,
+    f: Signal<'m>,
+    [long, short]: [Signal<'m>; 2],
+) -> ([Signal<'m>; 2], Vec<Register<'m>>, Vec<Row<'m>>) {
+    let (n, bits, by_direction) = (sampling.whole, sampling.magnitude(), sampling.system == System::Direction);
+    // The way of the long axis, or the step factor: both once a block. A way beyond the end is as good as one up to it.
+    let factor = m.reg(if by_direction { "step" } else { "lambda" }, bits + 1);
+    let [far, near] = ["far", "near"].map(|name| m.reg(name, bits + 1));
+    // What is below the fraction is kept for the next period.
+    let near_rest = m.reg("remn", n);
+    let (product, quotient, length) = (program.multiplier.product(), program.divider.quotient(), program.root.root());
     let beyond = quotient.slice(bits, quotient.bits() - bits).is_nonzero();
-    // A way beyond the end is as good as one up to it.
-    let whole = coarse.lit(1, 1).concat(coarse.lit(bits, 0));
-    factor.when(unit.divided(at::FACTOR), beyond.mux(whole, quotient.slice(0, bits + 1))).else_hold();
-
-    // A period: what is below the fraction is kept for the next.
-    let [far, near] = ["far", "near"].map(|name| coarse.reg(name, bits + 1));
-    let near_rest = coarse.reg("remn", n);
-    let [zero, no_rest] = [coarse.lit(bits + 1, 0), coarse.lit(n, 0)];
-    let (stepped_far, stepped_near);
-    if by_direction {
-        // Δs = (Δl·S + rest) / L, the rest kept.
-        (stepped_far, stepped_near) = (unit.divided(at::SECOND), unit.divided(at::SECOND));
-        far.when(block.load, zero).when(stepped_far, far.q.wrapping_add(factor.q)).else_hold();
-        near.when(block.load, zero).when(stepped_near, near.q.wrapping_add(quotient.slice(0, bits + 1))).else_hold();
-        near_rest.when(block.load, no_rest).when(stepped_near, unit.divider.remainder().slice(0, n)).else_hold();
-        let dividend = product.extend(bits + n + 1).wrapping_add(near_rest.q.extend(bits + n + 1));
-        let shared = product.slice(0, sampling.word_bits() + n).concat(coarse.lit(q, 0));
-        unit.multiplier.close(&[
-            (unit.begins(at::SQUARE_FAR), long, long),
-            (unit.begins(at::SQUARE_NEAR), short, short),
-            (unit.begins(at::SHARE), f, long),
-            (unit.begins(at::FIRST), factor.q, short),
-        ]);
-        unit.divider
-            .close(&[(unit.begins(at::FACTOR), shared, unit.root.root()), (unit.begins(at::SECOND), dividend, long)]);
+    let limited = beyond.mux(m.lit(1, 1).concat(m.lit(bits, 0)), quotient.slice(0, bits + 1));
+    let mut cleared = vec![far, near, near_rest];
+    let rows = if by_direction {
+        // Δs = (Δl·S + rest) / L.
+        let share = product.slice(0, f.bits() + n).concat(m.lit(sampling.fraction, 0));
+        let ratio = product.extend(bits + n + 1).wrapping_add(near_rest.q.extend(bits + n + 1));
+        let next_near = near.q.wrapping_add(quotient.slice(0, bits + 1));
+        let rest = program.divider.remainder().slice(0, n);
+        let point = [(far, far.q.wrapping_add(factor.q)), (near, next_near), (near_rest, rest)];
+        vec![
+            row(at::SHARE, Multiply(f, long), [], at::STEP),
+            row(at::STEP, Divide(share, length), [(factor, limited)], at::SLOPE),
+            row(at::SLOPE, Multiply(factor.q, short), [], at::RATIO),
+            row(at::RATIO, Divide(ratio, long), point, at::HAND_OVER),
+        ]
     } else {
         // λ = f / length; {way, rest} := {way, rest} + λ·L.
-        let far_rest = coarse.reg("remf", n);
-        (stepped_far, stepped_near) = (unit.multiplied(at::FIRST), unit.multiplied(at::SECOND));
-        for (way, rest, stepped) in [(far, far_rest, stepped_far), (near, near_rest, stepped_near)] {
+        let far_rest = m.reg("remf", n);
+        cleared.push(far_rest);
+        let [far, near] = [(far, far_rest), (near, near_rest)].map(|(way, rest)| {
             let sum = way.q.concat(rest.q).wrapping_add(product);
-            way.when(block.load, zero).when(stepped, sum.slice(n, bits + 1)).else_hold();
-            rest.when(block.load, no_rest).when(stepped, sum.slice(0, n)).else_hold();
-        }
-        unit.multiplier.close(&[
-            (unit.begins(at::SQUARE_FAR), long, long),
-            (unit.begins(at::SQUARE_NEAR), short, short),
-            (unit.begins(at::FIRST), factor.q, long),
-            (unit.begins(at::SECOND), factor.q, short),
-        ]);
-        unit.divider.close(&[(unit.begins(at::FACTOR), f.concat(coarse.lit(bits, 0)), unit.root.root())]);
-    }
-    unit.root.close(&[(unit.begins(at::LENGTH), radicand)]);
-
-    let end = long.concat(coarse.lit(q, 0)).extend(bits + 1);
-    let last = coarse.name("arrived", !far.q.less_than(end));
-    let hand = coarse.name("hand", unit.sequence.at(at::HAND) & fine.free());
-    let more = hand & !last;
-    let after_length = if by_direction { at::SHARE } else { at::FACTOR };
-    let shared = if by_direction { unit.multiplied(at::SHARE) } else { coarse.lit(1, 0) };
-    let second = if by_direction { unit.multiplied(at::FIRST) } else { stepped_far };
-    unit.sequence.close(
-        block.load,
-        &[
-            (unit.multiplied(at::SQUARE_FAR), at::SQUARE_NEAR),
-            (unit.multiplied(at::SQUARE_NEAR), at::LENGTH),
-            (measured, after_length),
-            (shared, at::FACTOR),
-            (unit.divided(at::FACTOR), at::FIRST),
-            (second, at::SECOND),
-            (stepped_near, at::HAND),
-            (more, at::FIRST),
-            (hand & last, 0),
-        ],
-    );
-
-    let signs = ["negative_x", "negative_y"].map(|name| block.held(coarse, name, 1));
-    let ways = [x_is_longest.mux(far.q, near.q), x_is_longest.mux(near.q, far.q)];
-    let wholes = [x_is_longest.mux(long, short), x_is_longest.mux(short, long)];
-    let points = [0, 1].map(|axis| with_sign(coarse, ways[axis], bits + 2, signs[axis]));
-    let ends = [0, 1].map(|axis| with_sign(coarse, wholes[axis], n + 2, signs[axis]));
-    fine.close(block, hardware, [hand, last], points, q, ends);
+            [(way, sum.slice(n, bits + 1)), (rest, sum.slice(0, n))]
+        });
+        vec![
+            row(at::LAMBDA, Divide(f.concat(m.lit(bits, 0)), length), [(factor, limited)], at::STEP_FAR),
+            row(at::STEP_FAR, Multiply(factor.q, long), far, at::STEP_NEAR),
+            row(at::STEP_NEAR, Multiply(factor.q, short), near, at::HAND_OVER),
+        ]
+    };
+    ([far.q, near.q], cleared, rows)
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {

@@ -2,7 +2,6 @@
 //! a register has to exist before the logic that drives it.
 
 mod arc_frame;
-mod arithmetic_unit;
 mod axis;
 mod beats;
 mod block;
@@ -19,12 +18,12 @@ mod integrator;
 mod integrator_pair;
 mod iteration;
 mod line_frame;
+mod microprogram;
 mod normalizer;
 mod phase_accumulator;
 mod pulse_source;
 mod quadrant;
 mod rate_multiplier;
-mod sequencer;
 mod serial_divider;
 mod serial_multiplier;
 mod serial_root;
@@ -32,7 +31,6 @@ mod sign;
 mod step_output;
 
 pub use arc_frame::{ArcFrame, square_gain};
-pub use arithmetic_unit::ArithmeticUnit;
 pub use axis::axis_counter;
 pub use beats::BeatRing;
 pub use block::{Block, Buffer};
@@ -49,13 +47,14 @@ pub use integrator::{digits, integrator, rotated};
 pub use integrator_pair::{IntegratorPair, PairSide};
 pub use iteration::Iteration;
 pub use line_frame::LineFrame;
+use microprogram::operand;
+pub(crate) use microprogram::states;
+pub use microprogram::{Microprogram, Row, State, Task, row};
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
 pub use phase_accumulator::PhaseAccumulator;
 pub use pulse_source::{RATE_BITS, pulse_source};
 pub use quadrant::{Kind, next_quadrant, quadrant_register, x_grows};
 pub use rate_multiplier::{RateMultiplier, Units};
-pub use sequencer::Sequencer;
-use sequencer::operand;
 pub use serial_divider::SerialDivider;
 pub use serial_multiplier::SerialMultiplier;
 pub use serial_root::SerialRoot;

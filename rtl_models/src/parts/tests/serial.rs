@@ -1,6 +1,7 @@
-//! The sequential multiplier, divider and square root, and the sequence that starts them.
+//! The sequential multiplier, divider and square root, and the microprogram that starts them.
 
-use super::super::{Sequencer, SerialDivider, SerialMultiplier, SerialRoot};
+use super::super::Task::{Multiply, Start, Wait};
+use super::super::{Microprogram, SerialDivider, SerialMultiplier, SerialRoot, row};
 use super::bench::{Bench, numbers, on_every_engine};
 
 /// Starts a unit, and waits for it as many clocks as it may take.
@@ -82,20 +83,38 @@ fn every_number_of_up_to_eight_bits_has_the_whole_part_of_its_root() {
     }
 }
 
+mod at {
+    use super::super::super::states;
+
+    states! { IDLE = 0, FIRST = 1, SECOND = 2 }
+}
+
 #[test]
-fn a_sequence_begins_each_state_once_waits_for_its_result_and_goes_on() {
+fn a_microprogram_begins_each_state_once_waits_for_its_result_and_goes_on() {
     on_every_engine(
         |m| {
-            let sequence = Sequencer::new(m, &[(0, "IDLE"), (1, "FIRST"), (2, "SECOND")]);
-            let busy = m.input("busy", 1);
-            m.name("begins", sequence.begins(1) | sequence.begins(2));
-            let [first, second] = [1, 2].map(|state| sequence.ends(state, busy));
-            sequence.close(m.input("load", 1), &[(first, 2), (second, 0)]);
+            let [load, mark, ready, more] = ["load", "mark", "ready", "more"].map(|name| m.input(name, 1));
+            let program = Microprogram::new(m, [2, 3], [1, 1], 1);
+            let [total, kept] = [("total", 5), ("kept", 1)].map(|(name, bits)| m.reg(name, bits));
+            let product = program.multiplier.product();
+            program.close(&[
+                row(at::IDLE, Start(load), [], at::FIRST).clearing(m, &[total]),
+                row(at::FIRST, Multiply(m.lit(2, 3), m.lit(2, 2)), [(total, product)], at::SECOND)
+                    .keeping([(kept, mark)]),
+                row(at::SECOND, Wait(ready), [], at::IDLE).unless(more, at::FIRST),
+            ]);
         },
         |bench| {
-            bench.play(&[("load", "1000_0000_0010"), ("busy", "0010_0110_0000")]);
-            assert_eq!(bench.row("state"), "0111_2222_0001");
-            assert_eq!(bench.row("begins"), "0100_1000_0001");
+            bench.play(&[
+                ("load", "1000_0000_0000_0000_1010"),
+                ("mark", "0100_0000_0000_0000_0001"),
+                ("ready", "0000_0000_1000_0010_0000"),
+                ("more", "0000_0000_1000_0000_0000"),
+            ]);
+            assert_eq!(bench.row("state"), "0111_1122_2111_1120_0111");
+            assert_eq!(bench.row("waits"), "0011_1101_1011_1100_0010");
+            assert_eq!(bench.row("total"), "0000_0066_6666_6666_6000");
+            assert_eq!(bench.row("kept"), "0011_1111_1100_0000_0000");
         },
     );
 }
