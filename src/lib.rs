@@ -41,15 +41,22 @@ pub use stepwave_netlist as netlist;
 pub use stepwave_prove as prove;
 pub use stepwave_trace as trace;
 
+#[cfg(feature = "cli")]
 mod app;
+#[cfg(feature = "cli")]
 mod cli;
+#[cfg(feature = "cli")]
 mod commands;
+#[cfg(feature = "cli")]
 mod failure;
+#[cfg(feature = "cli")]
 mod output;
 pub mod program;
 pub mod report;
+#[cfg(feature = "cli")]
 mod stop;
 pub mod study;
 pub mod testbench;
 
+#[cfg(feature = "cli")]
 pub use app::main_with;

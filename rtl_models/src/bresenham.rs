@@ -35,7 +35,7 @@
 //! The line (5, 3), from the golden file `waves/bresenham-5-3.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/bresenham-5-3.csv")]
+#![doc = include_str!("../waves/bresenham-5-3.csv")]
 //! ```
 
 use stepwave_nc::Line;

@@ -29,7 +29,7 @@
 //! `waves/cim-conic-ellipse.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/cim-conic-ellipse.csv")]
+#![doc = include_str!("../waves/cim-conic-ellipse.csv")]
 //! ```
 
 use stepwave_nc::{Conic, ConicSector, Shape};

@@ -23,7 +23,7 @@
 //! The line (5, 3), from the golden file `waves/cim-line-5-3.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/cim-line-5-3.csv")]
+#![doc = include_str!("../waves/cim-line-5-3.csv")]
 //! ```
 
 use stepwave_nc::Line;

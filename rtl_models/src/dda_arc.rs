@@ -35,7 +35,7 @@
 //! The arc NR1 from (5, 0) to (0, 5) in 3 bits with `--preset zero`, from the golden file `waves/dda-arc-nr1.csv`; the wave is next to it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/dda-arc-nr1.csv")]
+#![doc = include_str!("../waves/dda-arc-nr1.csv")]
 //! ```
 
 use stepwave_nc::{Arc, Crossing, Sector};

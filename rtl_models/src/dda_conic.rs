@@ -44,7 +44,7 @@
 //! file `waves/dda-conic-ellipse.csv`; the wave is next to it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/dda-conic-ellipse.csv")]
+#![doc = include_str!("../waves/dda-conic-ellipse.csv")]
 //! ```
 
 use stepwave_nc::{Conic, ConicSector};

@@ -37,7 +37,7 @@
 //! `waves/dda-helix-quarter.csv`; the wave is next to it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/dda-helix-quarter.csv")]
+#![doc = include_str!("../waves/dda-helix-quarter.csv")]
 //! ```
 
 use stepwave_nc::{Crossing, Helix};

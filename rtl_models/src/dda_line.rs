@@ -29,7 +29,7 @@
 //! The line (8, 6) in 4 bits, from the golden file `waves/dda-line-8-6.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/dda-line-8-6.csv")]
+#![doc = include_str!("../waves/dda-line-8-6.csv")]
 //! ```
 //!
 //! Radix 10: J_V and J_R hold k BCD digits of 4 bits (n = 4k), each added by a binary adder whose sum beyond 9 is
@@ -37,7 +37,7 @@
 //! do. The same line in one digit, from `waves/dda-line-decimal.csv`:
 //!
 //! ```text
-#![doc = include_str!("../../waves/dda-line-decimal.csv")]
+#![doc = include_str!("../waves/dda-line-decimal.csv")]
 //! ```
 //!
 //! Serial adder: one full adder and a carry flip-flop for each axis, the lowest bit first. J_R is a shift register, J_V
@@ -46,7 +46,7 @@
 //! line (8, 6) in 4 bits, from `waves/dda-line-serial.csv`:
 //!
 //! ```text
-#![doc = include_str!("../../waves/dda-line-serial.csv")]
+#![doc = include_str!("../waves/dda-line-serial.csv")]
 //! ```
 
 use stepwave_nc::Line;

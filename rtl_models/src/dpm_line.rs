@@ -43,7 +43,7 @@
 //! The line (5, 3) in 3 bits, from the golden file `waves/dpm-line-5-3.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/dpm-line-5-3.csv")]
+#![doc = include_str!("../waves/dpm-line-5-3.csv")]
 //! ```
 
 use stepwave_nc::Line;

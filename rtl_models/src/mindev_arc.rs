@@ -26,7 +26,7 @@
 //! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/mindev-arc-nr1.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/mindev-arc-nr1.csv")]
+#![doc = include_str!("../waves/mindev-arc-nr1.csv")]
 //! ```
 
 use stepwave_nc::{Arc, Crossing};

@@ -27,7 +27,7 @@
 //! The arc NR1 from (6, 0) to (0, 6), from the golden file `waves/ppc-arc-nr1.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/ppc-arc-nr1.csv")]
+#![doc = include_str!("../waves/ppc-arc-nr1.csv")]
 //! ```
 
 use stepwave_nc::{Arc, Crossing};

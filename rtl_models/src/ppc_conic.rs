@@ -25,7 +25,7 @@
 //! `waves/ppc-conic-ellipse.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/ppc-conic-ellipse.csv")]
+#![doc = include_str!("../waves/ppc-conic-ellipse.csv")]
 //! ```
 
 use stepwave_nc::{Conic, ConicSector, Shape, Weight};

@@ -23,7 +23,7 @@
 //! The line (6, 4), from the golden file `waves/ppc-line-6-4.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/ppc-line-6-4.csv")]
+#![doc = include_str!("../waves/ppc-line-6-4.csv")]
 //! ```
 
 use stepwave_nc::Line;

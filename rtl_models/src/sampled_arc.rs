@@ -50,13 +50,13 @@
 //! stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/sampled-arc-7m.csv")]
+#![doc = include_str!("../waves/sampled-arc-7m.csv")]
 //! ```
 //!
 //! The same by the step factor, λ = 0.4, from `waves/sampled-arc-7360.csv`:
 //!
 //! ```text
-#![doc = include_str!("../../waves/sampled-arc-7360.csv")]
+#![doc = include_str!("../waves/sampled-arc-7360.csv")]
 //! ```
 
 use stepwave_nc::{Arc, Crossing, Direction};

@@ -43,7 +43,7 @@
 //! The line (12, -5) with 4 BLU a period, from the golden file `waves/sampled-line-12-5.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/sampled-line-12-5.csv")]
+#![doc = include_str!("../waves/sampled-line-12-5.csv")]
 //! ```
 
 use std::f64::consts::SQRT_2;

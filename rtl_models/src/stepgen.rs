@@ -44,7 +44,7 @@
 //! The line (3, -2), from the golden file `waves/stepgen-3-2.csv`; the wave stands beside it:
 //!
 //! ```text
-#![doc = include_str!("../../waves/stepgen-3-2.csv")]
+#![doc = include_str!("../waves/stepgen-3-2.csv")]
 //! ```
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};

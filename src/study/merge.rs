@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::StudyError;
-use super::parquet::{ParquetPart, ParquetTable, is_parquet};
+use super::parquet::{ParquetPart, ParquetTable};
 use super::parts::{Check, PartHead, Remark};
 use super::table::{Column, Row, Value, heading, read_line, write_line};
 
@@ -234,4 +234,11 @@ pub fn merge(inputs: &[PathBuf], sink: impl Write + Send, as_parquet: bool) -> R
         sink.flush().map_err(failed)?;
     }
     Ok(rows)
+}
+
+/// A file is in Parquet by its first bytes.
+fn is_parquet(path: &Path) -> std::io::Result<bool> {
+    let mut magic = Vec::new();
+    std::fs::File::open(path)?.take(4).read_to_end(&mut magic)?;
+    Ok(magic == b"PAR1")
 }

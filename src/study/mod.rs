@@ -36,6 +36,10 @@ mod error;
 mod kform;
 mod machines;
 mod merge;
+#[cfg(feature = "parquet")]
+mod parquet;
+#[cfg(not(feature = "parquet"))]
+#[path = "no_parquet.rs"]
 mod parquet;
 mod parts;
 mod points;

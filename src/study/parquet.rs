@@ -1,7 +1,7 @@
 //! The rows of a sweep as a Parquet file: a column chunk for each column, in groups of rows of one size, so that the
 //! same rows give the same bytes.
 
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -248,11 +248,4 @@ fn value(field: &Field) -> Value {
         Field::Str(word) => Value::Word(word.clone()),
         _ => Value::None,
     }
-}
-
-/// A file is in Parquet by its first bytes.
-pub(super) fn is_parquet(path: &Path) -> std::io::Result<bool> {
-    let mut magic = Vec::new();
-    std::fs::File::open(path)?.take(4).read_to_end(&mut magic)?;
-    Ok(magic == b"PAR1")
 }

@@ -28,6 +28,7 @@
 //! assert_eq!(rows.row(18), [2]); // 18 modulo 16
 //! ```
 
+#[cfg(feature = "jit")]
 mod compiled;
 mod gates;
 pub mod lanes;
@@ -114,7 +115,7 @@ pub enum EngineKind {
     Gates,
     /// Word by word from a flat array of operations.
     Word,
-    /// Native code for long runs.
+    /// Native code for long runs; without the feature `jit` it is the word engine.
     Compiled,
 }
 
@@ -137,28 +138,33 @@ impl EngineKind {
     pub fn build(self, design: &Design, watch: &Watch) -> Box<dyn Engine> {
         match self {
             EngineKind::Gates => Box::new(gates::Gates::new(design, watch)),
-            EngineKind::Word => Box::new(word::WordEngine::new(design, watch)),
+            #[cfg(feature = "jit")]
             EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch)),
+            _ => Box::new(word::WordEngine::new(design, watch)),
         }
     }
 
     /// As [`build`](Self::build), an engine that may pass over idle samples where it gets [sparse rows](Rows::sparse).
     #[must_use]
+    #[cfg_attr(not(feature = "jit"), expect(unused_variables, reason = "only native code passes over samples"))]
     pub fn build_passing(self, design: &Design, watch: &Watch, idle: &Idle) -> Box<dyn Engine> {
         match self {
+            #[cfg(feature = "jit")]
             EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch).passing(idle)),
-            EngineKind::Gates | EngineKind::Word => self.build(design, watch),
+            _ => self.build(design, watch),
         }
     }
 }
 
 /// The compiled engine, but compiling as soon as `warm_up` clocks were alike: for tests and measurements.
+#[cfg(feature = "jit")]
 #[must_use]
 pub fn compiled_after(design: &Design, watch: &Watch, warm_up: u64) -> Box<dyn Engine> {
     Box::new(compiled::Compiled::after(design, watch, warm_up))
 }
 
 /// As [`compiled_after`], passing over idle samples.
+#[cfg(feature = "jit")]
 #[must_use]
 pub fn passing_after(design: &Design, watch: &Watch, idle: &Idle, warm_up: u64) -> Box<dyn Engine> {
     Box::new(compiled::Compiled::after(design, watch, warm_up).passing(idle))

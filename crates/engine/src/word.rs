@@ -179,6 +179,7 @@ impl WordEngine {
 }
 
 /// What the compiled engine needs to hand a run over and take it back.
+#[cfg(feature = "jit")]
 impl WordEngine {
     /// An input changes behind the next edge.
     pub(super) fn input_pending(&self) -> bool {
