@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use clap::Parser;
 
-use crate::cli::Cli;
-use crate::failure::Failure;
+use crate::Error;
+use crate::cli::{Cli, usage};
 use crate::models::Catalogue;
 use crate::{commands, output, stop};
 
@@ -40,7 +40,7 @@ pub fn main_with(models: Catalogue) -> ExitCode {
 
 /// Does the work of the program. A panic, also one of a thread that it waits for, is a mistake of our own: it ends as any
 /// failure does, with its temporary files taken away, in one sentence with its place.
-fn unless_at_fault(work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+fn unless_at_fault(work: impl FnOnce() -> Result<(), Error>) -> Result<(), Error> {
     let place = Arc::new(Mutex::new(None));
     let seen = Arc::clone(&place);
     std::panic::set_hook(Box::new(move |panic| {
@@ -50,27 +50,27 @@ fn unless_at_fault(work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Fai
     }));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
         let place = place.lock().unwrap_or_else(PoisonError::into_inner).take();
-        Err(Failure::Trouble(format!(
+        Err(Error::Invalid(format!(
             "a mistake of stepwave itself, not of what it was given: {}; please report it with the command and its files",
             place.unwrap_or_else(|| "unknown reason".to_owned())
         )))
     })
 }
 
-fn run(models: Catalogue) -> Result<(), Failure> {
+fn run(models: Catalogue) -> Result<(), Error> {
     stop::watch()?;
     models.install()?;
     bound_threads()?;
     match Cli::try_parse() {
         Ok(cli) => commands::dispatch(&cli),
-        Err(error) if error.use_stderr() => Err(Failure::usage(&error)),
+        Err(error) if error.use_stderr() => Err(usage(&error)),
         Err(help) => output::print(&help.render().to_string()),
     }
 }
 
 /// More threads than MOST_THREADS_A_CORE that RAYON_NUM_THREADS asks for are not made: each costs memory, and more than
 /// one for each core make nothing faster.
-fn bound_threads() -> Result<(), Failure> {
+fn bound_threads() -> Result<(), Error> {
     let most = MOST_THREADS_A_CORE * std::thread::available_parallelism().map_or(1, usize::from);
     let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|word| word.parse().ok());
     if asked.is_some_and(|threads: u128| threads > most as u128) {
@@ -81,7 +81,7 @@ fn bound_threads() -> Result<(), Failure> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Failure, unless_at_fault};
+    use super::{Error, unless_at_fault};
 
     #[test]
     fn a_panic_ends_as_a_failure_does_in_one_line_with_its_place() {
@@ -91,7 +91,7 @@ mod tests {
             rayon::join(|| (), || assert_eq!(1 + 1, 3));
             Ok(())
         });
-        let none = unless_at_fault(|| Err(Failure::Trouble("bad".to_owned())));
+        let none = unless_at_fault(|| Err(Error::Invalid("bad".to_owned())));
         std::panic::set_hook(before);
         for failed in [own, of_thread] {
             let failure = failed.expect_err("a panic");

@@ -15,9 +15,11 @@ mod names;
 mod program;
 mod proof;
 mod sweep;
+mod usage;
 mod values;
 mod widths;
 
+use crate::waves::WaveOptions;
 pub(crate) use endings::{Format, file_of};
 pub(crate) use hardware::HardwareArgs;
 pub(crate) use names::{Registers, known_register, registers};
@@ -25,6 +27,7 @@ use names::{all_registers, listed, model_name};
 pub(crate) use program::{ProgramArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
+pub(crate) use usage::usage;
 pub(crate) use values::{ClockArgs, Point, SimulationArgs};
 pub(crate) use widths::WidthsArgs;
 
@@ -292,7 +295,31 @@ pub(crate) struct TraceArgs {
     pub(crate) large: bool,
 }
 
+impl OutputArgs {
+    /// The files of a run, with its waves.
+    pub(crate) fn files<'a>(&'a self, waves: &'a TraceArgs) -> [&'a Option<PathBuf>; 5] {
+        [&waves.vcd, &waves.fst, &self.steps, &self.json, &self.plot]
+    }
+}
+
 impl TraceArgs {
+    /// The same for the library.
+    pub(crate) fn options(&self) -> WaveOptions {
+        WaveOptions {
+            vcd: self.vcd.clone(),
+            fst: self.fst.clone(),
+            signals: self.trace.clone(),
+            excluded: self.trace_exclude.clone(),
+            depth: self.trace_depth,
+            from: self.trace_from,
+            to: self.trace_to,
+            on: self.trace_on.clone(),
+            clk: !self.no_clk,
+            steps: self.trace_steps,
+            large: self.large,
+        }
+    }
+
     /// A wave is to be written.
     pub(crate) fn wanted(&self) -> bool {
         self.vcd.is_some() || self.fst.is_some()

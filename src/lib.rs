@@ -47,16 +47,21 @@ mod app;
 mod cli;
 #[cfg(feature = "cli")]
 mod commands;
+mod error;
 #[cfg(feature = "cli")]
-mod failure;
-#[cfg(feature = "cli")]
+pub mod golden;
 mod output;
 pub mod program;
 pub mod report;
-#[cfg(feature = "cli")]
+mod simulation;
 mod stop;
 pub mod study;
 pub mod testbench;
+mod waves;
 
 #[cfg(feature = "cli")]
 pub use app::main_with;
+pub use error::Error;
+pub use simulation::Simulation;
+pub use testbench::Trace;
+pub use waves::WaveOptions;

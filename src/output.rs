@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use self::identity::{Identity, folder_of, is_shareable, numbers, resolved};
 use self::temporary::Temporary;
-use crate::failure::Failure;
+use crate::Error;
 use crate::stop;
 
 pub(crate) use self::identity::is_stream;
@@ -32,8 +32,8 @@ pub(crate) struct Outputs {
     stdout: bool,
 }
 
-fn cannot_write(path: &Path, error: &io::Error) -> Failure {
-    Failure::Trouble(format!("cannot write {}: {error}", path.display()))
+fn cannot_write(path: &Path, error: &io::Error) -> Error {
+    Error::Invalid(format!("cannot write {}: {error}", path.display()))
 }
 
 impl Outputs {
@@ -48,10 +48,10 @@ impl Outputs {
     ///
     /// # Errors
     /// The file cannot be created, the command reads it, or another output goes there already.
-    pub(crate) fn open(&mut self, path: &Path) -> Result<Sink, Failure> {
+    pub(crate) fn open(&mut self, path: &Path) -> Result<Sink, Error> {
         if path == Path::new("-") {
             if std::mem::replace(&mut self.stdout, true) {
-                return Err(Failure::Trouble("two outputs cannot both go to standard output: name a file".to_owned()));
+                return Err(Error::Invalid("two outputs cannot both go to standard output: name a file".to_owned()));
             }
             if let Some(found) = metadata_of_stdout().filter(|found| !is_shareable(found))
                 && let Some(identity) = numbers(&found)
@@ -67,9 +67,9 @@ impl Outputs {
     ///
     /// # Errors
     /// The file cannot be created, it is no file, the command reads it, or another output goes there already.
-    pub(crate) fn open_seekable(&mut self, path: &Path) -> Result<SeekSink, Failure> {
+    pub(crate) fn open_seekable(&mut self, path: &Path) -> Result<SeekSink, Error> {
         if is_stream(path) {
-            return Err(Failure::Trouble(format!(
+            return Err(Error::Invalid(format!(
                 "cannot write {}: FST is written back and forth, which needs a file: name one, or take --vcd",
                 path.display()
             )));
@@ -82,7 +82,7 @@ impl Outputs {
     ///
     /// # Errors
     /// The file cannot be created, or another output goes there already.
-    pub(crate) fn claim(&mut self, path: &Path) -> Result<PathBuf, Failure> {
+    pub(crate) fn claim(&mut self, path: &Path) -> Result<PathBuf, Error> {
         if path == Path::new("-") {
             self.open(path)?;
         } else if is_stream(path) {
@@ -102,18 +102,18 @@ impl Outputs {
     ///
     /// # Errors
     /// The command reads it, or an output goes there already.
-    pub(crate) fn keep_free(&mut self, path: &Path) -> Result<(), Failure> {
+    pub(crate) fn keep_free(&mut self, path: &Path) -> Result<(), Error> {
         self.reserve(Identity::of(path), path)
     }
 
     /// Takes a file for an output.
-    fn reserve(&mut self, identity: Identity, path: &Path) -> Result<(), Failure> {
+    fn reserve(&mut self, identity: Identity, path: &Path) -> Result<(), Error> {
         let name = |path: &Path| match path == Path::new("-") {
             true => "standard output".to_owned(),
             false => path.display().to_string(),
         };
         if let Some((_, input)) = self.inputs.iter().find(|(input, _)| *input == identity) {
-            return Err(Failure::Trouble(format!(
+            return Err(Error::Invalid(format!(
                 "cannot write {}: it is the file {}, which this command reads and would destroy: name another file for the \
                  output",
                 name(path),
@@ -123,7 +123,7 @@ impl Outputs {
         let same = |other: &Identity| *other == identity || (identity.differs_in_case(other) && folds_case(path));
         if let Some((_, other)) = self.named.iter().find(|(other, _)| same(other)) {
             let also = if other == path { String::new() } else { format!(", also named {}", name(other)) };
-            return Err(Failure::Trouble(format!(
+            return Err(Error::Invalid(format!(
                 "two outputs would go to {}{also}: give each its own file",
                 name(path)
             )));
@@ -132,9 +132,9 @@ impl Outputs {
         Ok(())
     }
 
-    fn file(&mut self, path: &Path) -> Result<Named, Failure> {
+    fn file(&mut self, path: &Path) -> Result<Named, Error> {
         if path.as_os_str().as_encoded_bytes().ends_with(b"/") && !path.is_dir() {
-            return Err(Failure::Trouble(format!("cannot write {}: there is no such folder", path.display())));
+            return Err(Error::Invalid(format!("cannot write {}: there is no such folder", path.display())));
         }
         let target = resolved(path);
         let found = target.metadata();
@@ -143,7 +143,7 @@ impl Outputs {
         }
         match found {
             Ok(found) if found.is_dir() => {
-                Err(Failure::Trouble(format!("cannot write {}: it is a folder", path.display())))
+                Err(Error::Invalid(format!("cannot write {}: it is a folder", path.display())))
             }
             // A pipe or a device such as /dev/null is written as it is; renaming would replace it.
             Ok(found) if !found.is_file() => {
@@ -162,12 +162,12 @@ impl Outputs {
         }
     }
 
-    fn stage(&mut self, path: &Path, target: &Path) -> Result<File, Failure> {
+    fn stage(&mut self, path: &Path, target: &Path) -> Result<File, Error> {
         let folder = folder_of(target);
         let (temporary, file) = Temporary::new(folder).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => {
                 let folder = folder.display();
-                Failure::Trouble(format!("cannot write {}: the folder {folder} does not exist", path.display()))
+                Error::Invalid(format!("cannot write {}: the folder {folder} does not exist", path.display()))
             }
             // The temporary file's own name would only confuse.
             kind => cannot_write(path, &io::Error::from(kind)),
@@ -180,7 +180,7 @@ impl Outputs {
     ///
     /// # Errors
     /// It cannot be written.
-    pub(crate) fn write(&mut self, path: &Path, content: &str) -> Result<(), Failure> {
+    pub(crate) fn write(&mut self, path: &Path, content: &str) -> Result<(), Error> {
         let mut sink = self.open(path)?;
         sink.write_all(content.as_bytes())?;
         Ok(sink.flush()?)
@@ -200,7 +200,7 @@ impl Outputs {
     ///
     /// # Errors
     /// A file cannot be renamed.
-    pub(crate) fn commit(mut self) -> Result<(), Failure> {
+    pub(crate) fn commit(mut self) -> Result<(), Error> {
         self.commit_all()
     }
 
@@ -208,7 +208,7 @@ impl Outputs {
     ///
     /// # Errors
     /// A file cannot be renamed.
-    pub(crate) fn commit_all(&mut self) -> Result<(), Failure> {
+    pub(crate) fn commit_all(&mut self) -> Result<(), Error> {
         temporary::persist(&mut self.staged).map_err(|(target, error)| cannot_write(&target, &error))
     }
 }
@@ -310,7 +310,7 @@ impl Write for Stdout {
 ///
 /// # Errors
 /// Standard output cannot be written.
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), Error> {
     print_data(&shown(text))
 }
 
@@ -318,7 +318,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 ///
 /// # Errors
 /// Standard output cannot be written.
-pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
+pub(crate) fn print_data(text: &str) -> Result<(), Error> {
     let mut out = Stdout(io::stdout());
     out.write_all(text.as_bytes())?;
     Ok(out.flush()?)

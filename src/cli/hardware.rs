@@ -8,7 +8,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
 use super::names::{all_widths, listed};
 use super::values::{parse_blu, parse_feed};
-use crate::failure::Failure;
+use crate::Error;
 
 /// Hardware options of one machine.
 #[derive(Debug)]
@@ -99,14 +99,14 @@ impl FromArgMatches for HardwareArgs {
 
 impl HardwareArgs {
     /// A model's error in the words of this command line: a feed gives the way of a period, which is an option of its own.
-    pub(crate) fn told(&self, error: ModelError) -> Failure {
+    pub(crate) fn told(&self, error: ModelError) -> Error {
         match error {
             ModelError::NotTaken { model, option, takes } if option == STEP.name && self.feed.is_some() => {
-                Failure::Trouble(format!("{model} does not take --feed; it takes {takes}"))
+                Error::Invalid(format!("{model} does not take --feed; it takes {takes}"))
             }
             error @ ModelError::Value { option, .. } if option == STEP.name => match self.feed {
                 Some(feed) => {
-                    Failure::Trouble(format!("--feed {feed} gives the way of a period, as --step does: {error}"))
+                    Error::Invalid(format!("--feed {feed} gives the way of a period, as --step does: {error}"))
                 }
                 None => error.into(),
             },
@@ -115,7 +115,7 @@ impl HardwareArgs {
     }
 
     /// As [`told`](Self::told), of a study of the model.
-    pub(crate) fn told_of_study(&self, error: ProofError) -> Failure {
+    pub(crate) fn told_of_study(&self, error: ProofError) -> Error {
         match error {
             ProofError::Model(error) => self.told(error),
             other => other.into(),

@@ -9,12 +9,12 @@ use crate::testbench::{Ending, Observer, ObserverError, PathWatch, Step, Testben
 
 use super::geometry;
 use super::progress::Progress;
+use crate::Error;
 use crate::cli::CompareArgs;
-use crate::failure::Failure;
 use crate::output;
 
 /// Prints one row for each model that takes the curve, by default and in its other common forms.
-pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     let geometry = &args.geometry;
     let axes = geometry.to.as_ref().map_or(2, |to| to.0.len());
     let kind = if geometry.ellipse.is_some() || geometry.parabola.is_some() || geometry.hyperbola.is_some() {
@@ -70,7 +70,7 @@ fn row(
     curve: &Curve,
     choices: &Options,
     args: &CompareArgs,
-) -> Result<Result<[String; 6], ModelError>, Failure> {
+) -> Result<Result<[String; 6], ModelError>, Error> {
     let bench = match Testbench::new(model, curve, choices) {
         Ok(bench) => bench.limited(args.max_clocks),
         Err(error @ (ModelError::TooWide { .. } | ModelError::Widths(_))) => return Ok(Err(error)),

@@ -8,8 +8,8 @@ use crate::trace::diverge::{self, By, Options};
 use crate::trace::merge::write_merged;
 use crate::trace::read::{Wave, WaveError};
 
+use crate::Error;
 use crate::cli::{Format, file_of};
-use crate::failure::Failure;
 use crate::output::{self, Outputs};
 
 /// Compare two waves and show where they part
@@ -86,8 +86,8 @@ fn parse_map(rule: &str) -> Result<(String, String), String> {
 }
 
 /// Compares two waves and prints where they part.
-pub(crate) fn run(args: &DiffArgs) -> Result<(), Failure> {
-    let trouble = |sentence: &str| Err(Failure::Trouble(sentence.to_owned()));
+pub(crate) fn run(args: &DiffArgs) -> Result<(), Error> {
+    let trouble = |sentence: &str| Err(Error::Invalid(sentence.to_owned()));
     let by = match args.by {
         Axis::Clock => By::Clock { offset: args.offset },
         Axis::Time if args.offset != 0 => return trouble("--offset counts clocks, which --by time does without"),
@@ -130,6 +130,6 @@ pub(crate) fn run(args: &DiffArgs) -> Result<(), Failure> {
     }
     match comparison.divergence {
         None => Ok(()),
-        Some(_) => Err(Failure::Check(vec![format!("{} and {} differ", args.a.display(), args.b.display())])),
+        Some(_) => Err(Error::Check(vec![format!("{} and {} differ", args.a.display(), args.b.display())])),
     }
 }

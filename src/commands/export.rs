@@ -10,15 +10,15 @@ use crate::testbench::Testbench;
 use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
+use crate::Error;
 use crate::cli::ExportArgs;
-use crate::failure::Failure;
 use crate::output::{self, Outputs};
 
 /// Last clock of a question to a solver where nothing is said and the run is longer.
 const DEEPEST: u64 = 1000;
 
 /// Writes a machine for other tools.
-pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let model = find(&args.model)?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
@@ -58,7 +58,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Failure> {
 }
 
 /// The machine with a loader, and the load words that are left open.
-fn driven(bench: &Testbench, any: &[String]) -> Result<(Design, Vec<Net>), Failure> {
+fn driven(bench: &Testbench, any: &[String]) -> Result<(Design, Vec<Net>), Error> {
     if any.is_empty() {
         return Ok((bench.driven()?, Vec::new()));
     }
@@ -70,7 +70,7 @@ fn driven(bench: &Testbench, any: &[String]) -> Result<(Design, Vec<Net>), Failu
         None => Ok(bench.driven_by_any(any)?),
         Some(word) => {
             let known = known.join(", ");
-            Err(Failure::Trouble(format!("--any-geometry={word}: there is no such load word; there are all, {known}")))
+            Err(Error::Invalid(format!("--any-geometry={word}: there is no such load word; there are all, {known}")))
         }
     }
 }

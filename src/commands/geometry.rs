@@ -4,15 +4,15 @@ use crate::models::options::TOLERANCE;
 use crate::models::{CurveKind, Model, Options};
 use crate::nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
+use crate::Error;
 use crate::cli::{GeometryArgs, HardwareArgs, Point};
-use crate::failure::Failure;
 
 /// The curve of this kind that the options give, for a model or a command; the radii of an arc may differ by so many BLU
 /// beyond what rounding makes.
 ///
 /// # Errors
 /// Something is missing, or the model does not interpolate such a curve.
-pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64) -> Result<Curve, Failure> {
+pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64) -> Result<Curve, Error> {
     let Some(to) = &args.to else {
         return trouble(format!("the end point is missing: {} takes {}", who, kind.describe()));
     };
@@ -87,7 +87,7 @@ fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)
 }
 
 /// The coordinates of a point of `N` axes of such a curve; the origin if none is given.
-fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Result<[i64; N], Failure> {
+fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Result<[i64; N], Error> {
     let Some(Point(point)) = given else { return Ok([0; N]) };
     <[i64; N]>::try_from(point.as_slice()).or_else(|_| {
         let form = if N == 2 { "X,Y" } else { "X,Y,Z" };
@@ -120,6 +120,6 @@ pub(crate) fn moved_center(curve: &Curve, args: &GeometryArgs) -> Option<String>
     })
 }
 
-fn trouble<T>(sentence: String) -> Result<T, Failure> {
-    Err(Failure::Trouble(sentence))
+fn trouble<T>(sentence: String) -> Result<T, Error> {
+    Err(Error::Invalid(sentence))
 }

@@ -6,12 +6,12 @@ use crate::models::options::{Shape, Takes};
 use crate::models::{CurveKind, Model, installed};
 use serde_json::{Value, json};
 
+use crate::Error;
 use crate::cli::ListArgs;
-use crate::failure::Failure;
 use crate::output;
 
 /// Prints every model, by method.
-pub(crate) fn run(args: &ListArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ListArgs) -> Result<(), Error> {
     if args.json {
         let models: Vec<Value> = installed().iter().map(as_json).collect();
         return output::print_data(&format!("{:#}\n", json!(models)));

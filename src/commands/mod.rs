@@ -7,27 +7,25 @@ mod geometry;
 mod golden;
 mod list;
 mod pages;
-mod program;
+pub(crate) mod program;
 mod progress;
 mod prove;
-mod run;
+pub(crate) mod run;
 mod size;
-mod states;
 mod sweep;
-mod wave;
 mod widths;
 
 use std::path::{Path, PathBuf};
 
+use crate::Error;
 use crate::cli::{Cli, Command, GoldenCommand, OutputArgs, TraceArgs};
-use crate::failure::Failure;
 use crate::stop;
 
 /// Runs the command that was given.
 ///
 /// # Errors
 /// Whatever ends the process with an exit code other than 0.
-pub(crate) fn dispatch(cli: &Cli) -> Result<(), Failure> {
+pub(crate) fn dispatch(cli: &Cli) -> Result<(), Error> {
     if only_prints(&cli.command) {
         stop::watch_reader();
     }

@@ -6,12 +6,12 @@ use clap::CommandFactory;
 
 use crate::models::installed;
 
+use crate::Error;
 use crate::cli::{Cli, Registers, registers};
-use crate::failure::Failure;
 use crate::output::{self, Outputs};
 
 /// Prints the completion script of a shell.
-pub(crate) fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+pub(crate) fn completions(shell: clap_complete::Shell) -> Result<(), Error> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "stepwave", &mut script);
     let mut script = String::from_utf8_lossy(&script).into_owned();
@@ -83,7 +83,7 @@ fi
 }
 
 /// Writes a manual page for the program, for each command and for each command of a command.
-pub(crate) fn manual(dir: &Path) -> Result<(), Failure> {
+pub(crate) fn manual(dir: &Path) -> Result<(), Error> {
     let mut outputs = Outputs::default();
     // Pages speak of `stepwave help` in its own place; a page each for `help run`, `help list`, … would say nothing.
     let mut program = Cli::command().disable_help_subcommand(true);
@@ -92,7 +92,7 @@ pub(crate) fn manual(dir: &Path) -> Result<(), Failure> {
     outputs.commit()
 }
 
-fn pages(outputs: &mut Outputs, dir: &Path, command: &clap::Command, name: &str) -> Result<(), Failure> {
+fn pages(outputs: &mut Outputs, dir: &Path, command: &clap::Command, name: &str) -> Result<(), Error> {
     let mut text = Vec::new();
     clap_mangen::Man::new(command.clone()).title(name.to_uppercase()).render(&mut text)?;
     outputs.write(&dir.join(format!("{name}.1")), &String::from_utf8_lossy(&text))?;

@@ -15,28 +15,28 @@ use crate::trace::timescale::ClockTime;
 use super::progress::Progress;
 use super::run::Finished;
 use super::size::Size;
-use super::wave::{Sinks, Waves, shows_trap};
+use crate::Error;
 use crate::cli::{ProgramArgs, Tool};
-use crate::failure::Failure;
 use crate::output::{Outputs, Sink};
+use crate::waves::{Sinks, Waves};
 
 /// What the wave of a program begins with: where the machine is, how fast it is to be, and in which block.
 const LEADING: [&str; 5] = ["axis_x.x", "axis_y.y", "program.feed", "program.block", "axis_z.z"];
 
 /// Runs a whole program and writes what was asked for.
-pub(crate) fn program(args: &ProgramArgs) -> Result<(), Failure> {
+pub(crate) fn program(args: &ProgramArgs) -> Result<(), Error> {
     let mut outputs = Outputs::reading([&args.file]);
-    simulate(args, &mut outputs)?.tell(outputs)
+    simulate(args, &mut outputs)?.print(outputs)
 }
 
 /// Simulates and stages every output.
 ///
 /// # Errors
 /// Bad input, or an output cannot be written; nothing stands under a final name.
-pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Finished, Failure> {
+pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Finished, Error> {
     let finished = once(args, outputs, None)?;
     match &finished.trap {
-        Some(event) if shows_trap(&args.trace, &args.outputs, event) => {
+        Some(event) if args.trace.options().shows_trap(event, args.outputs.files(&args.trace)) => {
             *outputs = Outputs::default();
             once(args, outputs, Some(event))
         }
@@ -45,11 +45,11 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
 }
 
 /// The tool table: radii in mm by D number.
-fn tools(given: &[Tool]) -> Result<BTreeMap<u64, f64>, Failure> {
+fn tools(given: &[Tool]) -> Result<BTreeMap<u64, f64>, Error> {
     let mut tools = BTreeMap::new();
     for Tool { number, radius } in given {
         if let Some(before) = tools.insert(*number, *radius) {
-            return Err(Failure::Trouble(format!(
+            return Err(Error::Invalid(format!(
                 "--tool gives D{number} two radii, {before} mm and {radius} mm: leave one of them out"
             )));
         }
@@ -61,7 +61,7 @@ fn tools(given: &[Tool]) -> Result<BTreeMap<u64, f64>, Failure> {
 ///
 /// # Errors
 /// A tool has two radii.
-pub(super) fn preparation(args: &ProgramArgs) -> Result<Preparation, Failure> {
+pub(super) fn preparation(args: &ProgramArgs) -> Result<Preparation, Error> {
     Ok(Preparation {
         reading: Reading {
             blu: args.hardware.blu,
@@ -77,10 +77,10 @@ pub(super) fn preparation(args: &ProgramArgs) -> Result<Preparation, Failure> {
 }
 
 /// Simulates; the wave shows the operands of a trap that is known.
-fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> Result<Finished, Failure> {
+fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> Result<Finished, Error> {
     let family = args.method;
     let file = args.file.display().to_string();
-    let told = |error: &dyn std::fmt::Display| Failure::Trouble(format!("{file}: {error}"));
+    let told = |error: &dyn std::fmt::Display| Error::Invalid(format!("{file}: {error}"));
     let preparation = preparation(args)?;
     let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
     // How far the radii of an arc may differ is not the machine's concern.
@@ -103,10 +103,11 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
         Size::of(&bench, &args.trace, time)?.check(&args.trace, args.simulation.max_clocks, &estimate)?;
     }
     // All are opened before the first is written: where one is refused, nothing stands on standard output.
-    let sinks = Sinks::open(&args.trace, outputs)?;
+    let options = args.trace.options();
+    let sinks = Sinks::open(&options, outputs)?;
     let mut sink = |path: &Option<std::path::PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
     let (steps, json, plot) = (sink(&args.outputs.steps)?, sink(&args.outputs.json)?, sink(&args.outputs.plot)?);
-    let waves = sinks.map(|sinks| Waves::new(&bench, &args.trace, sinks, time, &head.title())).transpose()?;
+    let waves = sinks.map(|sinks| Waves::new(&bench, &options, sinks, time, &head.title())).transpose()?;
     let mut waves = waves.map(|waves| waves.beginning_with(&LEADING));
     let mut steps = steps.map(|sink| StepTable::new(&bench, sink)).transpose()?;
     let mut json = json.map(|sink| ProgramJson::new(head, sink)).transpose()?;
@@ -158,8 +159,8 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
 }
 
 /// Opens the program; it is read twice.
-fn open(path: &Path) -> Result<BufReader<File>, Failure> {
-    let trouble = |error: &dyn std::fmt::Display| Failure::Trouble(format!("cannot read {}: {error}", path.display()));
+fn open(path: &Path) -> Result<BufReader<File>, Error> {
+    let trouble = |error: &dyn std::fmt::Display| Error::Invalid(format!("cannot read {}: {error}", path.display()));
     let found = path.metadata().map_err(|error| trouble(&error))?;
     if !found.is_file() {
         return Err(trouble(&"a program is read twice, which needs a file: save it in one"));
@@ -183,7 +184,7 @@ struct StepTable {
 }
 
 impl StepTable {
-    fn new(bench: &Testbench, mut out: Sink) -> Result<StepTable, Failure> {
+    fn new(bench: &Testbench, mut out: Sink) -> Result<StepTable, Error> {
         let letters = bench.hardware().letters();
         let registers = bench.machine().table.iter().map(|(name, _)| name.clone());
         let pulses = letters.iter().map(|axis| format!("d{axis}"));

@@ -22,12 +22,12 @@ use crate::study::proof::{
 };
 
 use self::verdict::hardware_in_words;
+use crate::Error;
 use crate::cli::{ProveArgs, ProveCommand};
-use crate::failure::Failure;
 use crate::output::{self, Outputs, Sink, temporary};
 
 /// Attempts a proof, or checks one.
-pub(crate) fn run(args: &ProveArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
     match &args.check {
         Some(ProveCommand::Check { file }) => check::check(file),
         None => attempt(args),
@@ -35,17 +35,17 @@ pub(crate) fn run(args: &ProveArgs) -> Result<(), Failure> {
 }
 
 /// Prints a text, unless standard output is where a file goes.
-fn tell(args: &ProveArgs, text: &str) -> Result<(), Failure> {
+fn tell(args: &ProveArgs, text: &str) -> Result<(), Error> {
     let is_stdout = |path: &Option<PathBuf>| path.as_deref() == Some(Path::new("-"));
     if is_stdout(&args.certificate) || is_stdout(&args.vcd) { Ok(()) } else { output::print(text) }
 }
 
 /// By how many bits registers are narrower.
-fn narrower(args: &ProveArgs) -> Result<Narrower, Failure> {
+fn narrower(args: &ProveArgs) -> Result<Narrower, Error> {
     let mut narrower = Narrower::new();
     for (name, bits) in args.narrower.iter().flat_map(|list| list.0.iter().cloned()) {
         if let Some(before) = narrower.insert(name.clone(), bits) {
-            return Err(Failure::Trouble(format!(
+            return Err(Error::Invalid(format!(
                 "--narrower gives '{name}' two values, {before} and {bits}: leave one of them out"
             )));
         }
@@ -68,7 +68,7 @@ struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    fn new(args: &'a ProveArgs, narrower: Narrower) -> Result<Job<'a>, Failure> {
+    fn new(args: &'a ProveArgs, narrower: Narrower) -> Result<Job<'a>, Error> {
         let model = find(args.model.as_deref().unwrap_or_default())?;
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
         Ok(Job { args, model, claims, choices: args.hardware.choices(), narrower })
@@ -85,13 +85,13 @@ impl<'a> Job<'a> {
         self.extent().is_some() || !self.choices.of_single(&WIDTH).is_empty()
     }
 
-    fn fixed(&self, extent: Extent) -> Result<Fixed, Failure> {
+    fn fixed(&self, extent: Extent) -> Result<Fixed, Error> {
         let told = |error| self.args.hardware.told_of_study(error);
         Fixed::new(self.model, &self.choices, extent).map_err(told)
     }
 
     /// Refuses options that are about one width at a time, or about every one, where the widths are given.
-    fn check_fixed(&self) -> Result<(), Failure> {
+    fn check_fixed(&self) -> Result<(), Error> {
         let ProveArgs { narrower, solver, bits, any_preset, .. } = self.args;
         let given = [
             (!narrower.is_empty(), "--narrower"),
@@ -100,7 +100,7 @@ impl<'a> Job<'a> {
             (*any_preset, "--any-preset"),
         ];
         match given.into_iter().find(|(given, _)| *given) {
-            Some((_, option)) => Err(Failure::Trouble(format!(
+            Some((_, option)) => Err(Error::Invalid(format!(
                 "{option} is for hardware of every k, but --width, --box or --travel choose one: leave one of them out"
             ))),
             None => Ok(()),
@@ -113,7 +113,7 @@ impl<'a> Job<'a> {
     }
 
     /// The hardware of every width.
-    fn subject(&self) -> Result<Subject, Failure> {
+    fn subject(&self) -> Result<Subject, Error> {
         let told = |error| self.args.hardware.told_of_study(error);
         let subject = Subject::new(self.model, &self.choices, &self.narrower).map_err(told)?;
         Ok(if self.args.any_preset { subject.with_any_preset() } else { subject })
@@ -142,14 +142,14 @@ impl<'a> Job<'a> {
     }
 
     /// Opens the file of the certificate, if one is wanted, before anything is attempted.
-    fn certificate(&self) -> Result<CertificateOutput<'_>, Failure> {
+    fn certificate(&self) -> Result<CertificateOutput<'_>, Error> {
         let mut outputs = Outputs::default();
         let sink = self.args.certificate.as_deref().map(|path| outputs.open(path)).transpose()?;
         Ok(CertificateOutput { job: self, outputs, sink })
     }
 
     /// What a solver says of every geometry of some bits; `None` where it says nothing in time.
-    fn asked(&self, command: &str) -> Result<Option<Answer>, Failure> {
+    fn asked(&self, command: &str) -> Result<Option<Answer>, Error> {
         let k = self.args.bits.unwrap_or(ASKED);
         let question = question(self.model, &self.claims, &self.choices, &self.narrower, k)
             .map_err(|error| self.args.hardware.told_of_study(error))?;
@@ -182,12 +182,7 @@ struct CertificateOutput<'a> {
 
 impl CertificateOutput<'_> {
     /// Writes what was proved, with these options of the hardware.
-    fn write(
-        self,
-        options: Vec<String>,
-        kinds: Vec<(String, Certificate)>,
-        counted: Vec<String>,
-    ) -> Result<(), Failure> {
+    fn write(self, options: Vec<String>, kinds: Vec<(String, Certificate)>, counted: Vec<String>) -> Result<(), Error> {
         if let Some(mut sink) = self.sink {
             let narrower = self.job.narrower.clone().into_iter().collect();
             let file = CertificateFile { model: self.job.model.name.to_owned(), options, narrower, kinds, counted };
@@ -198,7 +193,7 @@ impl CertificateOutput<'_> {
     }
 }
 
-fn attempt(args: &ProveArgs) -> Result<(), Failure> {
+fn attempt(args: &ProveArgs) -> Result<(), Error> {
     // Whichever is written in the end, both are tried before anything is attempted.
     let mut both = Outputs::default();
     args.certificate.iter().chain(&args.vcd).try_for_each(|path| both.claim(path).map(drop))?;
@@ -211,12 +206,12 @@ fn attempt(args: &ProveArgs) -> Result<(), Failure> {
     let counted = !job.claims.counted.is_empty();
     if args.bits.is_some() && !counted && args.solver.is_none() {
         let model = model.name;
-        return Err(Failure::Trouble(format!("{model} is proved for all k at once: leave --bits out")));
+        return Err(Error::Invalid(format!("{model} is proved for all k at once: leave --bits out")));
     }
     let second = args.solver.as_deref().map(|command| job.asked(command)).transpose()?.flatten();
     let own = if counted { counted::attempt(&job) } else { every_width::attempt(&job) };
     match (&own, second) {
-        (Ok(()), Some(Answer::Sat)) => Err(Failure::Check(vec![format!(
+        (Ok(()), Some(Answer::Sat)) => Err(Error::Check(vec![format!(
             "{}: what is proved here the solver says is wrong: one of both errs, please report this",
             model.name
         )])),

@@ -1,23 +1,19 @@
 //! How large a wave becomes: estimated before a program runs, and counted while any wave is written.
 
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Write};
 
 use crate::models::parts::RATE_BITS;
 use crate::program::Estimate;
 use crate::testbench::Testbench;
 use crate::trace::timescale::ClockTime;
 
-use super::wave::probes;
+use crate::Error;
 use crate::cli::TraceArgs;
-use crate::failure::Failure;
+use crate::waves::limited::{LARGE, REMEDIES};
+use crate::waves::probes;
 
-/// Bytes above which a wave wants `--large`.
-pub(super) const LARGE: u64 = 1_000_000_000;
 /// Bytes above which a program reports the size of its wave before it writes it.
 const NOTED: f64 = 1e8;
-
-const REMEDIES: &str = "make it small by --trace-steps (one sample a step), --no-clk, a window (--trace-from, --trace-to), \
-    fewer signals (--trace) or --fst; or give --large";
 
 /// Bytes of VCD that a bit of a vector takes at a step that moves the machine on the average, as measured on machines of
 /// every family.
@@ -49,8 +45,8 @@ impl Size {
     ///
     /// # Errors
     /// The options name no signal.
-    pub(super) fn of(bench: &Testbench, args: &TraceArgs, time: ClockTime) -> Result<Size, Failure> {
-        let mut probes = probes(bench, args)?;
+    pub(super) fn of(bench: &Testbench, args: &TraceArgs, time: ClockTime) -> Result<Size, Error> {
+        let mut probes = probes(bench, &args.options())?;
         probes.sort_by_key(|probe| probe.column);
         probes.dedup_by_key(|probe| probe.column);
         let (mut clock, mut step, mut count) = (0.0, 0.0, 0.0);
@@ -94,12 +90,12 @@ impl Size {
     ///
     /// # Errors
     /// It would have more than 1 GB, and `--large` is not given.
-    pub(super) fn check(&self, args: &TraceArgs, limit: Option<u64>, estimate: &Estimate) -> Result<(), Failure> {
+    pub(super) fn check(&self, args: &TraceArgs, limit: Option<u64>, estimate: &Estimate) -> Result<(), Error> {
         let most = self.bytes(args, limit, estimate).into_iter().fold(0.0, f64::max);
         let (size, clocks) = (readable(most), estimate.clocks);
         // Where a signal opens the window nobody knows how much of the run is left.
         if most > LARGE as f64 && !args.large && args.trace_on.is_none() {
-            return Err(Failure::Trouble(format!(
+            return Err(Error::Invalid(format!(
                 "the wave would have about {size}, as the program runs for about {clocks:.0} clocks: {REMEDIES}"
             )));
         }
@@ -116,39 +112,6 @@ impl Size {
 
 fn readable(bytes: f64) -> String {
     if bytes < 1e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
-}
-
-/// An output that takes no more than 1 GB, unless more is wanted.
-pub(super) struct Limited<W> {
-    out: W,
-    left: u64,
-}
-
-impl<W> Limited<W> {
-    pub(super) fn new(out: W, large: bool) -> Limited<W> {
-        Limited { out, left: if large { u64::MAX } else { LARGE } }
-    }
-}
-
-impl<W: Write> Write for Limited<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if bytes.len() as u64 > self.left {
-            return Err(io::Error::other(format!("the wave has come to 1 GB and was given up: {REMEDIES}")));
-        }
-        let written = self.out.write(bytes)?;
-        self.left -= written as u64;
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.out.flush()
-    }
-}
-
-impl<W: Seek> Seek for Limited<W> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.out.seek(to)
-    }
 }
 
 #[cfg(test)]

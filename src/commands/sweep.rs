@@ -19,8 +19,8 @@ mod kept;
 
 use self::kept::Kept;
 use super::progress::Progress;
+use crate::Error;
 use crate::cli::{Point, SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs, known_register};
-use crate::failure::Failure;
 use crate::output::{self, Outputs, Sink, is_stream, temporary};
 
 /// Geometries of the first chunk, and most of any.
@@ -30,7 +30,7 @@ const MOST: u64 = 1 << 15;
 const CHUNK: Duration = Duration::from_secs(1);
 
 /// Does a sweep, or joins parts of one.
-pub(crate) fn run(args: &SweepArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
     if let Some(SweepCommand::Merge { out, parts }) = &args.command {
         return merge(out, parts);
     }
@@ -51,18 +51,18 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Failure> {
     let mut outputs = Outputs::reading(&inputs);
     let written = write(&sweep, &args.outputs, Outputs::reading(&inputs), &mut outputs);
     let text = written.map_err(|failure| match (failure, temporary::kept()) {
-        (Failure::Trouble(sentence), Some(kept)) => Failure::Trouble(format!("{sentence}; {kept}")),
+        (Error::Invalid(sentence), Some(kept)) => Error::Invalid(format!("{sentence}; {kept}")),
         (failure, _) => failure,
     })?;
     if outputs.uses_stdout() { Ok(()) } else { output::print(&text) }
 }
 
-fn trouble<T>(sentence: String) -> Result<T, Failure> {
-    Err(Failure::Trouble(sentence))
+fn trouble<T>(sentence: String) -> Result<T, Error> {
+    Err(Error::Invalid(sentence))
 }
 
 /// All geometries that the options tell.
-fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Failure> {
+fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Error> {
     if let Some(file) = &args.file {
         return Ok(study::read_points(file, model, radii)?);
     }
@@ -125,7 +125,7 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Fa
 }
 
 /// What the model interpolates, if nothing was given that it has not.
-fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Failure> {
+fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Error> {
     let drawn = match model.curve() {
         CurveKind::Line { .. } => Drawn::Line,
         CurveKind::Arc => Drawn::Arc,
@@ -175,7 +175,7 @@ fn variants(args: &VariantArgs) -> Result<Variants, StudyError> {
 
 /// How far the two radii of an arc may differ beyond what rounding makes. As an option of hardware the tolerance stays with
 /// models that have chords.
-fn radii(model: &Model, variants: &mut Variants) -> Result<Millionths, Failure> {
+fn radii(model: &Model, variants: &mut Variants) -> Result<Millionths, Error> {
     let is_tolerance = |dimension: &Dimension| dimension.option.name() == TOLERANCE.name;
     let Some(place) = variants.0.iter().position(is_tolerance) else { return Ok(Millionths(0)) };
     if !matches!(model.curve(), CurveKind::Arc | CurveKind::Helix) {
@@ -204,7 +204,7 @@ struct Heat {
 }
 
 impl Heat {
-    fn new(sweep: &Sweep, name: &str) -> Result<Heat, Failure> {
+    fn new(sweep: &Sweep, name: &str) -> Result<Heat, Error> {
         let numbers = sweep.columns().iter().filter(|column| column.kind != Kind::Word && column.name != "index");
         let known: Vec<&str> = numbers.map(|column| column.name.as_str()).collect();
         if !known.contains(&name) {
@@ -295,7 +295,7 @@ impl Tables {
     }
 
     /// Takes the rows of some geometries.
-    fn take(&mut self, geometries: u64, rows: Vec<Row>) -> Result<(), Failure> {
+    fn take(&mut self, geometries: u64, rows: Vec<Row>) -> Result<(), Error> {
         rows.iter().for_each(|row| self.show(row));
         let lines = |rows: &[Row]| {
             let mut lines = String::new();
@@ -313,7 +313,7 @@ impl Tables {
     }
 
     /// Takes the rows that a killed sweep has left; gives the geometries done.
-    fn recall(&mut self) -> Result<u64, Failure> {
+    fn recall(&mut self) -> Result<u64, Error> {
         let Some(mut stage) = self.stage.take() else { return Ok(0) };
         stage.replay(|row| {
             self.show(&row);
@@ -322,7 +322,7 @@ impl Tables {
                 write_line(&row, &mut line);
                 stream.write_all(line.as_bytes())?;
             }
-            Ok::<(), Failure>(())
+            Ok::<(), Error>(())
         })?;
         let geometries = stage.done();
         self.stage = Some(stage);
@@ -332,7 +332,7 @@ impl Tables {
 
 /// Tries all outputs before the first run, though some are written at the end only; gives the file of the CSV, if it is
 /// one, and the file next to which the rows are on their way.
-fn tried(args: &TableArgs, mut claims: Outputs) -> Result<[Option<PathBuf>; 2], Failure> {
+fn tried(args: &TableArgs, mut claims: Outputs) -> Result<[Option<PathBuf>; 2], Error> {
     if args.parquet.as_deref().is_some_and(is_stream) {
         return trouble("Parquet rows are gathered next to their file before they are written: name a file".to_owned());
     }
@@ -352,7 +352,7 @@ fn tried(args: &TableArgs, mut claims: Outputs) -> Result<[Option<PathBuf>; 2], 
 }
 
 /// Does all runs and writes every output; gives the summary. `claims` are the outputs that are written at the end.
-fn write(sweep: &Sweep, args: &TableArgs, claims: Outputs, outputs: &mut Outputs) -> Result<String, Failure> {
+fn write(sweep: &Sweep, args: &TableArgs, claims: Outputs, outputs: &mut Outputs) -> Result<String, Error> {
     let heat = (!args.plot.is_empty()).then(|| Heat::new(sweep, args.heat.as_deref().unwrap_or("error_max")));
     let heat = heat.transpose()?;
     let [csv, stage] = tried(args, claims)?;
@@ -405,7 +405,7 @@ fn write(sweep: &Sweep, args: &TableArgs, claims: Outputs, outputs: &mut Outputs
 }
 
 /// Does the runs that are not done, a chunk at a time.
-fn all_rows(sweep: &Sweep, begun: u64, tables: &mut Tables) -> Result<(), Failure> {
+fn all_rows(sweep: &Sweep, begun: u64, tables: &mut Tables) -> Result<(), Error> {
     let all = sweep.geometries();
     let progress = Progress::of(all, "geometries");
     progress.begin_at(begun);
@@ -432,7 +432,7 @@ fn all_rows(sweep: &Sweep, begun: u64, tables: &mut Tables) -> Result<(), Failur
 }
 
 /// Joins parts.
-fn merge(out: &Path, parts: &[PathBuf]) -> Result<(), Failure> {
+fn merge(out: &Path, parts: &[PathBuf]) -> Result<(), Error> {
     let mut outputs = Outputs::reading(parts);
     let as_parquet = out.extension().is_some_and(|extension| extension == "parquet");
     let rows = study::merge(parts, outputs.open(out)?, as_parquet)?;

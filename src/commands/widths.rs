@@ -9,12 +9,12 @@ use crate::study::widths::{Known, RegisterWidth, Widths, Witness, widths};
 use serde_json::{Value, json};
 
 use super::progress::Progress;
+use crate::Error;
 use crate::cli::WidthsArgs;
-use crate::failure::Failure;
 use crate::output;
 
 /// Prints the table; a width that is given and too narrow is a failed check.
-pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &WidthsArgs) -> Result<(), Error> {
     let model = find(&args.model)?;
     let choices = args.hardware.choices();
     let progress = Progress::new("geometries");
@@ -27,7 +27,7 @@ pub(crate) fn run(args: &WidthsArgs) -> Result<(), Failure> {
     }
     let short = found.registers.iter().filter(|register| register.given < register.needed);
     let sentences: Vec<String> = short.map(|register| too_narrow(model, register)).collect();
-    if sentences.is_empty() { Ok(()) } else { Err(Failure::Check(sentences)) }
+    if sentences.is_empty() { Ok(()) } else { Err(Error::Check(sentences)) }
 }
 
 /// What is wrong with a width that is given, in a sentence.

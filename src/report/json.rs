@@ -111,12 +111,12 @@ pub(super) fn tally(tally: &OverflowTally) -> Value {
     })
 }
 
-impl Report<'_> {
+impl Report {
     /// The report as JSON: see the README for its fields.
     #[must_use]
     pub fn json(&self) -> Value {
         let outcome = &self.outcome;
-        let choices = summary::choices(self.model, self.hardware);
+        let choices = summary::choices(self.model, &self.hardware);
         let choices: Map<String, Value> = choices
             .into_iter()
             .filter(|(name, _)| *name != "width")
@@ -181,7 +181,7 @@ impl Report<'_> {
         let mut report = json!({
             "schema": SCHEMA,
             "model": self.model.name,
-            "geometry": geometry(self.curve),
+            "geometry": geometry(&self.curve),
             "choices": choices,
             "widths": widths,
             "engine": self.engine.name(),

@@ -28,13 +28,14 @@ pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
 
 /// Everything known about a finished run.
 #[derive(Debug)]
-pub struct Report<'a> {
+#[non_exhaustive]
+pub struct Report {
     /// The model.
     pub model: &'static Model,
     /// What was to be interpolated.
-    pub curve: &'a Curve,
+    pub curve: Curve,
     /// The hardware, with every choice made.
-    pub hardware: &'a Hardware,
+    pub hardware: Hardware,
     /// What simulated it.
     pub engine: EngineKind,
     /// How it ended.
@@ -63,7 +64,7 @@ pub struct Report<'a> {
     pub blu_mm: f64,
 }
 
-impl Report<'_> {
+impl Report {
     /// The end point was reached exactly.
     #[must_use]
     pub fn end_exact(&self) -> bool {
@@ -72,13 +73,13 @@ impl Report<'_> {
 
     /// Sentences about position counters that do not show where the pulses led.
     fn wrong_counters(&self) -> Vec<String> {
-        wrong_counters(&self.outcome, self.hardware)
+        wrong_counters(&self.outcome, &self.hardware)
     }
 
     /// What the method promises of the path, if it promises anything.
     #[must_use]
     pub fn promise(&self) -> Option<Promise> {
-        Promise::of(self.hardware.error_bound, self.curve)
+        Promise::of(self.hardware.error_bound, &self.curve)
     }
 
     /// The path error stayed within what the method promises.
@@ -154,7 +155,7 @@ impl Report<'_> {
         match self.outcome.ending {
             Ending::Trapped => {
                 if let Some(event) = self.overflows.last() {
-                    failures.push(event.to_string() + &way_out(event, self.hardware));
+                    failures.push(event.to_string() + &way_out(event, &self.hardware));
                 }
                 return failures;
             }

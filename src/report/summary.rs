@@ -59,7 +59,7 @@ pub fn title(model: &Model, hardware: &Hardware, curve: &Curve) -> String {
     format!("{}; {}; {}", model.name, geometry(curve), choices.join("; "))
 }
 
-impl Report<'_> {
+impl Report {
     /// Some lines for a terminal.
     #[must_use]
     pub fn summary(&self) -> String {
@@ -67,7 +67,7 @@ impl Report<'_> {
         let outcome = &self.outcome;
         let letters = self.hardware.letters();
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}: {}", self.model.name, geometry(self.curve));
+        let _ = writeln!(text, "{}: {}", self.model.name, geometry(&self.curve));
         let pulses: Vec<_> =
             outcome.pulses.iter().zip(letters).map(|(count, axis)| format!("{axis} {count}")).collect();
         let _ = writeln!(text, "{} steps in {} clocks; pulses {}", outcome.steps, outcome.clocks, pulses.join(", "));

@@ -10,8 +10,8 @@ use super::every_width::{attempts, keep};
 use super::replay::refuted_with;
 use super::verdict::{Claim, Scope, names, proved, told, unproved};
 use super::{CertificateOutput, Job, SEARCHED, tell};
+use crate::Error;
 use crate::commands::progress::Progress;
-use crate::failure::Failure;
 
 /// Clocks of all geometries together that are simulated before a proof is attempted, and after it.
 const FEW: u64 = 1 << 24;
@@ -20,7 +20,7 @@ const MANY: u64 = 1 << 31;
 const SOME: u64 = 1 << 29;
 
 /// Attempts a verdict.
-pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
+pub(super) fn attempt(job: &Job<'_>) -> Result<(), Error> {
     let Some(extent) = job.extent() else { return attempt_any_box(job) };
     let certificate = job.certificate()?;
     let fixed = job.fixed(extent)?;
@@ -39,7 +39,7 @@ pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
     }
 }
 
-fn simulate(job: &Job<'_>, fixed: &Fixed, few: bool, clocks: u64) -> Result<(Option<Counterexample>, Tried), Failure> {
+fn simulate(job: &Job<'_>, fixed: &Fixed, few: bool, clocks: u64) -> Result<(Option<Counterexample>, Tried), Error> {
     let progress = OnceCell::new();
     let show = |done: usize, all: usize| {
         progress.get_or_init(|| Progress::of(all as u64, "geometries")).set(done as u64);
@@ -53,7 +53,7 @@ pub(super) fn scope(job: &Job<'_>, fixed: &Fixed) -> Scope {
 }
 
 /// By the family of hardware that is as much narrower or wider than by default at every k.
-fn by_steps(job: &Job<'_>, fixed: &Fixed, few: Tried, certificate: CertificateOutput<'_>) -> Result<(), Failure> {
+fn by_steps(job: &Job<'_>, fixed: &Fixed, few: Tried, certificate: CertificateOutput<'_>) -> Result<(), Error> {
     let Some(subject) = fixed.subject() else {
         return exhaust(job, fixed, few, "this hardware is of no family that is the same circuit for every k");
     };
@@ -70,7 +70,7 @@ fn by_steps(job: &Job<'_>, fixed: &Fixed, few: Tried, certificate: CertificateOu
 }
 
 /// By following the block of every kind.
-fn by_blocks(job: &Job<'_>, fixed: &Fixed, few: Tried, certificate: CertificateOutput<'_>) -> Result<(), Failure> {
+fn by_blocks(job: &Job<'_>, fixed: &Fixed, few: Tried, certificate: CertificateOutput<'_>) -> Result<(), Error> {
     match (fixed.blocks(Way::Follow), fixed.blocks(Way::Recount)) {
         (Some(Ok(blocks)), Some(Ok(again))) if blocks == again && blocks.iter().all(Block::is_exact) => {
             let text = judge(&scope(job, fixed), &blocks)?;
@@ -88,7 +88,7 @@ fn is_whole(tried: &Tried) -> bool {
 }
 
 /// By simulating every geometry of the box, where they are not too many.
-fn exhaust(job: &Job<'_>, fixed: &Fixed, few: Tried, why: &str) -> Result<(), Failure> {
+fn exhaust(job: &Job<'_>, fixed: &Fixed, few: Tried, why: &str) -> Result<(), Error> {
     let tried = if is_whole(&few) {
         few
     } else {
@@ -114,11 +114,11 @@ fn exhaust(job: &Job<'_>, fixed: &Fixed, few: Tried, why: &str) -> Result<(), Fa
              {refused} were refused, {given_up} were not run to their end\n"
         ),
     )?;
-    Err(Failure::Check(vec![format!("not proved {widths}: {}; no counterexample was found", names(&Claim::ALL))]))
+    Err(Error::Check(vec![format!("not proved {widths}: {}; no counterexample was found", names(&Claim::ALL))]))
 }
 
 /// Registers of fixed widths without a box: for coordinates of some bits they are too narrow.
-fn attempt_any_box(job: &Job<'_>) -> Result<(), Failure> {
+fn attempt_any_box(job: &Job<'_>) -> Result<(), Error> {
     let Job { args, model, claims, choices, narrower } = job;
     let _ = job.certificate()?;
     let told = |error| args.hardware.told_of_study(error);
@@ -147,7 +147,7 @@ fn attempt_any_box(job: &Job<'_>) -> Result<(), Failure> {
                 args,
                 &format!("{}\nUNKNOWN: where these widths begin to be too narrow was not found\n", job.hardware()),
             )?;
-            Err(Failure::Check(vec![format!(
+            Err(Error::Check(vec![format!(
                 "not proved: {}; give a box of geometries, such as --travel 100",
                 names(&Claim::ALL)
             )]))

@@ -12,39 +12,39 @@ use rayon::prelude::*;
 use super::counted::{followed, judge, scope, unfollowed};
 use super::verdict::{Attempt, Scope, names, proved, told, unproved};
 use super::{Job, at_widths};
-use crate::cli::{Cli, Command};
-use crate::failure::Failure;
+use crate::Error;
+use crate::cli::{Cli, Command, usage};
 use crate::output;
 
 /// Checks a file of certificates: nothing is looked for.
-pub(super) fn check(path: &Path) -> Result<(), Failure> {
+pub(super) fn check(path: &Path) -> Result<(), Error> {
     let name = path.display();
     let text = read(path)?;
     let file: CertificateFile =
-        text.parse().map_err(|error| Failure::Trouble(format!("{name} is no certificate: {error}")))?;
+        text.parse().map_err(|error| Error::Invalid(format!("{name} is no certificate: {error}")))?;
     let model = find(&file.model)?;
     let words = ["stepwave", "prove", model.name].map(str::to_owned).into_iter().chain(file.options.iter().cloned());
-    let parsed = Cli::try_parse_from(words).map_err(|error| Failure::usage(&error))?;
+    let parsed = Cli::try_parse_from(words).map_err(|error| usage(&error))?;
     let Command::Prove(args) = &parsed.command else {
-        return Err(Failure::Trouble(format!("{name} is no certificate: its options are none of `stepwave prove`")));
+        return Err(Error::Invalid(format!("{name} is no certificate: its options are none of `stepwave prove`")));
     };
     let job = Job::new(args, file.narrower.iter().cloned().collect())?;
     if job.options() != file.options {
         let words = file.options.join(" ");
-        return Err(Failure::Trouble(format!("{name} is no certificate: '{words}' is not hardware alone")));
+        return Err(Error::Invalid(format!("{name} is no certificate: '{words}' is not hardware alone")));
     }
     if job.claims.counted.is_empty() { check_steps(&job, &name, &file) } else { check_blocks(&job, &name, &file) }
 }
 
 /// The text of a file that is not too large for a certificate.
-fn read(path: &Path) -> Result<String, Failure> {
+fn read(path: &Path) -> Result<String, Error> {
     let name = path.display();
     let mut text = String::new();
     let read = File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_string(&mut text));
-    read.map_err(|error| Failure::Trouble(format!("cannot read {name}: {error}")))?;
+    read.map_err(|error| Error::Invalid(format!("cannot read {name}: {error}")))?;
     if text.len() as u64 > MOST_BYTES {
         let most = MOST_BYTES >> 20;
-        return Err(Failure::Trouble(format!(
+        return Err(Error::Invalid(format!(
             "{name} is no certificate: it holds more than {most} MiB, the most of one"
         )));
     }
@@ -52,21 +52,21 @@ fn read(path: &Path) -> Result<String, Failure> {
 }
 
 /// Blocks that were followed at some widths: they are counted anew.
-fn check_blocks(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Result<(), Failure> {
+fn check_blocks(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Result<(), Error> {
     let mut ks: Vec<u32> = Vec::new();
     for block in &file.counted {
         let k = block.split(' ').next().and_then(|k| k.parse().ok()).filter(|k| (1..=20).contains(k));
-        ks.push(k.ok_or_else(|| Failure::Trouble(format!("{name} is no certificate: counted {block}")))?);
+        ks.push(k.ok_or_else(|| Error::Invalid(format!("{name} is no certificate: counted {block}")))?);
     }
     ks.dedup();
-    let other = || Failure::Check(vec![format!("{name} does not say what its blocks come to")]);
+    let other = || Error::Check(vec![format!("{name} does not say what its blocks come to")]);
     // Whatever follows takes its time for every width.
     if ks.is_empty() || !ks.is_sorted() || file.counted.len() != ks.len() * job.claims.geometries.kinds().len() {
         return Err(other());
     }
     // What does not even say that every axis ends where it should is not worth it.
     let wanted = followed(job.model, &job.choices, &job.narrower, ks.clone(), Way::Wanted)
-        .map_err(|error| unfollowed(error, Failure::from))?;
+        .map_err(|error| unfollowed(error, Error::from))?;
     let ends = |block: &str| {
         let (head, rest) = block.split_once(" clocks=")?;
         let (clocks, ends) = rest.split_once(' ')?;
@@ -78,7 +78,7 @@ fn check_blocks(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Re
         return Err(other());
     }
     let blocks = followed(job.model, &job.choices, &job.narrower, ks, Way::Recount)
-        .map_err(|error| unfollowed(error, Failure::from))?;
+        .map_err(|error| unfollowed(error, Error::from))?;
     if blocks.iter().map(Block::to_string).ne(file.counted.iter().cloned()) {
         return Err(other());
     }
@@ -96,12 +96,12 @@ fn check_blocks(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Re
 }
 
 /// Kinds of geometry that were proved step by step.
-fn check_steps(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Result<(), Failure> {
+fn check_steps(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Result<(), Error> {
     let fixed = job.extent().map(|extent| job.fixed(extent)).transpose()?;
     let (subject, scope) = match &fixed {
         Some(fixed) => {
             let subject = fixed.subject().ok_or_else(|| {
-                Failure::Check(vec![format!("{name} does not prove: its hardware is no family for every k")])
+                Error::Check(vec![format!("{name} does not prove: its hardware is no family for every k")])
             })?;
             (subject, at_widths::scope(job, fixed))
         }
@@ -114,7 +114,7 @@ fn check_steps(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Res
     let kinds = subject.kinds();
     if let Some((other, _)) = file.kinds.iter().find(|(other, _)| kinds.iter().all(|kind| kind.name != *other)) {
         let (model, other) = (job.model.name, other.chars().take(60).collect::<String>());
-        return Err(Failure::Trouble(format!("{name} is no certificate: {model} has no kind {other}")));
+        return Err(Error::Invalid(format!("{name} is no certificate: {model} has no kind {other}")));
     }
     let attempts: Vec<Attempt> = kinds
         .into_par_iter()
@@ -128,8 +128,8 @@ fn check_steps(job: &Job<'_>, name: &Display<'_>, file: &CertificateFile) -> Res
     let (open, shown) = (unproved(&attempts), proved(&attempts));
     match (open.is_empty(), shown.is_empty()) {
         (true, _) => Ok(()),
-        (false, true) => Err(Failure::Check(vec![format!("{name} does not prove: {}", names(&open))])),
-        (false, false) => Err(Failure::Check(vec![format!(
+        (false, true) => Err(Error::Check(vec![format!("{name} does not prove: {}", names(&open))])),
+        (false, false) => Err(Error::Check(vec![format!(
             "{name} proves a part ({}), and does not prove: {}",
             names(&shown),
             names(&open)

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use super::replay::refuted;
 use super::verdict::{Claim, Scope};
 use super::{Job, SEARCHED, tell};
+use crate::Error;
 use crate::commands::progress::Progress;
-use crate::failure::Failure;
 
 /// Bits of coordinates at which a model is proved unless the user says otherwise.
 const PROVED: RangeInclusive<u32> = 1..=16;
@@ -35,10 +35,10 @@ pub(super) fn followed(
 }
 
 /// A block that cannot be followed is not proved, and not refuted; all else is bad input.
-pub(super) fn unfollowed(error: ProofError, told: impl Fn(ProofError) -> Failure) -> Failure {
+pub(super) fn unfollowed(error: ProofError, told: impl Fn(ProofError) -> Error) -> Error {
     match error {
         lost @ ProofError::Lost { .. } => {
-            Failure::Check(vec![format!("UNKNOWN, no counterexample and no proof: {lost}")])
+            Error::Check(vec![format!("UNKNOWN, no counterexample and no proof: {lost}")])
         }
         other => told(other),
     }
@@ -58,10 +58,10 @@ pub(super) fn scope(job: &Job<'_>, blocks: &[Block]) -> Scope {
 }
 
 /// What they show, in words; fails where one of them does not end as it should.
-pub(super) fn judge(scope: &Scope, blocks: &[Block]) -> Result<String, Failure> {
+pub(super) fn judge(scope: &Scope, blocks: &[Block]) -> Result<String, Error> {
     let wrong: Vec<String> = blocks.iter().filter(|block| !block.is_exact()).map(Block::to_string).collect();
     if !wrong.is_empty() {
-        return Err(Failure::Check(vec![format!("not proved: {}: {}", Claim::Exact.name(), wrong.join("; "))]));
+        return Err(Error::Check(vec![format!("not proved: {}: {}", Claim::Exact.name(), wrong.join("; "))]));
     }
     let mut text = format!("{}\n", scope.about);
     for claim in Claim::ALL {
@@ -74,10 +74,10 @@ pub(super) fn judge(scope: &Scope, blocks: &[Block]) -> Result<String, Failure> 
 }
 
 /// Attempts a proof at each width.
-pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
+pub(super) fn attempt(job: &Job<'_>) -> Result<(), Error> {
     let Job { args, model, choices, narrower, .. } = job;
     if args.any_preset {
-        return Err(Failure::Trouble(format!("{} has no remainder to preset: leave --any-preset out", model.name)));
+        return Err(Error::Invalid(format!("{} has no remainder to preset: leave --any-preset out", model.name)));
     }
     let certificate = job.certificate()?;
     let ks: Vec<u32> = args.bits.map_or(PROVED, |k| k..=k).collect();
@@ -92,7 +92,7 @@ pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
     // They are not believed: what counts is what the second way comes to.
     if followed(model, choices, narrower, ks, Way::Recount).map_err(told)? != blocks {
         let model = model.name;
-        return Err(Failure::Check(vec![format!("not proved: {model} pulse by pulse comes to something else")]));
+        return Err(Error::Check(vec![format!("not proved: {model} pulse by pulse comes to something else")]));
     }
     let text = judge(&scope(job, &blocks), &blocks)?;
     certificate.write(job.options(), Vec::new(), blocks.iter().map(Block::to_string).collect())?;

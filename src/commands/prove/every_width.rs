@@ -9,11 +9,11 @@ use super::replay::{not_inductive, refuted};
 use super::simulated::simulated;
 use super::verdict::{Attempt, Claim, Scope, names, proved, told, unproved};
 use super::{CertificateOutput, Job, SEARCHED, tell};
+use crate::Error;
 use crate::commands::progress::Progress;
-use crate::failure::Failure;
 
 /// Attempts a proof of every kind of geometry.
-pub(super) fn attempt(job: &Job<'_>) -> Result<(), Failure> {
+pub(super) fn attempt(job: &Job<'_>) -> Result<(), Error> {
     let Job { args, model, choices, .. } = job;
     let certificate = job.certificate()?;
     // What a simulation refutes needs no attempt.
@@ -50,7 +50,7 @@ pub(super) fn attempts(subject: &Subject) -> Result<Vec<Attempt>, ProofError> {
 }
 
 /// Writes the certificate of these attempts.
-pub(super) fn keep(job: &Job<'_>, certificate: CertificateOutput<'_>, attempts: Vec<Attempt>) -> Result<(), Failure> {
+pub(super) fn keep(job: &Job<'_>, certificate: CertificateOutput<'_>, attempts: Vec<Attempt>) -> Result<(), Error> {
     let kinds = attempts.into_iter().map(|(kind, _, certificate)| (kind.name, certificate)).collect();
     certificate.write(job.options(), kinds, Vec::new())
 }
@@ -62,7 +62,7 @@ fn undecided(
     attempts: Vec<Attempt>,
     mut text: String,
     certificate: CertificateOutput<'_>,
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     let Job { args, model, claims, choices, narrower } = job;
     let remainders = subject.presets();
     let mut presets = extreme_presets(choices, &remainders);
@@ -99,7 +99,7 @@ fn undecided(
         };
     }
     tell(args, &text)?;
-    Err(Failure::Check(vec![failure]))
+    Err(Error::Check(vec![failure]))
 }
 
 /// Every remainder register of these at 0 or full, in all combinations; nothing where there are none.

@@ -13,11 +13,11 @@ use crate::trace::timescale::ClockTime;
 use clap::Parser;
 
 use super::super::run::{Finished, simulate};
-use super::super::wave::{Sinks, Waves};
 use super::tell;
+use crate::Error;
 use crate::cli::{Cli, Command, ProveArgs, RunArgs};
-use crate::failure::Failure;
 use crate::output::Outputs;
+use crate::waves::{Sinks, Waves};
 
 /// The run of a geometry, with its wave if one is wanted, and the command that repeats it.
 fn replayed(
@@ -25,7 +25,7 @@ fn replayed(
     model: &Model,
     curve: &Curve,
     choices: &Options,
-) -> Result<(String, Box<RunArgs>), Failure> {
+) -> Result<(String, Box<RunArgs>), Error> {
     let mut command = run_command(model, curve, choices);
     // No word of it holds a blank.
     let mut words: Vec<OsString> = command.split(' ').map(OsString::from).collect();
@@ -36,22 +36,17 @@ fn replayed(
     }
     match Cli::try_parse_from(words) {
         Ok(Cli { command: Command::Run(run) }) => Ok((command, run)),
-        _ => Err(Failure::Trouble(format!("what was found cannot be replayed: {command}"))),
+        _ => Err(Error::Invalid(format!("what was found cannot be replayed: {command}"))),
     }
 }
 
 /// Runs a counterexample as its command does, with its wave if one is wanted, and tells it.
-pub(super) fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample) -> Result<(), Failure> {
+pub(super) fn refuted(args: &ProveArgs, model: &Model, example: &Counterexample) -> Result<(), Error> {
     refuted_with(args, model, example, "")
 }
 
 /// The same, with a note after what it shows.
-pub(super) fn refuted_with(
-    args: &ProveArgs,
-    model: &Model,
-    example: &Counterexample,
-    note: &str,
-) -> Result<(), Failure> {
+pub(super) fn refuted_with(args: &ProveArgs, model: &Model, example: &Counterexample, note: &str) -> Result<(), Error> {
     let Counterexample { k, curve, choices, fault } = example;
     let (command, run) = replayed(args, model, curve, choices)?;
     let mut outputs = Outputs::default();
@@ -71,11 +66,11 @@ pub(super) fn refuted_with(
         Err(trouble) => return Err(trouble),
     };
     if shown.is_empty() {
-        return Err(Failure::Trouble(format!("the lanes and a single run differ: {command}")));
+        return Err(Error::Invalid(format!("the lanes and a single run differ: {command}")));
     }
     outputs.commit()?;
     tell(args, &format!("COUNTEREXAMPLE at k = {k}: {command}\n"))?;
-    Err(Failure::Check(vec![format!("refuted at k = {k}: {shown}{note}")]))
+    Err(Error::Check(vec![format!("refuted at k = {k}: {shown}{note}")]))
 }
 
 /// Shows a step that keeps a proof from being one, with its wave if one is wanted, and tells it.
@@ -84,15 +79,16 @@ pub(super) fn not_inductive(
     model: &Model,
     step: &CounterexampleToInduction,
     choices: &Options,
-) -> Result<String, Failure> {
+) -> Result<String, Error> {
     let CounterexampleToInduction { k, kind, curve, hardware, start, clocks, wrong, state } = step;
     let (_, run) = replayed(args, model, curve, choices)?;
     let bench = Testbench::of_hardware(model, hardware.clone())?;
     let title = format!("{}, from a state that may be unreachable", report::title(model, bench.hardware(), curve));
     let mut outputs = Outputs::default();
     let time = ClockTime::from_hz(run.clock.clock_hz)?;
-    let sinks = Sinks::open(&run.trace, &mut outputs)?;
-    let mut waves = sinks.map(|sinks| Waves::new(&bench, &run.trace, sinks, time, &title)).transpose()?;
+    let options = run.trace.options();
+    let sinks = Sinks::open(&options, &mut outputs)?;
+    let mut waves = sinks.map(|sinks| Waves::new(&bench, &options, sinks, time, &title)).transpose()?;
     let mut overflow = OverflowWatch::new(&bench);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow];
     observers.extend(waves.iter_mut().flat_map(Waves::observers));

@@ -58,16 +58,3 @@ fn waves_take_about_what_is_expected_of_every_family_and_option() {
     }
     assert_eq!(wrong, [""; 0]);
 }
-
-#[test]
-fn an_output_ends_at_its_limit_unless_more_is_wanted() {
-    let mut limited = Limited { left: 10, ..Limited::new(Vec::new(), false) };
-    limited.write_all(b"0123456").expect("room");
-    let refused = limited.write_all(b"789ab").expect_err("no room").to_string();
-    assert!(
-        refused.starts_with("the wave has come to 1 GB and was given up: ") && refused.contains("--large"),
-        "{refused}"
-    );
-    assert_eq!(limited.out, b"0123456");
-    assert_eq!((Limited::new((), false).left, Limited::new((), true).left), (1_000_000_000, u64::MAX));
-}

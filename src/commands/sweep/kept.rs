@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::study::{Row, Stage, StudyError, Sweep};
 
-use crate::failure::Failure;
+use crate::Error;
 use crate::output::temporary;
 
 /// A stage; while nothing is done it goes with the process, after that it is kept.
@@ -21,7 +21,7 @@ impl Kept {
     ///
     /// # Errors
     /// See [`Stage::open`].
-    pub(super) fn open(target: &Path, sweep: &Sweep, resume: bool) -> Result<Kept, Failure> {
+    pub(super) fn open(target: &Path, sweep: &Sweep, resume: bool) -> Result<Kept, Error> {
         let files = Stage::files(target);
         let stage = temporary::undisturbed(|temporary| {
             let stage = Stage::open(target, sweep, resume)?;

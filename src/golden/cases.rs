@@ -6,8 +6,8 @@ use std::path::{Component, Path, PathBuf};
 use clap::CommandFactory;
 use serde::Deserialize;
 
+use crate::Error;
 use crate::cli::Cli;
-use crate::failure::Failure;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -42,14 +42,14 @@ pub(super) fn list_of(dir: &Path) -> PathBuf {
 ///
 /// # Errors
 /// The list cannot be read, names files that it may not, or names two cases alike.
-pub(super) fn read(dir: &Path) -> Result<Vec<Case>, Failure> {
+pub(super) fn read(dir: &Path) -> Result<Vec<Case>, Error> {
     let path = list_of(dir);
-    let refused = |what: String| Err(Failure::Trouble(format!("{}: {what}", path.display())));
-    let cannot = |error: &dyn std::fmt::Display| Failure::Trouble(format!("cannot read {}: {error}", path.display()));
+    let refused = |what: String| Err(Error::Invalid(format!("{}: {what}", path.display())));
+    let cannot = |error: &dyn std::fmt::Display| Error::Invalid(format!("cannot read {}: {error}", path.display()));
     let text = fs::read_to_string(&path).map_err(|error| cannot(&error))?;
     let cases: Cases = toml::from_str(&text).map_err(|error: toml::de::Error| {
         // TOML shows the line and points at the place in it.
-        Failure::Extract(format!("cannot read {}: {}", path.display(), error.to_string().trim_end()))
+        Error::Extract(format!("cannot read {}: {}", path.display(), error.to_string().trim_end()))
     })?;
     for (index, case) in cases.case.iter().enumerate() {
         let name = &case.name;
@@ -67,7 +67,7 @@ pub(super) fn read(dir: &Path) -> Result<Vec<Case>, Failure> {
             ));
         }
         if let Some(program) = &case.program {
-            stays_in(dir, program).map_err(|what| Failure::Trouble(format!("case {name}: {what}")))?;
+            stays_in(dir, program).map_err(|what| Error::Invalid(format!("case {name}: {what}")))?;
         }
     }
     Ok(cases.case)
@@ -77,12 +77,12 @@ pub(super) fn read(dir: &Path) -> Result<Vec<Case>, Failure> {
 ///
 /// # Errors
 /// There is no such case.
-pub(super) fn chosen<'c>(cases: &'c [Case], names: &[&String], dir: &Path) -> Result<Vec<&'c Case>, Failure> {
+pub(super) fn chosen<'c>(cases: &'c [Case], names: &[&String], dir: &Path) -> Result<Vec<&'c Case>, Error> {
     if let Some(unknown) = names.iter().find(|name| !cases.iter().any(|case| case.name == ***name)) {
         let known: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
         let list = list_of(dir);
         let known = known.join(", ");
-        return Err(Failure::Trouble(format!("{} has no case '{unknown}': its cases are {known}", list.display())));
+        return Err(Error::Invalid(format!("{} has no case '{unknown}': its cases are {known}", list.display())));
     }
     Ok(cases.iter().filter(|case| names.is_empty() || names.contains(&&case.name)).collect())
 }
@@ -114,11 +114,11 @@ fn stays_in(dir: &Path, file: &Path) -> Result<(), String> {
 ///
 /// # Errors
 /// It is a link.
-pub(super) fn recorded(dir: &Path, name: &str) -> Result<PathBuf, Failure> {
+pub(super) fn recorded(dir: &Path, name: &str) -> Result<PathBuf, Error> {
     let path = dir.join(name);
     if path.is_symlink() {
         let message = format!("{} is a link, which may lead out of the folder: delete it", path.display());
-        return Err(Failure::Trouble(message));
+        return Err(Error::Invalid(message));
     }
     Ok(path)
 }

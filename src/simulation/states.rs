@@ -6,8 +6,8 @@ use std::path::Path;
 
 use crate::testbench::{Checkpoints, State, Testbench};
 
-use crate::cli::RunArgs;
-use crate::failure::Failure;
+use super::Simulation;
+use crate::Error;
 use crate::output::{Outputs, Sink};
 
 /// What a file of states is for.
@@ -20,20 +20,20 @@ pub(super) enum States<'a> {
 
 impl<'a> States<'a> {
     /// What the options ask for; nothing where the file holds no state before the window.
-    pub(super) fn of(args: &'a RunArgs, bench: &Testbench) -> Result<Option<States<'a>>, Failure> {
-        let Some(path) = &args.checkpoints else { return Ok(None) };
-        if args.outputs.steps.is_some() || args.outputs.plot.is_some() {
+    pub(super) fn of(simulation: &'a Simulation, bench: &Testbench) -> Result<Option<States<'a>>, Error> {
+        let Some(path) = &simulation.checkpoints else { return Ok(None) };
+        if simulation.steps.is_some() || simulation.plot.is_some() {
             let need = "the step table and the picture need every step, from the first";
-            return Err(Failure::Trouble(format!("--checkpoints: {need}: leave out --steps and --plot")));
+            return Err(Error::Invalid(format!("--checkpoints: {need}: leave out --steps and --plot")));
         }
         let read = |what: &dyn std::fmt::Display| {
             let way_out = "name another file, or delete it";
-            Failure::Trouble(format!("--checkpoints {}: {what}: {way_out}", path.display()))
+            Error::Invalid(format!("--checkpoints {}: {what}: {way_out}", path.display()))
         };
         match fs::read_to_string(path) {
             Ok(text) => {
                 let states = Checkpoints::read(&text, bench).map_err(|error| read(&error))?;
-                Ok(states.before(args.trace.trace_from).cloned().map(States::Resumed))
+                Ok(states.before(simulation.waves.from).cloned().map(States::Resumed))
             }
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(Some(States::Kept(path, Checkpoints::new(bench)))),
             Err(error) => Err(read(&error)),
@@ -44,7 +44,7 @@ impl<'a> States<'a> {
     ///
     /// # Errors
     /// It cannot be written.
-    pub(super) fn open(self, outputs: &mut Outputs) -> Result<Begin, Failure> {
+    pub(super) fn open(self, outputs: &mut Outputs) -> Result<Begin, Error> {
         Ok(match self {
             States::Kept(path, states) => Begin::New { states, sink: outputs.open(path)? },
             States::Resumed(state) => Begin::At(state),
@@ -78,7 +78,7 @@ impl Begin {
     ///
     /// # Errors
     /// They cannot be written.
-    pub(super) fn finish(self) -> Result<(), Failure> {
+    pub(super) fn finish(self) -> Result<(), Error> {
         if let Begin::New { states, mut sink } = self {
             sink.write_all(states.write()?.as_bytes())?;
             sink.flush()?;

@@ -1,24 +1,82 @@
-//! The waves of a run: the files asked for, and the viewer's files beside them.
+//! The waves of a run: the files asked for, and the viewer's files next to them.
+
+pub(crate) mod limited;
 
 use std::ffi::OsStr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use crate::netlist::Width;
 use crate::netlist::cells::Format;
-use crate::netlist::{Net, Width, did_you_mean};
-use crate::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window};
+use crate::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window, net_named};
 use crate::trace::fst::{FstBody, FstHeader};
 use crate::trace::gtkw::{View, side_files};
 use crate::trace::probe::{Probe, Selection};
 use crate::trace::timescale::ClockTime;
 use crate::trace::vcd::{Background, VcdBody, VcdHeader};
 
-use super::size::Limited;
-use crate::cli::{OutputArgs, TraceArgs};
-use crate::failure::Failure;
+use self::limited::Limited;
+use crate::Error;
 use crate::output::{self, Outputs, SeekSink, Sink};
 
+/// Which waves a run writes, of which signals, over which clocks.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct WaveOptions {
+    /// The VCD file; its viewer files go next to it.
+    pub vcd: Option<PathBuf>,
+    /// The FST file; its viewer files go next to it.
+    pub fst: Option<PathBuf>,
+    /// Globs of the signals shown, by name or dotted path; none means all.
+    pub signals: Vec<String>,
+    /// Globs of signals left out.
+    pub excluded: Vec<String>,
+    /// Levels of scopes shown; 1 is the top scope alone.
+    pub depth: Option<u64>,
+    /// First clock shown.
+    pub from: u64,
+    /// Last clock shown.
+    pub to: Option<u64>,
+    /// Show nothing before the first clock on which this 1-bit signal is 1.
+    pub on: Option<String>,
+    /// Show the clock itself.
+    pub clk: bool,
+    /// One sample a step, in place of every clock.
+    pub steps: bool,
+    /// More than 1 GB may be written.
+    pub large: bool,
+}
+
+impl Default for WaveOptions {
+    fn default() -> WaveOptions {
+        let (signals, excluded) = (Vec::new(), Vec::new());
+        let (vcd, fst, depth, to, on) = (None, None, None, None, None);
+        WaveOptions { vcd, fst, signals, excluded, depth, from: 0, to, on, clk: true, steps: false, large: false }
+    }
+}
+
+impl WaveOptions {
+    /// A wave is to be written.
+    #[must_use]
+    pub fn wanted(&self) -> bool {
+        self.vcd.is_some() || self.fst.is_some()
+    }
+
+    /// A second run is to show the operands of the cell that stopped the first. Not where one of the run's files is a
+    /// stream, which has gone out already, nor where the window leaves the clock of the overflow out.
+    pub(crate) fn shows_trap<'p>(
+        &self,
+        event: &OverflowEvent,
+        files: impl IntoIterator<Item = &'p Option<PathBuf>>,
+    ) -> bool {
+        let window = self.from..=self.to.unwrap_or(u64::MAX);
+        self.wanted()
+            && window.contains(&event.clock())
+            && !files.into_iter().flatten().any(|path| output::is_stream(path))
+    }
+}
+
 /// Where the waves go.
-pub(super) struct Sinks<'a> {
+pub(crate) struct Sinks<'a> {
     vcd: Option<(&'a Path, Sink)>,
     fst: Option<(&'a Path, SeekSink)>,
 }
@@ -28,23 +86,15 @@ impl<'a> Sinks<'a> {
     ///
     /// # Errors
     /// An output cannot be written.
-    pub(super) fn open(args: &'a TraceArgs, outputs: &mut Outputs) -> Result<Option<Sinks<'a>>, Failure> {
-        let vcd = args.vcd.as_deref().map(|path| Ok::<_, Failure>((path, outputs.open(path)?))).transpose()?;
-        let fst = args.fst.as_deref().map(|path| Ok::<_, Failure>((path, outputs.open_seekable(path)?))).transpose()?;
+    pub(crate) fn open(args: &'a WaveOptions, outputs: &mut Outputs) -> Result<Option<Sinks<'a>>, Error> {
+        let vcd = args.vcd.as_deref().map(|path| Ok::<_, Error>((path, outputs.open(path)?))).transpose()?;
+        let fst = args.fst.as_deref().map(|path| Ok::<_, Error>((path, outputs.open_seekable(path)?))).transpose()?;
         Ok((vcd.is_some() || fst.is_some()).then_some(Sinks { vcd, fst }))
     }
 }
 
-/// A second run shows the operands of the cell that stopped the first: its wave then holds them as signals. Not where
-/// an output has gone to a stream already, nor where the window leaves the trap out.
-pub(super) fn shows_trap(args: &TraceArgs, outputs: &OutputArgs, event: &OverflowEvent) -> bool {
-    let files = [&args.vcd, &args.fst, &outputs.steps, &outputs.json, &outputs.plot];
-    let window = args.trace_from..=args.trace_to.unwrap_or(u64::MAX);
-    args.wanted() && window.contains(&event.clock()) && !files.into_iter().flatten().any(|path| output::is_stream(path))
-}
-
 /// Waves that are being written: the same samples of the same signals.
-pub(super) struct Waves<'a> {
+pub(crate) struct Waves<'a> {
     vcd: Option<Wave<'a, VcdBody<Background<Limited<Sink>>>>>,
     fst: Option<Wave<'a, FstBody<Limited<SeekSink>>>>,
     probes: Vec<Probe>,
@@ -64,23 +114,23 @@ impl<'a> Waves<'a> {
     ///
     /// # Errors
     /// The options name no signal, or an output cannot be written.
-    pub(super) fn new(
+    pub(crate) fn new(
         bench: &Testbench,
-        args: &TraceArgs,
+        args: &WaveOptions,
         sinks: Sinks<'a>,
         time: ClockTime,
         title: &str,
-    ) -> Result<Waves<'a>, Failure> {
+    ) -> Result<Waves<'a>, Error> {
         let probes = probes(bench, args)?;
-        let trigger = match &args.trace_on {
+        let trigger = match &args.on {
             Some(name) => Trigger::Column(flag_column(bench, name)?),
             None => Trigger::Immediately,
         };
         let machine = bench.machine();
         let of_steps = || [machine.stepped.net, machine.loaded.net].map(|net| bench.columns().index(net));
-        let steps = args.trace_steps.then(of_steps);
-        let window = Window { from: args.trace_from, to: args.trace_to, trigger, steps };
-        let clk = !args.no_clk;
+        let steps = args.steps.then(of_steps);
+        let window = Window { from: args.from, to: args.to, trigger, steps };
+        let clk = args.clk;
         let curves: Vec<(usize, Width)> = probes
             .iter()
             .filter(|probe| probe.format == Format::Analog)
@@ -111,12 +161,12 @@ impl<'a> Waves<'a> {
     }
 
     /// The same with rows that come first: their paths without the design's name.
-    pub(super) fn beginning_with(self, leading: &'static [&'static str]) -> Waves<'a> {
+    pub(crate) fn beginning_with(self, leading: &'static [&'static str]) -> Waves<'a> {
         Waves { leading, ..self }
     }
 
     /// What takes the samples.
-    pub(super) fn observers(&mut self) -> impl Iterator<Item = &mut dyn Observer> {
+    pub(crate) fn observers(&mut self) -> impl Iterator<Item = &mut dyn Observer> {
         let vcd = self.vcd.iter_mut().map(|wave| &mut wave.writer as &mut dyn Observer);
         vcd.chain(self.fst.iter_mut().map(|wave| &mut wave.writer as &mut dyn Observer))
     }
@@ -125,12 +175,12 @@ impl<'a> Waves<'a> {
     ///
     /// # Errors
     /// A wave is empty, or an output cannot be written.
-    pub(super) fn finish(
+    pub(crate) fn finish(
         mut self,
         overflows: &[OverflowEvent],
         clocks: u64,
         outputs: &mut Outputs,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), Error> {
         let (vcd, fst) = (self.vcd.take(), self.fst.take());
         let vcd_stem = vcd.as_ref().and_then(|wave| wave.path.file_stem());
         // The files beside two waves of one stem would bear the same names.
@@ -156,7 +206,7 @@ impl<'a> Waves<'a> {
         Written { clocks: (first_clock, last_clock), taken }: Written,
         overflows: &[OverflowEvent],
         outputs: &mut Outputs,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), Error> {
         if output::is_stream(path) {
             return Ok(());
         }
@@ -201,9 +251,9 @@ struct Written {
 }
 
 /// Ends a wave; tells what it holds.
-fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Failure> {
+fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Error> {
     let Some(written) = writer.written else {
-        return Err(Failure::Trouble(format!(
+        return Err(Error::Invalid(format!(
             "the wave would be empty: no clock from 0 to {clocks} of this run falls into its window"
         )));
     };
@@ -215,30 +265,20 @@ fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Writte
 ///
 /// # Errors
 /// They name none.
-pub(super) fn probes(bench: &Testbench, args: &TraceArgs) -> Result<Vec<Probe>, Failure> {
-    let depth = args.trace_depth.map(|depth| usize::try_from(depth).unwrap_or(usize::MAX));
-    let selection = Selection::new(&args.trace, &args.trace_exclude, depth)?;
+pub(crate) fn probes(bench: &Testbench, args: &WaveOptions) -> Result<Vec<Probe>, Error> {
+    let depth = args.depth.map(|depth| usize::try_from(depth).unwrap_or(usize::MAX));
+    let selection = Selection::new(&args.signals, &args.excluded, depth)?;
     Ok(selection.probes(bench.design(), bench.columns().nets())?)
 }
 
 /// Column of the 1-bit net of this name, path, or end of a path.
-fn flag_column(bench: &Testbench, name: &str) -> Result<usize, Failure> {
-    let refuse = |why: String| Err(Failure::Trouble(format!("--trace-on: {why}")));
+fn flag_column(bench: &Testbench, name: &str) -> Result<usize, Error> {
+    let refuse = |why: String| Error::Invalid(format!("--trace-on: {why}"));
     let netlist = bench.design().netlist();
-    let end = format!(".{name}");
-    let all = netlist.names.iter().map(|named| (netlist.path(named), named.net));
-    let mut found: Vec<(String, Net)> = all.filter(|(path, _)| path == name || path.ends_with(&end)).collect();
-    found.dedup_by_key(|(_, net)| *net);
-    match found.as_slice() {
-        [] => {
-            let known = netlist.names.iter().map(|named| named.name.as_str());
-            refuse(format!("there is no signal '{name}' in this netlist{}", did_you_mean(name, known)))
-        }
-        [(_, net)] if netlist.width(*net).get() == 1 => Ok(bench.columns().index(*net)),
-        [(_, net)] => refuse(format!("{name} has {}, but a trigger is 1 bit wide", netlist.width(*net))),
-        several => {
-            let paths: Vec<&str> = several.iter().map(|(path, _)| path.as_str()).collect();
-            refuse(format!("'{name}' is the name of several signals: give one of {}", paths.join(", ")))
-        }
+    let net = net_named(netlist, name).map_err(refuse)?;
+    let width = netlist.width(net);
+    if width.get() != 1 {
+        return Err(refuse(format!("{name} has {width}, but a trigger is 1 bit wide")));
     }
+    Ok(bench.columns().index(net))
 }

@@ -1,0 +1,143 @@
+//! The samples of a run by name, for whoever asks about a short run: a test, a notebook.
+
+use crate::Error;
+use crate::engine::Rows;
+use crate::netlist::bits::number;
+use crate::netlist::{Net, Netlist};
+
+use super::{Observer, ObserverError, Testbench, net_named};
+
+/// Most values that are kept: 128 MB.
+const MOST: usize = 1 << 24;
+
+/// Keeps every sample of every named signal.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    netlist: Netlist,
+    nets: Vec<Net>,
+    /// A column for each of the nets.
+    values: Vec<Vec<u64>>,
+}
+
+impl Recording {
+    /// Nothing is recorded yet.
+    #[must_use]
+    pub fn new(bench: &Testbench) -> Recording {
+        let nets = bench.columns().nets().to_vec();
+        Recording { netlist: bench.design().netlist().clone(), values: vec![Vec::new(); nets.len()], nets }
+    }
+
+    /// What was recorded.
+    #[must_use]
+    pub fn into_trace(self) -> Trace {
+        Trace { netlist: self.netlist, nets: self.nets, values: self.values }
+    }
+}
+
+impl Observer for Recording {
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        let held: usize = self.values.iter().map(Vec::len).sum();
+        if held + rows.len() * self.values.len() > MOST {
+            let clock = rows.first_clock();
+            return Err(
+                format!("a trace holds {MOST} values at most, which is full at clock {clock}: write a wave").into()
+            );
+        }
+        for (column, values) in self.values.iter_mut().enumerate() {
+            values.extend_from_slice(rows.column(column));
+        }
+        Ok(())
+    }
+
+    fn wants_steps(&self) -> bool {
+        false
+    }
+}
+
+/// The samples of a run, by signal. Sample k is what every net has settled to after clock edge k.
+///
+/// ```
+/// # use stepwave::{Simulation, models::find, nc::{Curve, Line}};
+/// let line = Curve::Line(Line::new(vec![0, 0], vec![4, 2])?);
+/// let (_, trace) = Simulation::new(find("dda-line")?, line).run_traced()?;
+/// assert_eq!(trace.row("dx")?, "0010_1010_11"); // the pulses along X, a digit a clock
+/// assert_eq!(trace.i64("position.x")?, [0, 0, 0, 1, 1, 2, 2, 3, 3, 4]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Trace {
+    netlist: Netlist,
+    nets: Vec<Net>,
+    values: Vec<Vec<u64>>,
+}
+
+impl Trace {
+    /// Number of samples, one more than clocks.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.values.first().map_or(0, Vec::len)
+    }
+
+    /// Nothing was recorded.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Bits of every sample of a signal, by its name, its path, or the end of its path.
+    ///
+    /// # Errors
+    /// No signal or several have this name.
+    pub fn bits(&self, signal: &str) -> Result<&[u64], Error> {
+        Ok(&self.values[self.column(signal)?])
+    }
+
+    /// Every sample of a signal as it is read: two's complement where the signal is declared so.
+    ///
+    /// # Errors
+    /// No signal or several have this name, or it is unsigned and does not fit.
+    pub fn i64(&self, signal: &str) -> Result<Vec<i64>, Error> {
+        let column = self.column(signal)?;
+        let net = self.nets[column];
+        let (width, signed) = (self.netlist.width(net), self.signed(net));
+        let read = |&value: &u64| {
+            let number = number(width, value, signed);
+            i64::try_from(number).map_err(|_| Error::Invalid(format!("{signal} is {number}, which exceeds 64 bits")))
+        };
+        self.values[column].iter().map(read).collect()
+    }
+
+    /// The samples of a signal as digits in groups of four: 0, 1, and - for -1.
+    ///
+    /// # Errors
+    /// No signal or several have this name, or one of its values is another.
+    pub fn row(&self, signal: &str) -> Result<String, Error> {
+        let mut row = String::new();
+        for (clock, value) in self.i64(signal)?.into_iter().enumerate() {
+            if clock > 0 && clock % 4 == 0 {
+                row.push('_');
+            }
+            row.push(match value {
+                0 => '0',
+                1 => '1',
+                -1 => '-',
+                other => {
+                    return Err(Error::Invalid(format!(
+                        "{signal} is {other} at clock {clock}; a row shows 0, 1 and -1: ask for its numbers"
+                    )));
+                }
+            });
+        }
+        Ok(row)
+    }
+
+    fn signed(&self, net: Net) -> bool {
+        self.netlist.names.iter().any(|named| named.net == net && named.format.is_signed())
+    }
+
+    fn column(&self, signal: &str) -> Result<usize, Error> {
+        let net = net_named(&self.netlist, signal).map_err(Error::Invalid)?;
+        let unseen = || Error::Invalid(format!("{signal} is not recorded"));
+        self.nets.iter().position(|seen| *seen == net).ok_or_else(unseen)
+    }
+}
