@@ -37,7 +37,7 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::model::{Interpolates, Method, Model, RegisterDoc};
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, magnitude};
+use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, LeastDeviation};
 use crate::plan::Plan;
 use crate::{sizes, words};
 
@@ -78,27 +78,16 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
     // Judge: F behind each of the three steps, and the least of their magnitudes.
     let wide = f.value().bits().max(arc.coordinates()[0].bits() + 2) + 2;
-    let [gain_x, gain_y] = arc.gains(wide);
-    let now = f.value().extend(wide);
-    let f1 = m.name("f1", now.wrapping_add(gain_x));
-    let f2 = m.name("f2", now.wrapping_add(gain_y));
-    let f3 = m.name("f3", f1.wrapping_add(gain_y));
-    let [m1, m2, m3] = [f1, f2, f3].map(|f| magnitude(m, f));
-    let (beaten, by_y) = (m1.less_than(m3) | m2.less_than(m3), !m1.less_than(m2));
-    let taken = arc.redirected([!beaten | !by_y, !beaten | by_y]);
+    let least = LeastDeviation::new(m, f.value(), arc.gains(wide));
+    let taken = arc.redirected([least.takes_x(), least.takes_y()]);
     let taken = [beat.decided("take_x", taken[0]), beat.decided("take_y", taken[1])];
 
     // Feed.
     arc.feed(hardware, beat.feed, taken);
 
     // Compute.
-    let zero = m.lit_signed(wide, 0);
-    let operand = taken[0].mux(gain_x, zero).wrapping_add(taken[1].mux(gain_y, zero));
-    f.close_adding(&block, beat.compute, m.name("operand", operand));
-    arc.compute(beat.compute, taken);
+    f.close_adding(&block, beat.compute, m.name("operand", least.change(taken)));
 
-    // Compare.
-    let last = arc.compare(beat.compare, taken);
-    beat.close(&block, last);
-    block.close(block.load, beat.compare, last);
+    // Coordinates, end point.
+    arc.close(beat, taken);
 }

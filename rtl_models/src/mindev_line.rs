@@ -33,7 +33,7 @@ use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{Interpolates, Method, Model, RegisterDoc};
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{BeatRing, Block, DeviationAccumulator, LineFrame};
+use crate::parts::{BeatRing, Block, DeviationAccumulator, LineFrame, line_change};
 use crate::plan::Plan;
 use crate::{sizes, words};
 
@@ -64,7 +64,7 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let [long, short] = ["l", "s"].map(|name| block.held(m, name, hardware.bits(name)));
+    let ways = ["l", "s"].map(|name| block.held(m, name, hardware.bits(name)));
     let f = DeviationAccumulator::new(m, hardware.bits("f"));
     let line = LineFrame::new(m, &block, hardware);
 
@@ -73,11 +73,9 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     // Judge.
     let diagonal = beat.decided("diagonal", f.not_negative());
 
-    // Compute: twice S, or twice S - L.
-    let wide = long.bits().max(short.bits()) + 1;
-    let [long, short] = [long, short].map(|way| way.extend(wide).as_signed());
-    let change = diagonal.mux(short.wrapping_sub(long), short);
-    f.close_adding(&block, beat.compute, m.name("operand", change.concat(m.lit(1, 0))));
+    // Compute.
+    let wide = ways[0].bits().max(ways[1].bits()) + 2;
+    f.close_adding(&block, beat.compute, m.name("operand", line_change(m, ways, wide, diagonal)));
 
     // Feed, compare.
     line.close(hardware, beat, diagonal);

@@ -40,7 +40,7 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::model::{Interpolates, Method, Model, RegisterDoc};
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, square_gain};
+use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, judged_by_sign, step_of_circle};
 use crate::plan::Plan;
 use crate::{sizes, words};
 
@@ -82,8 +82,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     invariants(m);
 
     // Judge: F >= 0 steps the shrinking coordinate, F < 0 the growing one.
-    let grow_x = f.not_negative() ^ arc.kind.x_grows;
-    let [take_x, _] = arc.redirected([grow_x, !grow_x]);
+    let judged = judged_by_sign(&f, arc.kind.x_grows);
+    let [take_x, _] = arc.redirected([judged, !judged]);
     let take_x = beat.decided("take_x", take_x);
     let taken = [take_x, !take_x];
 
@@ -91,16 +91,11 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     arc.feed(hardware, beat.feed, taken);
 
     // Compute.
-    let [x, y] = arc.coordinates();
-    let grows = m.name("grows", !(take_x ^ arc.kind.x_grows));
-    let operand = m.name("operand", square_gain(m, take_x.mux(x, y), grows));
-    f.close(&block, beat.compute, !grows, operand);
-    arc.compute(beat.compute, taken);
+    let (grows, gain) = step_of_circle(m, arc.coordinates(), take_x, arc.kind.x_grows);
+    f.close(&block, beat.compute, !grows, m.name("operand", gain));
 
-    // Compare.
-    let last = arc.compare(beat.compare, taken);
-    beat.close(&block, last);
-    block.close(block.load, beat.compare, last);
+    // Coordinates, end point.
+    arc.close(beat, taken);
 }
 
 /// F stays between what a step at 0 and a step at -1 leave.

@@ -125,8 +125,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
     // Compare.
     let last = end.count(beat.compare, taken);
-    beat.close(&block, last);
-    block.close(block.load, beat.compare, last);
+    beat.close(block, last);
 }
 
 fn load(conic: &Conic, hardware: &Hardware) -> Vec<Words> {

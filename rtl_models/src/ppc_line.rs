@@ -147,8 +147,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
         }
         None => counter("e").count(beat.compare),
     };
-    beat.close(&block, last);
-    block.close(block.load, beat.compare, last);
+    beat.close(block, last);
 }
 
 /// F stays between what a step of the first axis, which F >= 0 takes, at 0 and one of the second at -1 leave. `ways` are

@@ -95,10 +95,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let [gain_x, gain_y] = arc.gains(wide);
     let operand = taken[0].mux(gain_x, zero).wrapping_add(taken[1].mux(gain_y, zero));
     f.close_adding(&block, beat.compute, m.name("operand", operand));
-    arc.compute(beat.compute, taken);
 
-    // Compare.
-    let last = arc.compare(beat.compare, taken);
-    beat.close(&block, last);
-    block.close(block.load, beat.compare, last);
+    // Coordinates, end point.
+    arc.close(beat, taken);
 }

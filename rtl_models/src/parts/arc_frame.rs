@@ -3,7 +3,8 @@
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{
-    Block, EndCounters, Kind, axis_counter, negated, next_quadrant, quadrant_register, up_down_counter, x_grows,
+    BeatRing, Block, EndCounters, Kind, axis_counter, negated, next_quadrant, quadrant_register, up_down_counter,
+    x_grows,
 };
 use crate::hardware::Hardware;
 use crate::options::{END_POINT, EndPoint};
@@ -66,12 +67,7 @@ impl<'m> ArcFrame<'m> {
     /// by 2 or more.
     #[must_use]
     pub fn gains(&self, bits: u32) -> [Signal<'m>; 2] {
-        let [x, y] = self.coordinates();
-        let [x_grows, y_grows] = self.grows();
-        [(x, x_grows), (y, y_grows)].map(|(c, grows)| {
-            let gain = square_gain(self.m, c, grows).extend(bits).as_signed();
-            grows.mux(gain, negated(self.m, gain))
-        })
+        square_gains(self.m, self.coordinates(), self.grows(), bits)
     }
 
     /// The axes that the judgement takes (1 bit each), but an exhausted axis hands its step to the other.
@@ -90,26 +86,56 @@ impl<'m> ArcFrame<'m> {
     }
 
     /// The coordinates taken (1 bit each) change at an edge with `compute` = 1.
-    pub fn compute(&self, compute: Signal<'m>, taken: [Signal<'m>; 2]) {
+    pub(super) fn compute(&self, compute: Signal<'m>, taken: [Signal<'m>; 2]) {
         let registers = [(self.xi, "xi"), (self.yi, "yi")];
-        for (((coordinate, name), taken), grows) in registers.into_iter().zip(taken).zip(self.grows()) {
-            let count = compute & taken;
-            let load = [(self.block.load, self.block.word(name, coordinate.q.bits()))];
-            up_down_counter(coordinate, &load, count & grows, count & !grows, self.m.lit(1, 1));
-        }
+        count_coordinates(self.m, &self.block, registers, taken, self.grows(), |taken| compute & taken);
     }
 
     /// Closes the end counters; see [`EndCounters::count`].
     #[must_use]
-    pub fn compare(self, compare: Signal<'m>, taken: [Signal<'m>; 2]) -> Signal<'m> {
+    pub(super) fn compare(self, compare: Signal<'m>, taken: [Signal<'m>; 2]) -> Signal<'m> {
         self.end.count(compare, taken)
     }
+
+    /// Closes coordinates, end counters, beats and block: the coordinates taken (1 bit each) change in the compute beat,
+    /// and the compare beat counts their pulses.
+    pub fn close(self, beat: BeatRing<'m>, taken: [Signal<'m>; 2]) {
+        self.compute(beat.compute, taken);
+        beat.close(self.block, self.compare(beat.compare, taken));
+    }
+}
+
+/// Closes the registers of both coordinates, loaded with their words: where `counts` says of the axis taken (1 bit) that
+/// it counts at this edge, the coordinate changes by 1.
+pub fn count_coordinates<'m>(
+    m: Scope<'m>,
+    block: &Block<'m>,
+    registers: [(Register<'m>, &str); 2],
+    taken: [Signal<'m>; 2],
+    grows: [Signal<'m>; 2],
+    counts: impl Fn(Signal<'m>) -> Signal<'m>,
+) {
+    for (((register, name), taken), grows) in registers.into_iter().zip(taken).zip(grows) {
+        let count = counts(taken);
+        let load = [(block.load, block.word(name, register.q.bits()))];
+        up_down_counter(register, &load, count & grows, count & !grows, m.lit(1, 1));
+    }
+}
+
+/// What a step of each coordinate (unsigned) adds to the sum of their squares, in two's complement of `bits` bits, more
+/// than the coordinates have by 2 or more; `grows`, 1 bit each: the step makes it grow.
+#[must_use]
+pub fn square_gains<'m>(m: Scope<'m>, [x, y]: [Signal<'m>; 2], grows: [Signal<'m>; 2], bits: u32) -> [Signal<'m>; 2] {
+    [(x, grows[0]), (y, grows[1])].map(|(c, grows)| {
+        let gain = square_gain(m, c, grows).extend(bits).as_signed();
+        grows.mux(gain, negated(m, gain))
+    })
 }
 
 /// What one step of a coordinate c (unsigned) adds to its square, without the sign: 2c + 1 where it grows (1 bit), else
 /// 2c - 1; one bit wider than c.
 #[must_use]
-pub fn square_gain<'m>(m: Scope<'m>, c: Signal<'m>, grows: Signal<'m>) -> Signal<'m> {
+pub(super) fn square_gain<'m>(m: Scope<'m>, c: Signal<'m>, grows: Signal<'m>) -> Signal<'m> {
     // c, or c - 1, with a 1 behind it.
     grows.mux(c, c.wrapping_sub(m.lit(c.bits(), 1))).concat(m.lit(1, 1))
 }

@@ -49,11 +49,13 @@ impl<'m> BeatRing<'m> {
         register.q
     }
 
-    /// Closes the ring: a block starts with the judge beat, `last` (1 bit) in the compare beat ends it.
-    pub fn close(self, block: &Block<'m>, last: Signal<'m>) {
+    /// Closes the ring and the block, which starts with the judge beat; the compare beat is its step, and `last` (1 bit)
+    /// there ends it.
+    pub fn close(self, block: Block<'m>, last: Signal<'m>) {
         if let Some(ring) = self.ring {
             let rotated = ring.q.slice(0, 3).concat(ring.q.msb());
             ring.when(block.load, self.m.lit(4, 1)).when(self.compare & last, self.m.lit(4, 0)).otherwise(rotated);
         }
+        block.close(block.load, self.compare, last);
     }
 }

@@ -51,8 +51,7 @@ pub fn comparison_integral<'m>(m: Scope<'m>, block: Block<'m>, hardware: &Hardwa
 
     // Compare.
     let last = end.count(beat.compare, taken);
-    beat.close(&block, last);
-    block.close(block.load, beat.compare, last);
+    beat.close(block, last);
 }
 
 /// What comparison-integral weighs its pulses with.

@@ -31,10 +31,7 @@ impl<'m> EndCounters<'m> {
     pub fn redirected(&self, [x, y]: [Signal<'m>; 2]) -> [Signal<'m>; 2] {
         match self {
             EndCounters::Total(_) => [x, y],
-            EndCounters::PerAxis([ex, ey]) => {
-                let (x_open, y_open) = (ex.running(), ey.running());
-                [x_open & (x | !y_open), y_open & (y | !x_open)]
-            }
+            EndCounters::PerAxis([ex, ey]) => handed_over([ex.running(), ey.running()], [x, y]),
         }
     }
 
@@ -48,4 +45,11 @@ impl<'m> EndCounters<'m> {
             EndCounters::PerAxis([ex, ey]) => ex.count(step & x) & ey.count(step & y),
         }
     }
+}
+
+/// The axes that the judgement takes (1 bit each, x and y), but one that is not `open` (1 bit each) hands its step to the
+/// other.
+#[must_use]
+pub fn handed_over<'m>([x_open, y_open]: [Signal<'m>; 2], [x, y]: [Signal<'m>; 2]) -> [Signal<'m>; 2] {
+    [x_open & (x | !y_open), y_open & (y | !x_open)]
 }

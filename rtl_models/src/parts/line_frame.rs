@@ -36,8 +36,6 @@ impl<'m> LineFrame<'m> {
             axis_counter(scope, &self.block, letter, hardware.bits(letter), beat.feed & (long | diagonal), negative);
         }
         let last = self.e.count(beat.compare);
-        let compare = beat.compare;
-        beat.close(&self.block, last);
-        self.block.close(self.block.load, compare, last);
+        beat.close(self.block, last);
     }
 }

@@ -6,7 +6,8 @@ use stepwave_netlist::dsl::{Register, Scope, Signal};
 use super::PROGRAM_WORDS;
 use crate::hardware::Hardware;
 use crate::parts::{
-    Block, Buffer, DownCounter, Kind, Motion, distributor, follower, pulse_source, quadrant_register, up_down_counter,
+    Block, Buffer, DownCounter, Kind, Motion, count_coordinates, distributor, follower, handed_over, pulse_source,
+    quadrant_register,
 };
 
 /// Block buffer, pulse source, mode and quadrant of a machine that interpolates in a plane.
@@ -57,9 +58,8 @@ impl<'m> Frame<'m> {
     }
 
     /// The axes that the judgement takes (1 bit each), but an exhausted axis hands its step to the other.
-    pub(super) fn redirected(&self, [x, y]: [Signal<'m>; 2]) -> [Signal<'m>; 2] {
-        let [x_open, y_open] = self.open();
-        [x_open & (x | !y_open), y_open & (y | !x_open)]
+    pub(super) fn redirected(&self, taken: [Signal<'m>; 2]) -> [Signal<'m>; 2] {
+        handed_over(self.open(), taken)
     }
 
     /// 1 bit each: the coordinate grows along an arc.
@@ -70,11 +70,8 @@ impl<'m> Frame<'m> {
     /// Closes a pair of registers that hold the ways of a line, and count the coordinates of an arc: those of the axes
     /// taken (1 bit each) change by one.
     pub(super) fn coordinates(&self, registers: [(Register<'m>, &str); 2], taken: [Signal<'m>; 2]) {
-        for (((register, name), taken), grows) in registers.into_iter().zip(taken).zip(self.grows()) {
-            let count = self.step & self.arc & taken;
-            let load = [(self.block.load, self.block.word(name, register.q.bits()))];
-            up_down_counter(register, &load, count & grows, count & !grows, self.m.lit(1, 1));
-        }
+        let counts = |taken: Signal<'m>| self.step & self.arc & taken;
+        count_coordinates(self.m, &self.block, registers, taken, self.grows(), counts);
     }
 
     /// Closes feed, end counters and block: a step gives the axes taken (1 bit each) a pulse.

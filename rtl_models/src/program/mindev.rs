@@ -15,7 +15,7 @@ use stepwave_netlist::dsl::Scope;
 use super::{Family, HardwareBlock, planar};
 use crate::hardware::Hardware;
 use crate::options::{ON_OVERFLOW, WIDTH};
-use crate::parts::{DeviationAccumulator, magnitude, negated, square_gain};
+use crate::parts::{DeviationAccumulator, LeastDeviation, line_change, square_gains};
 
 pub(super) const FAMILY: Family = Family {
     name: "mindev",
@@ -39,34 +39,22 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let wide = f.value().bits().max(bits + 2) + 2;
 
     // Judge an arc: F behind each of the three steps, and the least of their magnitudes.
-    let [x_grows, y_grows] = frame.grows();
-    let [gain_x, gain_y] = [(x, x_grows), (y, y_grows)].map(|(c, grows)| {
-        let gain = square_gain(m, c, grows).extend(wide).as_signed();
-        grows.mux(gain, negated(m, gain))
-    });
-    let now = f.value().extend(wide);
-    let f1 = m.name("f1", now.wrapping_add(gain_x));
-    let f2 = m.name("f2", now.wrapping_add(gain_y));
-    let f3 = m.name("f3", f1.wrapping_add(gain_y));
-    let [m1, m2, m3] = [f1, f2, f3].map(|f| magnitude(m, f));
-    let (beaten, by_y) = (m1.less_than(m3) | m2.less_than(m3), !m1.less_than(m2));
+    let least = LeastDeviation::new(m, f.value(), square_gains(m, [x, y], frame.grows(), wide));
 
     // Judge a line: the long axis always, the other where D >= 0.
     let x_is_longest = m.name("x_is_longest", !x.less_than(y));
     let diagonal = f.not_negative();
     let judged = [
-        frame.arc.mux(!beaten | !by_y, x_is_longest | diagonal),
-        frame.arc.mux(!beaten | by_y, !x_is_longest | diagonal),
+        frame.arc.mux(least.takes_x(), x_is_longest | diagonal),
+        frame.arc.mux(least.takes_y(), !x_is_longest | diagonal),
     ];
     let [take_x, take_y] = frame.redirected(judged);
     let taken = [m.name("take_x", take_x), m.name("take_y", take_y)];
 
     // Compute.
-    let zero = m.lit_signed(wide, 0);
-    let of_arc = taken[0].mux(gain_x, zero).wrapping_add(taken[1].mux(gain_y, zero));
-    let [long, short] = [x_is_longest.mux(x, y), x_is_longest.mux(y, x)];
-    let [long, short] = [long, short].map(|way| way.extend(wide - 1).as_signed());
-    let of_line = diagonal.mux(short.wrapping_sub(long), short).concat(m.lit(1, 0)).as_signed();
+    let of_arc = least.change(taken);
+    let ways = [x_is_longest.mux(x, y), x_is_longest.mux(y, x)];
+    let of_line = line_change(m, ways, wide, diagonal).as_signed();
     f.close_adding(&frame.block, frame.step, m.name("operand", frame.arc.mux(of_arc, of_line)));
     frame.coordinates([(xi, "xi"), (yi, "yi")], taken);
 

@@ -16,7 +16,7 @@ use stepwave_netlist::dsl::Scope;
 use super::{Family, HardwareBlock, planar};
 use crate::hardware::Hardware;
 use crate::options::{ON_OVERFLOW, WIDTH};
-use crate::parts::{DeviationAccumulator, square_gain};
+use crate::parts::{DeviationAccumulator, judged_by_sign, step_of_circle};
 
 pub(super) const FAMILY: Family = Family {
     name: "ppc",
@@ -37,15 +37,14 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let [xi, yi] = ["xi", "yi"].map(|name| m.reg(name, hardware.bits(name)));
 
     // Judge: F >= 0 takes the first axis of a line, and the one that shrinks on an arc.
-    let take_x = f.not_negative() ^ frame.x_grows;
+    let take_x = judged_by_sign(&f, frame.x_grows);
     let taken = frame.redirected([take_x, !take_x]);
     let take_x = m.name("take_x", taken[0]);
 
     // Compute.
     let wide = xi.q.bits().max(yi.q.bits());
     let [x, y] = [xi, yi].map(|register| register.q.extend(wide));
-    let grows = m.name("grows", !(take_x ^ frame.x_grows));
-    let gain = square_gain(m, take_x.mux(x, y), grows);
+    let (grows, gain) = step_of_circle(m, [x, y], take_x, frame.x_grows);
     let way = take_x.mux(y, x).extend(gain.bits());
     f.close(&frame.block, frame.step, !grows, m.name("operand", frame.arc.mux(gain, way)));
     frame.coordinates([(xi, "xi"), (yi, "yi")], taken);

@@ -18,8 +18,7 @@ fn ring(m: Scope<'_>, beats: Beats) {
     }
     let _ = beat.decided("decided", m.input("choice", 1));
     let last = m.input("last", 1);
-    beat.close(&block, last);
-    block.close(block.load, beat.compare, last);
+    beat.close(block, last);
 }
 
 /// Beats that are 1 in each sample.
