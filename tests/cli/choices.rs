@@ -2,12 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Csv, good};
-
-fn report(words: &str) -> Value {
-    let text = good(&format!("run {words} --json -"));
-    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{words}: {error}: {text}"))
-}
+use super::{Csv, good, report};
 
 fn widths(words: &str) -> Value {
     report(words)["widths"].take()

@@ -32,6 +32,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
+use serde_json::Value;
 use stepwave::engine::EngineKind;
 
 /// What a run of the program came to.
@@ -123,6 +124,12 @@ fn engines() -> impl Iterator<Item = &'static str> {
 /// Runs the program in a folder of its own, as [`Folder::good`].
 fn good(words: &str) -> String {
     Folder::new().good(words)
+}
+
+/// The report of a run that ends well.
+fn report(words: &str) -> Value {
+    let text = good(&format!("run {words} --json -"));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{words}: {error}: {text}"))
 }
 
 /// Wants the words refused as bad input: exit code 2, one line on standard error that holds every hint, nothing on

@@ -1,12 +1,8 @@
 //! Data sampling as its users meet it: feeds, reports, refusals.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
-use super::{good, run_refused};
-
-fn report(words: &str) -> Value {
-    serde_json::from_str(&good(&format!("run {words} --json -"))).unwrap()
-}
+use super::{good, report, run_refused};
 
 #[test]
 fn a_feed_gives_the_way_of_a_period_by_the_system_and_the_blu() {

@@ -16,7 +16,7 @@ fn width(bits: u64) -> Width {
 }
 
 /// The same hardware for every geometry: all widths are given.
-fn choices(bits: u64, position: u64) -> Options {
+pub(super) fn widths(bits: u64, position: u64) -> Options {
     let positions = ["x", "y"].map(|axis| (axis.to_owned(), width(position)));
     Options::default().with_all(&WIDTH, width(bits)).with_single(&WIDTH, BTreeMap::from(positions))
 }
@@ -103,17 +103,17 @@ fn all_done(outcomes: &[LaneOutcome]) -> bool {
 #[test]
 fn every_line_of_up_to_five_bits_in_all_quadrants_ends_as_alone() {
     let curves = lines(5);
-    assert!(all_done(&assert_each_as_alone("dda-line", &curves, &choices(5, 7))));
-    assert!(all_done(&assert_each_as_alone("ppc-line", &curves, &choices(5, 7))));
+    assert!(all_done(&assert_each_as_alone("dda-line", &curves, &widths(5, 7))));
+    assert!(all_done(&assert_each_as_alone("ppc-line", &curves, &widths(5, 7))));
 }
 
 #[test]
 fn every_line_of_the_pulse_multiplier_ends_as_alone() {
     let units = [
-        choices(4, 6),
-        choices(4, 6).with(&CASCADE, Some(width(2))),
-        choices(8, 6).with(&RADIX, Radix::Decimal),
-        choices(5, 6).with(&OVERRIDE, Some(35)),
+        widths(4, 6),
+        widths(4, 6).with(&CASCADE, Some(width(2))),
+        widths(8, 6).with(&RADIX, Radix::Decimal),
+        widths(5, 6).with(&OVERRIDE, Some(35)),
     ];
     for choices in units {
         assert!(all_done(&assert_each_as_alone("dpm-line", &lines(4), &choices)), "{choices:?}");
@@ -123,8 +123,8 @@ fn every_line_of_the_pulse_multiplier_ends_as_alone() {
 #[test]
 fn every_line_of_the_methods_that_judge_both_axes_ends_as_alone() {
     for model in ["cim-line", "mindev-line", "vector-line"] {
-        assert!(all_done(&assert_each_as_alone(model, &lines(4), &choices(4, 6))), "{model}");
-        let one_beat = choices(5, 7).with(&BEATS, Beats::One);
+        assert!(all_done(&assert_each_as_alone(model, &lines(4), &widths(4, 6))), "{model}");
+        let one_beat = widths(5, 7).with(&BEATS, Beats::One);
         assert!(all_done(&assert_each_as_alone(model, &lines(4), &one_beat)), "{model}");
     }
 }
@@ -132,7 +132,7 @@ fn every_line_of_the_methods_that_judge_both_axes_ends_as_alone() {
 #[test]
 fn every_lattice_arc_of_the_methods_that_judge_both_axes_ends_as_alone() {
     for model in ["cim-arc", "mindev-arc", "vector-arc"] {
-        assert!(all_done(&assert_each_as_alone(model, &arcs(5), &choices(4, 8))), "{model}");
+        assert!(all_done(&assert_each_as_alone(model, &arcs(5), &widths(4, 8))), "{model}");
     }
 }
 
@@ -149,7 +149,7 @@ fn quarters_of_ellipses_of_one_hardware_end_as_alone() {
     let quarters: Vec<Curve> = quarters.collect();
     let wide = |names: &[&str], bits| names.iter().map(|name| ((*name).to_owned(), width(bits))).collect::<Vec<_>>();
     let with = |names: &[&str]| {
-        let choices = choices(12, 6);
+        let choices = widths(12, 6);
         let single = choices.of_single(&WIDTH).into_iter().chain(wide(names, 6)).collect();
         choices.with_single(&WIDTH, single)
     };
@@ -161,7 +161,7 @@ fn quarters_of_ellipses_of_one_hardware_end_as_alone() {
 fn lines_with_other_choices_end_as_alone() {
     let curves = lines(3);
     for end_point in [EndPoint::Total, EndPoint::PerAxis, EndPoint::Longest] {
-        let choices = choices(4, 6).with(&END_POINT, end_point);
+        let choices = widths(4, 6).with(&END_POINT, end_point);
         let normalized = choices.clone().with(&NORMALIZE, true).with_all(&PRESET, Preset::Half);
         assert_each_as_alone("dda-line", &curves, &normalized);
         let one_beat = choices.with(&BEATS, Beats::One);
@@ -172,9 +172,9 @@ fn lines_with_other_choices_end_as_alone() {
 #[test]
 fn every_lattice_arc_of_one_or_many_blocks_ends_as_alone() {
     let curves = arcs(5);
-    assert!(all_done(&assert_each_as_alone("ppc-arc", &curves, &choices(5, 8))));
+    assert!(all_done(&assert_each_as_alone("ppc-arc", &curves, &widths(5, 8))));
     for end_point in [EndPoint::PerAxis, EndPoint::Total] {
-        let choices = choices(5, 8).with(&END_POINT, end_point);
+        let choices = widths(5, 8).with(&END_POINT, end_point);
         assert_each_as_alone("ppc-arc", &curves, &choices);
         assert_each_as_alone("dda-arc", &curves, &choices);
     }
@@ -182,7 +182,7 @@ fn every_lattice_arc_of_one_or_many_blocks_ends_as_alone() {
 
 #[test]
 fn arcs_that_stall_are_given_up_at_the_clock_at_which_one_alone_is() {
-    let stalls = choices(4, 8).with_all(&PRESET, Preset::Zero);
+    let stalls = widths(4, 8).with_all(&PRESET, Preset::Zero);
     let outcomes = assert_each_as_alone("dda-arc", &arcs(8), &stalls);
     let stalled = |outcome: &&LaneOutcome| matches!(outcome.ending, Some(Ending::Stalled { .. }));
     let count = outcomes.iter().filter(stalled).count();
@@ -193,7 +193,7 @@ fn arcs_that_stall_are_given_up_at_the_clock_at_which_one_alone_is() {
 fn overflows_trap_at_their_clock_or_are_counted() {
     for (mode, traps) in [(OnOverflow::Trap, true), (OnOverflow::Wrap, false), (OnOverflow::Saturate, false)] {
         // Positions of four bits, and lines of up to 15 to either side.
-        let choices = choices(4, 4).with(&ON_OVERFLOW, mode);
+        let choices = widths(4, 4).with(&ON_OVERFLOW, mode);
         for model in ["dda-line", "ppc-line"] {
             let outcomes = assert_each_as_alone(model, &lines(4), &choices);
             let overflows = outcomes.iter().filter(|outcome| outcome.overflows > 0).count();
@@ -206,13 +206,13 @@ fn overflows_trap_at_their_clock_or_are_counted() {
 
 #[test]
 fn a_machine_with_registers_of_more_than_32_bits_ends_as_alone() {
-    assert!(all_done(&assert_each_as_alone("ppc-line", &lines(3), &choices(40, 50))));
-    assert!(all_done(&assert_each_as_alone("ppc-arc", &arcs(3), &choices(31, 33))));
+    assert!(all_done(&assert_each_as_alone("ppc-line", &lines(3), &widths(40, 50))));
+    assert!(all_done(&assert_each_as_alone("ppc-arc", &arcs(3), &widths(31, 33))));
 }
 
 #[test]
 fn a_geometry_that_the_hardware_does_not_take_is_refused_and_the_others_run() {
-    let bench = Testbench::new(find("ppc-line").unwrap(), &line([5, 3]), &choices(4, 6)).unwrap();
+    let bench = Testbench::new(find("ppc-line").unwrap(), &line([5, 3]), &widths(4, 6)).unwrap();
     let other_axes = Curve::Line(Line::new(vec![0; 3], vec![1, 2, 3]).unwrap());
     let curves = [line([5, 3]), line([16, 0]), arcs(1)[0].clone(), other_axes, line([-15, 15])];
     let outcomes = bench.run_many(&curves, LIMIT).unwrap();
@@ -225,7 +225,7 @@ fn a_geometry_that_the_hardware_does_not_take_is_refused_and_the_others_run() {
 
 #[test]
 fn a_geometry_that_takes_too_long_ends_at_the_limit() {
-    let bench = Testbench::new(find("dda-line").unwrap(), &line([5, 3]), &choices(10, 12)).unwrap();
+    let bench = Testbench::new(find("dda-line").unwrap(), &line([5, 3]), &widths(10, 12)).unwrap();
     let outcomes = bench.run_many(&[line([5, 3])], 500).unwrap();
     let outcome = outcomes[0].as_ref().unwrap();
     assert_eq!((outcome.ending, outcome.clocks, outcome.steps), (None, 500, 499));
@@ -235,7 +235,7 @@ fn a_geometry_that_takes_too_long_ends_at_the_limit() {
 fn arcs_that_come_to_rest_are_given_up_as_alone() {
     // In 11 bits a motion that has come to a stand is at rest long before 2^11 clocks are over.
     // With `half`, the default, arcs with both ends on their circle never do.
-    let stalls = choices(11, 13).with_all(&PRESET, Preset::Zero);
+    let stalls = widths(11, 13).with_all(&PRESET, Preset::Zero);
     let outcomes = assert_each_as_alone("dda-arc", &arcs(8), &stalls);
     let early = |outcome: &&LaneOutcome| matches!(outcome.ending, Some(Ending::Stalled { clocks }) if clocks < 1 << 11);
     let given_up = outcomes.iter().filter(early).count();

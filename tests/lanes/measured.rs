@@ -1,26 +1,20 @@
 //! What is measured in lanes is what is measured of each run alone, to the bit.
 
-use std::collections::BTreeMap;
-
 use proptest::prelude::*;
 use stepwave::testbench::{Ending, Measured, Observer, ObserverError, Step, Testbench};
 use stepwave_engine::{EngineKind, Rows};
-use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
+use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET};
 use stepwave_models::{CurveKind, Model, Options, Preset, catalogue, find};
 use stepwave_nc::{Arc, Curve, Direction, Line};
-use stepwave_netlist::{OnOverflow, Width};
+use stepwave_netlist::OnOverflow;
+
+use super::geometry::widths;
 
 use crate::kernel::random::config;
 
 const LIMIT: u64 = 1 << 20;
 /// Far more than what is not endless takes in 7 bits.
 const SHORT: u64 = 1 << 14;
-
-fn widths(bits: u64, position: u64) -> Options {
-    let width = |bits| Width::new(bits).unwrap();
-    let positions = ["x", "y"].map(|axis| (axis.to_owned(), width(position)));
-    Options::default().with_all(&WIDTH, width(bits)).with_single(&WIDTH, BTreeMap::from(positions))
-}
 
 /// The models of this kind of curve.
 fn models(kind: fn(&CurveKind) -> bool) -> impl Iterator<Item = &'static Model> {

@@ -8,8 +8,7 @@ use stepwave_models::{CurveKind, ModelError, OnOverflow, Options, catalogue, fin
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix};
 use stepwave_netlist::Width;
 
-use super::line;
-use super::modern::widths;
+use super::{line, widths};
 
 fn with(mode: OnOverflow, choices: Options) -> Options {
     choices.with(&ON_OVERFLOW, mode)

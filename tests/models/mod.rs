@@ -25,8 +25,10 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 use stepwave::testbench::{Ending, Observer, ObserverError, Outcome, Step, Testbench};
 use stepwave_engine::EngineKind;
+use stepwave_models::options::WIDTH;
 use stepwave_models::{Options, find};
 use stepwave_nc::{Arc, Curve, Direction, Line};
+use stepwave_netlist::Width;
 
 use crate::reference::Table;
 
@@ -54,6 +56,13 @@ pub(crate) fn line(from: &[i64], to: &[i64]) -> Curve {
 pub(crate) fn arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool) -> Curve {
     let direction = if clockwise { Direction::Clockwise } else { Direction::CounterClockwise };
     Curve::Arc(Arc::new(from, to, center, direction).unwrap())
+}
+
+/// Widths of single registers.
+pub(crate) fn widths(given: &[(&str, u32)]) -> Options {
+    let width = |bits: u32| Width::new(u64::from(bits)).unwrap();
+    Options::default()
+        .with_single(&WIDTH, given.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits))).collect())
 }
 
 /// Every line from the origin of up to five bits.

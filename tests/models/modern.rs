@@ -7,7 +7,7 @@ use stepwave_models::options::{COMPARE, FORM, ON_OVERFLOW, PICK_OFF, PRESET, TIM
 use stepwave_models::{Compare, Form, ModelError, Options, Preset, StepTiming, find};
 use stepwave_netlist::{OnOverflow, Width};
 
-use super::{Ran, assert_equal, bench, check, every_line, line, run};
+use super::{Ran, assert_equal, bench, check, every_line, line, run, widths};
 use crate::reference::{self, Table, Timing, bresenham, stepgen, stepgen_clocks};
 
 const TESTS: [(Compare, bool); 2] = [(Compare::AtLeast, false), (Compare::Greater, true)];
@@ -16,11 +16,6 @@ const FORMS: [(Form, reference::Form); 2] =
 
 fn width(bits: u32) -> Width {
     Width::new(u64::from(bits)).unwrap()
-}
-
-pub(super) fn widths(given: &[(&str, u32)]) -> Options {
-    let widths = given.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits)));
-    Options::default().with_single(&WIDTH, widths.collect())
 }
 
 /// Every form and test; but the wrong test of a form misses blocks of one step, as the recurrence does.

@@ -8,8 +8,7 @@ use stepwave_models::options::{END_POINT, FORM, ON_OVERFLOW};
 use stepwave_models::{EndPoint, Form, OnOverflow, Options, Promise, catalogue, find};
 use stepwave_nc::{Arc, Curve, Direction};
 
-use super::bench;
-use super::modern::widths;
+use super::{bench, widths};
 
 /// How far a point about the origin is off the circle of this start, in BLU.
 fn off(start: [i64; 2], point: [i64; 2]) -> f64 {

@@ -1,13 +1,12 @@
 //! The runs whose waves are tested.
 
-use stepwave_models::options::{
-    BEATS, CASCADE, END_POINT, FORM, NORMALIZE, ON_OVERFLOW, OVERRIDE, PRESET, RADIX, WIDTH,
-};
+use stepwave_models::options::{BEATS, CASCADE, END_POINT, FORM, NORMALIZE, ON_OVERFLOW, OVERRIDE, PRESET, RADIX};
 use stepwave_models::{Beats, EndPoint, Form, Options, Preset, Radix};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Line};
 use stepwave_netlist::OnOverflow;
 
 use super::GOOD;
+use crate::models::widths;
 
 /// A run whose wave is tested.
 pub(super) struct Case {
@@ -27,11 +26,6 @@ fn arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], direction: Direction) -> 
 
 fn quarter([a, b]: [i64; 2]) -> Curve {
     Conic::ellipse([a, b], [a, 0], [0, b], [0, 0], Direction::CounterClockwise).expect(GOOD).into()
-}
-
-fn widths(list: &[(&str, u64)]) -> Options {
-    let width = |bits| stepwave_netlist::Width::new(bits).expect(GOOD);
-    Options::default().with_single(&WIDTH, list.iter().map(|(name, bits)| ((*name).to_owned(), width(*bits))).collect())
 }
 
 /// All models, in four beats and one, with every end-point scheme, overflows, negative positions and wide registers.
