@@ -56,7 +56,7 @@ pub use catalogue::{Catalogue, catalogue, find, installed};
 pub use claims::{Claims, Kind, Region, extremes};
 pub use error::ModelError;
 pub use hardware::{AXES, Hardware, Pace};
-pub use machine::{CutWord, Loaded, Machine, Port, Words};
+pub use machine::{BufferPorts, CutWord, Loaded, Machine, Port, Words};
 pub use options::{
     Adder, AnyOption, Beats, Compare, EndPoint, Form, Millionths, Named, OptionDef, Options, PerRegister, Preset,
     Radix, StepTiming, System, Takes, Weights,

@@ -48,6 +48,21 @@ pub struct Machine {
     pub table: Vec<(String, Port)>,
     /// Load inputs by the register that they load.
     pub inputs: BTreeMap<String, Port>,
+    /// Ports of the block buffer, of a machine that runs whole programs.
+    pub buffer: Option<BufferPorts>,
+}
+
+/// Ports of a machine that takes the next block while the present one runs; 1 bit each but the last.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct BufferPorts {
+    /// An input: the loader has a further block.
+    pub more: Net,
+    /// 1 where that block may be loaded.
+    pub call: Net,
+    /// 1 where every block has ended and there is no further one.
+    pub at_end: Net,
+    /// The phase of the pulse source, which runs freely.
+    pub phase: Net,
 }
 
 /// What an input is called for the register that it loads.
@@ -68,7 +83,13 @@ impl Machine {
         let inputs = netlist.names.iter().filter_map(|named| named.name.strip_suffix("_in"));
         let inputs = inputs.map(|register| Ok((register.to_owned(), find(&input_name(register))?)));
         let table = hardware.table.iter().map(|name| Ok((name.clone(), find(name)?)));
+        let net = |name: &str| find(name).map(|port| port.net);
+        let ports = |more: Port| {
+            let (call, at_end, phase) = (net("call")?, net("at_end")?, net("phase")?);
+            Ok::<_, ModelError>(BufferPorts { more: more.net, call, at_end, phase })
+        };
         Ok(Machine {
+            buffer: find("more").ok().map(ports).transpose()?,
             load: find("load")?,
             preset_position: find("preset_position")?,
             done: find("done")?,

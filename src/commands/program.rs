@@ -6,10 +6,10 @@ use std::io::{BufReader, Write};
 use std::path::Path;
 
 use crate::models::options::TOLERANCE;
-use crate::nc::{Reading, ToolMove};
-use crate::program::{Control, Estimate, MoveReport, Onlooker, Pace, Preparation, Stream, Survey};
-use crate::report::{Part, ProgramHead, ProgramJson, ProgramTable, ProgramTail};
-use crate::testbench::{Ending, Observer, ObserverError, OverflowEvent, OverflowWatch, RangeWatch, Sample, Testbench};
+use crate::nc::Reading;
+use crate::program::{Control, Estimate, Pace, Preparation, Stream, Survey, Totals};
+use crate::report::{CsvTable, ProgramHead, ProgramJson, ProgramTable, ProgramTail, Workpiece};
+use crate::testbench::{Ending, Observer, OverflowEvent, OverflowWatch, RangeWatch, Testbench};
 use crate::trace::timescale::ClockTime;
 
 use super::progress::Progress;
@@ -17,7 +17,7 @@ use super::run::Finished;
 use super::size::Size;
 use crate::Error;
 use crate::cli::{ProgramArgs, Tool};
-use crate::output::{Outputs, Sink};
+use crate::output::Outputs;
 use crate::waves::{Sinks, Waves};
 
 /// What the wave of a program begins with: where the machine is, how fast it is to be, and in which block.
@@ -109,33 +109,30 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
     let (steps, json, plot) = (sink(&args.outputs.steps)?, sink(&args.outputs.json)?, sink(&args.outputs.plot)?);
     let waves = sinks.map(|sinks| Waves::new(&bench, &options, sinks, time, &head.title())).transpose()?;
     let mut waves = waves.map(|waves| waves.beginning_with(&LEADING));
-    let mut steps = steps.map(|sink| StepTable::new(&bench, sink)).transpose()?;
+    let mut steps = steps.map(|sink| CsvTable::new(&bench, sink)).transpose()?;
     let mut json = json.map(|sink| ProgramJson::new(head, sink)).transpose()?;
-    let mut picture = plot.map(|sink| (Part::new(&head.headline()), sink));
+    let mut picture = plot.map(|sink| (Workpiece::new(&head.headline()), sink));
     let mut table = ProgramTable::new(head);
-    let mut moves = Moves(Progress::of(survey.moves, "moves"));
-
+    let (mut totals, mut progress) = (Totals::default(), Progress::of(survey.moves, "moves"));
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
-    let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut ranges];
+
+    let mut observers: Vec<&mut dyn Observer> =
+        vec![&mut overflow, &mut ranges, &mut totals, &mut table, &mut progress];
     observers.extend(waves.iter_mut().flat_map(Waves::observers));
-    let mut onlookers: Vec<&mut dyn Onlooker> = vec![&mut table, &mut moves];
-    onlookers.extend(steps.as_mut().map(|table| table as &mut dyn Onlooker));
-    onlookers.extend(json.as_mut().map(|json| json as &mut dyn Onlooker));
-    onlookers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Onlooker));
+    observers.extend(steps.as_mut().map(|table| table as &mut dyn Observer));
+    observers.extend(json.as_mut().map(|json| json as &mut dyn Observer));
+    observers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Observer));
     let stream = Stream::new(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
-    let mut control = Control::new(stream, family, &bench, pace, onlookers);
-    let outcome = bench.run_program(args.simulation.engine, &mut control, &mut observers)?;
-    let line = control.line();
-    control.finish()?;
-    let totals = std::mem::take(&mut control.totals);
-    drop((control, observers));
-    drop(moves);
+    let mut control = Control::new(stream, family, &bench, pace);
+    let outcome = bench.run_fed(args.simulation.engine, &mut control, &mut observers)?;
+    drop(observers);
+    drop(progress);
 
     let (ranges, overflows, tallies) = (ranges.finish(), overflow.events(), overflow.tallies());
     let tail = ProgramTail {
         outcome: &outcome,
-        line,
         totals: &totals,
+        losses: &control.losses,
         ranges: &ranges,
         overflows: &overflows,
         tallies: &tallies,
@@ -144,8 +141,8 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
     if let Some(waves) = waves {
         waves.finish(&overflows, outcome.clocks, outputs)?;
     }
-    if let Some(StepTable { mut out, .. }) = steps {
-        out.flush()?;
+    if let Some(steps) = steps {
+        steps.finish()?;
     }
     if let Some(json) = json {
         json.finish(&tail, &failures)?;
@@ -166,47 +163,4 @@ fn open(path: &Path) -> Result<BufReader<File>, Error> {
         return Err(trouble(&"a program is read twice, which needs a file: save it in one"));
     }
     Ok(BufReader::new(File::open(path).map_err(|error| trouble(&error))?))
-}
-
-/// Counts moves for the progress line.
-struct Moves(Progress);
-
-impl Onlooker for Moves {
-    fn moved(&mut self, _: &MoveReport) -> Result<(), ObserverError> {
-        self.0.add(1);
-        Ok(())
-    }
-}
-
-/// The step table of a program: as that of a run, with the block in front.
-struct StepTable {
-    out: Sink,
-}
-
-impl StepTable {
-    fn new(bench: &Testbench, mut out: Sink) -> Result<StepTable, Error> {
-        let letters = bench.hardware().letters();
-        let registers = bench.machine().table.iter().map(|(name, _)| name.clone());
-        let pulses = letters.iter().map(|axis| format!("d{axis}"));
-        let names = ["block", "step", "clock"].map(str::to_owned).into_iter().chain(registers).chain(pulses);
-        let names: Vec<String> = names.chain(letters.iter().map(|axis| (*axis).to_owned())).collect();
-        writeln!(out, "{}", names.join(","))?;
-        Ok(StepTable { out })
-    }
-}
-
-impl Onlooker for StepTable {
-    fn row(&mut self, of: &ToolMove, number: u64, sample: &Sample<'_>) -> Result<(), ObserverError> {
-        let block = of.place.number.unwrap_or(of.place.line);
-        write!(self.out, "{block},{number},{}", sample.clock())?;
-        for value in sample.registers() {
-            write!(self.out, ",{value}")?;
-        }
-        let pulses = if number == 0 { [0; 3] } else { sample.pulses() };
-        for value in pulses.into_iter().chain(sample.counters()) {
-            write!(self.out, ",{value}")?;
-        }
-        writeln!(self.out)?;
-        Ok(())
-    }
 }

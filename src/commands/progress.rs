@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use crate::engine::Rows;
 use crate::nc::Curve;
-use crate::testbench::{Memory, Observer, ObserverError, Testbench};
+use crate::testbench::{BlockReport, Memory, Observer, ObserverError, Testbench};
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
 
 /// How long work may take before it shows its progress.
@@ -96,6 +96,18 @@ impl Progress {
 
     /// Takes the line off the terminal, for what is printed next.
     pub(crate) fn finish(self) {}
+}
+
+/// Counts the blocks of a program.
+impl Observer for Progress {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn block_ended(&mut self, _: &BlockReport) -> Result<(), ObserverError> {
+        self.add(1);
+        Ok(())
+    }
 }
 
 impl Drop for Progress {

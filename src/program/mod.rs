@@ -5,7 +5,6 @@
 //! memory does not grow with the program.
 
 mod control;
-mod deviation;
 mod estimate;
 mod feed;
 mod stream;
@@ -15,12 +14,12 @@ mod tally;
 use stepwave_models::ModelError;
 use stepwave_nc::{CompensationError, GeometryError, ProgramError, ReadingError};
 
-pub use control::{Control, Onlooker, Place3};
+pub use control::Control;
 pub use estimate::Estimate;
-pub use feed::{Pace, Ripple};
+pub use feed::Pace;
 pub use stream::{Item, Preparation, Stream};
 pub use survey::Survey;
-pub use tally::{Greatest, MoveReport, Totals};
+pub use tally::{Greatest, Losses, Totals};
 
 /// Why a program cannot be run.
 #[derive(Debug, thiserror::Error)]

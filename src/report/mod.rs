@@ -3,12 +3,13 @@
 mod command;
 pub mod heat;
 mod json;
-mod part;
+
 pub mod plot;
 mod png;
 mod program;
 mod summary;
 mod table;
+mod workpiece;
 
 use stepwave_engine::EngineKind;
 use stepwave_models::options::ON_OVERFLOW;
@@ -21,10 +22,10 @@ use crate::testbench::{
 };
 
 pub use command::{geometry_options, run_command};
-pub use part::Part;
 pub use program::{ProgramHead, ProgramJson, ProgramTable, ProgramTail, TABLE_MOVES};
 pub use summary::{choices, geometry, title};
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
+pub use workpiece::Workpiece;
 
 /// Everything known about a finished run.
 #[derive(Debug)]

@@ -11,8 +11,10 @@ use stepwave_models::{Hardware, Promise};
 use stepwave_nc::Side;
 
 use super::json::{cut_word, event, number, tally};
-use crate::program::{Greatest, MoveReport, Onlooker, Pace, Totals};
-use crate::testbench::{Ending, ObserverError, Outcome, OverflowEvent, OverflowTally, RegisterRange};
+use crate::program::{Greatest, Losses, Pace, Totals};
+use crate::testbench::{
+    BlockReport, Ending, Observer, ObserverError, Outcome, OverflowEvent, OverflowTally, RegisterRange,
+};
 
 /// Version of the report's form; a change of meaning raises it.
 const SCHEMA: u32 = 1;
@@ -41,10 +43,10 @@ pub struct ProgramHead<'a> {
 pub struct ProgramTail<'a> {
     /// How it ended.
     pub outcome: &'a Outcome,
-    /// The line of the program that ran last.
-    pub line: u64,
     /// The account of all moves.
     pub totals: &'a Totals,
+    /// What the machine was not given as the program has it.
+    pub losses: &'a Losses,
     /// What each register held.
     pub ranges: &'a [RegisterRange],
     /// The first overflows in full.
@@ -128,7 +130,7 @@ impl<'a, W: Write> ProgramJson<'a, W> {
     /// The output cannot be written.
     pub fn finish(mut self, tail: &ProgramTail<'_>, failures: &[String]) -> io::Result<()> {
         writeln!(self.out, "\n  ],")?;
-        let (totals, outcome) = (tail.totals, tail.outcome);
+        let (totals, losses, outcome) = (tail.totals, tail.losses, tail.outcome);
         let blu_um = self.head.pace.blu_mm * 1000.0;
         let greatest = |greatest: Greatest| {
             (greatest.line > 0)
@@ -156,15 +158,15 @@ impl<'a, W: Write> ProgramJson<'a, W> {
             "position_counters": outcome.counters,
             "missed_end_points": totals.missed,
             "beyond_bound": totals.beyond,
-            "left_out": { "moves": totals.left_out, "blu": totals.off_left_out.value, "line": totals.off_left_out.line },
+            "left_out": { "moves": losses.left_out, "blu": losses.off_left_out.value, "line": losses.off_left_out.line },
             "path_error": greatest(totals.error),
             "compensated_contour_error": greatest(totals.off_compensated),
             "programmed_contour_error": greatest(totals.off_programmed),
             "limited_feeds": totals.limited,
             "registers": registers.collect::<Vec<_>>(),
             "cut_words": {
-                "count": totals.cut_words,
-                "words": totals.cut.iter().map(|(line, word)| {
+                "count": losses.cut_words,
+                "words": losses.cut.iter().map(|(line, word)| {
                     let mut word = cut_word(word);
                     word["line"] = json!(line);
                     word
@@ -194,8 +196,12 @@ fn write_fields(out: &mut impl Write, fields: &Value) -> io::Result<()> {
     Ok(())
 }
 
-impl<W: Write> Onlooker for ProgramJson<'_, W> {
-    fn moved(&mut self, report: &MoveReport) -> Result<(), ObserverError> {
+impl<W: Write> Observer for ProgramJson<'_, W> {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn block_ended(&mut self, report: &BlockReport) -> Result<(), ObserverError> {
         let head = &self.head;
         let clock_hz = head.pace.clock_hz;
         let block = json!({
@@ -237,12 +243,12 @@ impl ProgramTail<'_> {
     /// Sentences that say what is wrong with the machine; none if all is good.
     #[must_use]
     pub fn failures(&self, hardware: &Hardware) -> Vec<String> {
-        let line = self.line;
+        let line = self.totals.line;
         match (self.outcome.ending, self.overflows.last()) {
             (Ending::Trapped, Some(event)) => vec![format!("line {line}: {event}{}", super::way_out(event, hardware))],
             (Ending::Limit, _) => {
                 let clocks = self.outcome.clocks;
-                let cut = if self.totals.cut_words > 0 { ", with a load word that was cut" } else { "" };
+                let cut = if self.losses.cut_words > 0 { ", with a load word that was cut" } else { "" };
                 vec![format!(
                     "line {line}: given up at clock {clocks}{cut}: give a greater --max-clocks, or leave it out"
                 )]
@@ -286,7 +292,7 @@ impl<'a> ProgramTable<'a> {
         } else {
             let _ = writeln!(text, "more than {TABLE_MOVES} moves: --json FILE writes the report of each");
         }
-        let (totals, outcome, pace) = (tail.totals, tail.outcome, self.head.pace);
+        let (totals, losses, outcome, pace) = (tail.totals, tail.losses, tail.outcome, self.head.pace);
         let [x, y, z] = totals.pulses;
         let seconds = outcome.clocks as f64 / pace.clock_hz;
         let _ = writeln!(
@@ -300,11 +306,11 @@ impl<'a> ProgramTable<'a> {
             format!("{} end points missed", totals.missed)
         };
         let _ = writeln!(text, "{exact}; {} overflow(s)", tail.tallies.iter().map(|tally| tally.count).sum::<u64>());
-        for (line, word) in tail.totals.cut.iter().take(SHOWN_CUTS) {
+        for (line, word) in tail.losses.cut.iter().take(SHOWN_CUTS) {
             let _ = writeln!(text, "warning: line {line}: {word}");
         }
-        if totals.cut_words > SHOWN_CUTS as u64 {
-            let _ = writeln!(text, "warning: {} load words did not fit; --json FILE lists more", totals.cut_words);
+        if losses.cut_words > SHOWN_CUTS as u64 {
+            let _ = writeln!(text, "warning: {} load words did not fit; --json FILE lists more", losses.cut_words);
         }
         let um = pace.blu_mm * 1000.0;
         for (what, greatest) in [
@@ -317,7 +323,7 @@ impl<'a> ProgramTable<'a> {
                 let _ = writeln!(text, "greatest {what}: {value:.3} BLU ({:.3} µm), line {line}", value * um);
             }
         }
-        notes(&mut text, totals);
+        notes(&mut text, totals, losses);
         let chosen = tail.ranges.iter().filter(|range| self.head.hardware.widths.contains_key(&range.name));
         let spare = chosen.map(|range| format!("{} {}/{}", range.name, range.needed(), range.width.get()));
         let _ = writeln!(text, "bits needed/given: {}", spare.collect::<Vec<_>>().join(", "));
@@ -326,9 +332,9 @@ impl<'a> ProgramTable<'a> {
 }
 
 /// What is to be said of moves that were left out, and of feeds that were not reached.
-fn notes(text: &mut String, totals: &Totals) {
-    if totals.left_out > 0 {
-        let (moves, Greatest { value, line }) = (totals.left_out, totals.off_left_out);
+fn notes(text: &mut String, totals: &Totals, losses: &Losses) {
+    if losses.left_out > 0 {
+        let (moves, Greatest { value, line }) = (losses.left_out, losses.off_left_out);
         let _ = writeln!(
             text,
             "left out: {moves} moves to which standing still is nearer than any pulse; the farthest goes {value:.3} BLU, \
@@ -345,8 +351,12 @@ fn notes(text: &mut String, totals: &Totals) {
     }
 }
 
-impl Onlooker for ProgramTable<'_> {
-    fn moved(&mut self, report: &MoveReport) -> Result<(), ObserverError> {
+impl Observer for ProgramTable<'_> {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn block_ended(&mut self, report: &BlockReport) -> Result<(), ObserverError> {
         self.moves += 1;
         if self.moves > TABLE_MOVES {
             return Ok(());

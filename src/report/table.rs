@@ -4,14 +4,17 @@ use std::io::Write;
 
 use stepwave_models::Port;
 
-use crate::testbench::{Memory, Observer, ObserverError, Step, Testbench};
+use crate::testbench::{BlockReport, Memory, Observer, ObserverError, Step, Testbench};
 
 /// Most steps that a textbook table shows.
 pub const TEXTBOOK_STEPS: u64 = 64;
 
-/// Writes the step table as CSV: step, clock, registers, pulses, position counters; signed decimal.
+/// Writes the step table as CSV: step, clock, registers, pulses, position counters; signed decimal. The table of a
+/// program has the number of the block in front.
 pub struct CsvTable<W: Write> {
     out: W,
+    /// What every line begins with.
+    front: String,
 }
 
 impl<W: Write> CsvTable<W> {
@@ -20,13 +23,14 @@ impl<W: Write> CsvTable<W> {
     /// # Errors
     /// The output cannot be written.
     pub fn new(bench: &Testbench, mut out: W) -> std::io::Result<CsvTable<W>> {
+        let front = if bench.machine().buffer.is_some() { "block," } else { "" };
         let letters = bench.hardware().letters();
         let mut names = vec!["step".to_owned(), "clock".to_owned()];
         names.extend(bench.machine().table.iter().map(|(name, _)| name.clone()));
         names.extend(letters.iter().map(|axis| format!("d{axis}")));
         names.extend(letters.iter().map(|axis| (*axis).to_owned()));
-        writeln!(out, "{}", names.join(","))?;
-        Ok(CsvTable { out })
+        writeln!(out, "{front}{}", names.join(","))?;
+        Ok(CsvTable { out, front: String::new() })
     }
 
     /// Writes out what is buffered.
@@ -39,8 +43,13 @@ impl<W: Write> CsvTable<W> {
 }
 
 impl<W: Write> Observer for CsvTable<W> {
+    fn block_begun(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
+        self.front = format!("{},", block.number());
+        Ok(())
+    }
+
     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
-        write!(self.out, "{},{}", step.number, step.clock)?;
+        write!(self.out, "{}{},{}", self.front, step.number, step.clock)?;
         for value in &step.registers {
             write!(self.out, ",{value}")?;
         }

@@ -1,9 +1,12 @@
 //! The test bench: the one place where geometry, model, engine and observers meet. It loads the blocks, runs the clock
 //! until the machine says `done`, and hands every sample and every step to the observers.
 
+mod block;
 mod checkpoint;
 mod coarse;
 mod columns;
+mod contour;
+mod feeder;
 mod instruments;
 mod lanes;
 mod load;
@@ -11,34 +14,37 @@ mod measure;
 mod names;
 mod overflow;
 mod path;
-mod program;
 mod ranges;
 mod recording;
+mod ripple;
+mod run;
 mod spacing;
 mod steps;
 mod stimulus;
 mod tool;
 mod wave;
 
-use stepwave_engine::{self as engine, Engine, EngineKind, Rows, Stop, Watch};
-use stepwave_models::options::ON_OVERFLOW;
+use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_models::{CutWord, Hardware, Machine, Model, ModelError};
-use stepwave_netlist::{Design, Net, OnOverflow};
+use stepwave_netlist::{Design, Net};
 
+pub use block::{BlockReport, Part};
 pub use checkpoint::{CheckpointError, Checkpoints, Memory, State};
 pub use coarse::{CoarseError, CoarseWatch};
 pub use columns::Columns;
+pub use feeder::{Feeder, Next};
 pub use lanes::{LaneOutcome, Lanes};
 pub use measure::Measured;
 pub(crate) use names::net_named;
 pub use overflow::{OverflowEvent, OverflowTally, OverflowWatch};
 pub use path::{PathWatch, WorstError};
-pub use program::{Host, Next, Sample};
 pub use ranges::{RangeWatch, RegisterRange, StuckBits};
 pub use recording::{Recording, Trace};
+pub use ripple::Ripple;
+use run::Run;
 pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
 pub use steps::Step;
-use steps::{StepColumns, StepReader};
+use steps::StepColumns;
 pub use wave::{Taken, Trigger, WaveBody, WaveWriter, Window};
 
 /// Samples held between engine and observers.
@@ -81,6 +87,26 @@ pub trait Observer {
     /// Whatever keeps the observer from its work; the run ends.
     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
         let _ = step;
+        Ok(())
+    }
+
+    /// The machine has begun with a block of a program: row 0 of its step table is next. Parts of a block, such as the
+    /// sectors of an arc, follow each other without a word. A single geometry is one block, which
+    /// [`Testbench::run`] does not report.
+    ///
+    /// # Errors
+    /// Whatever keeps the observer from its work; the run ends.
+    fn block_begun(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
+        let _ = block;
+        Ok(())
+    }
+
+    /// That block has ended, or the run in the middle of it: what the machine made of it.
+    ///
+    /// # Errors
+    /// Whatever keeps the observer from its work; the run ends.
+    fn block_ended(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
+        let _ = block;
         Ok(())
     }
 }
@@ -163,7 +189,7 @@ impl Testbench {
         Ok(Testbench::of_machine(hardware, machine))
     }
 
-    /// A machine that runs whole programs, for [`run_program`](Self::run_program).
+    /// A machine that runs whole programs, for [`run_fed`](Self::run_fed).
     #[must_use]
     pub fn of_machine(hardware: Hardware, machine: Machine) -> Testbench {
         let columns = Columns::of(&machine);
@@ -209,12 +235,25 @@ impl Testbench {
         &self.columns
     }
 
-    /// Runs all blocks from reset.
+    /// Runs all blocks of its geometry from reset.
     ///
     /// # Errors
     /// An observer fails.
     pub fn run(&self, engine: EngineKind, observers: &mut [&mut dyn Observer]) -> Result<Outcome, ObserverError> {
-        self.begin(engine, observers).all_blocks()
+        self.run_fed(engine, &mut self.geometry(0), observers)
+    }
+
+    /// Runs the blocks that a feeder gives, from reset.
+    ///
+    /// # Errors
+    /// The feeder or an observer fails.
+    pub fn run_fed(
+        &self,
+        engine: EngineKind,
+        feeder: &mut dyn Feeder,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<Outcome, ObserverError> {
+        Run::new(self, engine, feeder, observers).whole()
     }
 
     /// Runs as [`run`](Self::run) does and keeps states of the run, once no observer wants rows of the step table.
@@ -227,9 +266,7 @@ impl Testbench {
         observers: &mut [&mut dyn Observer],
         states: &mut Checkpoints,
     ) -> Result<Outcome, ObserverError> {
-        let mut run = self.begin(engine, observers);
-        run.states = Some(states);
-        run.all_blocks()
+        Run::new(self, engine, &mut self.geometry(0), observers).keeping(states).whole()
     }
 
     /// Goes on from a state of a run of this bench to its end. Samples up to the state are not seen again; the outcome
@@ -243,9 +280,7 @@ impl Testbench {
         observers: &mut [&mut dyn Observer],
         state: &State,
     ) -> Result<Outcome, ObserverError> {
-        let mut run = self.begin(engine, observers);
-        run.restore(state);
-        run.all_blocks()
+        Run::new(self, engine, &mut self.geometry(state.block + 1), observers).from(state).whole()
     }
 
     /// Shows a machine over some clocks from any state, whether a run comes to it or not. The state is sample 0; nothing is
@@ -270,211 +305,5 @@ impl Testbench {
                 return Ok(());
             }
         }
-    }
-
-    fn begin<'a, 'o>(&'a self, engine: EngineKind, observers: &'a mut [&'o mut dyn Observer]) -> Run<'a, 'o> {
-        let properties = &self.design().netlist().properties;
-        let mut stops = vec![self.machine.done.net];
-        if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap {
-            stops.extend(properties.iter().map(|property| property.never));
-        }
-        let watch = Watch { columns: self.columns.nets().to_vec(), stops };
-        Run {
-            bench: self,
-            engine: engine.build(self.design(), &watch),
-            rows: Rows::new(watch.columns.len(), CHUNK),
-            steps: StepReader::new(self),
-            wants_steps: true,
-            observers,
-            first_block: 0,
-            goes_on: false,
-            anchor: None,
-            states: None,
-        }
-    }
-}
-
-/// A sample that a run may come back to.
-struct Anchor {
-    clock: u64,
-    /// Values of the design's registers, in its order.
-    registers: Vec<u64>,
-}
-
-/// A run in progress.
-struct Run<'a, 'o> {
-    bench: &'a Testbench,
-    engine: Box<dyn Engine>,
-    rows: Rows,
-    steps: StepReader<'a>,
-    /// Somebody wants the rows of the step table.
-    wants_steps: bool,
-    observers: &'a mut [&'o mut dyn Observer],
-    /// The block that the run begins with.
-    first_block: usize,
-    /// That block is loaded and running.
-    goes_on: bool,
-    /// A sample of the block that runs, not before half of its clocks.
-    anchor: Option<Anchor>,
-    /// Takes states of the run.
-    states: Option<&'a mut Checkpoints>,
-}
-
-impl Run<'_, '_> {
-    fn all_blocks(&mut self) -> Result<Outcome, ObserverError> {
-        let (mut ending, mut loaded) = (Ending::Done, self.first_block);
-        for (index, words) in self.bench.blocks.iter().enumerate().skip(self.first_block) {
-            if !std::mem::take(&mut self.goes_on) {
-                self.load(index, words)?;
-            }
-            loaded = index + 1;
-            ending = self.finish_block(index)?;
-            if ending != Ending::Done {
-                break;
-            }
-        }
-        self.drain()?;
-        // One clock from reset to the first block, and two for each block behind another.
-        let load_clocks = (2 * loaded as u64).saturating_sub(1);
-        Ok(self.steps.outcome(ending, self.engine.clock(), load_clocks))
-    }
-
-    /// Loads a block: sets the inputs, and does the clock behind which the machine runs.
-    fn load(&mut self, index: usize, words: &[(Net, u64)]) -> Result<(), ObserverError> {
-        let machine = &self.bench.machine;
-        self.anchor = None;
-        for &(input, value) in words {
-            self.engine.set_input(input, value);
-        }
-        self.engine.set_input(machine.load.net, 1);
-        self.engine.set_input(machine.preset_position.net, u64::from(index == 0));
-        if index == 0 {
-            self.engine.reset(&mut self.rows);
-        } else {
-            self.clock()?;
-        }
-        self.engine.set_input(machine.load.net, 0);
-        self.engine.set_input(machine.preset_position.net, 0);
-        // The edge that loads; `done` of the block before falls with it.
-        self.clock()
-    }
-
-    /// One clock, whatever the machine says.
-    fn clock(&mut self) -> Result<(), ObserverError> {
-        if self.rows.is_full() {
-            self.drain()?;
-        }
-        self.engine.run(1, &mut self.rows);
-        Ok(())
-    }
-
-    fn finish_block(&mut self, index: usize) -> Result<Ending, ObserverError> {
-        let stall = self.bench.hardware.stall_clocks;
-        // A trap may be seen in the very sample behind the load already.
-        if let Some(ending) = self.ended() {
-            return Ok(ending);
-        }
-        loop {
-            let left = self.bench.limit.saturating_sub(self.engine.clock());
-            if left == 0 {
-                return Ok(Ending::Limit);
-            }
-            let stop = self.engine.run(left, &mut self.rows);
-            match stop {
-                Stop::Net(0) => return Ok(Ending::Done),
-                Stop::Net(_) => return Ok(Ending::Trapped),
-                Stop::RowsFull | Stop::Clocks => self.drain()?,
-            }
-            let quiet = self.engine.clock().saturating_sub(self.steps.last_pulse);
-            let at_rest = || engine::at_rest(self.engine.as_ref(), self.bench.design());
-            if quiet > stall || quiet >= CHUNK as u64 && at_rest() {
-                return Ok(Ending::Stalled { clocks: quiet });
-            }
-            if let Some(since) = self.came_back() {
-                return Ok(Ending::Endless { since });
-            }
-            self.keep_state(index);
-        }
-    }
-
-    /// The clock of the anchor, if the machine is in the state that it had there and has pulsed since: inputs stay, so it
-    /// will do the same again. The anchor moves on whenever the clocks have doubled, so that no loop escapes it.
-    fn came_back(&mut self) -> Option<u64> {
-        let (engine, registers) = (&self.engine, self.bench.design().registers());
-        let clock = engine.clock();
-        if let Some(anchor) = &self.anchor {
-            let mut values = registers.iter().zip(&anchor.registers);
-            if self.steps.last_pulse > anchor.clock && values.all(|(&net, value)| engine.value(net) == *value) {
-                return Some(anchor.clock);
-            }
-            if clock / 2 < anchor.clock {
-                return None;
-            }
-        }
-        self.anchor = Some(Anchor { clock, registers: registers.iter().map(|&net| engine.value(net)).collect() });
-        None
-    }
-
-    /// Keeps the present state, if one is wanted. All samples up to it have been shown.
-    fn keep_state(&mut self, block: usize) {
-        let clock = self.engine.clock();
-        let Some(states) = self.states.as_mut().filter(|states| !self.wants_steps && states.wants(clock)) else {
-            return;
-        };
-        let mut memory = Memory::new();
-        self.steps.remember(&mut memory);
-        if let Some(Anchor { clock, registers }) = &self.anchor {
-            memory.insert("anchor".to_owned(), serde_json::json!([clock, registers]));
-        }
-        for observer in self.observers.iter() {
-            observer.remember(&mut memory);
-        }
-        states.keep(State::of(self.engine.as_ref(), self.bench, block, memory));
-    }
-
-    fn restore(&mut self, state: &State) {
-        self.engine.restore(state.clock, &state.registers, &state.inputs);
-        self.steps.recall(&state.memory);
-        for observer in self.observers.iter_mut() {
-            observer.recall(&state.memory);
-        }
-        let anchor: Option<(u64, Vec<u64>)> = checkpoint::recalled(&state.memory, "anchor");
-        self.anchor = anchor.map(|(clock, registers)| Anchor { clock, registers });
-        (self.first_block, self.goes_on) = (state.block, true);
-    }
-
-    /// What the present sample says by itself.
-    fn ended(&self) -> Option<Ending> {
-        if self.bench.hardware.get(&ON_OVERFLOW) != OnOverflow::Trap {
-            return None;
-        }
-        let mut properties = self.bench.design().netlist().properties.iter();
-        properties.any(|property| self.engine.value(property.never) == 1).then_some(Ending::Trapped)
-    }
-
-    /// Shows the rows to the observers and makes room.
-    fn drain(&mut self) -> Result<(), ObserverError> {
-        for observer in self.observers.iter_mut() {
-            observer.samples(&self.rows)?;
-        }
-        self.wants_steps &= self.observers.iter().any(|observer| observer.wants_steps());
-        if self.wants_steps {
-            self.show_steps()?;
-        } else {
-            self.steps.count(&self.rows);
-        }
-        self.rows.clear();
-        Ok(())
-    }
-
-    fn show_steps(&mut self) -> Result<(), ObserverError> {
-        for row in 0..self.rows.len() {
-            if self.steps.sample(&self.rows, row) {
-                for observer in self.observers.iter_mut().filter(|observer| observer.wants_steps()) {
-                    observer.step(&self.steps.step)?;
-                }
-            }
-        }
-        Ok(())
     }
 }

@@ -71,8 +71,13 @@ pub(super) struct StepReader<'a> {
     bench: &'a Testbench,
     columns: StepColumns,
     pub(super) step: Step,
-    /// Rows of the table so far.
+    /// Rows of the table so far, and how many of them were the first of their block.
     rows: u64,
+    first_rows: u64,
+    /// Rows before the block that runs.
+    before_block: u64,
+    /// The block that runs has no row yet.
+    fresh: bool,
     /// The sample before completed a row: the pulses of the next step are counted anew.
     row_complete: bool,
     /// Bits of the registers of the table in the sample before.
@@ -102,6 +107,9 @@ impl<'a> StepReader<'a> {
             columns: StepColumns::of(bench),
             step,
             rows: 0,
+            first_rows: 0,
+            before_block: 0,
+            fresh: true,
             row_complete: false,
             before: vec![0; machine.table.len()],
             pulses: vec![0; axes],
@@ -123,9 +131,9 @@ impl<'a> StepReader<'a> {
             }
         }
         let mut from = 0;
-        if self.rows == 0 {
+        if self.fresh {
             let first = (0..rows.len()).find(|&row| self.columns.completes(rows, row, true));
-            self.rows += u64::from(first.is_some());
+            self.first_row(first.is_some());
             from = first.map_or(rows.len(), |row| row + 1);
         }
         self.rows += rows.column(self.columns.stepped)[from..].iter().sum::<u64>();
@@ -141,13 +149,40 @@ impl<'a> StepReader<'a> {
         }
     }
 
-    /// Takes a sample; true if it completes a row of the table, which then stands in `step`. In the place of
-    /// [`count`](Self::count), for every sample from the first on.
-    pub(super) fn sample(&mut self, rows: &Rows, row: usize) -> bool {
+    /// The machine has been loaded in this sample.
+    pub(super) fn is_loaded(&self, rows: &Rows, row: usize) -> bool {
+        rows.value(self.columns.loaded, row) == 1
+    }
+
+    /// A bit for each of 64 samples from `first` on, the first the lowest: 1 where the machine is loaded, pulses, or has
+    /// completed a step.
+    pub(super) fn eventful(&self, rows: &Rows, first: usize) -> u64 {
+        let strobes = [self.columns.loaded, self.columns.stepped];
+        strobes.iter().chain(&self.columns.pulses).fold(0, |seen, &column| seen | rows.nonzero(column, first))
+    }
+
+    /// Where the pulses led, in BLU.
+    pub(super) fn position(&self) -> &[i64] {
+        &self.position
+    }
+
+    /// The next row is row 0 of a block.
+    pub(super) fn begin_block(&mut self) {
+        (self.fresh, self.before_block) = (true, self.rows);
+    }
+
+    fn first_row(&mut self, complete: bool) {
+        self.fresh &= !complete;
+        self.first_rows += u64::from(complete);
+        self.rows += u64::from(complete);
+    }
+
+    /// Takes a sample; true if it completes a row of the table, which then stands in `step`, with its `registers` if they
+    /// are wanted. In the place of [`count`](Self::count), for every [eventful](Self::eventful) sample from the first on.
+    pub(super) fn sample(&mut self, rows: &Rows, row: usize, registers: bool) -> bool {
         if std::mem::take(&mut self.row_complete) || self.rows == 0 {
             self.step.pulses.fill(0);
         }
-        let clock = rows.first_clock() + row as u64;
         for (axis, &column) in self.columns.pulses.iter().enumerate() {
             let pulse = signed(rows.value(column, row));
             if pulse == 0 {
@@ -156,30 +191,45 @@ impl<'a> StepReader<'a> {
             self.step.pulses[axis] += pulse;
             self.position[axis] = self.position[axis].saturating_add(pulse);
             self.pulses[axis] += 1;
-            self.last_pulse = clock;
+            self.last_pulse = rows.clock(row);
         }
-        self.show(rows, row);
-        let completes = self.columns.completes(rows, row, self.rows == 0);
-        let table = self.columns.table.iter().zip(&self.bench.machine().table);
-        let values = self.step.registers.iter_mut().zip(&mut self.step.used).zip(&mut self.before);
-        for (((value, used), before), (&column, (_, port))) in values.zip(table) {
-            let bits = rows.value(column, row);
-            if completes {
-                *value = port.reading.number(port.width, bits);
-                *used = port.reading.number(port.width, *before);
-            }
-            *before = bits;
-        }
-        if !completes {
+        if !self.columns.completes(rows, row, self.fresh) {
             return false;
         }
+        if registers {
+            self.registers(rows, row);
+        }
+        self.show(rows, row);
         self.step.position.copy_from_slice(&self.position);
         self.step.counters.copy_from_slice(&self.counters);
-        self.step.number = self.rows;
-        self.step.clock = clock;
-        self.rows += 1;
+        self.step.number = self.rows - self.before_block;
+        self.step.clock = rows.clock(row);
+        if self.fresh {
+            self.first_row(true);
+        } else {
+            self.rows += 1;
+        }
         self.row_complete = true;
         true
+    }
+
+    fn registers(&mut self, rows: &Rows, row: usize) {
+        let table = self.columns.table.iter().zip(&self.bench.machine().table);
+        let values = self.step.registers.iter_mut().zip(&mut self.step.used).zip(&self.before);
+        for (((value, used), &before), (&column, (_, port))) in values.zip(table) {
+            let before = row.checked_sub(1).map_or(before, |row| rows.value(column, row));
+            *value = port.reading.number(port.width, rows.value(column, row));
+            *used = port.reading.number(port.width, before);
+        }
+    }
+
+    /// All samples of the block have been taken one by one.
+    pub(super) fn end_rows(&mut self, rows: &Rows) {
+        let Some(last) = rows.len().checked_sub(1) else { return };
+        self.show(rows, last);
+        for (before, &column) in self.before.iter_mut().zip(&self.columns.table) {
+            *before = rows.value(column, last);
+        }
     }
 
     pub(super) fn remember(&self, memory: &mut Memory) {
@@ -195,6 +245,7 @@ impl<'a> StepReader<'a> {
         if counts && pulses.len() == axes && position.len() == axes && counters.len() == axes {
             (self.rows, self.pulses, self.last_pulse) = (rows, pulses, last_pulse);
             (self.position, self.counters) = (position, counters);
+            (self.fresh, self.first_rows) = (rows == 0, u64::from(rows > 0));
         }
     }
 
@@ -203,7 +254,7 @@ impl<'a> StepReader<'a> {
             ending,
             clocks,
             load_clocks,
-            steps: self.rows.saturating_sub(1),
+            steps: self.rows - self.first_rows,
             pulses: self.pulses.clone(),
             reached: self.position.clone(),
             counters: self.counters.clone(),

@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use stepwave::testbench::{
-    Ending, Host, Next, ObserverError, Outcome, OverflowEvent, OverflowWatch, RangeWatch, RegisterRange, Sample,
-    Testbench,
+    BlockReport, Ending, Feeder, Next, Observer, ObserverError, Outcome, OverflowEvent, OverflowWatch, Part,
+    RangeWatch, RegisterRange, Step, Testbench,
 };
 use stepwave_engine::EngineKind;
 use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
@@ -22,35 +22,58 @@ fn tool_move(from: [f64; 3], to: [f64; 3], way: Way) -> ToolMove {
     ToolMove { place, segment, feed: Feed::Rapid, cause, programmed: segment, side: Side::On }
 }
 
-/// Gives the machine its blocks, each with this rate of the pulse source, and keeps what it does.
+/// Gives the machine its blocks, each with this rate of the pulse source and as a block of its own.
 struct Control<'a> {
     bench: &'a Testbench,
-    blocks: std::vec::IntoIter<Vec<(&'static str, i128)>>,
+    blocks: std::vec::IntoIter<(PulseBlock, Vec<(&'static str, i128)>)>,
     rate: i128,
+    given: u64,
+}
+
+impl Feeder for Control<'_> {
+    fn next(&mut self) -> Result<Next, ObserverError> {
+        let Some((block, mut words)) = self.blocks.next() else { return Ok(Next::End) };
+        words.push(("rate", self.rate));
+        let encoded = self.bench.machine().encode(self.bench.hardware(), &[words])?;
+        self.given += 1;
+        Ok(Next::Block(encoded.into_iter().next().unwrap(), Some(Box::new(Part::new(self.given, block)))))
+    }
+}
+
+/// Keeps what a machine does.
+#[derive(Default)]
+struct Keep {
     /// The path of each block of the machine.
     paths: Vec<Vec<[i64; 3]>>,
     /// Clocks of steps.
     clocks: Vec<u64>,
 }
 
-impl Host for Control<'_> {
-    fn next(&mut self) -> Result<Next, ObserverError> {
-        let Some(mut words) = self.blocks.next() else { return Ok(Next::End) };
-        words.push(("rate", self.rate));
-        let encoded = self.bench.machine().encode(self.bench.hardware(), &[words])?;
-        Ok(Next::Block(encoded.into_iter().next().unwrap()))
-    }
-
-    fn begun(&mut self, _: &Sample<'_>) -> Result<(), ObserverError> {
+impl Observer for Keep {
+    fn block_begun(&mut self, _: &BlockReport) -> Result<(), ObserverError> {
         self.paths.push(Vec::new());
         Ok(())
     }
 
-    fn stepped(&mut self, sample: &Sample<'_>) -> Result<(), ObserverError> {
-        self.clocks.push(sample.clock());
-        self.paths.last_mut().unwrap().push(sample.position());
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        if step.number > 0 {
+            self.clocks.push(step.clock);
+            self.paths.last_mut().unwrap().push(<[i64; 3]>::try_from(step.position.as_slice()).unwrap());
+        }
         Ok(())
     }
+}
+
+/// The blocks of the machine for these of a program.
+fn of_machine(
+    family: &Family,
+    hardware: &Hardware,
+    blocks: &[PulseBlock],
+) -> Vec<(PulseBlock, Vec<(&'static str, i128)>)> {
+    let parts = |block: &PulseBlock| {
+        family.words(hardware, block).into_iter().map(|part| (block.clone(), part.words)).collect::<Vec<_>>()
+    };
+    blocks.iter().flat_map(parts).collect()
 }
 
 /// What a machine did with some moves.
@@ -84,15 +107,15 @@ fn run_blocks(family: &Family, blocks: Vec<PulseBlock>, choices: &Options, engin
     let machine = family.machine(&hardware).unwrap();
     let bench = Testbench::of_machine(hardware, machine).limited(1 << 20);
     let words: Vec<_> = blocks.iter().map(|block| family.words(bench.hardware(), block)).collect();
-    let all: Vec<_> = words.iter().flatten().map(|block| block.words.clone()).collect();
-    let (rate, blocks_of_machine) = (1 << 31, all.into_iter());
-    let mut host = Control { bench: &bench, blocks: blocks_of_machine, rate, paths: Vec::new(), clocks: Vec::new() };
-    let outcome = bench.run_program(engine, &mut host, &mut []).unwrap();
-    let mut paths = host.paths.into_iter();
+    let all = of_machine(family, bench.hardware(), &blocks);
+    let mut control = Control { bench: &bench, blocks: all.into_iter(), rate: 1 << 31, given: 0 };
+    let mut keep = Keep::default();
+    let outcome = bench.run_fed(engine, &mut control, &mut [&mut keep]).unwrap();
+    let mut paths = keep.paths.into_iter();
     let paths = words.iter().map(|words| words.iter().flat_map(|_| paths.next().unwrap_or_default()).collect());
     let bits = ["xi", "a", "jvx", "q"].map(|name| bench.hardware().widths.get(name).map_or(0, |width| width.get()));
     let bits = bits.into_iter().max().unwrap();
-    Ran { paths: paths.collect(), blocks, clocks: host.clocks, outcome, hardware: bench.hardware().clone(), bits }
+    Ran { paths: paths.collect(), blocks, clocks: keep.clocks, outcome, hardware: bench.hardware().clone(), bits }
 }
 
 /// The path of a block by the recurrences of the method, without its start.
@@ -172,14 +195,12 @@ fn reports(family: &Family, moves: &[ToolMove], choices: &Options, slow: u32, ev
     let hardware = family.plan(&size, choices).unwrap();
     let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware).unwrap()).limited(1 << 20);
     let bench = if every_sample { bench } else { bench.without_wave() };
-    let words: Vec<_> =
-        blocks.iter().flat_map(|block| family.words(&hardware, block)).map(|block| block.words).collect();
-    let (blocks, rate) = (words.into_iter(), 1 << (32 - slow));
-    let mut host = Control { bench: &bench, blocks, rate, paths: Vec::new(), clocks: Vec::new() };
+    let (blocks, rate) = (of_machine(family, &hardware, &blocks).into_iter(), 1 << (32 - slow));
+    let (mut control, mut keep) = (Control { bench: &bench, blocks, rate, given: 0 }, Keep::default());
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
     let engine = if every_sample { EngineKind::Word } else { EngineKind::Compiled };
-    let outcome = bench.run_program(engine, &mut host, &mut [&mut overflow, &mut ranges]).unwrap();
-    Reports { paths: host.paths, clocks: host.clocks, outcome, ranges: ranges.finish(), overflows: overflow.events() }
+    let outcome = bench.run_fed(engine, &mut control, &mut [&mut keep, &mut overflow, &mut ranges]).unwrap();
+    Reports { paths: keep.paths, clocks: keep.clocks, outcome, ranges: ranges.finish(), overflows: overflow.events() }
 }
 
 fn choices(normalize: bool) -> Options {

@@ -7,8 +7,7 @@ use std::collections::VecDeque;
 use stepwave_nc::{Cause, Direction, Side, ToolMove, Way, swept};
 
 use super::plot::{FONT, HEAD, Page, Pair, TITLE_FONT, View, cut, escaped, reaching, text_width};
-use crate::program::{MoveReport, Onlooker};
-use crate::testbench::{ObserverError, Sample};
+use crate::testbench::{BlockReport, Observer, ObserverError, Step};
 
 /// Points of the path that are kept; when they are full, every second one goes.
 const PATH_LIMIT: usize = 1 << 13;
@@ -22,7 +21,7 @@ const RAPID: &str = r##"stroke="#009e73" stroke-width="1" stroke-dasharray="6 4"
 const TOOL: &str = r##"stroke="#999" stroke-width="0.8""##;
 
 /// Collects the path of a program as seen along one axis.
-pub struct Part {
+pub struct Workpiece {
     title: String,
     /// The axes shown to the right and upwards.
     axes: [usize; 2],
@@ -37,11 +36,11 @@ pub struct Part {
     ranges: [Pair; 2],
 }
 
-impl Part {
+impl Workpiece {
     /// A picture in x and y.
     #[must_use]
-    pub fn new(title: &str) -> Part {
-        Part {
+    pub fn new(title: &str) -> Workpiece {
+        Workpiece {
             title: title.to_owned(),
             axes: [0, 1],
             contour: Vec::new(),
@@ -135,16 +134,18 @@ impl Part {
     }
 }
 
-impl Onlooker for Part {
-    fn row(&mut self, of: &ToolMove, number: u64, sample: &Sample<'_>) -> Result<(), ObserverError> {
-        let at = self.shown(sample.position()).map(|c| c as f64);
-        self.ranges = reaching(self.ranges, at);
-        if number == 0 {
-            let rapid = of.feed == stepwave_nc::Feed::Rapid;
-            if self.path.last().is_none_or(|(before, _)| *before != rapid) {
-                self.path.push((rapid, self.last.into_iter().collect()));
-            }
+impl Observer for Workpiece {
+    fn block_begun(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
+        let rapid = block.of.feed == stepwave_nc::Feed::Rapid;
+        if self.path.last().is_none_or(|(before, _)| *before != rapid) {
+            self.path.push((rapid, self.last.into_iter().collect()));
         }
+        Ok(())
+    }
+
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        let at = self.axes.map(|axis| step.position.get(axis).map_or(0.0, |&c| c as f64));
+        self.ranges = reaching(self.ranges, at);
         self.last = Some(at);
         self.seen += 1;
         if self.seen.is_multiple_of(self.stride)
@@ -160,7 +161,7 @@ impl Onlooker for Part {
         Ok(())
     }
 
-    fn moved(&mut self, report: &MoveReport) -> Result<(), ObserverError> {
+    fn block_ended(&mut self, report: &BlockReport) -> Result<(), ObserverError> {
         let end = self.shown(report.reached).map(|c| c as f64);
         if let Some((_, points)) = self.path.last_mut()
             && points.last() != Some(&end)

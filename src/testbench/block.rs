@@ -1,0 +1,255 @@
+//! What a machine made of a block of a program, and the account that is kept of it while it runs.
+
+use std::collections::VecDeque;
+
+use stepwave_engine::Rows;
+use stepwave_models::Promise;
+use stepwave_nc::{Cause, Curve, Feed, PulseBlock, ROUNDING_LIMIT, ToolMove, Way};
+
+use super::contour;
+use super::ripple::Ripple;
+use super::steps::StepReader;
+use super::{Observer, ObserverError, Step};
+
+/// What is loaded at once of a block of a program: all of it, a sector of its arc, or a chord.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Number of the block in the program, from 1. Parts with the same number make up one block.
+    pub index: u64,
+    /// The block: a move of the tool, and what it became in whole BLU.
+    pub block: PulseBlock,
+    /// Length of that in BLU with its first part; 0 with the others.
+    pub length: f64,
+    /// Commanded feed in BLU per second; `None` where the machine runs as fast as it can.
+    pub commanded: Option<f64>,
+    /// Frequency of the pulse source in Hz.
+    pub source_hz: f64,
+    /// The pulse source was asked for more than it can give.
+    pub limited: bool,
+    /// What the method promises of it.
+    pub promise: Option<Promise>,
+    /// How far a chord may be off its arc, in BLU.
+    pub chords: f64,
+}
+
+impl Part {
+    /// A part that runs as fast as the machine can, of a method that promises nothing.
+    #[must_use]
+    pub fn new(index: u64, block: PulseBlock) -> Part {
+        Part { index, block, length: 0.0, commanded: None, source_hz: 0.0, limited: false, promise: None, chords: 0.0 }
+    }
+}
+
+/// What a machine made of one block of a program: a move of the tool.
+#[derive(Clone, Debug)]
+pub struct BlockReport {
+    /// The move.
+    pub of: ToolMove,
+    /// Clock behind which it began.
+    pub begun: u64,
+    /// Clocks from there to the end of its last step.
+    pub clocks: u64,
+    /// Steps of the interpolator.
+    pub steps: u64,
+    /// Pulses of each axis.
+    pub pulses: [u64; 3],
+    /// End point wanted, in BLU.
+    pub wanted: [i64; 3],
+    /// End point reached, in BLU.
+    pub reached: [i64; 3],
+    /// Length of the way in whole BLU.
+    pub length: f64,
+    /// Commanded feed in BLU per second; `None` where the machine runs as fast as it can.
+    pub commanded: Option<f64>,
+    /// Frequency of the pulse source in Hz.
+    pub source_hz: f64,
+    /// The pulse source was asked for more than it can give.
+    pub limited: bool,
+    /// Greatest distance from the curve that the machine was told, in BLU.
+    pub error: f64,
+    /// What its method promises of it.
+    pub promise: Option<Promise>,
+    /// Greatest distance of the tool's centre from the compensated contour, in BLU.
+    pub off_compensated: f64,
+    /// What the method, the rounding to pulses and chords promise of that together, in BLU.
+    pub contour_bound: Option<f64>,
+    /// The method promises nothing of one of its blocks.
+    pub(crate) free: bool,
+    /// Greatest distance of the tool's edge from the programmed contour, in BLU.
+    pub off_programmed: Option<f64>,
+    /// How evenly it went.
+    pub ripple: Ripple,
+}
+
+impl BlockReport {
+    /// Before its first step.
+    #[must_use]
+    pub(crate) fn new(of: ToolMove, begun: u64, from: [i64; 3]) -> BlockReport {
+        BlockReport {
+            of,
+            begun,
+            clocks: 0,
+            steps: 0,
+            pulses: [0; 3],
+            wanted: from,
+            reached: from,
+            length: 0.0,
+            commanded: None,
+            source_hz: 0.0,
+            limited: false,
+            error: 0.0,
+            promise: None,
+            off_compensated: 0.0,
+            contour_bound: None,
+            free: false,
+            off_programmed: None,
+            ripple: Ripple::new(from, begun),
+        }
+    }
+
+    /// A step that ended at a place.
+    fn step(&mut self, block: &PulseBlock, step: &Step) {
+        let (clock, pulses, position) = (step.clock, of_axes(&step.pulses), of_axes(&step.position));
+        self.steps += 1;
+        self.clocks = clock - self.begun;
+        self.reached = position;
+        let count: u64 = pulses.iter().map(|pulse| pulse.unsigned_abs()).sum();
+        if count == 0 {
+            return;
+        }
+        for (all, pulse) in self.pulses.iter_mut().zip(pulses) {
+            *all += pulse.unsigned_abs();
+        }
+        self.ripple.pulses(count, position, clock);
+        self.error = self.error.max(block.deviation(position));
+        // Within 2^52, as every position of a block is.
+        let at = position.map(|c| c as f64);
+        self.off_compensated = self.off_compensated.max(contour::off_segment(&self.of.segment, at));
+        self.off_programmed = match (self.off_programmed, contour::off_programmed(&self.of, at)) {
+            (Some(most), Some(off)) => Some(most.max(off)),
+            (most, off) => off.or(most),
+        };
+    }
+
+    /// It ended where it should.
+    #[must_use]
+    pub fn end_exact(&self) -> bool {
+        self.reached == self.wanted
+    }
+
+    /// The method kept what it promises.
+    #[must_use]
+    pub fn within_bound(&self) -> bool {
+        self.promise.is_none_or(|promise| promise.is_kept(self.error))
+    }
+
+    /// The contour is as near as it is promised.
+    #[must_use]
+    pub fn within_contour(&self) -> bool {
+        self.contour_bound.is_none_or(|bound| self.off_compensated <= bound + 1e-9)
+    }
+
+    /// Takes in what is known of a part before it runs.
+    fn take(&mut self, part: &Part) {
+        self.wanted = part.block.to;
+        self.length += part.length;
+        self.commanded = part.commanded;
+        self.source_hz = self.source_hz.max(part.source_hz);
+        self.limited |= part.limited;
+        let Some(promise) = part.promise.filter(|_| !self.free) else {
+            // One block without a promise leaves the move without one.
+            (self.free, self.promise, self.contour_bound) = (true, None, None);
+            return;
+        };
+        self.promise = Some(self.promise.map_or(promise, |before| promise.or_wider(before)));
+        let drawn = matches!((&part.block.curve, self.of.segment.way), (Curve::Line(_), Way::Arc { .. }));
+        let allowed = ROUNDING_LIMIT + contour::radii_apart(&self.of.segment) + if drawn { part.chords } else { 0.0 };
+        let bound = promise.bound() + allowed;
+        self.contour_bound = Some(self.contour_bound.map_or(bound, |before| before.max(bound)));
+    }
+
+    /// Number of the block: its N word, or its line where it has none.
+    #[must_use]
+    pub fn number(&self) -> u64 {
+        self.of.place.number.unwrap_or(self.of.place.line)
+    }
+
+    /// Mean speed in BLU per second.
+    #[must_use]
+    pub fn reached_feed(&self, clock_hz: f64) -> f64 {
+        self.length * clock_hz / self.clocks.max(1) as f64
+    }
+
+    /// `line`, `arc`, and why where it was not programmed.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match (self.of.cause, self.of.segment.way, self.of.feed) {
+            (Cause::StartUp, ..) => "start-up",
+            (Cause::Cancel, ..) => "cancel",
+            (Cause::Inserted, Way::Line, _) => "inserted line",
+            (Cause::Inserted, Way::Arc { .. }, _) => "inserted arc",
+            (Cause::Programmed, _, Feed::Rapid) => "rapid",
+            (Cause::Programmed, Way::Line, _) => "line",
+            (Cause::Programmed, Way::Arc { .. }, _) => "arc",
+        }
+    }
+}
+
+/// Numbers of x, y and z; 0 for an axis that there is not.
+fn of_axes(values: &[i64]) -> [i64; 3] {
+    [0, 1, 2].map(|axis| values.get(axis).copied().unwrap_or(0))
+}
+
+/// The parts that the machine was given, and the account of the block that runs.
+#[derive(Default)]
+pub(super) struct Account {
+    /// Parts that it has not begun with.
+    given: VecDeque<Box<Part>>,
+    running: Option<(Box<Part>, BlockReport)>,
+}
+
+impl Account {
+    pub(super) fn give(&mut self, part: Option<Box<Part>>) {
+        self.given.extend(part);
+    }
+
+    /// There is a block to be reported.
+    pub(super) fn is_kept(&self) -> bool {
+        self.running.is_some() || !self.given.is_empty()
+    }
+
+    /// The machine has begun with the next part in this sample; true if that is the first of its block.
+    pub(super) fn begin(
+        &mut self,
+        rows: &Rows,
+        row: usize,
+        steps: &StepReader<'_>,
+        observers: &mut [&mut dyn Observer],
+    ) -> Result<bool, ObserverError> {
+        let Some(part) = self.given.pop_front() else { return Ok(false) };
+        if let Some((running, report)) = self.running.as_mut().filter(|(running, _)| running.index == part.index) {
+            report.take(&part);
+            *running = part;
+            return Ok(false);
+        }
+        self.end(observers)?;
+        let mut report = BlockReport::new(part.block.of, rows.clock(row), of_axes(steps.position()));
+        report.take(&part);
+        observers.iter_mut().try_for_each(|observer| observer.block_begun(&report))?;
+        self.running = Some((part, report));
+        Ok(true)
+    }
+
+    /// Takes in a row of the step table.
+    pub(super) fn step(&mut self, step: &Step) {
+        if let Some((part, report)) = self.running.as_mut().filter(|_| step.number > 0) {
+            report.step(&part.block, step);
+        }
+    }
+
+    /// Reports the block that ran last.
+    pub(super) fn end(&mut self, observers: &mut [&mut dyn Observer]) -> Result<(), ObserverError> {
+        let Some((_, report)) = self.running.take() else { return Ok(()) };
+        observers.iter_mut().try_for_each(|observer| observer.block_ended(&report))
+    }
+}

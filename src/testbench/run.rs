@@ -1,0 +1,332 @@
+//! The one run loop: loads the blocks of a feeder, runs the clock, and shows samples, steps and blocks to the observers.
+
+use stepwave_engine::{self as engine, Engine, EngineKind, Idle, Rows, Stop, Watch};
+use stepwave_models::options::ON_OVERFLOW;
+use stepwave_netlist::{Net, OnOverflow};
+
+use super::block::Account;
+use super::checkpoint::{self, Checkpoints, Memory, State};
+use super::feeder::{Feeder, Next};
+use super::load::CUT_CLOCKS;
+use super::steps::StepReader;
+use super::{CHUNK, Ending, Observer, ObserverError, Outcome, Testbench};
+
+/// A sample that a run may come back to.
+struct Anchor {
+    clock: u64,
+    /// Values of the design's registers, in its order.
+    registers: Vec<u64>,
+}
+
+/// A run in progress.
+pub(super) struct Run<'a, 'o> {
+    bench: &'a Testbench,
+    engine: Box<dyn Engine>,
+    rows: Rows,
+    feeder: &'a mut dyn Feeder,
+    observers: &'a mut [&'o mut dyn Observer],
+    steps: StepReader<'a>,
+    account: Account,
+    /// Somebody wants the rows of the step table.
+    wants_steps: bool,
+    /// Blocks loaded so far.
+    loaded: usize,
+    /// A sample of the block that runs, not before half of its clocks.
+    anchor: Option<Anchor>,
+    /// Takes states of the run.
+    states: Option<&'a mut Checkpoints>,
+    /// Clock at which the run is given up.
+    limit: u64,
+    /// Load words that were cut so far.
+    cut: u64,
+}
+
+/// Index among the stop nets of that by which a machine takes a block: `call`, or `done` without a buffer.
+const READY: usize = 0;
+
+impl<'a, 'o> Run<'a, 'o> {
+    pub(super) fn new(
+        bench: &'a Testbench,
+        kind: EngineKind,
+        feeder: &'a mut dyn Feeder,
+        observers: &'a mut [&'o mut dyn Observer],
+    ) -> Run<'a, 'o> {
+        let machine = bench.machine();
+        let flags: Vec<Net> = bench.design().netlist().properties.iter().map(|property| property.never).collect();
+        let mut stops = machine.buffer.map_or(vec![machine.done.net], |ports| vec![ports.call, ports.at_end]);
+        if bench.traps() {
+            stops.extend(&flags);
+        }
+        let watch = Watch { columns: bench.columns().nets().to_vec(), stops };
+        let columns = watch.columns.len();
+        let (engine, rows) = match machine.buffer.filter(|_| !bench.every_sample) {
+            None => (kind.build(bench.design(), &watch), Rows::new(columns, CHUNK)),
+            Some(ports) => {
+                let idle = Idle { running: vec![ports.phase], flags };
+                (kind.build_passing(bench.design(), &watch, &idle), Rows::sparse(columns, CHUNK))
+            }
+        };
+        Run {
+            bench,
+            engine,
+            rows,
+            feeder,
+            observers,
+            steps: StepReader::new(bench),
+            account: Account::default(),
+            wants_steps: true,
+            loaded: 0,
+            anchor: None,
+            states: None,
+            limit: bench.limit,
+            cut: 0,
+        }
+    }
+
+    /// The same run, of which states are kept.
+    pub(super) fn keeping(self, states: &'a mut Checkpoints) -> Self {
+        Run { states: Some(states), ..self }
+    }
+
+    /// The same run from a state on, whose block is loaded and running.
+    pub(super) fn from(mut self, state: &State) -> Self {
+        self.engine.restore(state.clock, &state.registers, &state.inputs);
+        self.steps.recall(&state.memory);
+        for observer in self.observers.iter_mut() {
+            observer.recall(&state.memory);
+        }
+        let anchor: Option<(u64, Vec<u64>)> = checkpoint::recalled(&state.memory, "anchor");
+        self.anchor = anchor.map(|(clock, registers)| Anchor { clock, registers });
+        Run { loaded: state.block + 1, ..self }
+    }
+
+    /// Runs to the end of the last block.
+    pub(super) fn whole(mut self) -> Result<Outcome, ObserverError> {
+        let ending = self.blocks()?;
+        self.drain()?;
+        self.account.end(self.observers)?;
+        // One clock from reset to the first block, and two for each block after another; a buffer loads while blocks run.
+        let load_clocks = if self.is_buffered() { 0 } else { (2 * self.loaded as u64).saturating_sub(1) };
+        Ok(self.steps.outcome(ending, self.engine.clock(), load_clocks))
+    }
+
+    fn is_buffered(&self) -> bool {
+        self.bench.machine().buffer.is_some()
+    }
+
+    fn blocks(&mut self) -> Result<Ending, ObserverError> {
+        let over = usize::from(self.is_buffered());
+        let mut next = self.ask()?;
+        if self.is_buffered() {
+            self.engine.reset(&mut self.rows);
+        }
+        loop {
+            match next {
+                Next::Block(words, part) => {
+                    if let Some(ending) = self.until(READY)? {
+                        return Ok(ending);
+                    }
+                    self.load(&words)?;
+                    self.account.give(part);
+                    next = self.ask()?;
+                    // The edge that loads; `done` of the block before falls with it.
+                    self.clock()?;
+                }
+                Next::Wait(clocks) => {
+                    if let Some(ending) = self.until(over)? {
+                        return Ok(ending);
+                    }
+                    for _ in 0..clocks {
+                        if self.left() == 0 {
+                            return Ok(Ending::Limit);
+                        }
+                        self.clock()?;
+                    }
+                    next = self.ask()?;
+                }
+                Next::End => return Ok(self.until(over)?.unwrap_or(Ending::Done)),
+            }
+        }
+    }
+
+    /// What the feeder gives next; a buffer is told whether that is a block. A block with a word that was cut need not
+    /// come to an end: where no limit was given it has [`CUT_CLOCKS`].
+    fn ask(&mut self) -> Result<Next, ObserverError> {
+        let next = self.feeder.next()?;
+        if let Some(ports) = self.bench.machine().buffer {
+            self.engine.set_input(ports.more, u64::from(matches!(next, Next::Block(..))));
+        }
+        let cut = self.feeder.cut_words();
+        if self.bench.limit == u64::MAX && cut > self.cut {
+            (self.cut, self.limit) = (cut, self.engine.clock().saturating_add(CUT_CLOCKS));
+        }
+        Ok(next)
+    }
+
+    /// Puts a block on the inputs for a clock. A machine without a buffer is loaded from its reset on.
+    fn load(&mut self, words: &[(Net, u64)]) -> Result<(), ObserverError> {
+        let machine = self.bench.machine();
+        self.anchor = None;
+        for &(input, value) in words {
+            self.engine.set_input(input, value);
+        }
+        let first = self.loaded == 0 && !self.is_buffered();
+        self.engine.set_input(machine.load.net, 1);
+        self.engine.set_input(machine.preset_position.net, u64::from(first));
+        if first {
+            self.engine.reset(&mut self.rows);
+        } else {
+            self.clock()?;
+        }
+        self.engine.set_input(machine.load.net, 0);
+        self.engine.set_input(machine.preset_position.net, 0);
+        self.loaded += 1;
+        Ok(())
+    }
+
+    /// One clock, whatever the machine says.
+    fn clock(&mut self) -> Result<(), ObserverError> {
+        if self.rows.is_full() {
+            self.drain()?;
+        }
+        self.engine.run(1, &mut self.rows);
+        Ok(())
+    }
+
+    /// Runs until a stop net is 1; an ending if the run is over before.
+    fn until(&mut self, wanted: usize) -> Result<Option<Ending>, ObserverError> {
+        let buffered = self.is_buffered();
+        if !buffered && self.loaded == 0 {
+            return Ok(None);
+        }
+        // A trap may be seen in the very sample after the load already.
+        if self.trapped() {
+            return Ok(Some(Ending::Trapped));
+        }
+        loop {
+            if self.left() == 0 {
+                return Ok(Some(Ending::Limit));
+            }
+            match self.engine.run(self.left(), &mut self.rows) {
+                Stop::Net(net) if net > usize::from(buffered) => return Ok(Some(Ending::Trapped)),
+                // The first of several that are 1 is told: a trap may hide behind another.
+                Stop::Net(_) if buffered && self.trapped() => return Ok(Some(Ending::Trapped)),
+                Stop::Net(net) if net == wanted => return Ok(None),
+                Stop::Net(_) if !self.rows.is_full() => continue,
+                Stop::Net(_) | Stop::RowsFull | Stop::Clocks => self.drain()?,
+            }
+            // A machine of programs waits for its pulse source, or for a dwell to pass.
+            if let Some(ending) = if buffered { None } else { self.hangs() } {
+                return Ok(Some(ending));
+            }
+            self.keep_state();
+        }
+    }
+
+    /// The ending of a machine of which nothing new will come.
+    fn hangs(&mut self) -> Option<Ending> {
+        let quiet = self.engine.clock().saturating_sub(self.steps.last_pulse);
+        let at_rest = || engine::at_rest(self.engine.as_ref(), self.bench.design());
+        if quiet > self.bench.hardware.stall_clocks || quiet >= CHUNK as u64 && at_rest() {
+            return Some(Ending::Stalled { clocks: quiet });
+        }
+        self.came_back().map(|since| Ending::Endless { since })
+    }
+
+    /// The clock of the anchor, if the machine is in the state that it had there and has pulsed since: inputs stay, so it
+    /// will do the same again. The anchor moves on whenever the clocks have doubled, so that no loop escapes it.
+    fn came_back(&mut self) -> Option<u64> {
+        let (engine, registers) = (&self.engine, self.bench.design().registers());
+        let clock = engine.clock();
+        if let Some(anchor) = &self.anchor {
+            let mut values = registers.iter().zip(&anchor.registers);
+            if self.steps.last_pulse > anchor.clock && values.all(|(&net, value)| engine.value(net) == *value) {
+                return Some(anchor.clock);
+            }
+            if clock / 2 < anchor.clock {
+                return None;
+            }
+        }
+        self.anchor = Some(Anchor { clock, registers: registers.iter().map(|&net| engine.value(net)).collect() });
+        None
+    }
+
+    /// Keeps the present state, if one is wanted. All samples up to it have been shown.
+    fn keep_state(&mut self) {
+        let clock = self.engine.clock();
+        let Some(states) = self.states.as_mut().filter(|states| !self.wants_steps && states.wants(clock)) else {
+            return;
+        };
+        let mut memory = Memory::new();
+        self.steps.remember(&mut memory);
+        if let Some(Anchor { clock, registers }) = &self.anchor {
+            memory.insert("anchor".to_owned(), serde_json::json!([clock, registers]));
+        }
+        for observer in self.observers.iter() {
+            observer.remember(&mut memory);
+        }
+        states.keep(State::of(self.engine.as_ref(), self.bench, self.loaded.saturating_sub(1), memory));
+    }
+
+    /// Clocks that the run may still take.
+    fn left(&self) -> u64 {
+        self.limit.saturating_sub(self.engine.clock())
+    }
+
+    /// A property is violated in the present sample, and that ends the run.
+    fn trapped(&self) -> bool {
+        let mut properties = self.bench.design().netlist().properties.iter();
+        self.bench.traps() && properties.any(|property| self.engine.value(property.never) == 1)
+    }
+
+    /// Shows the rows to the observers and makes room.
+    fn drain(&mut self) -> Result<(), ObserverError> {
+        for observer in self.observers.iter_mut() {
+            observer.samples(&self.rows)?;
+        }
+        self.wants_steps &= self.observers.iter().any(|observer| observer.wants_steps());
+        if self.wants_steps || self.account.is_kept() {
+            self.show_steps()?;
+        } else {
+            self.steps.count(&self.rows);
+        }
+        self.rows.clear();
+        Ok(())
+    }
+
+    fn show_steps(&mut self) -> Result<(), ObserverError> {
+        for first in (0..self.rows.len()).step_by(64) {
+            let mut eventful = self.steps.eventful(&self.rows, first);
+            while eventful != 0 {
+                self.show_step(first + eventful.trailing_zeros() as usize)?;
+                eventful &= eventful - 1;
+            }
+        }
+        self.steps.end_rows(&self.rows);
+        Ok(())
+    }
+
+    fn show_step(&mut self, row: usize) -> Result<(), ObserverError> {
+        let (rows, steps) = (&self.rows, &mut self.steps);
+        if steps.is_loaded(rows, row) && self.account.begin(rows, row, steps, self.observers)? {
+            steps.begin_block();
+        }
+        if !steps.sample(rows, row, self.wants_steps) {
+            return Ok(());
+        }
+        self.account.step(&steps.step);
+        if self.wants_steps {
+            for observer in self.observers.iter_mut().filter(|observer| observer.wants_steps()) {
+                observer.step(&steps.step)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Testbench {
+    /// A property that is violated ends the run.
+    fn traps(&self) -> bool {
+        self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap
+    }
+}
