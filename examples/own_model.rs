@@ -17,9 +17,9 @@
 use std::process::ExitCode;
 
 use stepwave::models::options::{ON_OVERFLOW, WIDTH};
-use stepwave::models::parts::{Block, DownCounter, axis_counter};
+use stepwave::models::parts::{Block, E, JR, JV, POSITION, SIGN, axis_scope};
 use stepwave::models::{
-    Claims, Hardware, Interpolates, Method, Model, ModelError, Pace, Plan, Region, RegisterDoc, Words, catalogue,
+    Claims, Hardware, Interpolates, Method, Model, ModelError, Pace, Plan, Region, Words, catalogue,
 };
 use stepwave::nc::Line;
 use stepwave::netlist::dsl::Scope;
@@ -30,10 +30,9 @@ static BORROW_LINE: Model = Model {
     method: "subtracting DDA",
     source: "an example of this project",
     registers: &[
-        RegisterDoc { name: "jvx, jvy", width: "n", about: "integrand J_V of each axis, |d|" },
-        RegisterDoc { name: "jrx, jry", width: "n", about: "remainder J_R of each axis, from 0" },
-        RegisterDoc { name: "e", width: "n+1", about: "iterations left, from 2^n" },
-        RegisterDoc { name: "x, y", width: "as the path needs, + 1", about: "machine position, signed" },
+        &(JV, JR.about("remainder J_R of each axis, from 0")),
+        &E.about("iterations left, from 2^n"),
+        &POSITION,
     ],
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::Lines)),
@@ -41,41 +40,37 @@ static BORROW_LINE: Model = Model {
     hardware,
 };
 
-/// Letter, integrand, remainder and direction of each axis.
-const NAMES: [[&str; 4]; 2] = [["x", "jvx", "jrx", "sx"], ["y", "jvy", "jry", "sy"]];
-
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
-    let n = plan.magnitude_bits(line.delta().iter().map(|d| d.unsigned_abs()).max().unwrap_or(0));
-    plan.register("jvx", n).register("jrx", n).register("jvy", n).register("jry", n);
-    let e = plan.bits("jrx") + 1;
-    plan.register("e", e).positions(line.from().iter().zip(line.to()).map(|(&from, &to)| vec![from, to]));
+    plan.n = plan.magnitude_bits(line.delta().iter().map(|d| d.unsigned_abs()).max().unwrap_or(0));
+    let iterations = plan.bits(JR.of(0)) + 1;
+    plan.set(E, iterations).positions(line.from().iter().zip(line.to()).map(|(&from, &to)| [from, to]));
     plan.integrators(1)?;
-    plan.pace = Pace::Cycle("jrx");
+    plan.pace = Pace::Cycle(JR.of(0));
     plan.error_bound = Some(1.0);
     Ok(())
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    for [letter, jv, jr, sign] in NAMES {
-        let (scope, bits) = (m.scope(&format!("axis_{letter}")), hardware.bits(jr));
-        let integrand = block.held(scope, jv, hardware.bits(jv)).extend(bits);
-        let remainder = scope.reg(jr, bits);
-        let (borrow, rest) = remainder.q.borrowing_sub(integrand);
-        remainder.when(block.load, block.word(jr, bits)).when(block.busy, rest).else_hold();
-        let (pulse, negative) = (scope.name("pulse", borrow & block.busy), block.held(scope, sign, 1));
-        axis_counter(scope, &block, letter, hardware.bits(letter), pulse, negative);
+    for axis in 0..hardware.axes {
+        let (scope, remainder) = (axis_scope(m, axis), JR.of(axis));
+        let integrand = hardware.held(scope, &block, JV.of(axis)).extend(hardware.bits(remainder));
+        let jr = hardware.reg(scope, remainder);
+        let (borrow, rest) = jr.q.borrowing_sub(integrand);
+        jr.when(block.load, hardware.word(&block, remainder)).when(block.busy, rest).else_hold();
+        let (pulse, negative) = (scope.name("pulse", borrow & block.busy), hardware.held(scope, &block, SIGN.of(axis)));
+        hardware.axis(scope, &block, axis, pulse, negative);
     }
-    let last = DownCounter::new(m, &block, "e", hardware.bits("e")).count(block.busy);
+    let last = hardware.counter(m, &block, E).count(block.busy);
     block.close(block.load, block.busy, last);
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
-    let mut words: Words = vec![("e", 1 << hardware.bits("jrx"))];
-    for (axis, [letter, jv, jr, sign]) in NAMES.into_iter().enumerate() {
-        let [delta, start] = [line.delta()[axis], line.from()[axis]].map(i128::from);
-        words.extend([(jv, delta.abs()), (jr, 0), (sign, i128::from(delta < 0)), (letter, start)]);
-    }
+    let words = (0..hardware.axes).fold(Words::new().set(E, 1_i128 << hardware.bits(JR.of(0))), |words, axis| {
+        let delta = line.delta()[axis];
+        let words = words.set(JV.of(axis), delta.abs()).set(JR.of(axis), 0).set(SIGN.of(axis), delta < 0);
+        words.set(POSITION.of(axis), line.from()[axis])
+    });
     vec![words]
 }
 

@@ -6,13 +6,6 @@
 //!                                                                e ──► done
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | events | n | N, the longest abs(d): step events of the block |
-//! | stepsx, stepsy, … | n | abs(d) of each axis |
-//! | cntx, cnty, … | n+1 | floor(N/2) (signed form, two's complement: -floor(N/2)) |
-//! | e | n | N step events |
-//!
 //! A step event takes two clocks, as the firmware's interrupt takes two statements. ADD: every counter += abs(d). TEST: a
 //! counter that has come to N steps its axis, and counter -= N. The signed form keeps counters N lower and tests
 //! their sign.
@@ -41,18 +34,22 @@
 use stepwave_nc::Line;
 use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Scope, Signal};
-use stepwave_netlist::formula::name;
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
-use crate::hardware::names::{COUNTER, POSITION, SIGN, STEPS};
 use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{COMPARE, Compare, END_POINT, EndPoint, FORM, Form, ON_OVERFLOW, WIDTH};
-use crate::parts::{Block, DownCounter, axis_counter};
+use crate::parts::{Block, E, POSITION, SIGN, axis_scope};
+use crate::per_axis;
 use crate::plan::Plan;
+use crate::registers::{N, PerAxis, Reg};
 use crate::sizes;
+
+const STEPS: PerAxis = Reg::each(per_axis!("steps"), N, "|d| of each axis");
+const COUNTER: PerAxis = Reg::each(per_axis!("cnt"), N.plus(1), "counter, from N/2 (signed form: from -N/2)");
+const EVENTS: Reg = Reg::new("events", N, "N, the longest |d|");
 
 /// Step counters of printer and mill firmware, line of 2 to 6 axes.
 pub static MODEL: Model = Model {
@@ -60,13 +57,7 @@ pub static MODEL: Model = Model {
     title: "Step counters of printer and mill firmware, line of 2 to 6 axes",
     method: "modern step generators",
     source: "the line tracing of open firmware for printers and mills, after J. E. Bresenham, 1965",
-    registers: &[
-        RegisterDoc { name: "stepsx, stepsy, …", width: "n", about: "|d| of each axis" },
-        RegisterDoc { name: "cntx, cnty, …", width: "n+1", about: "counter, from N/2 (signed form: from -N/2)" },
-        RegisterDoc { name: "events", width: "n", about: "N, the longest |d|" },
-        RegisterDoc { name: "e", width: "n", about: "step events left, from N" },
-        RegisterDoc::AXIS_POSITIONS,
-    ],
+    registers: &[&(STEPS, COUNTER), &EVENTS, &E.width(N).about("step events left, from N"), &POSITION],
     options: &[
         &WIDTH,
         &FORM.only(
@@ -87,11 +78,8 @@ pub static MODEL: Model = Model {
 };
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
-    let n = plan.magnitude_bits(sizes::longest(line));
-    for axis in 0..plan.axes() {
-        plan.register(STEPS[axis], n).register(COUNTER[axis], n + 1);
-    }
-    plan.register("events", n).register("e", n).positions(sizes::end_positions(line));
+    plan.n = plan.magnitude_bits(sizes::longest(line));
+    plan.positions(sizes::end_positions(line));
     plan.fix(&END_POINT, EndPoint::Longest);
     let right = if plan.get(&FORM) == Form::Signed { Compare::Greater } else { Compare::AtLeast };
     let compare = plan.decide(&COMPARE, right);
@@ -105,17 +93,16 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let names = [(0, "IDLE"), (1, "ADD"), (2, "TEST")].map(|(value, name)| (value, name.to_owned()));
     let beat = m.reg("beat", 2).shown(Format::States(names.to_vec()));
     let [add, test] = [0, 1].map(|place| beat.q.bit(place));
-    let events = block.held(m, "events", hardware.bits("events"));
-    let e = DownCounter::new(m, &block, "e", hardware.bits("e"));
-    for (i, letter) in hardware.letters().iter().enumerate() {
-        let scope = m.scope(&format!("axis_{letter}"));
-        let steps = block.held(scope, STEPS[i], hardware.bits(STEPS[i]));
-        let step = counter(scope, &block, hardware, COUNTER[i], [add, test], [steps, events]);
+    let events = hardware.held(m, &block, EVENTS);
+    let e = hardware.counter(m, &block, E);
+    for axis in 0..hardware.axes {
+        let scope = axis_scope(m, axis);
+        let steps = hardware.held(scope, &block, STEPS.of(axis));
+        let step = counter(scope, &block, hardware, axis, [add, test], [steps, events]);
         if hardware.get(&FORM) == Form::Magnitude && hardware.get(&COMPARE) == Compare::AtLeast {
-            scope.between_steps("below_the_events", [name("events") - 1 - name(COUNTER[i])]);
+            scope.between_steps("below_the_events", [EVENTS.value() - 1 - COUNTER.of(axis).value()]);
         }
-        let negative = block.held(scope, SIGN[i], 1);
-        axis_counter(scope, &block, POSITION[i], hardware.bits(POSITION[i]), step, negative);
+        hardware.axis(scope, &block, axis, step, hardware.held(scope, &block, SIGN.of(axis)));
     }
     let last = e.count(test);
     beat.when(block.load, m.lit(2, 1)).when(test & last, m.lit(2, 0)).otherwise(add.concat(test));
@@ -128,14 +115,14 @@ fn counter<'m>(
     m: Scope<'m>,
     block: &Block<'m>,
     hardware: &Hardware,
-    name: &str,
+    axis: usize,
     [add, test]: [Signal<'m>; 2],
     [steps, events]: [Signal<'m>; 2],
 ) -> Signal<'m> {
-    let bits = hardware.bits(name);
     let signed = hardware.get(&FORM) == Form::Signed;
-    let counter = if signed { m.reg_signed(name, bits) } else { m.reg(name, bits) };
-    let wide = bits.max(events.bits());
+    let own = if signed { COUNTER.of(axis).signed() } else { COUNTER.of(axis) };
+    let counter = hardware.reg(m, own);
+    let wide = counter.q.bits().max(events.bits());
     let [count, whole] = [counter.q.extend(wide), events.extend(wide)];
     let come = match (signed, hardware.get(&COMPARE)) {
         (false, Compare::AtLeast) => !count.less_than(whole),
@@ -144,7 +131,7 @@ fn counter<'m>(
         (true, Compare::Greater) => !count.msb() & count.is_nonzero(),
     };
     let step = m.name("step", test & come);
-    let word = if signed { block.word_signed(name, bits) } else { block.word(name, bits) };
+    let word = hardware.word(block, own);
     let sum = counter.q.strict_add(steps, add & !block.load);
     let rest = counter.q.strict_sub(events, step & !block.load);
     counter.when(block.load, word).when(add, sum).when(step, rest).else_hold();
@@ -154,12 +141,11 @@ fn counter<'m>(
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let events = i128::from(sizes::longest(line));
     let half = events / 2;
-    let mut words: Words = vec![("events", events), ("e", events)];
+    let start = if hardware.get(&FORM) == Form::Signed { -half } else { half };
+    let mut words = Words::new().set(EVENTS, events).set(E, events);
     for (axis, (delta, from)) in line.delta().into_iter().zip(line.from()).enumerate() {
-        words.push((STEPS[axis], i128::from(delta).abs()));
-        words.push((COUNTER[axis], if hardware.get(&FORM) == Form::Signed { -half } else { half }));
-        words.push((SIGN[axis], i128::from(delta < 0)));
-        words.push((POSITION[axis], i128::from(*from)));
+        words = words.set(STEPS.of(axis), delta.abs()).set(COUNTER.of(axis), start);
+        words = words.set(SIGN.of(axis), delta < 0).set(POSITION.of(axis), *from);
     }
     vec![words]
 }

@@ -1,12 +1,13 @@
 //! The list of models, to which a user adds his own.
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
 use crate::error::ModelError;
 use crate::model::{CurveKind, Model};
-use crate::options::{ALL, AnyOption, Options};
+use crate::options::{ALL, AnyOption, Options, Shape};
 use crate::{
     bresenham, cim_arc, cim_conic, cim_line, dda_arc, dda_conic, dda_helix, dda_line, dpm_line, mindev_arc,
     mindev_line, ppc_arc, ppc_conic, ppc_line, sampled_arc, sampled_line, stepgen, vector_arc, vector_line,
@@ -130,19 +131,34 @@ fn sample(kind: CurveKind) -> Option<Curve> {
     }
 }
 
-/// Plans, wires and loads a small curve with every word of every option.
-fn check(model: &'static Model) -> Result<(), ModelError> {
-    let Some(curve) = sample(model.curve()) else { return Ok(()) };
-    let mut given = vec![Options::default()];
+/// Options that are tried: every word, and of numbers the least.
+fn tried(model: &'static Model) -> Result<Vec<Options>, ModelError> {
+    let mut tried = vec![Options::default()];
     for takes in model.options {
-        for (word, _) in takes.words() {
+        let mut texts: Vec<String> = takes.words().iter().map(|(word, _)| (*word).to_owned()).collect();
+        if let Shape::Numbers { least, .. } = takes.option().shape() {
+            texts.push(least.to_string());
+        }
+        for text in texts {
             let mut options = Options::default();
-            let value = takes.option().parse(word).map_err(|reason| ModelError::defect(model.name, reason))?;
-            options.set(value);
-            given.push(options);
+            options.set(takes.option().parse(&text).map_err(|reason| ModelError::defect(model.name, reason))?);
+            tried.push(options);
         }
     }
-    for options in given {
+    Ok(tried)
+}
+
+/// Plans, wires and loads a small curve with every word of every option; a register that the model lists must be there
+/// with one of them, as wide as it is planned.
+fn check(model: &'static Model) -> Result<(), ModelError> {
+    let Some(curve) = sample(model.curve()) else { return Ok(()) };
+    let mut missing = BTreeSet::new();
+    for name in model.rows().flat_map(|row| row.names(curve.axes())) {
+        if !missing.insert(*name) {
+            return Err(ModelError::defect(model.name, format!("it lists the register {name} twice")));
+        }
+    }
+    for options in tried(model)? {
         let words = options.words().join(" ");
         let defect = |error: ModelError| ModelError::defect(model.name, format!("with '{words}': {error}"));
         let hardware = match model.plan(&curve, &options) {
@@ -152,11 +168,25 @@ fn check(model: &'static Model) -> Result<(), ModelError> {
             Err(error) => return Err(defect(error)),
         };
         let machine = model.machine(&hardware).map_err(defect)?;
+        let netlist = machine.design.netlist();
+        missing.retain(|name| netlist.find(name).is_none());
+        for (name, planned) in &hardware.widths {
+            let bits = netlist.find(name).map_or(0, |named| netlist.width(named.net).get());
+            if bits != planned.get() {
+                let what = format!("its register {name} has {bits} bits, but {} are planned", planned.get());
+                return Err(ModelError::defect(model.name, what));
+            }
+        }
         let blocks = model.words(&hardware, &curve);
         if blocks.is_empty() {
             return Err(ModelError::defect(model.name, format!("with '{words}': it loads no block")));
         }
         machine.load(&hardware, &blocks).map_err(defect)?;
     }
-    Ok(())
+    // Of many, such as the units of a cascade, a small curve has only the first.
+    let first = model.rows().filter_map(|row| row.names.first());
+    match first.into_iter().find(|name| missing.contains(*name)) {
+        Some(name) => Err(ModelError::defect(model.name, format!("it has no register {name} with any option"))),
+        None => Ok(()),
+    }
 }

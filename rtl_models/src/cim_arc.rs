@@ -10,15 +10,6 @@
 //!      └──────┴── ± weights ◄──────┴─────────────────────────┴──► ex, ey ──► done
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | a | n | A = abs(x) relative to the centre: the interval weight of an X pulse |
-//! | b | n | B = abs(y): the interval weight of a Y pulse |
-//! | f | n+2, two's complement | 0; behind a split with `mid` the deviation of that point |
-//! | base | 1 | X if A < B, else Y |
-//! | quad | 2 | quadrant of the sector, Q1 = 0 |
-//! | ex, ey | n | steps of each axis in the sector |
-//!
 //! The axis with the smaller interval is the base axis: it steps at every step, the other where F >= 0. F gains the
 //! weight of the base axis for its pulse and loses that of the other for its own. With `mid` a pulse weighs A before it
 //! plus A behind it, so that F is x² + y² - R² up to its sign; with `pre` A before, with `post` A behind. Where A and B
@@ -44,9 +35,11 @@ use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH, Weights};
-use crate::parts::{Block, Change, Kind, Side, comparison_integral, quadrant_register};
+use crate::parts::{
+    A_B, BASE, Block, CCW, Change, END, F, Kind, POSITION, QUAD, Side, comparison_integral, quadrant_register,
+};
 use crate::plan::Plan;
 use crate::{sizes, words};
 
@@ -57,25 +50,23 @@ pub static MODEL: Model = Model {
     method: "comparison-integral",
     source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
     registers: &[
-        RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement" },
-        RegisterDoc { name: "a, b", width: "n", about: "interval weights A of an X, B of a Y pulse: |x|, |y|" },
-        RegisterDoc::BASE,
-        RegisterDoc::QUAD,
-        RegisterDoc::EX_EY,
-        RegisterDoc::POSITIONS,
+        &F.about("deviation F, two's complement"),
+        &A_B.about("interval weights A of an X, B of a Y pulse: |x|, |y|"),
+        &BASE,
+        &QUAD,
+        &END,
+        &POSITION,
     ],
     options: &[&WIDTH, &WEIGHTS, &BEATS, &ON_OVERFLOW],
-    claims: Some(Claims { modes: &["base"], ..Claims::of(Region::QuadrantArcs) }),
+    claims: Some(Claims { modes: &[BASE], ..Claims::of(Region::QuadrantArcs) }),
     interpolates: Interpolates::Arcs(Method { plan, load }),
     hardware,
 };
 
 fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
     let sectors = arc.sectors(Crossing::RoundedRadius);
-    let n = plan.magnitude_bits(sizes::largest_coordinate(&sectors));
-    let f = sizes::off_circle_bits(arc, plan, n) + 2;
-    plan.register("f", f).register("a", n).register("b", n);
-    plan.shown("base").shown("quad").end_counters(2, n);
+    plan.n = plan.magnitude_bits(sizes::largest_coordinate(&sectors));
+    plan.set(F, sizes::off_circle_bits(arc, plan) + 2);
     plan.positions(sizes::arc_positions(arc, &sectors));
     plan.fix(&END_POINT, EndPoint::PerAxis);
     plan.error_bound = (plan.get(&WEIGHTS) == Weights::Mid).then_some(1.0);
@@ -84,9 +75,9 @@ fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let ccw = block.held(m, "ccw", 1);
+    let ccw = hardware.held(m, &block, CCW);
     let quad = quadrant_register(m);
-    quad.when(block.load, block.word("quad", 2)).else_hold();
+    quad.when(block.load, hardware.word(&block, QUAD)).else_hold();
     let kind = Kind::decode(m.scope("quadrant"), quad.q, ccw);
     let side = |negative, grows| Side { negative, change: Some(Change { grows, unit: m.lit(1, 1) }) };
     let sides = [side(kind.x_negative, kind.x_grows), side(kind.y_negative, !kind.x_grows)];
@@ -97,38 +88,38 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 /// F is ±(x² + y² - R²), or with `pre` and `post` half of that less or more the steps of both axes; it stays between
 /// what a step of the base axis at -1 and a step of both at 0 leave, turned over where the base axis changes.
 fn between_steps(m: Scope<'_>, rule: Weights) {
-    let (f, y_is_base, x_grows) = (|| name("f"), || name("base"), || name("x_grows"));
-    let x = ("x", "a", "b", ["ex", "ey"], y_is_base() - 1, [x_grows() - 1, -x_grows()]);
-    let y = ("y", "b", "a", ["ey", "ex"], -y_is_base(), [-x_grows(), x_grows() - 1]);
+    let (f, y_is_base, x_grows) = (|| F.value(), || BASE.value(), || name("x_grows"));
+    let [[a, b], [ex, ey]] = [A_B, END.pair()].map(|pair| [pair.of(0), pair.of(1)]);
+    let x = ("x", a, b, [ex, ey], y_is_base() - 1, [x_grows() - 1, -x_grows()]);
+    let y = ("y", b, a, [ey, ex], -y_is_base(), [-x_grows(), x_grows() - 1]);
     for (axis, own, other, [end, end_of_other], not, [grows, shrinks]) in [x, y] {
         let state = |bound: &str, any: Vec<Formula>| {
             m.between_steps(&format!("f_from_{bound}_{axis}"), any.into_iter().chain([not.clone()]));
         };
         if rule == Weights::Mid {
-            state("below", vec![f() + 2 * name(other)]);
-            state("above", vec![2 * name(own) - f(), -f()]);
+            state("below", vec![f() + 2 * other.value()]);
+            state("above", vec![2 * own.value() - f(), -f()]);
             continue;
         }
-        state("of_a_tie", vec![name(other) - name(own) - 1, -f(), grows.clone()]);
+        state("of_a_tie", vec![other.value() - own.value() - 1, -f(), grows.clone()]);
         // Where the growing axis with `pre`, the shrinking one with `post` is at its end, the steps taken bound F.
-        let (below, above) = (f() + name(other) + 1, name(own) - f());
+        let (below, above) = (f() + other.value() + 1, own.value() - f());
         let (free_below, free_above) = if rule == Weights::Pre { (grows, shrinks) } else { (shrinks, grows) };
         state("below", vec![below.clone(), free_below]);
-        state("below_while_running", vec![below, -name(end)]);
+        state("below_while_running", vec![below, -end.value()]);
         state("above", vec![above.clone(), free_above]);
-        state("above_while_running", vec![above, -name(end_of_other)]);
+        state("above_while_running", vec![above, -end_of_other.value()]);
     }
 }
 
 fn load(arc: &Arc, hardware: &Hardware) -> Vec<Words> {
     let block = |sector: &Sector| {
         let [x, y] = sector.start.map(i128::from);
-        let [ex, ey] = sector.steps().map(i128::from);
         let x_grows = sector.quadrant.growing_axis(arc.direction()) == 0;
         let deviation = x * x + y * y - arc.radius_squared();
         let f = words::weighed(hardware.get(&WEIGHTS), [x.abs(), y.abs()], x_grows, deviation);
-        let own = vec![("f", f), ("a", x.abs()), ("b", y.abs()), ("ex", ex), ("ey", ey)];
-        [own, words::sector(arc, sector)].concat()
+        let own = Words::new().set(F, f).set_each(A_B, [x.abs(), y.abs()]).set_each(END.pair(), sector.steps());
+        own.and(words::sector(arc, sector))
     };
     arc.sectors(Crossing::RoundedRadius).iter().map(block).collect()
 }

@@ -10,15 +10,15 @@
 //!   └────── ± weights ◄──────┴─────────────────────┴──► ex, ey ──► done
 //! ```
 //!
-//! | register | width | ellipse x²/a² + y²/b² = 1, hyperbola | parabola y² = cx |
-//! |---|---|---|---|
-//! | a | n | A = b²·abs(x), the interval weight of an X pulse | c |
-//! | b | n | B = a²·abs(y), the interval weight of a Y pulse | 2·abs(y) |
-//! | alpha | as it needs | b², the change of A by an X pulse | 0 |
-//! | beta | as it needs | a², the change of B by a Y pulse | 2 |
-//! | f | n+2, two's complement | 0 | 0 |
-//! | base | 1 | X if A < B, else Y | |
-//! | ex, ey | as they need | steps of each axis in the sector | |
+//! | register | ellipse x²/a² + y²/b² = 1, hyperbola | parabola y² = cx |
+//! |---|---|---|
+//! | a | A = b²·abs(x), the interval weight of an X pulse | c |
+//! | b | B = a²·abs(y), the interval weight of a Y pulse | 2·abs(y) |
+//! | alpha | b², the change of A by an X pulse | 0 |
+//! | beta | a², the change of B by a Y pulse | 2 |
+//! | f | 0 | 0 |
+//! | base | X if A < B, else Y | |
+//! | ex, ey | steps of each axis in the sector | |
 //!
 //! n bits hold the greatest weight on the arc. A hyperbola whose branch runs along y has a and b, and a parabola that
 //! opens along y has x and y changed over. The method is that of `cim-arc`; which weight grows and where the axes run are
@@ -38,11 +38,16 @@ use stepwave_netlist::dsl::Scope;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH};
-use crate::parts::{Block, Change, Side, comparison_integral};
+use crate::parts::{A_B, BASE, Block, Change, END, F, POSITION, SIGN, Side, comparison_integral};
 use crate::plan::Plan;
-use crate::{sizes, words};
+use crate::registers::{AS_NEEDED, Reg};
+use crate::sizes;
+use crate::words::{self, GROWS};
+
+/// Changes of the interval weights.
+const ALPHA_BETA: Reg<2> = Reg::each(["alpha", "beta"], AS_NEEDED, "changes of A and B by a pulse").hidden();
 
 /// Comparison-integral, ellipse, parabola, hyperbola.
 pub static MODEL: Model = Model {
@@ -51,12 +56,12 @@ pub static MODEL: Model = Model {
     method: "comparison-integral",
     source: "比较积分法, as in Chinese NC textbooks, with F turned over where the base axis changes",
     registers: &[
-        RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement" },
-        RegisterDoc { name: "a, b", width: "n", about: "interval weights A of an X, B of a Y pulse" },
-        RegisterDoc::BASE,
-        RegisterDoc { name: "alpha, beta", width: "as they need", about: "changes of A and B by a pulse" },
-        RegisterDoc::EX_EY_NEEDED,
-        RegisterDoc::POSITIONS,
+        &F.about("deviation F, two's complement"),
+        &A_B,
+        &BASE,
+        &ALPHA_BETA,
+        &END.width(AS_NEEDED).about("end-point down-counter of each axis"),
+        &POSITION,
     ],
     options: &[&WIDTH, &WEIGHTS, &BEATS, &ON_OVERFLOW],
     claims: None,
@@ -66,22 +71,20 @@ pub static MODEL: Model = Model {
 
 fn plan(conic: &Conic, plan: &mut Plan) -> Result<(), ModelError> {
     let size = sizes::ConicSize::of(conic, |weight, at| weight.at(at));
-    let n = plan.bits_or(sizes::needed(size.greatest));
-    plan.register("f", n + 2).register("a", n).register("b", n).shown("base");
-    plan.hidden("alpha", size.slopes[0]).hidden("beta", size.slopes[1]);
-    plan.end_counters(2, size.steps).positions(size.positions);
+    plan.n = plan.bits_or(sizes::needed(size.greatest));
+    plan.set(ALPHA_BETA.of(0), size.slopes[0]).set(ALPHA_BETA.of(1), size.slopes[1]);
+    plan.set_each(END, size.steps).positions(size.positions);
     plan.fix(&END_POINT, EndPoint::PerAxis);
     Ok(())
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let side = |sign, grows, unit| {
-        let grows = block.held(m, grows, 1);
-        let unit = block.held(m, unit, hardware.bits(unit));
-        Side { negative: block.held(m, sign, 1), change: Some(Change { grows, unit }) }
-    };
-    let sides = [side("sx", "x_grows", "alpha"), side("sy", "y_grows", "beta")];
+    let sides = [0, 1].map(|axis| {
+        let [grows, unit, negative] =
+            [GROWS, ALPHA_BETA, SIGN.pair()].map(|pair| hardware.held(m, &block, pair.of(axis)));
+        Side { negative, change: Some(Change { grows, unit }) }
+    });
     comparison_integral(m, block, hardware, sides);
 }
 
@@ -92,9 +95,9 @@ fn load(conic: &Conic, hardware: &Hardware) -> Vec<Words> {
     let block = |sector: &ConicSector| {
         let [a, b] = [0, 1].map(|axis| weights[axis].at(sector.start[axis].abs()));
         let f = words::weighed(hardware.get(&WEIGHTS), [a, b], !sector.x_lowers, scale * conic.implicit(sector.start));
-        let own = vec![("f", f), ("a", a), ("b", b), ("alpha", weights[0].slope), ("beta", weights[1].slope)];
-        let [ex, ey] = sector.steps().map(i128::from);
-        [own, vec![("ex", ex), ("ey", ey)], words::conic_sector(conic, sector)].concat()
+        let slopes = weights.map(|weight| weight.slope);
+        let own = Words::new().set(F, f).set_each(A_B, [a, b]).set_each(ALPHA_BETA, slopes);
+        own.set_each(END.pair(), sector.steps()).and(words::conic_sector(conic, sector))
     };
     conic.sectors().iter().map(block).collect()
 }

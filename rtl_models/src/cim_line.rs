@@ -8,14 +8,6 @@
 //!   └── + weight of the base axis, - of the other ◄┴──► ex, ey ──► done
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | a | n | A = abs(dy), the interval weight of an X pulse |
-//! | b | n | B = abs(dx), the interval weight of a Y pulse |
-//! | f | n+1, two's complement | 0 |
-//! | base | 1 | X if A < B, else Y |
-//! | ex, ey | n | abs(dx), abs(dy) |
-//!
 //! The axis with the smaller interval, the longer one, is the base axis: it steps at every step, the other where
 //! F >= 0. F gains the weight of the base axis for its pulse and loses that of the other for its own. The intervals of
 //! a line are constant, so the three weight rules are one.
@@ -28,16 +20,17 @@
 
 use stepwave_nc::Line;
 use stepwave_netlist::dsl::Scope;
-use stepwave_netlist::formula::{name, number};
+use stepwave_netlist::formula::number;
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH, Weights};
-use crate::parts::{Block, Side, comparison_integral};
+use crate::parts::{A_B, BASE, Block, END, F, POSITION, SIGN, Side, comparison_integral};
 use crate::plan::Plan;
+use crate::registers::N;
 use crate::{sizes, words};
 
 /// Comparison-integral, line.
@@ -47,11 +40,11 @@ pub static MODEL: Model = Model {
     method: "comparison-integral",
     source: "比较积分法, as in Chinese NC textbooks",
     registers: &[
-        RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
-        RegisterDoc { name: "a, b", width: "n", about: "interval weights A of an X, B of a Y pulse: |dy|, |dx|" },
-        RegisterDoc::BASE,
-        RegisterDoc::EX_EY,
-        RegisterDoc::POSITIONS,
+        &F.width(N.plus(1)),
+        &A_B.about("interval weights A of an X, B of a Y pulse: |dy|, |dx|"),
+        &BASE,
+        &END,
+        &POSITION,
     ],
     options: &[
         &WIDTH,
@@ -63,14 +56,13 @@ pub static MODEL: Model = Model {
         &BEATS,
         &ON_OVERFLOW,
     ],
-    claims: Some(Claims { modes: &["base"], ..Claims::of(Region::Lines) }),
+    claims: Some(Claims { modes: &[BASE], ..Claims::of(Region::Lines) }),
     interpolates: Interpolates::Lines(2, Method { plan, load }),
     hardware,
 };
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
-    let n = plan.magnitude_bits(sizes::longest(line));
-    plan.register("f", n + 1).register("a", n).register("b", n).shown("base").end_counters(2, n);
+    plan.n = plan.magnitude_bits(sizes::longest(line));
     plan.positions(sizes::end_positions(line));
     plan.fix(&END_POINT, EndPoint::PerAxis);
     plan.error_bound = Some(1.0);
@@ -80,7 +72,7 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let sides = ["sx", "sy"].map(|sign| Side { negative: block.held(m, sign, 1), change: None });
+    let sides = [0, 1].map(|axis| Side { negative: hardware.held(m, &block, SIGN.of(axis)), change: None });
     invariants(m);
 
     comparison_integral(m, block, hardware, sides);
@@ -89,7 +81,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 /// F stays between what a step at 0 and a step at -1 leave.
 fn invariants(m: Scope<'_>) {
     // Where X is base F is A·x - B·y, where Y is base the negative of it.
-    let (f, a, b, y_is_base) = (|| name("f"), || name("a"), || name("b"), || name("base"));
+    let (f, a, b, y_is_base) = (|| F.value(), || A_B.of(0).value(), || A_B.of(1).value(), || BASE.value());
     let x_is_base = || number(1) - y_is_base();
     m.between_steps("f_from_below_x", [f() - a() + b(), y_is_base() - 1]);
     m.between_steps("f_from_below_y", [f() - b() + a(), x_is_base() - 1]);
@@ -98,7 +90,6 @@ fn invariants(m: Scope<'_>) {
 }
 
 fn load(line: &Line, _: &Hardware) -> Vec<Words> {
-    let (way, mut words) = words::line(line);
-    words.extend([("f", 0), ("a", way[1]), ("b", way[0]), ("ex", way[0]), ("ey", way[1])]);
-    vec![words]
+    let ([a, b], words) = words::line(line);
+    vec![words.set(F, 0).set_each(A_B, [b, a]).set_each(END.pair(), [a, b])]
 }

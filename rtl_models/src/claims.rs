@@ -13,6 +13,8 @@ use stepwave_netlist::formula::{Clause, Formula, name, number};
 
 use crate::hardware::Hardware;
 use crate::options::{END_POINT, EndPoint};
+use crate::parts::{E, END};
+use crate::registers::Reg;
 
 /// Which geometries are meant.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -43,12 +45,12 @@ pub struct Claims {
     /// taken; left out where a step does not keep it.
     pub guesses: fn(&Hardware) -> Vec<Clause>,
     /// Registers that change what the others mean.
-    pub modes: &'static [&'static str],
+    pub modes: &'static [Reg],
     /// Registers that are held bit by bit, at one width at a time.
-    pub bitwise: &'static [&'static str],
+    pub bitwise: &'static [Reg],
     /// Registers that are loaded with |dx|, |dy|, … while nothing else depends on these: a block takes its clocks
     /// whatever they are, and is proved at one width at a time by following them. Empty where the proof is by steps.
-    pub counted: &'static [&'static str],
+    pub counted: &'static [Reg],
 }
 
 impl Claims {
@@ -76,8 +78,8 @@ impl Claims {
 /// What the end counters still have to count, less the step under way.
 pub(crate) fn steps_left(hardware: &Hardware) -> Option<Formula> {
     match hardware.get(&END_POINT) {
-        EndPoint::PerAxis => Some(name("ex") + name("ey") - 1),
-        EndPoint::Total | EndPoint::Iterations | EndPoint::Longest => Some(name("e") - 1),
+        EndPoint::PerAxis => Some(END.of(0).value() + END.of(1).value() - 1),
+        EndPoint::Total | EndPoint::Iterations | EndPoint::Longest => Some(E.value() - 1),
     }
 }
 

@@ -10,15 +10,6 @@
 //!        └── ±1 on an X pulse ──────────────────────────┘
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | jvx, jvy | n | integrands J_VX = abs(y), J_VY = abs(x) relative to the centre |
-//! | jrx, jry | n | remainders J_R: the preset |
-//! | unit | n | 1; shifted along with the integrands when normalised: 2^Q |
-//! | quad | 2 | quadrant of the sector, Q1 = 0 |
-//! | ex, ey | n | steps of each axis in the sector (`per-axis`) |
-//! | e | n+1 | steps of both axes in the sector (`total`) |
-//!
 //! On every iteration both integrators add with the old J_V; a pulse of one axis corrects the integrand of the other.
 //! An exhausted axis stops adding and freezes its remainder. The loader splits the arc at the axes, where the
 //! coordinate is R rounded to the nearest integer, and loads each sector anew. 2^n must be greater than the largest
@@ -46,11 +37,15 @@ use crate::docs::INTEGRATED_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
-use crate::options::{END_POINT, EndPoint, NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
-use crate::parts::{Block, IntegratorPair, Kind, Normalizer, shifted_left};
+use crate::model::{Interpolates, Method, Model};
+use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
+use crate::parts::{Block, E, END, IntegratorPair, JR, JV, Kind, Normalizer, POSITION, QUAD, shifted_left};
 use crate::plan::Plan;
+use crate::registers::{N, Reg};
 use crate::{sizes, words};
+
+/// By how much a pulse changes an integrand.
+const UNIT: Reg = Reg::new("unit", N, "correction of an integrand, 2^Q").follows(|_| true);
 
 /// Digital differential analyser, arc.
 pub static MODEL: Model = Model {
@@ -59,13 +54,12 @@ pub static MODEL: Model = Model {
     method: "digital differential analyser",
     source: "数字积分法, the DDA circular interpolator of early NC systems, as in Chinese NC textbooks",
     registers: &[
-        RegisterDoc { name: "jvx, jvy", width: "n", about: "integrands J_VX = |y|, J_VY = |x|" },
-        RegisterDoc { name: "jrx, jry", width: "n", about: "remainders J_R, from the preset" },
-        RegisterDoc { name: "unit", width: "n", about: "correction of an integrand, 2^Q" },
-        RegisterDoc { name: "quad", width: "2", about: "quadrant of the sector, Q1 = 0 … Q4 = 3" },
-        RegisterDoc { name: "ex, ey", width: "n", about: "end-point down-counter of each axis (per-axis)" },
-        RegisterDoc { name: "e", width: "n+1", about: "end-point down-counter of both axes (total)" },
-        RegisterDoc { name: "x, y", width: "as the path needs, + 1", about: "machine position, signed" },
+        &(JV.about("integrands J_VX = |y|, J_VY = |x|"), JR.about("remainders J_R, from the preset")),
+        &UNIT,
+        &QUAD.about("quadrant of the sector, Q1 = 0 … Q4 = 3"),
+        &END,
+        &E.about("end-point down-counter of both axes (total)"),
+        &POSITION,
     ],
     options: &[
         &WIDTH.about("N or REGISTER=N,… (default: the least that holds the arc)"),
@@ -82,15 +76,7 @@ pub static MODEL: Model = Model {
 fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
     plan.usual_preset(Preset::Half);
     let sectors = arc.sectors(Crossing::RoundedRadius);
-    let n = plan.magnitude_bits(sizes::largest_coordinate(&sectors));
-    for register in ["jvx", "jrx", "jvy", "jry"] {
-        plan.register(register, n);
-    }
-    plan.shown("unit").shown("quad");
-    match plan.get(&END_POINT) {
-        EndPoint::PerAxis => plan.end_counters(2, n),
-        _ => plan.register("e", n + 1),
-    };
+    plan.n = plan.magnitude_bits(sizes::largest_coordinate(&sectors));
     plan.positions(sizes::arc_positions(arc, &sectors));
     plan.integrators(1)?;
     Ok(())
@@ -105,11 +91,11 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let wide = integrands[0].bits();
     let normalized = normalizer.close(&integrands, wide.min(2));
     let unit = if hardware.get(&NORMALIZE) {
-        let unit = m.reg("unit", wide);
+        let unit = m.reg(UNIT.name(), wide);
         unit.when(block.load, m.lit(wide, 1)).when(normalized.shift, shifted_left(m, unit.q)).else_hold();
         unit.q
     } else {
-        m.name("unit", m.lit(1, 1))
+        m.name(UNIT.name(), m.lit(1, 1))
     };
 
     let last = pair.close(hardware, normalized, kind.pair_sides(unit));

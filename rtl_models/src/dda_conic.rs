@@ -10,16 +10,16 @@
 //!          └── ±uy on an X pulse ───────────────────────┘
 //! ```
 //!
-//! | register | width | ellipse x²/a² + y²/b² = 1, hyperbola | parabola y² = cx |
-//! |---|---|---|---|
-//! | jvx | n | integrand J_VX = a²·abs(y) | 2·abs(y) |
-//! | jvy | n | integrand J_VY = b²·abs(x) | c |
-//! | jrx, jry | n | remainders J_R: the preset | |
-//! | ux | as it needs, n when normalised | a², the correction of jvx by a Y pulse | 2 |
-//! | uy | as it needs, n when normalised | b², the correction of jvy by an X pulse | 0 |
-//! | jvm | n | when normalised: the greatest of J_V, ux, uy in the sector | |
-//! | ex, ey | as they need | steps of each axis in the sector (`per-axis`) | |
-//! | e | as it needs | steps of both axes in the sector (`total`) | |
+//! | register | ellipse x²/a² + y²/b² = 1, hyperbola | parabola y² = cx |
+//! |---|---|---|
+//! | jvx | integrand J_VX = a²·abs(y) | 2·abs(y) |
+//! | jvy | integrand J_VY = b²·abs(x) | c |
+//! | jrx, jry | remainders J_R: the preset | |
+//! | ux | a², the correction of jvx by a Y pulse | 2 |
+//! | uy | b², the correction of jvy by an X pulse | 0 |
+//! | jvm | when normalised: the greatest of J_V, ux, uy in the sector | |
+//! | ex, ey | steps of each axis in the sector (`per-axis`) | |
+//! | e | steps of both axes in the sector (`total`) | |
 //!
 //! On every iteration both integrators add with the old J_V; a pulse of one axis corrects the integrand of the other:
 //! upward where its coordinate grows, downward where it shrinks. On an ellipse one coordinate grows and the other shrinks,
@@ -53,13 +53,20 @@ use stepwave_netlist::dsl::Scope;
 use crate::docs::INTEGRATED_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::hardware::names::{JR, JV};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
-use crate::options::{END_POINT, EndPoint, NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
-use crate::parts::{Block, IntegratorPair, Normalizer, PairSide, shifted_left};
+use crate::model::{Interpolates, Method, Model};
+use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
+use crate::parts::{Block, E, END, IntegratorPair, JR, JV, Normalizer, POSITION, PairSide, SIGN, shifted_left};
 use crate::plan::Plan;
-use crate::{sizes, words};
+use crate::registers::{AS_NEEDED, N, Reg, Rule};
+use crate::sizes;
+use crate::words::{self, GROWS};
+
+const UX_UY: Reg<2> = Reg::each(["ux", "uy"], AS_NEEDED, "corrections of jvx by a Y, of jvy by an X pulse")
+    .follows(|plan| plan.get(&NORMALIZE));
+const JVM: Reg = Reg::new("jvm", N, "greatest integrand or correction of the sector (normalised)")
+    .inner()
+    .when(|plan| plan.get(&NORMALIZE));
 
 /// Digital differential analyser, ellipse, parabola, hyperbola.
 pub static MODEL: Model = Model {
@@ -68,15 +75,15 @@ pub static MODEL: Model = Model {
     method: "digital differential analyser",
     source: "数字积分法 for curves of second order, as in Chinese NC textbooks",
     registers: &[
-        RegisterDoc {
-            name: "jvx, jvy", width: "n", about: "integrands J_VX = a²|y|, J_VY = b²|x|; parabola 2|y|, c"
-        },
-        RegisterDoc { name: "jrx, jry", width: "n", about: "remainders J_R, from the preset" },
-        RegisterDoc { name: "ux, uy", width: "as they need", about: "corrections of jvx by a Y, of jvy by an X pulse" },
-        RegisterDoc { name: "jvm", width: "n", about: "greatest integrand or correction of the sector (normalised)" },
-        RegisterDoc::EX_EY_NEEDED,
-        RegisterDoc { name: "e", width: "as it needs", about: "end-point down-counter of both axes (total)" },
-        RegisterDoc::POSITIONS,
+        &(
+            JV.about("integrands J_VX = a²|y|, J_VY = b²|x|; parabola 2|y|, c"),
+            JR.about("remainders J_R, from the preset"),
+        ),
+        &UX_UY,
+        &JVM,
+        &END.width(AS_NEEDED).about("end-point down-counter of each axis"),
+        &E.width(Rule::Planned("as it needs")).about("end-point down-counter of both axes (total)"),
+        &POSITION,
     ],
     options: &[
         &WIDTH,
@@ -105,22 +112,9 @@ fn corrections(conic: &Conic) -> [i128; 2] {
 fn plan(conic: &Conic, plan: &mut Plan) -> Result<(), ModelError> {
     plan.usual_preset(Preset::Half);
     let size = sizes::ConicSize::of(conic, |weight, at| weight.at(at).max(weight.slope));
-    let n = plan.bits_or(sizes::needed(size.greatest));
-    for axis in [0, 1] {
-        plan.register(JV[axis], n).register(JR[axis], n);
-    }
-    for (name, slope) in [("ux", size.slopes[1]), ("uy", size.slopes[0])] {
-        if plan.get(&NORMALIZE) {
-            plan.shown(name)
-        } else {
-            plan.register(name, slope)
-        };
-    }
-    match plan.get(&END_POINT) {
-        EndPoint::PerAxis => plan.end_counters(2, size.steps),
-        _ => plan.register("e", size.steps + 1),
-    };
-    plan.positions(size.positions);
+    plan.n = plan.bits_or(sizes::needed(size.greatest));
+    plan.set(UX_UY.of(0), size.slopes[1]).set(UX_UY.of(1), size.slopes[0]);
+    plan.set(E, size.steps + 1).set_each(END, size.steps).positions(size.positions);
     plan.integrators(1)?;
     Ok(())
 }
@@ -131,20 +125,20 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let pair = IntegratorPair::new(m, &block, hardware);
 
     // What shifts along has the width of the integrands.
-    let bits = |name: &str| if hardware.get(&NORMALIZE) { hardware.bits("jvx") } else { hardware.bits(name) };
-    let [ux, uy] = ["ux", "uy"].map(|name| m.reg(name, bits(name)));
-    let greatest = hardware.get(&NORMALIZE).then(|| m.reg("jvm", bits("jvm")));
+    let bits = |own: Reg| hardware.bits(if hardware.get(&NORMALIZE) { JV.of(0) } else { own });
+    let [ux, uy] = [0, 1].map(|axis| UX_UY.of(axis)).map(|own| m.reg(own.name(), bits(own)));
+    let greatest = hardware.get(&NORMALIZE).then(|| m.reg(JVM.name(), bits(JVM)));
     let normalized = normalizer.close(&greatest.map(|greatest| greatest.q).into_iter().collect::<Vec<_>>(), 1);
-    for (name, register) in [("ux", Some(ux)), ("uy", Some(uy)), ("jvm", greatest)] {
+    for (own, register) in [(UX_UY.of(0), Some(ux)), (UX_UY.of(1), Some(uy)), (JVM, greatest)] {
         let Some(register) = register else { continue };
         let shifted = shifted_left(m, register.q);
-        register.when(block.load, block.word(name, bits(name))).when(normalized.shift, shifted).else_hold();
+        register.when(block.load, block.word(own.name(), bits(own))).when(normalized.shift, shifted).else_hold();
     }
 
     // A pulse of an axis raises the integrand of the other where its own coordinate grows.
-    let [x_grows, y_grows] = ["x_grows", "y_grows"].map(|name| block.held(m, name, 1));
-    let x = PairSide { negative: block.held(m, "sx", 1), raised: y_grows, unit: ux.q };
-    let y = PairSide { negative: block.held(m, "sy", 1), raised: x_grows, unit: uy.q };
+    let [x_grows, y_grows] = [0, 1].map(|axis| hardware.held(m, &block, GROWS.of(axis)));
+    let x = PairSide { negative: hardware.held(m, &block, SIGN.of(0)), raised: y_grows, unit: ux.q };
+    let y = PairSide { negative: hardware.held(m, &block, SIGN.of(1)), raised: x_grows, unit: uy.q };
     let last = pair.close(hardware, normalized, [x, y]);
     block.close(normalized.ready, normalized.run, last);
 }
@@ -157,10 +151,10 @@ fn load(conic: &Conic, hardware: &Hardware) -> Vec<Words> {
         if hardware.get(&NORMALIZE) {
             // Each integrand is greatest at one of the ends.
             let all = [start, integrands(conic, sector.end), units];
-            own.push(("jvm", all.into_iter().flatten().max().unwrap_or(0)));
+            own = own.set(JVM, all.into_iter().flatten().max().unwrap_or(0));
         }
-        own.extend([("ux", units[0]), ("uy", units[1])]);
-        [own, words::end_counters(hardware, sector.steps()), words::conic_sector(conic, sector)].concat()
+        let end = words::end_counters(hardware, sector.steps());
+        own.set_each(UX_UY, units).and(end).and(words::conic_sector(conic, sector))
     };
     conic.sectors().iter().map(block).collect()
 }

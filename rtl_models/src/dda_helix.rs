@@ -8,16 +8,6 @@
 //!    (fraction)     ▲──────┘
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | jvx, jvy | n | integrands J_VX = abs(y), J_VY = abs(x) relative to the centre |
-//! | jrx, jry | n | remainders J_R: the preset |
-//! | jvz | n+8 | integrand J_VZ = abs(Z)/θ with a fraction of 8 bits, rounded up |
-//! | jrz | n+8 | remainder J_R: the preset |
-//! | quad | 2 | quadrant of the sector, Q1 = 0 |
-//! | ex, ey | n | steps of each axis in the sector |
-//! | ez | n+1 | steps of z in the sector |
-//!
 //! An iteration turns the circle pair by 1/2^n radian, so z makes J_VZ/2^n = Z/θ of its way per radian, θ being the angle
 //! of the whole helix. The pair is that of `dda-arc`: it corrects J_VX and J_VY by ±1, and the loader splits the helix
 //! where its arc meets the axes. Up to there z makes its share of Z, rounded to the nearest step; an exhausted axis stops
@@ -46,14 +36,21 @@ use stepwave_netlist::dsl::Scope;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PRESET, Preset, WIDTH};
-use crate::parts::{Block, DownCounter, IntegratorPair, Iteration, Kind, Normalizer, axis_counter, integrator};
+use crate::parts::{
+    Block, END, IntegratorPair, Iteration, JR, JV, Kind, Normalizer, POSITION, QUAD, SIGN, axis_scope, integrator,
+};
 use crate::plan::Plan;
+use crate::registers::{N, Reg};
 use crate::{sizes, words};
 
 /// Bits of the fraction of J_VZ, unless the widths say otherwise.
 const FRACTION: u32 = 8;
+
+const JVZ: Reg = JV.of(2).width(N.plus(FRACTION));
+const JRZ: Reg = JR.of(2).width(N.plus(FRACTION));
+const EZ: Reg = END.of(2).width(N.plus(1));
 
 /// Digital differential analyser, helix.
 pub static MODEL: Model = Model {
@@ -62,14 +59,13 @@ pub static MODEL: Model = Model {
     method: "digital differential analyser",
     source: "数字积分法: the DDA circular interpolator with a third integrator for the linear axis",
     registers: &[
-        RegisterDoc { name: "jvx, jvy", width: "n", about: "integrands J_VX = |y|, J_VY = |x|" },
-        RegisterDoc { name: "jrx, jry", width: "n", about: "remainders J_R, from the preset" },
-        RegisterDoc { name: "jvz", width: "n+8", about: "integrand J_VZ = |Z|/θ, with a fraction" },
-        RegisterDoc { name: "jrz", width: "n+8", about: "remainder J_R of z; as much wider than jrx as the fraction" },
-        RegisterDoc { name: "quad", width: "2", about: "quadrant of the sector, Q1 = 0 … Q4 = 3" },
-        RegisterDoc { name: "ex, ey", width: "n", about: "end-point down-counters of x and y" },
-        RegisterDoc { name: "ez", width: "n+1", about: "end-point down-counter of z" },
-        RegisterDoc { name: "x, y, z", width: "as the path needs, + 1", about: "machine position, signed" },
+        &(JV.pair().about("integrands J_VX = |y|, J_VY = |x|"), JR.pair().about("remainders J_R, from the preset")),
+        &JVZ.about("integrand J_VZ = |Z|/θ, with a fraction"),
+        &JRZ.about("remainder J_R of z; as much wider than jrx as the fraction"),
+        &QUAD.about("quadrant of the sector, Q1 = 0 … Q4 = 3"),
+        &END.pair().about("end-point down-counters of x and y"),
+        &EZ.about("end-point down-counter of z"),
+        &POSITION,
     ],
     options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N, or jrx=N,jry=N,jrz=N"), &ON_OVERFLOW],
     claims: None,
@@ -91,12 +87,7 @@ fn plan(helix: &Helix, plan: &mut Plan) -> Result<(), ModelError> {
     let sectors = helix.arc().sectors(Crossing::RoundedRadius);
     // J_VZ without its fraction.
     let steepest = u64::try_from(rate(helix, FRACTION) >> FRACTION).unwrap_or(u64::MAX);
-    let n = plan.magnitude_bits(sizes::largest_coordinate(&sectors).max(steepest));
-    for register in ["jvx", "jrx", "jvy", "jry"] {
-        plan.register(register, n);
-    }
-    plan.register("jvz", n + FRACTION).register("jrz", n + FRACTION);
-    plan.shown("quad").end_counters(2, n).register("ez", n + 1);
+    plan.n = plan.magnitude_bits(sizes::largest_coordinate(&sectors).max(steepest));
     let z = vec![helix.from()[2], helix.to()[2]];
     plan.positions(sizes::arc_positions(helix.arc(), &sectors).into_iter().chain([z]));
     plan.fix(&END_POINT, EndPoint::PerAxis);
@@ -111,29 +102,23 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let pair = IntegratorPair::new(m, &block, hardware);
     let last_in_plane = pair.close(hardware, normalized, kind.pair_sides(m.name("unit", m.lit(1, 1))));
 
-    let z = m.scope("axis_z");
-    let jvz = block.held(z, "jvz", hardware.bits("jvz"));
-    let ez = DownCounter::new(z, &block, "ez", hardware.bits("ez"));
+    let z = axis_scope(m, 2);
+    let jvz = hardware.held(z, &block, JVZ);
+    let ez = hardware.counter(z, &block, EZ);
     let step = Iteration::new(m, &block, hardware, normalized.run).only(ez.running());
     let pulse = integrator(z, &block, hardware, 2, jvz, step);
-    axis_counter(z, &block, "z", hardware.bits("z"), pulse, block.held(z, "sz", 1));
+    hardware.axis(z, &block, 2, pulse, hardware.held(z, &block, SIGN.of(2)));
     block.close(normalized.ready, normalized.run, last_in_plane & ez.count(pulse));
 }
 
 fn load(helix: &Helix, hardware: &Hardware) -> Vec<Words> {
-    let jvz = rate(helix, hardware.fraction("jvz"));
+    let jvz = rate(helix, hardware.fraction(JVZ.name()));
     let mut made = 0;
     let mut blocks = Vec::new();
     for sector in helix.sectors() {
-        let mut words = words::integrated_sector(hardware, helix.arc(), &sector.plane);
-        words.extend([
-            ("jvz", jvz),
-            ("jrz", hardware.preset(2, "jrz")),
-            ("ez", i128::from(sector.z_steps - made)),
-            ("sz", i128::from(helix.z_way() < 0)),
-            ("z", i128::from(helix.from()[2])),
-        ]);
-        blocks.push(words);
+        let plane = words::integrated_sector(hardware, helix.arc(), &sector.plane);
+        let words = plane.set(JVZ, jvz).set(JRZ, hardware.preset(JRZ)).set(EZ, sector.z_steps - made);
+        blocks.push(words.set(SIGN.of(2), helix.z_way() < 0).set(POSITION.of(2), helix.from()[2]));
         made = sector.z_steps;
     }
     blocks

@@ -12,15 +12,6 @@
 //!                                  └──┴─ carry flip-flop; behind the last bit it is di
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | jvx, jvy, … | n | integrand J_V = abs(d) |
-//! | jrx, jry, … | n | remainder J_R: the preset |
-//! | e | n+1 | 2^n iterations (`iterations`), all steps (`total`), steps of the longest axis (`longest`) |
-//! | ex, ey, … | n | steps of each axis (`per-axis`) |
-//! | carry | 1 | kept carry of each axis (`--adder serial`) |
-//! | place | as it needs | the bit, in radix 10 the digit, that is added next (`--adder serial`) |
-//!
 //! On every iteration {carry, J_R} := J_R + J_V; the carry is the axis's pulse. After t iterations the axis stands at
 //! floor((t·abs(d) + P) / 2^n): at d after 2^n, for every preset P, and J_R is back at P. 2^n must be greater than every
 //! abs(d). Normalised, all J_V are shifted left by the same Q until the largest has its top bit set, one bit a clock,
@@ -56,14 +47,13 @@ use stepwave_netlist::formula::{Clause, Formula, name, number};
 
 use crate::claims::{Claims, Region, steps_left};
 use crate::error::ModelError;
-use crate::hardware::names::{END, JR, JV, LONGEST, POSITION, SIGN};
 use crate::hardware::{Hardware, Pace, modulus};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{ADDER, Adder, END_POINT, EndPoint, NORMALIZE, ON_OVERFLOW, PRESET, RADIX, Radix, WIDTH};
 use crate::parts::{
-    Block, DownCounter, Iteration, Normalizer, axis_counter, digits, integrator, population_count, rotated,
-    shifted_left,
+    Block, E, END, Iteration, JR, JV, LONGEST, Normalizer, PLACE, POSITION, SIGN, axis_scope, digits, integrator,
+    population_count, rotated, shifted_left,
 };
 use crate::plan::Plan;
 use crate::sizes;
@@ -76,14 +66,7 @@ pub static MODEL: Model = Model {
     title: "Digital differential analyser, line of 2 to 6 axes",
     method: "digital differential analyser",
     source: "数字积分法, the DDA linear interpolator of early NC systems, as in Chinese NC textbooks",
-    registers: &[
-        RegisterDoc { name: "jvx, jvy, …", width: "n", about: "integrand J_V of each axis, |d|" },
-        RegisterDoc { name: "jrx, jry, …", width: "n", about: "remainder J_R of each axis, from the preset" },
-        RegisterDoc { name: "e", width: "n+1", about: "end-point down-counter (iterations, total, longest)" },
-        RegisterDoc { name: "ex, ey, …", width: "n", about: "end-point down-counter of each axis (per-axis)" },
-        RegisterDoc { name: "place", width: "as it needs", about: "digit that is added next, 0 the lowest (serial)" },
-        RegisterDoc::AXIS_POSITIONS,
-    ],
+    registers: &[&(JV, JR), &E.about("end-point down-counter (iterations, total, longest)"), &END, &PLACE, &POSITION],
     options: &[
         &WIDTH.about("N or REGISTER=N,… (default: the least that holds the line)"),
         &PRESET,
@@ -117,7 +100,9 @@ fn rank(hardware: &Hardware) -> Option<Formula> {
     match hardware.get(&END_POINT) {
         EndPoint::Iterations => steps_left(hardware),
         EndPoint::Total | EndPoint::Longest => Some(modulus() - name("steps")),
-        EndPoint::PerAxis => Some((name("ex") + name("ey") + 2) * modulus() - name("jrx") - name("jry")),
+        EndPoint::PerAxis => {
+            Some((END.of(0).value() + END.of(1).value() + 2) * modulus() - JR.of(0).value() - JR.of(1).value())
+        }
     }
 }
 
@@ -126,7 +111,7 @@ fn guesses(hardware: &Hardware) -> Vec<Clause> {
     if !matches!(hardware.get(&END_POINT), EndPoint::Total | EndPoint::Longest) {
         return Vec::new();
     }
-    let left = [0, 1].map(|i| name(JV[i]) - (number(1) - 2 * name(SIGN[i])) * name(POSITION[i]));
+    let left = [0, 1].map(|i| JV.of(i).value() - (number(1) - 2 * SIGN.of(i).value()) * POSITION.of(i).value());
     let early = || name("2^k") - 1 - name("steps");
     let ended = left.clone().map(|left| Clause::either("all iterations end an axis", [-left, early()]));
     [vec![Clause::either("an axis has not ended", left.map(|left| left - 1))], ended.to_vec()].concat()
@@ -134,7 +119,7 @@ fn guesses(hardware: &Hardware) -> Vec<Clause> {
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
     let (axes, radix) = (plan.axes(), plan.get(&RADIX));
-    let n = plan.magnitude_bits(sizes::longest(line));
+    plan.n = plan.magnitude_bits(sizes::longest(line));
     if radix == Radix::Decimal && plan.get(&NORMALIZE) {
         return Err(ModelError::Value {
             model: NAME,
@@ -146,46 +131,42 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
                     .to_owned(),
         });
     }
-    for axis in 0..axes {
-        plan.register(JV[axis], n).register(JR[axis], n);
-    }
     // End points are counted in binary, whatever the radix.
-    let steps = Width::needed_unsigned(modulus(radix, n) - 1);
+    let steps = Width::needed_unsigned(modulus(radix, plan.n) - 1);
     let end_point = plan.get(&END_POINT);
-    match end_point {
-        EndPoint::PerAxis => plan.end_counters(axes, steps),
+    let e = match end_point {
         // The sum of up to 2, 4 or 6 axes.
-        EndPoint::Total => plan.register("e", steps + axes.next_power_of_two().trailing_zeros()),
-        EndPoint::Iterations => plan.register("e", Width::needed_unsigned(modulus(radix, plan.bits(JR[0])))),
-        EndPoint::Longest => plan.register("e", steps + 1),
+        EndPoint::Total => steps + axes.next_power_of_two().trailing_zeros(),
+        EndPoint::Iterations => Width::needed_unsigned(modulus(radix, plan.bits(JR.of(0)))),
+        EndPoint::Longest | EndPoint::PerAxis => steps + 1,
     };
+    plan.set(E, e).set_each(END, steps);
     plan.positions(sizes::end_positions(line));
     let clocks = match plan.get(&ADDER) {
         Adder::Parallel => 1,
-        Adder::Serial => plan.bits(JR[0]) / radix.digit_bits(),
+        Adder::Serial => plan.bits(JR.of(0)) / radix.digit_bits(),
     };
     plan.integrators(clocks.into())?;
     // With unequal presets one axis may lead while another lags.
     let equal = plan.presets()?.windows(2).all(|pair| pair[0] == pair[1]);
     plan.error_bound = (axes == 2 && end_point == EndPoint::Iterations && equal).then_some(1.0);
-    plan.pace = Pace::Cycle(JR[0]);
+    plan.pace = Pace::Cycle(JR.of(0));
     Ok(())
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let axes = 0..hardware.axes;
-    let bits = |name: &str| hardware.bits(name);
     let block = Block::new(m);
     let normalizer = Normalizer::new(m, &block, hardware.get(&NORMALIZE));
-    let scopes: Vec<_> = hardware.letters().iter().map(|letter| m.scope(&format!("axis_{letter}"))).collect();
-    let integrand = |i: usize| scopes[i].reg(JV[i], bits(JV[i])).shown(digits(hardware));
+    let scopes: Vec<_> = axes.clone().map(|axis| axis_scope(m, axis)).collect();
+    let integrand = |i: usize| hardware.reg(scopes[i], JV.of(i)).shown(digits(hardware));
     let integrands: Vec<_> = axes.clone().map(integrand).collect();
     let normalized = normalizer.close(&integrands.iter().map(|jv| jv.q).collect::<Vec<_>>(), 1);
 
     let counters: Option<Vec<_>> = (hardware.get(&END_POINT) == EndPoint::PerAxis)
-        .then(|| axes.clone().map(|i| DownCounter::new(scopes[i], &block, END[i], bits(END[i]))).collect());
+        .then(|| axes.clone().map(|i| hardware.counter(scopes[i], &block, END.of(i))).collect());
     if counters.is_some() {
-        let left = axes.clone().map(|i| name(END[i])).fold(number(-1), |sum, end| sum + end);
+        let left = axes.clone().map(|i| END.of(i).value()).fold(number(-1), |sum, end| sum + end);
         m.between_steps("a_way_is_left", [left]);
     }
     let iteration = Iteration::new(m, &block, hardware, normalized.run);
@@ -195,19 +176,18 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
         // An exhausted axis stops adding.
         let step = counters.as_ref().map_or(iteration, |counters| iteration.only(counters[i].running()));
         let loaded = jv
-            .when(block.load, block.word_in(hardware.get(&RADIX), JV[i], bits(JV[i])))
+            .when(block.load, block.word_in(hardware.get(&RADIX), JV.of(i).name(), hardware.bits(JV.of(i))))
             .when(normalized.shift, shifted_left(scope, jv.q));
         match hardware.get(&ADDER) {
             Adder::Parallel => loaded.else_hold(),
             Adder::Serial => loaded.when(step.add, rotated(hardware, jv.q)).else_hold(),
         }
         let pulse = integrator(scope, &block, hardware, i, jv.q, step);
-        let negative = block.held(scope, SIGN[i], 1);
-        axis_counter(scope, &block, POSITION[i], bits(POSITION[i]), pulse, negative);
+        hardware.axis(scope, &block, i, pulse, hardware.held(scope, &block, SIGN.of(i)));
         pulses.push(pulse);
     }
 
-    let e = || DownCounter::new(m, &block, "e", bits("e"));
+    let e = || hardware.counter(m, &block, E);
     let last = match (hardware.get(&END_POINT), counters) {
         (_, Some(counters)) => {
             let ended = counters.into_iter().zip(&pulses).map(|(counter, pulse)| counter.count(*pulse));
@@ -215,7 +195,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
         }
         (EndPoint::Total, None) => e().count_pulses(population_count(m, 3, &pulses)),
         (EndPoint::Longest, None) => {
-            let longest = (0..hardware.axes).map(|i| block.held(scopes[i], LONGEST[i], 1) & pulses[i]);
+            let longest = (0..hardware.axes).map(|i| hardware.held(scopes[i], &block, LONGEST.of(i)) & pulses[i]);
             e().count(longest.reduce(|a, b| a | b).unwrap_or(block.load))
         }
         (_, None) => e().count_or_halve(iteration.complete, normalized.shift),
@@ -227,27 +207,23 @@ fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let delta: Vec<i128> = line.delta().into_iter().map(i128::from).collect();
     let way = |axis: usize| delta[axis].abs();
     let longest = (0..hardware.axes).rev().max_by_key(|&axis| way(axis)).unwrap_or(0);
-    let mut words = Words::new();
-    for axis in 0..hardware.axes {
-        words.push((JV[axis], way(axis)));
-        words.push((JR[axis], hardware.preset(axis, JR[axis])));
-        words.push((SIGN[axis], i128::from(delta[axis] < 0)));
-        words.push((POSITION[axis], i128::from(line.from()[axis])));
-        match hardware.get(&END_POINT) {
-            EndPoint::PerAxis => words.push((END[axis], way(axis))),
-            EndPoint::Longest => words.push((LONGEST[axis], i128::from(axis == longest))),
-            EndPoint::Total | EndPoint::Iterations => {}
-        }
+    let (end_point, mut words) = (hardware.get(&END_POINT), Words::new());
+    for (axis, delta) in delta.iter().enumerate() {
+        words = words.set(JV.of(axis), way(axis)).set(JR.of(axis), hardware.preset(JR.of(axis)));
+        words = words.set(SIGN.of(axis), *delta < 0).set(POSITION.of(axis), line.from()[axis]);
+        words = match end_point {
+            EndPoint::PerAxis => words.set(END.of(axis), way(axis)),
+            EndPoint::Longest => words.set(LONGEST.of(axis), axis == longest),
+            EndPoint::Total | EndPoint::Iterations => words,
+        };
     }
-    match hardware.get(&END_POINT) {
+    vec![match end_point {
+        // At most 2^64.
         EndPoint::Iterations => {
-            // At most 2^64.
-            let iterations = hardware.modulus(hardware.bits(JR[0]));
-            words.push(("e", i128::try_from(iterations).unwrap_or(i128::MAX)));
+            words.set(E, i128::try_from(hardware.modulus(hardware.bits(JR.of(0)))).unwrap_or(i128::MAX))
         }
-        EndPoint::Total => words.push(("e", (0..hardware.axes).map(way).sum())),
-        EndPoint::Longest => words.push(("e", way(longest))),
-        EndPoint::PerAxis => {}
-    }
-    vec![words]
+        EndPoint::Total => words.set(E, (0..hardware.axes).map(way).sum::<i128>()),
+        EndPoint::Longest => words.set(E, way(longest)),
+        EndPoint::PerAxis => words,
+    }]
 }

@@ -10,13 +10,6 @@
 //!                    pn-1 ──► & ◄── bit 0
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | q | n | 0 |
-//! | q1, q2, … | the units of a cascade, so many bits each | 0 |
-//! | mx, my, … | n | coefficient M = abs(d) |
-//! | percent, o | 8, two decimal digits | the feed override, and 0 |
-//!
 //! One synchronous counter is shared by all axes. Stage k, from the lowest on, offers a pulse at the clock at which it goes
 //! from 0 to 1, when all stages below it are 1: exactly one stage a clock, but for the clock that takes the counter from
 //! all ones to 0. That carry ends the block after 2^n clocks. Stage k pulses in 2^(n-1-k) of them and is gated by bit
@@ -52,16 +45,33 @@ use stepwave_netlist::dsl::{Scope, Signal};
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
-use crate::hardware::names::{COEFFICIENT, POSITION, SIGN};
 use crate::hardware::{Hardware, Pace, modulus};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{CASCADE, END_POINT, EndPoint, ON_OVERFLOW, OVERRIDE, RADIX, Radix, WIDTH};
-use crate::parts::{Block, RateMultiplier, Units, axis_counter};
+use crate::parts::{Block, COEFFICIENT, POSITION, Q, RateMultiplier, SIGN, Units, axis_scope};
 use crate::plan::Plan;
+use crate::registers::{Reg, Rule};
 use crate::sizes;
 
 const NAME: &str = "dpm-line";
+
+/// The number of the feed override.
+const PERCENT: Reg = Reg::new("percent", Rule::Bits(8), "the feed override, two decimal digits");
+const O: Reg = Reg::new("o", Rule::Bits(8), "count of the feed override, two decimal digits (override)")
+    .when(|plan| plan.get(&OVERRIDE).is_some());
+/// The counters of a cascade.
+const Q_UNITS: Reg<64> = Reg::each(UNITS, Rule::Planned("BITS"), "counters of the units, the fastest first (cascade)")
+    .when(|plan| units_of(plan).radix == Radix::Binary && units_of(plan).count > 1)
+    .count(|plan| units_of(plan).count as usize);
+#[rustfmt::skip]
+const UNITS: [&str; 64] = [
+    "q1", "q2", "q3", "q4", "q5", "q6", "q7", "q8", "q9", "q10", "q11", "q12", "q13",
+    "q14", "q15", "q16", "q17", "q18", "q19", "q20", "q21", "q22", "q23", "q24", "q25", "q26",
+    "q27", "q28", "q29", "q30", "q31", "q32", "q33", "q34", "q35", "q36", "q37", "q38", "q39",
+    "q40", "q41", "q42", "q43", "q44", "q45", "q46", "q47", "q48", "q49", "q50", "q51", "q52",
+    "q53", "q54", "q55", "q56", "q57", "q58", "q59", "q60", "q61", "q62", "q63", "q64",
+];
 
 /// The units of the feed override.
 const OVERRIDE_UNITS: Units = Units { radix: Radix::Decimal, bits: 4, count: 2 };
@@ -74,11 +84,12 @@ pub static MODEL: Model = Model {
     source: "数字脉冲乘法器, the digital pulse multiplier of Chinese NC textbooks, known as binary rate multiplier; the \
              counts of a decade are a definition of this project",
     registers: &[
-        RegisterDoc { name: "o", width: "8", about: "count of the feed override, two decimal digits (override)" },
-        RegisterDoc { name: "q", width: "n", about: "counter that all axes share" },
-        RegisterDoc { name: "q1, q2, …", width: "BITS", about: "counters of the units, the fastest first (cascade)" },
-        RegisterDoc { name: "mx, my, …", width: "n", about: "coefficient M of each axis, |d|" },
-        RegisterDoc::AXIS_POSITIONS,
+        &O,
+        &Q.when(|plan| units_of(plan).radix == Radix::Decimal || units_of(plan).count == 1)
+            .follows(|plan| plan.get(&RADIX) == Radix::Decimal),
+        &Q_UNITS,
+        &COEFFICIENT,
+        &POSITION,
     ],
     options: &[
         &WIDTH,
@@ -91,7 +102,11 @@ pub static MODEL: Model = Model {
         &OVERRIDE,
         &ON_OVERFLOW,
     ],
-    claims: Some(Claims { rank: |_| None, counted: &["mx", "my"], ..Claims::of(Region::Lines) }),
+    claims: Some(Claims {
+        rank: |_| None,
+        counted: &[COEFFICIENT.of(0), COEFFICIENT.of(1)],
+        ..Claims::of(Region::Lines)
+    }),
     interpolates: Interpolates::Lines(6, Method { plan, load }),
     hardware,
 };
@@ -100,29 +115,15 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
     let n = size(plan, sizes::longest(line))?;
     let units = units(plan.get(&RADIX), plan.get(&CASCADE), n);
     let slower = plan.get(&OVERRIDE).is_some();
-    if slower {
-        plan.shown("o");
-    }
-    match units {
-        Units { radix: Radix::Decimal, .. } => _ = plan.shown("q"),
-        Units { count: 1, .. } => _ = plan.register("q", n),
-        Units { bits, count, .. } => {
-            for index in 1..=count {
-                plan.register(format!("q{index}"), bits);
-            }
-        }
-    }
-    for name in &COEFFICIENT[..plan.axes()] {
-        plan.register(*name, n);
-    }
-    plan.positions(sizes::end_positions(line));
+    plan.n = n;
+    plan.set_each(Q_UNITS, units.bits).positions(sizes::end_positions(line));
     plan.fix(&END_POINT, EndPoint::Iterations);
     check_widths(plan, units)?;
-    let n = plan.bits(COEFFICIENT[0]);
+    let n = plan.bits(COEFFICIENT.of(0));
     let clocks = u64::try_from(modulus(units.radix, n)).unwrap_or(u64::MAX);
     plan.stall_clocks = clocks.saturating_mul(if slower { 100 } else { 1 }).saturating_add(16);
     plan.scale = &["m"];
-    plan.pace = Pace::Cycle(COEFFICIENT[0]);
+    plan.pace = Pace::Cycle(COEFFICIENT.of(0));
     let bound = rate_bound(units.radix, n);
     plan.rate_bound = Some(bound);
     // The place where all axes should be lies on the line.
@@ -182,23 +183,30 @@ fn units(radix: Radix, cascade: Option<Width>, n: u32) -> Units {
     Units { radix, bits, count: n / bits }
 }
 
+fn units_of(plan: &Plan) -> Units {
+    units(plan.get(&RADIX), plan.get(&CASCADE), plan.n)
+}
+
 /// Coefficients must be as wide as the counter, and units as wide as they are said to be.
 fn check_widths(plan: &Plan, units: Units) -> Result<(), ModelError> {
-    let widths = plan.widths()?;
-    let counter = widths.get("q").map_or(units.bits * units.count, |q| q.get());
+    plan.check()?;
+    let whole = units.radix == Radix::Binary && units.count == 1;
+    let counter = if whole { plan.bits(Q) } else { units.bits * units.count };
+    let cascaded = if units.radix == Radix::Binary && !whole { units.count as usize } else { 0 };
+    let coefficients = (0..plan.axes()).map(|axis| (COEFFICIENT.of(axis), counter, "the counter has"));
+    let of_units = (0..cascaded).map(|unit| (Q_UNITS.of(unit), units.bits, "each unit has"));
+    let mut all: Vec<_> = coefficients.chain(of_units).collect();
+    all.sort_by_key(|(register, ..)| register.name());
     let mut widest = counter;
     let mut odd = None;
-    for (name, width) in &widths {
-        let (wanted, what) = match name.as_str() {
-            name if COEFFICIENT.contains(&name) => (counter, "the counter has"),
-            name if name != "q" && name.starts_with('q') => (units.bits, "each unit has"),
-            _ => continue,
-        };
+    for (register, wanted, what) in all {
+        let bits = plan.bits(register);
         if wanted == counter {
-            widest = widest.max(width.get());
+            widest = widest.max(bits);
         }
-        if width.get() != wanted {
-            odd = odd.or(Some(format!("{name} of {width}, but {what} {wanted}")));
+        if bits != wanted {
+            let (name, s) = (register.name(), if bits == 1 { "" } else { "s" });
+            odd = odd.or(Some(format!("{name} of {bits} bit{s}, but {what} {wanted}")));
         }
     }
     let unit = unit(plan.get(&RADIX), plan.get(&CASCADE));
@@ -218,37 +226,35 @@ pub(crate) fn rate_bound(radix: Radix, n: u32) -> f64 {
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    let bits = |name: &str| hardware.bits(name);
     let block = Block::new(m);
     let step = match hardware.get(&OVERRIDE) {
         Some(_) => feed_override(m.scope("feed_override"), &block),
         None => block.busy,
     };
-    let units = units(hardware.get(&RADIX), hardware.get(&CASCADE), bits(COEFFICIENT[0]));
-    let counter = RateMultiplier::new(m.scope("counter"), &block, "q", units, step);
-    for (axis, letter) in hardware.letters().iter().enumerate() {
-        let scope = m.scope(&format!("axis_{letter}"));
-        let coefficient = block.held_in(scope, hardware.get(&RADIX), COEFFICIENT[axis], bits(COEFFICIENT[axis]));
-        let negative = block.held(scope, SIGN[axis], 1);
+    let units = units(hardware.get(&RADIX), hardware.get(&CASCADE), hardware.bits(COEFFICIENT.of(0)));
+    let counter = RateMultiplier::new(m.scope("counter"), &block, Q.name(), units, step);
+    for axis in 0..hardware.axes {
+        let (scope, own) = (axis_scope(m, axis), COEFFICIENT.of(axis));
+        let coefficient = block.held_in(scope, hardware.get(&RADIX), own.name(), hardware.bits(own));
+        let negative = hardware.held(scope, &block, SIGN.of(axis));
         let pulse = scope.name("pulse", counter.gated(scope, coefficient));
-        axis_counter(scope, &block, letter, bits(letter), pulse, negative);
+        hardware.axis(scope, &block, axis, pulse, negative);
     }
     block.close(block.load, step, counter.carry);
 }
 
 /// Two decades that pass a percentage of the clocks of a block: 1 bit, the line takes a step at this edge.
 fn feed_override<'m>(m: Scope<'m>, block: &Block<'m>) -> Signal<'m> {
-    let percent = block.held_in(m, Radix::Decimal, "percent", OVERRIDE_UNITS.bits * OVERRIDE_UNITS.count);
-    let counter = RateMultiplier::new(m, block, "o", OVERRIDE_UNITS, block.busy);
+    let percent = block.held_in(m, Radix::Decimal, PERCENT.name(), OVERRIDE_UNITS.bits * OVERRIDE_UNITS.count);
+    let counter = RateMultiplier::new(m, block, O.name(), OVERRIDE_UNITS, block.busy);
     m.name("feed", counter.gated(m, percent))
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
-    let mut words: Words = hardware.get(&OVERRIDE).map(|percent| ("percent", percent.into())).into_iter().collect();
+    let mut words = hardware.get(&OVERRIDE).map_or_else(Words::new, |percent| Words::new().set(PERCENT, percent));
     for (axis, delta) in line.delta().into_iter().enumerate() {
-        words.push((COEFFICIENT[axis], i128::from(delta).abs()));
-        words.push((SIGN[axis], i128::from(delta < 0)));
-        words.push((POSITION[axis], i128::from(line.from()[axis])));
+        words = words.set(COEFFICIENT.of(axis), i128::from(delta).abs()).set(SIGN.of(axis), delta < 0);
+        words = words.set(POSITION.of(axis), line.from()[axis]);
     }
     vec![words]
 }

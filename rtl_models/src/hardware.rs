@@ -3,30 +3,14 @@
 use std::collections::BTreeMap;
 
 use stepwave_netlist::Width;
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use crate::options::{
     ADDER, Adder, AnyOption, CASCADE, NORMALIZE, OptionDef, Options, PRESET, Preset, RADIX, Radix, WIDTH,
 };
+use crate::parts::{Block, DownCounter, JR, JV, POSITION, axis_counter};
+use crate::registers::{AXES, Reg, Rule};
 use crate::sampling::Sampling;
-
-/// Letters of up to six axes.
-pub const AXES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
-
-/// Names of what every axis has one of, in the order of the letters.
-pub(crate) mod names {
-    pub(crate) const JV: [&str; 6] = ["jvx", "jvy", "jvz", "jva", "jvb", "jvc"];
-    pub(crate) const JR: [&str; 6] = ["jrx", "jry", "jrz", "jra", "jrb", "jrc"];
-    pub(crate) const ACC: [&str; 6] = ["accx", "accy", "accz", "acca", "accb", "accc"];
-    pub(crate) const RATE: [&str; 6] = ["ratex", "ratey", "ratez", "ratea", "rateb", "ratec"];
-    pub(crate) const COUNTER: [&str; 6] = ["cntx", "cnty", "cntz", "cnta", "cntb", "cntc"];
-    pub(crate) const STEPS: [&str; 6] = ["stepsx", "stepsy", "stepsz", "stepsa", "stepsb", "stepsc"];
-    pub(crate) const COEFFICIENT: [&str; 6] = ["mx", "my", "mz", "ma", "mb", "mc"];
-    pub(crate) const END: [&str; 6] = ["ex", "ey", "ez", "ea", "eb", "ec"];
-    pub(crate) const SIGN: [&str; 6] = ["sx", "sy", "sz", "sa", "sb", "sc"];
-    pub(crate) const POSITION: [&str; 6] = super::AXES;
-    pub(crate) const LONGEST: [&str; 6] =
-        ["x_is_longest", "y_is_longest", "z_is_longest", "a_is_longest", "b_is_longest", "c_is_longest"];
-}
 
 /// How many steps a line takes by its method: the pulses of each axis are to be spread over them evenly.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -39,7 +23,7 @@ pub enum Pace {
     /// A step is a pulse of the longest axis.
     Longest,
     /// Once through all numbers of the register of this name; normalised, through those that the longest way needs.
-    Cycle(&'static str),
+    Cycle(Reg),
 }
 
 /// All that fixes a netlist.
@@ -50,7 +34,7 @@ pub struct Hardware {
     /// Number of axes.
     pub axes: usize,
     /// Width of every register that has a choice of it, by name.
-    pub widths: BTreeMap<String, Width>,
+    pub widths: BTreeMap<&'static str, Width>,
     /// Preset of each axis's remainder register.
     pub presets: Vec<Preset>,
     /// The options given, with what the model has by default for those that are not.
@@ -58,7 +42,7 @@ pub struct Hardware {
     /// The coarse stage of data sampling, if there is one.
     pub sampling: Option<Sampling>,
     /// Registers that a step table shows, in order.
-    pub table: Vec<String>,
+    pub table: Vec<&'static str>,
     /// No pulse for this many clocks while a block runs means that none will come.
     pub stall_clocks: u64,
     /// Greatest path error in BLU that the method promises, if it promises one.
@@ -72,10 +56,51 @@ pub struct Hardware {
 }
 
 impl Hardware {
-    /// Width of a register in bits; 0, of which no netlist can be made, for one that was not planned.
+    /// Width of a register in bits; 0, of which no netlist can be made, for one that the model does not list.
     #[must_use]
-    pub fn bits(&self, register: &str) -> u32 {
+    pub fn bits(&self, register: Reg) -> u32 {
+        match (self.bits_of(register.name()), register.declaration().rule) {
+            (0, Rule::Bits(bits)) => bits,
+            (bits, _) => bits,
+        }
+    }
+
+    /// Width in bits of the register of this name; 0 if there is none whose width the user may choose.
+    #[must_use]
+    pub fn bits_of(&self, register: &str) -> u32 {
         self.widths.get(register).map_or(0, |width| width.get())
+    }
+
+    /// A register in this scope, by its declaration.
+    pub fn reg<'m>(&self, m: Scope<'m>, register: Reg) -> Register<'m> {
+        let (name, bits) = (register.name(), self.bits(register));
+        if register.declaration().signed { m.reg_signed(name, bits) } else { m.reg(name, bits) }
+    }
+
+    /// The load word of a register.
+    #[must_use]
+    pub fn word<'m>(&self, block: &Block<'m>, register: Reg) -> Signal<'m> {
+        let (name, bits) = (register.name(), self.bits(register));
+        if register.declaration().signed { block.word_signed(name, bits) } else { block.word(name, bits) }
+    }
+
+    /// A register that is loaded with its word and holds it for the whole block.
+    #[must_use]
+    pub fn held<'m>(&self, m: Scope<'m>, block: &Block<'m>, register: Reg) -> Signal<'m> {
+        let (name, bits) = (register.name(), self.bits(register));
+        if register.declaration().signed { block.held_signed(m, name, bits) } else { block.held(m, name, bits) }
+    }
+
+    /// A register that is loaded with a number of steps and counts them down.
+    #[must_use]
+    pub fn counter<'m>(&self, m: Scope<'m>, block: &Block<'m>, register: Reg) -> DownCounter<'m> {
+        DownCounter::new(m, block, register.name(), self.bits(register))
+    }
+
+    /// The pulse and the position of an axis: see [`axis_counter`].
+    pub fn axis<'m>(&self, m: Scope<'m>, block: &Block<'m>, axis: usize, pulse: Signal<'m>, negative: Signal<'m>) {
+        let position = POSITION.of(axis);
+        axis_counter(m, block, position.name(), self.bits(position), pulse, negative);
     }
 
     /// The value of an option: as given, or else by default.
@@ -122,8 +147,8 @@ impl Hardware {
 
     /// Preset of an axis's remainder register, in that register. A value that does not fit is kept, so that loading it
     /// is refused with its name.
-    pub(crate) fn preset(&self, axis: usize, register: &str) -> i128 {
-        let preset = self.presets.get(axis).copied().unwrap_or(Preset::Zero);
+    pub(crate) fn preset(&self, register: Reg) -> i128 {
+        let preset = self.presets.get(register.axis()).copied().unwrap_or(Preset::Zero);
         match (preset, preset.value(self.modulus(self.bits(register)))) {
             (Preset::Value(value), None) => i128::from(value),
             (_, value) => i128::try_from(value.unwrap_or(0)).unwrap_or(0),
@@ -138,15 +163,16 @@ impl Hardware {
 
     /// Bits of the fraction in a register of an integrator: those that the remainder of its axis has beyond `jrx`.
     pub(crate) fn fraction(&self, register: &str) -> u32 {
-        let remainder = register.get(2..).map(|axis| format!("jr{axis}")).unwrap_or_default();
-        self.widths.get(&remainder).map_or(0, |jr| jr.get().saturating_sub(self.bits("jrx")))
+        let axis = AXES.iter().position(|axis| register.get(2..) == Some(*axis));
+        axis.map_or(0, |axis| self.bits(JR.of(axis)).saturating_sub(self.bits(JR.of(0))))
     }
 
     /// What to give as `--width` for a register to have `bits`. Registers of one scale are widened together, to the
     /// `all` bits that the widest of them needs, where one alone would no longer fit the others.
     #[must_use]
     pub fn widening(&self, register: &str, bits: u32, all: u32) -> String {
-        let room = register.strip_prefix("jv").map(|axis| self.bits(&format!("jr{axis}")));
+        let axis = (0..AXES.len()).find(|&axis| JV.of(axis).name() == register);
+        let room = axis.map(|axis| self.bits(JR.of(axis)));
         let fits =
             room.is_some_and(|room| bits <= room) && !self.get(&NORMALIZE) && self.get(&ADDER) == Adder::Parallel;
         // Whole units of a pulse multiplier.

@@ -4,13 +4,14 @@
 //! Models use the public interface of the netlist crate only. [`catalogue`] is the one list of models.
 //!
 //! ```
+//! use stepwave_models::parts::JR;
 //! use stepwave_models::{Options, find};
 //! use stepwave_nc::{Curve, Line};
 //!
 //! let model = find("dda-line")?;
 //! let line = Curve::Line(Line::new(vec![0, 0], vec![8, 6]).unwrap());
 //! let hardware = model.plan(&line, &Options::default())?;
-//! assert_eq!(hardware.bits("jrx"), 4);
+//! assert_eq!(hardware.bits(JR.of(0)), 4);
 //! let machine = model.machine(&hardware)?;
 //! assert_eq!(machine.design.netlist().cell(machine.positions[0].net).width.get(), 6);
 //! # Ok::<(), stepwave_models::ModelError>(())
@@ -33,6 +34,7 @@ pub mod ppc_arc;
 pub mod ppc_conic;
 pub mod ppc_line;
 pub mod program;
+pub mod registers;
 pub mod sampled_arc;
 pub mod sampled_line;
 pub mod stepgen;
@@ -55,15 +57,16 @@ mod words;
 pub use catalogue::{Catalogue, catalogue, find, installed};
 pub use claims::{Claims, Kind, Region, extremes};
 pub use error::ModelError;
-pub use hardware::{AXES, Hardware, Pace};
+pub use hardware::{Hardware, Pace};
 pub use machine::{BufferPorts, CutWord, Loaded, Machine, Port, Words};
 pub use options::{
     Adder, AnyOption, Beats, Compare, EndPoint, Form, Millionths, Named, OptionDef, Options, PerRegister, Preset,
     Radix, StepTiming, System, Takes, Weights,
 };
 
-pub use model::{CurveKind, Interpolates, Method, Model, RegisterDoc};
+pub use model::{CurveKind, Interpolates, Method, Model};
 pub use plan::Plan;
 pub use promise::Promise;
+pub use registers::{AXES, N, PerAxis, Reg};
 pub use sampling::Sampling;
 pub use stepwave_netlist::OnOverflow;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Deref;
 
 use stepwave_netlist::bits::Reading;
 use stepwave_netlist::{Design, Net, Netlist, OnOverflow, Width, elaborate};
@@ -9,6 +10,7 @@ use stepwave_netlist::{Design, Net, Netlist, OnOverflow, Width, elaborate};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::options::ON_OVERFLOW;
+use crate::registers::Reg;
 
 /// A net as a number: its width and reading.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -22,8 +24,60 @@ pub struct Port {
 }
 
 /// The words that the block loader puts on a machine's inputs for one block (a line, or one sector of an arc): the
-/// register meant, and its value.
-pub type Words = Vec<(&'static str, i128)>;
+/// name of the register, and its value.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Words(Vec<(&'static str, i128)>);
+
+impl Words {
+    /// None.
+    #[must_use]
+    pub fn new() -> Words {
+        Words::default()
+    }
+
+    /// With one more, for this register.
+    #[must_use]
+    pub fn set(mut self, register: Reg, value: impl Into<i128>) -> Words {
+        self.0.push((register.name(), value.into()));
+        self
+    }
+
+    /// With a word for each of these registers.
+    #[must_use]
+    pub fn set_each<const K: usize>(self, registers: Reg<K>, values: [impl Into<i128>; K]) -> Words {
+        values.into_iter().enumerate().fold(self, |words, (index, value)| words.set(registers.of(index), value))
+    }
+
+    /// With others.
+    #[must_use]
+    pub fn and(mut self, others: Words) -> Words {
+        self.0.extend(others.0);
+        self
+    }
+
+    /// The word for a register.
+    #[must_use]
+    pub fn get(&self, register: Reg) -> Option<i128> {
+        self.0.iter().find(|(name, _)| *name == register.name()).map(|(_, value)| *value)
+    }
+}
+
+impl Deref for Words {
+    type Target = [(&'static str, i128)];
+
+    fn deref(&self) -> &[(&'static str, i128)] {
+        &self.0
+    }
+}
+
+impl IntoIterator for Words {
+    type Item = (&'static str, i128);
+    type IntoIter = std::vec::IntoIter<(&'static str, i128)>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
 
 /// A design and its ports.
 #[derive(Clone, Debug)]
@@ -45,7 +99,7 @@ pub struct Machine {
     /// Machine position of each axis in BLU.
     pub positions: Vec<Port>,
     /// Registers of a step table, in order.
-    pub table: Vec<(String, Port)>,
+    pub table: Vec<(&'static str, Port)>,
     /// Load inputs by the register that they load.
     pub inputs: BTreeMap<String, Port>,
     /// Ports of the block buffer, of a machine that runs whole programs.
@@ -82,7 +136,7 @@ impl Machine {
         let letters = hardware.letters().iter();
         let inputs = netlist.names.iter().filter_map(|named| named.name.strip_suffix("_in"));
         let inputs = inputs.map(|register| Ok((register.to_owned(), find(&input_name(register))?)));
-        let table = hardware.table.iter().map(|name| Ok((name.clone(), find(name)?)));
+        let table = hardware.table.iter().map(|name| Ok((*name, find(name)?)));
         let net = |name: &str| find(name).map(|port| port.net);
         let ports = |more: Port| {
             let (call, at_end, phase) = (net("call")?, net("at_end")?, net("phase")?);
@@ -124,7 +178,7 @@ impl Machine {
         let mut loaded = Loaded::default();
         for (index, words) in blocks.iter().enumerate() {
             let mut block = Vec::with_capacity(words.len());
-            for &(register, value) in words {
+            for &(register, value) in words.iter() {
                 let port = self.inputs.get(register).ok_or_else(|| ModelError::MissingPort(register.to_owned()))?;
                 let bits = match (port.reading.bits(port.width, value), mode) {
                     (Some(bits), _) => bits,
@@ -179,7 +233,7 @@ impl fmt::Display for CutWord {
 /// The refusal of a register that cannot hold one of its load values: it names the one that needs most, and a width
 /// with which all blocks can be loaded into it.
 fn does_not_fit(register: &str, port: &Port, hardware: &Hardware, blocks: &[Words]) -> ModelError {
-    let words = || blocks.iter().flatten().copied();
+    let words = || blocks.iter().flat_map(|words| words.iter().copied());
     let need = |value| port.reading.needed(value);
     let own = words().filter(|&(name, _)| name == register).map(|(_, value)| value);
     let value = own.max_by_key(|&value| need(value)).unwrap_or_default();

@@ -9,15 +9,6 @@
 //!          F ◄── F1, F2 or F3 ◄───────────────────┴──► xi ± 1, yi ± 1, e (ex, ey) ──► done
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | xi, yi | n | abs(x), abs(y) relative to the centre |
-//! | f | n+1 (n+2 for an end point beside the circle), two's complement | 0; behind a split x² + y² - R² |
-//! | quad | 2 | quadrant that the motion enters, Q1 = 0 |
-//! | ccw | 1 | 1: counter-clockwise (NR) |
-//! | e | n+3 | pulses to the end, across axes at R rounded to the nearest integer (`total`) |
-//! | ex, ey | n | pulses of each axis to the end or to the next axis (`per-axis`) |
-//!
 //! Every step looks at the three neighbours ahead (along x, along y, diagonal) and goes where the deviation
 //! F = x² + y² - R² is least in magnitude; of equals Y goes before X, and the diagonal before both. The radial error
 //! stays below half a BLU, so that an axis is met at R rounded to the nearest integer. A diagonal step counts two
@@ -35,10 +26,11 @@ use stepwave_netlist::dsl::Scope;
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, LeastDeviation};
+use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, LeastDeviation, POSITION, QUAD, XI_YI};
 use crate::plan::Plan;
+use crate::registers::N;
 use crate::{sizes, words};
 
 /// Minimum deviation, arc.
@@ -48,12 +40,12 @@ pub static MODEL: Model = Model {
     method: "minimum deviation",
     source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
     registers: &[
-        RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
-        RegisterDoc::XI_YI,
-        RegisterDoc::QUAD,
-        RegisterDoc { name: "e", width: "n+3", about: "end-point down-counter of the pulses of both axes (total)" },
-        RegisterDoc::EX_EY,
-        RegisterDoc::POSITIONS,
+        &F.width(N.plus(1)),
+        &XI_YI,
+        &QUAD,
+        &E.width(N.plus(3)).about("end-point down-counter of the pulses of both axes (total)"),
+        &END,
+        &POSITION,
     ],
     options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
     claims: None,
@@ -73,7 +65,7 @@ fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let f = DeviationAccumulator::new(m, hardware.bits(F));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
 
     // Judge: F behind each of the three steps, and the least of their magnitudes.

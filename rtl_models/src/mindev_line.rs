@@ -6,13 +6,6 @@
 //!                                                                         └──► e ──► done
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | l | n | way of the long axis, L = max(abs(dx), abs(dy)) |
-//! | s | n | way of the short axis, S |
-//! | f | n+2, two's complement | D = 2S - L |
-//! | e | n | L |
-//!
 //! D >= 0 steps diagonally and D += 2(S - L); D < 0 steps the long axis and D += 2S. D is twice the deviation that the
 //! axis step would leave less the one that the diagonal would, so the nearer of both is taken: the path stays within
 //! half a BLU, measured along the short axis.
@@ -25,17 +18,20 @@
 
 use stepwave_nc::Line;
 use stepwave_netlist::dsl::Scope;
-use stepwave_netlist::formula::name;
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{BeatRing, Block, DeviationAccumulator, LineFrame, line_change};
+use crate::parts::{BeatRing, Block, DeviationAccumulator, E, F, LineFrame, POSITION, line_change};
 use crate::plan::Plan;
+use crate::registers::{N, Reg};
 use crate::{sizes, words};
+
+/// Displacements of both axes.
+const L_S: Reg<2> = Reg::each(["l", "s"], N, "ways of the long and of the short axis");
 
 /// Minimum deviation, line.
 pub static MODEL: Model = Model {
@@ -44,10 +40,10 @@ pub static MODEL: Model = Model {
     method: "minimum deviation",
     source: "最小偏差法, the eight-direction interpolator of Chinese NC textbooks",
     registers: &[
-        RegisterDoc { name: "l, s", width: "n", about: "ways of the long and of the short axis" },
-        RegisterDoc { name: "f", width: "n+2", about: "deviation D, two's complement, from 2S - L" },
-        RegisterDoc { name: "e", width: "n", about: "end-point down-counter of the long axis" },
-        RegisterDoc::POSITIONS,
+        &L_S,
+        &F.about("deviation D, two's complement, from 2S - L"),
+        &E.width(N).about("end-point down-counter of the long axis"),
+        &POSITION,
     ],
     options: &[&WIDTH, &BEATS, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesByLength)),
@@ -56,7 +52,7 @@ pub static MODEL: Model = Model {
 };
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
-    sizes::judged_line(line, plan, ["l", "s"], 2);
+    sizes::judged_line(line, plan);
     plan.error_bound = Some(0.5);
     Ok(())
 }
@@ -64,8 +60,8 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let ways = ["l", "s"].map(|name| block.held(m, name, hardware.bits(name)));
-    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let ways = [0, 1].map(|way| hardware.held(m, &block, L_S.of(way)));
+    let f = DeviationAccumulator::new(m, hardware.bits(F));
     let line = LineFrame::new(m, &block, hardware);
 
     invariants(m);
@@ -83,14 +79,13 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
 /// D stays between what a diagonal step at 0 and an axis step at -1 leave.
 fn invariants(m: Scope<'_>) {
-    let (f, l, s) = (|| name("f"), || name("l"), || name("s"));
+    let (f, l, s) = (|| F.value(), || L_S.of(0).value(), || L_S.of(1).value());
     m.between_steps("f_from_below", [f() - 2 * s() + 2 * l()]);
     m.between_steps("f_from_above", [2 * s() - 1 - f()]);
 }
 
 fn load(line: &Line, _: &Hardware) -> Vec<Words> {
-    let ([a, b], mut words) = words::judged_line(line);
+    let ([a, b], words) = words::judged_line(line);
     let (long, short) = (a.max(b), a.min(b));
-    words.extend([("l", long), ("s", short), ("f", 2 * short - long)]);
-    vec![words]
+    vec![words.set_each(L_S, [long, short]).set(F, 2 * short - long)]
 }

@@ -9,6 +9,7 @@ use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
 use crate::options::{AnyOption, ON_OVERFLOW, Options, Takes, chosen, taken};
 use crate::plan::Plan;
+use crate::registers::{Registers, Row, rows};
 
 /// What a model interpolates.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -64,17 +65,6 @@ impl CurveKind {
     }
 }
 
-/// A register in a model's documentation.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct RegisterDoc {
-    /// Name in waves and tables; `jvx …` stands for one per axis.
-    pub name: &'static str,
-    /// Default width in terms of n, the width of a magnitude.
-    pub width: &'static str,
-    /// What it holds and what it is loaded with.
-    pub about: &'static str,
-}
-
 /// How a model plans its hardware for a curve of type C, and loads one.
 #[derive(Debug)]
 pub struct Method<C: 'static> {
@@ -112,7 +102,7 @@ pub struct Model {
     /// Literature.
     pub source: &'static str,
     /// Its registers, in the order of the step table.
-    pub registers: &'static [RegisterDoc],
+    pub registers: Registers,
     /// The options that it takes.
     pub options: &'static [&'static dyn Takes],
     /// What can be proved of it; `None` where nothing is claimed.
@@ -135,6 +125,11 @@ impl Model {
         }
     }
 
+    /// Its registers by what is declared together, in the order of the step table.
+    pub fn rows(&self) -> impl Iterator<Item = Row> {
+        rows(self.registers)
+    }
+
     /// The model takes this option.
     #[must_use]
     pub fn takes(&self, option: &dyn AnyOption) -> bool {
@@ -154,8 +149,10 @@ impl Model {
     /// # Errors
     /// The model does not interpolate this curve, does not take an option, or a width is impossible.
     pub fn plan(&self, curve: &Curve, options: &Options) -> Result<Hardware, ModelError> {
-        let new =
-            || chosen(self.name, self.options, options).map(|options| Plan::new(self.name, curve.axes(), options));
+        let new = || {
+            chosen(self.name, self.options, options)
+                .map(|options| Plan::new(self.name, curve.axes(), self.registers, options))
+        };
         let plan = match (&self.interpolates, curve) {
             (Interpolates::Lines(most, method), Curve::Line(line)) if line.axes() <= *most => {
                 method.planned(line, new()?)

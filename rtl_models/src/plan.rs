@@ -1,5 +1,4 @@
-//! The plan of a model for a curve: its registers in the order of the step table, with their default widths, and what the
-//! user says instead.
+//! The plan of a model for a curve: the widths of its registers by their rules, and what the user says instead.
 
 use std::collections::BTreeMap;
 
@@ -7,21 +6,25 @@ use stepwave_netlist::Width;
 use stepwave_netlist::bits::Reading;
 
 use crate::error::ModelError;
-use crate::hardware::{AXES, Hardware, Pace};
+use crate::hardware::{Hardware, Pace};
 use crate::options::{ADDER, Adder, NORMALIZE, OptionDef, Options, PRESET, PerRegister, Preset, RADIX, Radix, WIDTH};
+use crate::parts::{JR, JV, POSITION};
+use crate::registers::{AXES, Declaration, Reg, Registers, Row, Rule};
 use crate::sampling::Sampling;
 
-/// What a model says of its hardware for a curve: registers and widths, in the order of the step table, and promises.
+/// What a model says of its hardware for a curve: widths that follow no rule, and promises.
 ///
-/// It begins without registers; the method promises no path error, and may be without a pulse for 16 clocks.
+/// It begins without any; the method promises no path error, and may be without a pulse for 16 clocks.
 #[derive(Clone, Debug)]
 pub struct Plan {
     model: &'static str,
     axes: usize,
+    registers: Registers,
     options: Options,
-    /// Those with a choice of width, and the width that they have unless the user says otherwise.
-    default: Vec<(String, u32)>,
-    table: Vec<String>,
+    /// Widths that do not follow the rule of their register.
+    set: Vec<(&'static str, u32)>,
+    /// Bits n of a magnitude register: [as chosen, or the least](Plan::magnitude_bits) for this curve.
+    pub n: u32,
     /// Greatest path error in BLU that the method promises, if it promises one.
     pub error_bound: Option<f64>,
     /// Steps of a line.
@@ -37,13 +40,14 @@ pub struct Plan {
 
 impl Plan {
     /// For a curve of `axes` axes.
-    pub(crate) fn new(model: &'static str, axes: usize, options: Options) -> Plan {
+    pub(crate) fn new(model: &'static str, axes: usize, registers: Registers, options: Options) -> Plan {
         Plan {
             model,
             axes,
+            registers,
             options,
-            default: Vec::new(),
-            table: Vec::new(),
+            set: Vec::with_capacity(8),
+            n: 0,
             error_bound: None,
             pace: Pace::default(),
             rate_bound: None,
@@ -117,91 +121,138 @@ impl Plan {
         self.options.of_all(&WIDTH).map_or(bits, Width::get)
     }
 
-    /// A register of the step table and its default width in bits.
-    pub fn register(&mut self, name: impl Into<String>, bits: u32) -> &mut Self {
-        let name = name.into();
-        self.shown(&name).hidden(name, bits)
-    }
-
-    /// A column of the step table without a choice of width.
-    pub fn shown(&mut self, name: &str) -> &mut Self {
-        self.table.push(name.to_owned());
+    /// Gives a register another default width than its rule says.
+    pub fn set(&mut self, register: Reg, bits: u32) -> &mut Self {
+        self.set.push((register.name(), bits));
         self
     }
 
-    /// A register with a choice of width that the step table does not show.
-    pub fn hidden(&mut self, name: impl Into<String>, bits: u32) -> &mut Self {
-        self.default.push((name.into(), bits));
-        self
-    }
-
-    /// The end-point counters of `axes` axes, each of `bits` bits.
-    pub fn end_counters(&mut self, axes: usize, bits: u32) -> &mut Self {
-        AXES[..axes].iter().fold(self, |plan, axis| plan.register(format!("e{axis}"), bits))
+    /// The same for several registers.
+    pub fn set_each<const K: usize>(&mut self, registers: Reg<K>, bits: u32) -> &mut Self {
+        (0..K).fold(self, |plan, index| plan.set(registers.of(index), bits))
     }
 
     /// The position counters, each for the positions of its axis that must fit. They get one bit more, so that an
     /// erring path stays visible.
-    pub fn positions(&mut self, axes: impl IntoIterator<Item = Vec<i64>>) -> &mut Self {
-        for (letter, positions) in AXES.iter().zip(axes) {
-            let needed = positions.iter().map(|&position| Width::needed_signed(i128::from(position)));
-            self.hidden(*letter, needed.max().unwrap_or(1) + 1);
+    pub fn positions(&mut self, axes: impl IntoIterator<Item = impl IntoIterator<Item = i64>>) -> &mut Self {
+        for (axis, positions) in (0..AXES.len()).zip(axes) {
+            let needed = positions.into_iter().map(|position| Width::needed_signed(i128::from(position)));
+            self.set(POSITION.of(axis), needed.max().unwrap_or(1) + 1);
         }
         self
     }
 
-    /// Width in bits of a register given so far: the user's, or its default; 0 for one that was not.
+    /// Calls with every register that the hardware has, in the order of the model's list; two rows of one entry take
+    /// turns.
+    fn each(&self, mut visit: impl FnMut(&'static str, &'static Declaration)) {
+        for declared in self.registers {
+            let (first, second) = declared.rows();
+            let names = |Row { names, declaration }: Row| match (declaration.when)(self) {
+                true => &names[..(declaration.count)(self).min(names.len())],
+                false => &[],
+            };
+            let (own, other) = (names(first), second.map_or(&[][..], names));
+            for index in 0..own.len().max(other.len()) {
+                if let Some(name) = own.get(index) {
+                    visit(name, first.declaration);
+                }
+                if let Some((name, row)) = other.get(index).zip(second) {
+                    visit(name, row.declaration);
+                }
+            }
+        }
+    }
+
+    /// The user may choose the width of these registers.
+    fn is_free(&self, declaration: &Declaration) -> bool {
+        !matches!(declaration.rule, Rule::Bits(_)) && !(declaration.follows)(self)
+    }
+
+    /// Registers with a choice of width.
+    fn names(&self) -> Vec<&'static str> {
+        let mut names = Vec::new();
+        self.each(|name, declaration| names.extend(self.is_free(declaration).then_some(name)));
+        names
+    }
+
+    /// Default width in bits of a register that is declared so; 0 if it has none.
+    fn default(&self, name: &str, declaration: &Declaration) -> u32 {
+        let set = self.set.iter().rev().find(|(known, _)| *known == name).map(|(_, bits)| *bits);
+        set.unwrap_or(match declaration.rule {
+            Rule::Magnitude(_) if self.n == 0 => 0,
+            Rule::Magnitude(more) => self.n.saturating_add(more),
+            Rule::Bits(bits) => bits,
+            Rule::Planned(_) => 0,
+        })
+    }
+
+    /// Width in bits of a register of the model: the user's, or its default so far; 0 for one that it does not list.
     #[must_use]
-    pub fn bits(&self, name: &str) -> u32 {
-        let default = self.default.iter().find(|(known, _)| known == name).map_or(0, |(_, bits)| *bits);
-        self.chosen(name).map_or(default, Width::get)
+    pub fn bits(&self, register: Reg) -> u32 {
+        if let Some(width) = self.chosen(register.name()) {
+            return width.get();
+        }
+        let mut bits = 0;
+        self.each(|name, declaration| {
+            if name == register.name() {
+                bits = self.default(name, declaration);
+            }
+        });
+        bits
     }
 
     /// The width that the user gave this register, by its name or by its kind.
     fn chosen(&self, name: &str) -> Option<Width> {
         let single = &self.options.get(&WIDTH)?.single;
-        single.get(name).or_else(|| single.get(self.kind(name)?)).copied()
+        if single.is_empty() {
+            return None;
+        }
+        single.get(name).or_else(|| single.get(kind(&self.names(), name)?)).copied()
     }
 
-    /// `jr` for `jrx`: the name without the axis letter, for registers that several axes have.
-    fn kind<'n>(&self, name: &'n str) -> Option<&'n str> {
-        let of = |name: &'n str| AXES.iter().find_map(|axis| name.strip_suffix(axis)).filter(|kind| !kind.is_empty());
-        let kind = of(name)?;
-        let alike = |(other, _): &&(String, u32)| {
-            let other_kind = AXES.iter().find_map(|axis| other.strip_suffix(axis));
-            other_kind == Some(kind)
-        };
-        (self.default.iter().filter(alike).count() > 1).then_some(kind)
-    }
-
-    fn names(&self) -> impl Iterator<Item = &str> {
-        self.default.iter().map(|(name, _)| name.as_str())
-    }
-
-    /// The widths of all registers that have a choice of it, by name.
-    pub(crate) fn widths(&self) -> Result<BTreeMap<String, Width>, ModelError> {
-        let given = self.options.get(&WIDTH).map(|widths| widths.single.keys()).into_iter().flatten();
-        for given in given {
-            if !self.names().any(|name| name == given || self.kind(name) == Some(given)) {
-                return Err(self.unknown(WIDTH.name, given, self.names().collect::<Vec<_>>().join(", ")));
+    /// Calls with every register that the hardware has: its name, its width if the user may choose it, and whether the
+    /// step table shows it.
+    fn resolve(&self, mut take: impl FnMut(&'static str, Option<Width>, bool)) -> Result<(), ModelError> {
+        let single = self.options.get(&WIDTH).map(|widths| &widths.single).filter(|single| !single.is_empty());
+        let known = if single.is_some() { self.names() } else { Vec::new() };
+        for given in single.into_iter().flat_map(BTreeMap::keys) {
+            if !known.iter().any(|name| name == given || kind(&known, name) == Some(given)) {
+                return Err(self.unknown(WIDTH.name, given, &known));
             }
         }
-        let resolved = self.default.iter().map(|(name, bits)| {
-            let width = match self.chosen(name) {
-                Some(width) => width,
-                None => Width::new(u64::from(*bits)).map_err(|_| ModelError::TooWide {
-                    register: name.clone(),
-                    bits: u64::from(*bits),
+        let mut result = Ok(());
+        self.each(|name, declaration| {
+            let default = || match self.default(name, declaration) {
+                0 => Err(ModelError::defect(self.model, format!("its plan gives no width to the register {name}"))),
+                bits => Width::new(u64::from(bits)).map_err(|_| ModelError::TooWide {
+                    register: name.to_owned(),
+                    bits: u64::from(bits),
                     way_out: "give a smaller --width or a smaller geometry".to_owned(),
-                })?,
+                }),
             };
-            Ok((name.clone(), width))
+            let width = self.is_free(declaration).then(|| {
+                let single = single.and_then(|single| single.get(name).or_else(|| single.get(kind(&known, name)?)));
+                single.map_or_else(default, |width| Ok(*width))
+            });
+            match width.transpose() {
+                Ok(width) => take(name, width, declaration.shown),
+                Err(error) if result.is_ok() => result = Err(error),
+                Err(_) => {}
+            }
         });
-        resolved.collect()
+        result
     }
 
-    fn unknown(&self, option: &'static str, given: &str, known: String) -> ModelError {
-        ModelError::UnknownRegister { model: self.model, option, register: given.to_owned(), known }
+    /// Checks the widths so far.
+    ///
+    /// # Errors
+    /// A width is given for a register that does not exist, or one is impossible.
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
+        self.resolve(|_, _, _| {})
+    }
+
+    fn unknown(&self, option: &'static str, given: &str, known: &[&str]) -> ModelError {
+        ModelError::UnknownRegister { model: self.model, option, register: given.to_owned(), known: known.join(", ") }
     }
 
     /// The preset of each axis.
@@ -209,30 +260,39 @@ impl Plan {
     /// # Errors
     /// One is given for a register that is not a remainder register.
     pub fn presets(&self) -> Result<Vec<Preset>, ModelError> {
-        // What an axis accumulates in.
-        let kind = if self.names().any(|name| name == "accx") { "acc" } else { "jr" };
-        let remainders: Vec<String> = AXES[..self.axes].iter().map(|axis| format!("{kind}{axis}")).collect();
-        let single = self.options.of_single(&PRESET);
-        // Of a third axis that follows the others there is none.
-        let known: Vec<&str> = self.names().filter(|name| remainders.iter().any(|known| known == name)).collect();
-        if let Some(unknown) = single.keys().find(|given| !known.contains(&given.as_str())) {
-            return Err(self.unknown(PRESET.name, unknown, known.join(", ")));
-        }
         let all = self.options.of_all(&PRESET).unwrap_or_default();
-        Ok(remainders.iter().map(|name| single.get(name).copied().unwrap_or(all)).collect())
+        let single = self.options.get(&PRESET).map(|presets| &presets.single).filter(|single| !single.is_empty());
+        let mut presets = vec![all; self.axes];
+        let Some(single) = single else { return Ok(presets) };
+        // Of a third axis that follows the others there is none.
+        let mut known = Vec::new();
+        self.each(|name, declaration| known.extend(declaration.preset.then_some(name)));
+        if let Some(unknown) = single.keys().find(|given| !known.contains(&given.as_str())) {
+            return Err(self.unknown(PRESET.name, unknown, &known));
+        }
+        for (preset, name) in presets.iter_mut().zip(known) {
+            *preset = single.get(name).copied().unwrap_or(all);
+        }
+        Ok(presets)
     }
 
     /// The hardware: widths and all options as given or by default.
     pub(crate) fn finish(self) -> Result<Hardware, ModelError> {
+        let presets = self.presets()?;
+        let (mut widths, mut table) = (Vec::with_capacity(16), Vec::with_capacity(16));
+        self.resolve(|name, width, shown| {
+            widths.extend(width.map(|width| (name, width)));
+            table.extend(shown.then_some(name));
+        })?;
         Ok(Hardware {
-            presets: self.presets()?,
-            widths: self.widths()?,
+            presets,
+            widths: widths.into_iter().collect(),
             model: self.model,
             axes: self.axes,
             // Both are resolved, register by register.
             options: self.options.without(&WIDTH).without(&PRESET),
             sampling: self.sampling,
-            table: self.table,
+            table,
             stall_clocks: self.stall_clocks,
             error_bound: self.error_bound,
             pace: self.pace,
@@ -257,10 +317,15 @@ impl Plan {
     /// The widths chosen are of several scales.
     pub fn integrators_with_fraction(&mut self, whole: usize, clocks: u64) -> Result<(), ModelError> {
         self.scale = &["jv", "jr"];
-        let (model, widths, radix) = (self.model, self.widths()?, self.get(&RADIX));
-        let first = widths["jrx"];
+        self.check()?;
+        let (model, radix) = (self.model, self.get(&RADIX));
+        // All of them are in range.
+        let width = |register| Width::new(self.bits(register).into()).unwrap_or(Width::MAX);
+        let first = width(JR.of(0));
+        let mut n = 1;
         for (index, axis) in AXES[..self.axes].iter().enumerate() {
-            let (jr, jv) = (widths[&format!("jr{axis}")], widths[&format!("jv{axis}")]);
+            let (jr, jv) = (width(JR.of(index)), width(JV.of(index)));
+            n = n.max(jr.get());
             if index >= whole && jr < first {
                 return Err(ModelError::Widths(format!(
                     "{model}: jr{axis} of {jr} is narrower than jrx of {first}, but its bits beyond those are the \
@@ -289,9 +354,16 @@ impl Plan {
         }
         // An integrator that has not pulsed in so many additions never will; and as many clocks of normalisation as
         // bits, and those of loading.
-        let n = widths.iter().filter(|(name, _)| name.starts_with("jr")).map(|(_, jr)| jr.get()).max().unwrap_or(1);
         let additions = u64::try_from(crate::hardware::modulus(radix, n)).unwrap_or(u64::MAX);
         self.stall_clocks = additions.saturating_mul(clocks).saturating_add(u64::from(n) + 8);
         Ok(())
     }
+}
+
+/// `jr` for `jrx`: the name without the axis letter, where several of these registers have such a name.
+fn kind<'n>(registers: &[&str], name: &'n str) -> Option<&'n str> {
+    let of_axis = |name: &'_ str| AXES.iter().any(|axis| name.len() > 1 && name.ends_with(axis));
+    let kind = of_axis(name).then(|| &name[..name.len() - 1])?;
+    let alike = |other: &&&str| of_axis(other) && other[..other.len() - 1] == *kind;
+    (registers.iter().filter(alike).count() > 1).then_some(kind)
 }

@@ -8,15 +8,6 @@
 //!                   ▲────────────┘       └──► e (ex, ey) ──► done
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | xi, yi | n | abs(x), abs(y) relative to the centre |
-//! | f | n+2, two's complement | 0; behind a split x² + y² - R² |
-//! | quad | 2 | quadrant that the motion enters, Q1 = 0 |
-//! | ccw | 1 | 1: counter-clockwise (NR) |
-//! | e | n+3 | steps to the end, across axes up to the path's extremes and back (`total`) |
-//! | ex, ey | n | steps of each axis to the end or to the next axis (`per-axis`) |
-//!
 //! F >= 0 steps the axis whose coordinate c shrinks, F -= 2c - 1; F < 0 steps the other, F += 2c + 1, with c before the
 //! step. Where the shrinking coordinate stands at 0 the judge beat turns to the next quadrant (but not in the centre,
 //! which R = 1 passes through). With `per-axis` the loader splits the arc at the axes, and an exhausted axis hands its
@@ -38,10 +29,13 @@ use crate::claims::{Claims, Region};
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, judged_by_sign, step_of_circle};
+use crate::parts::{
+    ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, POSITION, QUAD, XI_YI, judged_by_sign, step_of_circle,
+};
 use crate::plan::Plan;
+use crate::registers::N;
 use crate::{sizes, words};
 
 /// Point-by-point comparison, arc.
@@ -50,14 +44,7 @@ pub static MODEL: Model = Model {
     title: "Point-by-point comparison, arc",
     method: "point-by-point comparison",
     source: "逐点比较法, the circular interpolator of early NC systems, as in Chinese NC textbooks",
-    registers: &[
-        RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement, from 0" },
-        RegisterDoc::XI_YI,
-        RegisterDoc::QUAD,
-        RegisterDoc { name: "e", width: "n+3", about: "end-point down-counter (total)" },
-        RegisterDoc::EX_EY,
-        RegisterDoc::POSITIONS,
-    ],
+    registers: &[&F, &XI_YI, &QUAD, &E.width(N.plus(3)), &END, &POSITION],
     options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::QuadrantArcs)),
     interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
@@ -76,7 +63,7 @@ fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let f = DeviationAccumulator::new(m, hardware.bits(F));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
 
     invariants(m);
@@ -102,10 +89,10 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 fn invariants(m: Scope<'_>) {
     // The coordinate that shrinks, and the one that grows.
     let x_grows = || name("x_grows");
-    let (x, y) = (|| name("xi"), || name("yi"));
+    let (x, y) = (|| XI_YI.of(0).value(), || XI_YI.of(1).value());
     let shrinking = || y() * x_grows() + x() - x() * x_grows();
     let growing = || x() * x_grows() + y() - y() * x_grows();
-    m.between_steps("f_from_below", [name("f") + 2 * shrinking() + 1]);
-    m.between_steps("f_from_above", [2 * growing() - 2 - name("f"), -name("f")]);
-    m.between_steps("outside_there_is_a_way_to_shrink", [shrinking() - 1, -name("f") - 1]);
+    m.between_steps("f_from_below", [F.value() + 2 * shrinking() + 1]);
+    m.between_steps("f_from_above", [2 * growing() - 2 - F.value(), -F.value()]);
+    m.between_steps("outside_there_is_a_way_to_shrink", [shrinking() - 1, -F.value() - 1]);
 }

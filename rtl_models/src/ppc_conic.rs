@@ -6,14 +6,14 @@
 //!                       ▲─────────┘     └──► e (ex, ey) ──► done
 //! ```
 //!
-//! | register | width | ellipse x²/a² + y²/b² = 1 | parabola y² = cx | hyperbola x²/a² - y²/b² = 1 |
-//! |---|---|---|---|---|
-//! | f | n+1, two's complement | b²x² + a²y² - a²b² | y² - cx | b²x² - a²y² - a²b² |
-//! | gx | n | 2b²·abs(x) | c | 2b²·abs(x) |
-//! | gy | n | 2a²·abs(y) | 2·abs(y) | 2a²·abs(y) |
-//! | ux, uy | as they need | b², a² | 0, 1 | b², a² |
-//! | e | as it needs | steps to the end, or to the axis where the loader splits (`total`) | | |
-//! | ex, ey | as they need | steps of each axis (`per-axis`) | | |
+//! | register | ellipse x²/a² + y²/b² = 1 | parabola y² = cx | hyperbola x²/a² - y²/b² = 1 |
+//! |---|---|---|---|
+//! | f | b²x² + a²y² - a²b² | y² - cx | b²x² - a²y² - a²b² |
+//! | gx | 2b²·abs(x) | c | 2b²·abs(x) |
+//! | gy | 2a²·abs(y) | 2·abs(y) | 2a²·abs(y) |
+//! | ux, uy | b², a² | 0, 1 | b², a² |
+//! | e | steps to the end, or to the axis where the loader splits (`total`) | | |
+//! | ex, ey | steps of each axis (`per-axis`) | | |
 //!
 //! gx and gy are the magnitudes of the derivatives of F, and n bits hold the greatest change of F on the arc. A step of x
 //! changes F by gx + ux where |x| grows, by gx - ux where it shrinks, and gx itself by 2ux; y likewise. One of both axes
@@ -35,11 +35,20 @@ use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WIDTH};
-use crate::parts::{BeatRing, Block, DeviationAccumulator, EndCounters, axis_counter, up_down_counter};
+use crate::parts::{
+    BeatRing, Block, DeviationAccumulator, E, END, EndCounters, F, POSITION, SIGN, axis_scope, up_down_counter,
+};
 use crate::plan::Plan;
-use crate::{sizes, words};
+use crate::registers::{AS_NEEDED, N, Reg, Rule};
+use crate::sizes;
+use crate::words::{self, GROWS};
+
+const GX_GY: Reg<2> = Reg::each(["gx", "gy"], N, "magnitudes of the derivatives of F");
+const UX_UY: Reg<2> = Reg::each(["ux", "uy"], AS_NEEDED, "half the change of gx, gy by a step").hidden();
+/// A step of x lowers F.
+const X_LOWERS: Reg = Reg::new("x_lowers", Rule::Bits(1), "a step of x lowers F");
 
 /// Point-by-point comparison, ellipse, parabola, hyperbola.
 pub static MODEL: Model = Model {
@@ -48,12 +57,12 @@ pub static MODEL: Model = Model {
     method: "point-by-point comparison",
     source: "逐点比较法 for curves of second order, as in Chinese NC textbooks",
     registers: &[
-        RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement" },
-        RegisterDoc { name: "gx, gy", width: "n", about: "magnitudes of the derivatives of F" },
-        RegisterDoc { name: "ux, uy", width: "as they need", about: "half the change of gx, gy by a step" },
-        RegisterDoc { name: "e", width: "as it needs", about: "end-point down-counter of the sector (total)" },
-        RegisterDoc::EX_EY_NEEDED,
-        RegisterDoc::POSITIONS,
+        &F.width(N.plus(1)).about("deviation F, two's complement"),
+        &GX_GY,
+        &UX_UY,
+        &E.width(Rule::Planned("as it needs")).about("end-point down-counter of the sector (total)"),
+        &END.width(AS_NEEDED).about("end-point down-counter of each axis"),
+        &POSITION,
     ],
     options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
     claims: None,
@@ -72,28 +81,22 @@ fn derivative(shape: Shape, weight: Weight, magnitude: i64) -> [i128; 2] {
 
 fn plan(conic: &Conic, plan: &mut Plan) -> Result<(), ModelError> {
     let usual = if conic.ends_on_curve() { EndPoint::Total } else { EndPoint::PerAxis };
-    let end_point = plan.decide(&END_POINT, usual);
+    plan.decide(&END_POINT, usual);
     // A derivative and what a step adds to it.
     let size = sizes::ConicSize::of(conic, |weight, at| derivative(conic.shape(), weight, at).iter().sum());
-    let n = plan.bits_or(sizes::needed(size.greatest));
-    plan.register("f", n + 1).register("gx", n).register("gy", n);
-    plan.hidden("ux", size.slopes[0]).hidden("uy", size.slopes[1]);
-    match end_point {
-        EndPoint::PerAxis => plan.end_counters(2, size.steps),
-        _ => plan.register("e", size.steps + 1),
-    };
-    plan.positions(size.positions);
+    plan.n = plan.bits_or(sizes::needed(size.greatest));
+    plan.set(UX_UY.of(0), size.slopes[0]).set(UX_UY.of(1), size.slopes[1]);
+    plan.set(E, size.steps + 1).set_each(END, size.steps).positions(size.positions);
     Ok(())
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    let bits = |name: &str| hardware.bits(name);
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let f = DeviationAccumulator::new(m, bits("f"));
-    let [gx, gy] = ["gx", "gy"].map(|name| m.reg(name, bits(name)));
-    let [ux, uy] = ["ux", "uy"].map(|name| block.held(m, name, bits(name)));
-    let [x_lowers, x_grows, y_grows] = ["x_lowers", "x_grows", "y_grows"].map(|name| block.held(m, name, 1));
+    let f = DeviationAccumulator::new(m, hardware.bits(F));
+    let [gx, gy] = [0, 1].map(|axis| hardware.reg(m, GX_GY.of(axis)));
+    let [ux, uy] = [0, 1].map(|axis| hardware.held(m, &block, UX_UY.of(axis)));
+    let [x_lowers, x_grows, y_grows] = [X_LOWERS, GROWS.of(0), GROWS.of(1)].map(|flag| hardware.held(m, &block, flag));
     let end = EndCounters::new(m, &block, hardware);
 
     // Judge: F >= 0 steps the axis that lowers it.
@@ -103,23 +106,23 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let taken = [take_x, !take_x];
 
     // Feed.
-    for ((letter, sign), taken) in [("x", "sx"), ("y", "sy")].into_iter().zip(taken) {
-        let scope = m.scope(&format!("axis_{letter}"));
-        axis_counter(scope, &block, letter, bits(letter), beat.feed & taken, block.held(scope, sign, 1));
+    for (axis, taken) in taken.into_iter().enumerate() {
+        let scope = axis_scope(m, axis);
+        hardware.axis(scope, &block, axis, beat.feed & taken, hardware.held(scope, &block, SIGN.of(axis)));
     }
 
     // Compute: g + u where the coordinate grows, else g - u.
-    let wide = ["gx", "gy", "ux", "uy"].map(bits).into_iter().max().unwrap_or(1) + 1;
+    let wide = [gx.q, gy.q, ux, uy].map(|signal| signal.bits()).into_iter().max().unwrap_or(1) + 1;
     let [change_x, change_y] = [(gx, ux, x_grows), (gy, uy, y_grows)].map(|(g, u, grows)| {
         let (g, u) = (g.q.extend(wide), u.extend(wide));
         grows.mux(g.wrapping_add(u), g.wrapping_sub(u))
     });
     let lowers = !(take_x ^ x_lowers);
     f.close(&block, beat.compute, lowers, m.name("change", take_x.mux(change_x, change_y)));
-    let derivatives = [("gx", gx, ux, x_grows, taken[0]), ("gy", gy, uy, y_grows, taken[1])];
-    for (name, g, u, grows, taken) in derivatives {
+    let derivatives = [(gx, ux, x_grows, taken[0]), (gy, uy, y_grows, taken[1])];
+    for (axis, (g, u, grows, taken)) in derivatives.into_iter().enumerate() {
         let count = beat.compute & taken;
-        let load = [(block.load, block.word(name, bits(name)))];
+        let load = [(block.load, hardware.word(&block, GX_GY.of(axis)))];
         up_down_counter(g, &load, count & grows, count & !grows, u.concat(m.lit(1, 0)));
     }
 
@@ -133,10 +136,9 @@ fn load(conic: &Conic, hardware: &Hardware) -> Vec<Words> {
     let block = |sector: &ConicSector| {
         let at = |axis: usize| derivative(conic.shape(), weights[axis], sector.start[axis].abs());
         let ([gx, ux], [gy, uy]) = (at(0), at(1));
-        let own = vec![("f", conic.implicit(sector.start)), ("gx", gx), ("gy", gy), ("ux", ux), ("uy", uy)];
+        let own = Words::new().set(F, conic.implicit(sector.start)).set_each(GX_GY, [gx, gy]).set_each(UX_UY, [ux, uy]);
         let end = words::end_counters(hardware, sector.steps());
-        let side = vec![("x_lowers", i128::from(sector.x_lowers))];
-        [own, end, side, words::conic_sector(conic, sector)].concat()
+        own.and(end).set(X_LOWERS, sector.x_lowers).and(words::conic_sector(conic, sector))
     };
     conic.sectors().iter().map(block).collect()
 }

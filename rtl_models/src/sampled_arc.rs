@@ -9,18 +9,6 @@
 //!   └────────────┘               └─► side of the end
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | f | as it needs | way of a period, in 2^-q BLU |
-//! | px, py | n+1+q | coarse point that is calculated, about the centre, in 2^-q BLU, signed |
-//! | remx, remy | n+q | 0: what is below 2^-q of both (`7360`) |
-//! | xe, ye | n+1 | end point about the centre, signed |
-//! | cx, cy | n+2+q | coarse point that the burst draws to, signed |
-//! | jvx, jvy | k | whole pulses of the period; `jvx_next`, `jvy_next` those of the next |
-//! | jrx, jry | k | remainder J_R: the preset |
-//! | e | k+1 | additions of the period left |
-//! | phase | as it needs | divider of the clock: parts of an addition that have passed |
-//!
 //! n bits hold 1.25·R and some BLU, q is `--fraction`, and 2^k is greater than the way of any period. The signs of px and
 //! py are all that tells quadrants apart; nothing is reloaded at the axes.
 //!
@@ -66,13 +54,24 @@ use crate::docs::{SAMPLED_SYSTEM, SAMPLED_WIDTH};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System, TOLERANCE};
 use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
-use crate::parts::{Block, FineStage, Microprogram, Row, magnitude, negated, row, with_sign};
+use crate::parts::{
+    BURST, Block, CCW, DISPLACEMENT, FineStage, JR, JV, Microprogram, POINT, POSITION, Row, STATE, TARGET, magnitude,
+    negated, row, with_sign,
+};
 use crate::plan::Plan;
+use crate::registers::{Reg, Rule};
 use crate::sampling::Sampling;
 use crate::sizes;
+
+const P_XY: Reg<2> =
+    Reg::each(["px", "py"], Rule::Planned("n+1+q"), "coarse point that is calculated, about the centre, signed")
+        .inner();
+const REMAINDERS: Reg<2> =
+    Reg::each(["remx", "remy"], Rule::Planned("n+q"), "remainder of each below the fraction (7360)").inner();
+const ENDS: Reg<2> = Reg::each(["xe", "ye"], Rule::Planned("n+1"), "end point about the centre, signed");
 
 /// Data sampling with a fine DDA, arc.
 pub static MODEL: Model = Model {
@@ -80,19 +79,7 @@ pub static MODEL: Model = Model {
     title: "Data sampling with a fine DDA, arc",
     method: "data sampling",
     source: "数据采样法, the two-stage interpolation of CNC systems, as in Chinese NC textbooks",
-    registers: &[
-        RegisterDoc { name: "state", width: "4", about: "step of the coarse calculation" },
-        RegisterDoc {
-            name: "px, py",
-            width: "n+1+q",
-            about: "coarse point that is calculated, about the centre, signed",
-        },
-        RegisterDoc { name: "remx, remy", width: "n+q", about: "remainder of each below the fraction (7360)" },
-        RegisterDoc::SAMPLED_POINT,
-        RegisterDoc::SAMPLED_JV,
-        RegisterDoc::SAMPLED_JR,
-        RegisterDoc::POSITIONS,
-    ],
+    registers: &[&STATE, &P_XY, &REMAINDERS, &POINT, &BURST, &POSITION],
     options: &[
         &SAMPLED_SYSTEM,
         &FRACTION,
@@ -234,7 +221,7 @@ impl<'m> Coarse<'m> {
             let sum = plus(axis.q.concat(rest.q), way, middle.q.msb() ^ against);
             [(axis, sum.slice(bits, bits + 1).as_signed()), (rest, sum.slice(0, bits))]
         };
-        let [rest_x, rest_y] = ["remx", "remy"].map(|name| m.reg(name, bits));
+        let [rest_x, rest_y] = [0, 1].map(|axis| m.reg(REMAINDERS.of(axis).name(), bits));
         let (to_y, to_x) = (middle(py, px, !ccw), middle(px, py, ccw));
         let (step_x, step_y) = (step(px, rest_x, middle_y, ccw), step(py, rest_y, middle_x, !ccw));
         let [x, y, at_y, at_x] =
@@ -262,15 +249,16 @@ fn hardware(top: Scope<'_>, hardware: &Hardware) {
     let Some(sampling) = hardware.sampling else { return };
     let (q, n, bits) = (sampling.fraction, sampling.whole, sampling.magnitude());
     let block = Block::new(top);
-    let fine = FineStage::new(top.scope("fine"), hardware.bits("jvx"));
+    let fine = FineStage::new(top.scope("fine"), hardware.bits(JV.of(0)));
     let m = top.scope("coarse");
-    let [f, ccw] = [("f", sampling.word_bits()), ("ccw", 1)].map(|(name, bits)| block.held(m, name, bits));
-    let point = ["px", "py"].map(|name| m.reg_signed(name, bits + 1));
+    let f = block.held(m, DISPLACEMENT.name(), sampling.word_bits());
+    let ccw = hardware.held(m, &block, CCW);
+    let point = [0, 1].map(|axis| m.reg_signed(P_XY.of(axis).name(), bits + 1));
     let square = m.reg("square", 2 * n);
     let program = Microprogram::new(m, [bits; 2], [2 * bits, bits], bits);
-    let ends = ["xe", "ye"].map(|name| block.held_signed(m, name, n + 1));
+    let ends = [0, 1].map(|axis| block.held_signed(m, ENDS.of(axis).name(), n + 1));
     let coarse = Coarse { m, bits, f, ccw, point, radicand: square.q.concat(m.lit(2 * q, 0)), program };
-    let [start_x, start_y] = ["px", "py"].map(|name| block.word_signed(name, bits + 1));
+    let [start_x, start_y] = [0, 1].map(|axis| block.word_signed(P_XY.of(axis).name(), bits + 1));
     let (own, rests, [after_square, period]) = match sampling.system {
         System::Direction => (coarse.by_direction(), vec![], [at::HALF_STEP, at::TANGENT]),
         System::StepFactor => {
@@ -316,20 +304,11 @@ fn hardware(top: Scope<'_>, hardware: &Hardware) {
 
 fn load(arc: &Arc, hardware: &Hardware) -> Vec<Words> {
     let Some(sampling) = hardware.sampling else { return Vec::new() };
-    let [[x, y], [xe, ye], from] = [arc.start(), arc.end(), arc.from()].map(|point| point.map(i128::from));
-    let fine = |coordinate: i128| coordinate << sampling.fraction;
-    vec![vec![
-        ("f", sampling.word.into()),
-        ("ccw", i128::from(arc.direction() == Direction::CounterClockwise)),
-        ("px", fine(x)),
-        ("py", fine(y)),
-        ("xe", xe),
-        ("ye", ye),
-        ("tx", x),
-        ("ty", y),
-        ("jrx", hardware.preset(0, "jrx")),
-        ("jry", hardware.preset(1, "jry")),
-        ("x", from[0]),
-        ("y", from[1]),
-    ]]
+    let [start, end, from] = [arc.start(), arc.end(), arc.from()].map(|point| point.map(i128::from));
+    let ccw = arc.direction() == Direction::CounterClockwise;
+    let words = Words::new().set(DISPLACEMENT, sampling.word).set(CCW, ccw);
+    let words = words.set_each(P_XY, start.map(|coordinate| coordinate << sampling.fraction)).set_each(ENDS, end);
+    let words = words.set_each(TARGET.pair(), start);
+    let words = words.set_each(JR.pair(), [0, 1].map(|axis| hardware.preset(JR.of(axis))));
+    vec![words.set_each(POSITION.pair(), from)]
 }

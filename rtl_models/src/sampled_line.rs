@@ -9,18 +9,6 @@
 //!   └────────────┘
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | long, short | n | abs(d) of the long and the short axis |
-//! | f | as it needs | way of a period, in 2^-q BLU |
-//! | far, near | n+1+q | 0: coarse way of the long and the short axis, in 2^-q BLU |
-//! | remf, remn | n | 0: what is below 2^-q of both (`7360`), or of the short axis (`7m`, in parts of the long way) |
-//! | cx, cy | n+2+q | coarse point that the burst draws to, from the start, signed |
-//! | jvx, jvy | k | whole pulses of the period; `jvx_next`, `jvy_next` those of the next |
-//! | jrx, jry | k | remainder J_R: the preset |
-//! | e | k+1 | additions of the period left |
-//! | phase | as it needs | divider of the clock: parts of an addition that have passed |
-//!
 //! n bits hold the length of the line, q is `--fraction`, and 2^k is greater than f and the pulse that rounding may add.
 //!
 //! Once a block the root of long² + short² gives the length. Then
@@ -55,13 +43,24 @@ use crate::docs::{SAMPLED_SYSTEM, SAMPLED_WIDTH};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System};
 use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
-use crate::parts::{Block, FineStage, Microprogram, Row, row, with_sign};
+use crate::parts::{
+    BURST, Block, DISPLACEMENT, FineStage, JR, JV, LONGEST, Microprogram, POINT, POSITION, Row, SIGN, STATE, TARGET,
+    row, with_sign,
+};
 use crate::plan::Plan;
+use crate::registers::{Reg, Rule};
 use crate::sampling::Sampling;
 use crate::{sizes, words};
+
+const FAR_NEAR: Reg<2> =
+    Reg::each(["far", "near"], Rule::Planned("n+1+q"), "coarse way of the long and the short axis").inner();
+const REMAINDERS: Reg<2> =
+    Reg::each(["remf", "remn"], Rule::Planned("n"), "remainder of each below the fraction").inner();
+const LONG_SHORT: Reg<2> = Reg::each(["long", "short"], Rule::Planned("n"), "|d| of the long and the short axis");
+const NEGATIVE: Reg<2> = Reg::each(["negative_x", "negative_y"], Rule::Bits(1), "direction of each axis");
 
 /// Data sampling with a fine DDA, line of 2 axes.
 pub static MODEL: Model = Model {
@@ -69,15 +68,7 @@ pub static MODEL: Model = Model {
     title: "Data sampling with a fine DDA, line of 2 axes",
     method: "data sampling",
     source: "数据采样法, the two-stage interpolation of CNC systems, as in Chinese NC textbooks",
-    registers: &[
-        RegisterDoc { name: "state", width: "3", about: "step of the coarse calculation" },
-        RegisterDoc { name: "far, near", width: "n+1+q", about: "coarse way of the long and the short axis" },
-        RegisterDoc { name: "remf, remn", width: "n", about: "remainder of each below the fraction" },
-        RegisterDoc::SAMPLED_POINT,
-        RegisterDoc::SAMPLED_JV,
-        RegisterDoc::SAMPLED_JR,
-        RegisterDoc::POSITIONS,
-    ],
+    registers: &[&STATE, &FAR_NEAR, &REMAINDERS, &POINT, &BURST, &POSITION],
     options: &[
         &SAMPLED_SYSTEM,
         &FRACTION,
@@ -126,11 +117,11 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let Some(sampling) = hardware.sampling else { return };
     let (q, n, bits) = (sampling.fraction, sampling.whole, sampling.magnitude());
     let block = Block::new(m);
-    let fine = FineStage::new(m.scope("fine"), hardware.bits("jvx"));
+    let fine = FineStage::new(m.scope("fine"), hardware.bits(JV.of(0)));
     let m = m.scope("coarse");
-    let f = block.held(m, "f", sampling.word_bits());
-    let [long, short] = ["long", "short"].map(|name| block.held(m, name, n));
-    let x_is_longest = block.held(m, "x_is_longest", 1);
+    let f = block.held(m, DISPLACEMENT.name(), sampling.word_bits());
+    let [long, short] = [0, 1].map(|way| block.held(m, LONG_SHORT.of(way).name(), n));
+    let x_is_longest = hardware.held(m, &block, LONGEST.of(0));
     let program = Microprogram::new(m, [bits + 1, n], [dividend_bits(&sampling), bits.max(n)], bits);
     let square = m.reg("square", 2 * n);
     let (after_length, period) = match sampling.system {
@@ -152,7 +143,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     ];
     program.close(&[&common[..], &own].concat());
 
-    let signs = ["negative_x", "negative_y"].map(|name| block.held(m, name, 1));
+    let signs = [0, 1].map(|axis| hardware.held(m, &block, NEGATIVE.of(axis)));
     let ways = [x_is_longest.mux(far, near), x_is_longest.mux(near, far)];
     let wholes = [x_is_longest.mux(long, short), x_is_longest.mux(short, long)];
     let points = [0, 1].map(|axis| with_sign(m, ways[axis], bits + 2, signs[axis]));
@@ -172,9 +163,9 @@ fn own_rows<'m>(
     let (n, bits, by_direction) = (sampling.whole, sampling.magnitude(), sampling.system == System::Direction);
     // The way of the long axis, or the step factor: both once a block. A way beyond the end is as good as one up to it.
     let factor = m.reg(if by_direction { "step" } else { "lambda" }, bits + 1);
-    let [far, near] = ["far", "near"].map(|name| m.reg(name, bits + 1));
+    let [far, near] = [0, 1].map(|way| m.reg(FAR_NEAR.of(way).name(), bits + 1));
     // What is below the fraction is kept for the next period.
-    let near_rest = m.reg("remn", n);
+    let near_rest = m.reg(REMAINDERS.of(1).name(), n);
     let (product, quotient, length) = (program.multiplier.product(), program.divider.quotient(), program.root.root());
     let beyond = quotient.slice(bits, quotient.bits() - bits).is_nonzero();
     let limited = beyond.mux(m.lit(1, 1).concat(m.lit(bits, 0)), quotient.slice(0, bits + 1));
@@ -194,7 +185,7 @@ fn own_rows<'m>(
         ]
     } else {
         // λ = f / length; {way, rest} := {way, rest} + λ·L.
-        let far_rest = m.reg("remf", n);
+        let far_rest = m.reg(REMAINDERS.of(0).name(), n);
         cleared.push(far_rest);
         let [far, near] = [(far, far_rest), (near, near_rest)].map(|(way, rest)| {
             let sum = way.q.concat(rest.q).wrapping_add(product);
@@ -211,21 +202,10 @@ fn own_rows<'m>(
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let Some(sampling) = hardware.sampling else { return Vec::new() };
-    let ([a, b], line) = words::line(line);
-    let sign = |name: &str| line.iter().find(|(word, _)| *word == name).map_or(0, |(_, value)| *value);
-    let preset = |axis: usize, name: &str| hardware.preset(axis, name);
-    vec![vec![
-        ("f", sampling.word.into()),
-        ("long", a.max(b)),
-        ("short", a.min(b)),
-        ("x_is_longest", i128::from(a >= b)),
-        ("negative_x", sign("sx")),
-        ("negative_y", sign("sy")),
-        ("tx", 0),
-        ("ty", 0),
-        ("jrx", preset(0, "jrx")),
-        ("jry", preset(1, "jry")),
-        ("x", sign("x")),
-        ("y", sign("y")),
-    ]]
+    let ([a, b], own) = words::line(line);
+    let pair = |registers: Reg<2>| [0, 1].map(|axis| own.get(registers.of(axis)).unwrap_or(0));
+    let words = Words::new().set(DISPLACEMENT, sampling.word).set_each(LONG_SHORT, [a.max(b), a.min(b)]);
+    let words = words.set(LONGEST.of(0), a >= b).set_each(NEGATIVE, pair(SIGN.pair())).set_each(TARGET.pair(), [0; 2]);
+    let words = words.set_each(JR.pair(), [0, 1].map(|axis| hardware.preset(JR.of(axis))));
+    vec![words.set_each(POSITION.pair(), pair(POSITION.pair()))]
 }

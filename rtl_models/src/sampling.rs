@@ -4,6 +4,7 @@ use stepwave_netlist::Width;
 
 use crate::error::ModelError;
 use crate::options::{END_POINT, EndPoint, FRACTION, Millionths, STEP, SYSTEM, System, TOLERANCE};
+use crate::parts::{JR, JV};
 use crate::plan::Plan;
 
 /// The coarse stage of data sampling: all that fixes it.
@@ -152,19 +153,15 @@ impl Sampling {
         self,
         plan: &mut Plan,
         [more, coarse]: [f64; 2],
-        positions: impl IntoIterator<Item = Vec<i64>>,
+        positions: impl IntoIterator<Item = impl IntoIterator<Item = i64>>,
     ) -> Result<(), ModelError> {
         let n = plan.bits_or(Width::needed_unsigned(whole(self.step.units() + 1.0 + more)));
-        plan.shown("cx").shown("cy");
-        for axis in ["x", "y"] {
-            plan.register(format!("jv{axis}"), n).register(format!("jr{axis}"), n);
-        }
-        plan.positions(positions);
+        plan.set_each(JV, n).set_each(JR, n).positions(positions);
         plan.fix(&END_POINT, EndPoint::Iterations);
         plan.integrators(1)?;
         let coarse = u64::try_from(whole(coarse)).unwrap_or(u64::MAX);
         // Additions at least two clocks apart leave one for the integrands of the next period.
-        let burst = 1_u64.checked_shl(plan.bits("jrx") + 1).unwrap_or(u64::MAX);
+        let burst = 1_u64.checked_shl(plan.bits(JR.of(0)) + 1).unwrap_or(u64::MAX);
         let (least, why) = if burst > coarse {
             (burst, "the additions of the fine stage take")
         } else {

@@ -5,6 +5,7 @@ use stepwave_netlist::Width;
 
 use crate::hardware::Pace;
 use crate::options::{END_POINT, EndPoint};
+use crate::parts::F;
 use crate::plan::Plan;
 
 /// Bits that a weight needs.
@@ -56,8 +57,8 @@ pub(crate) fn longest(line: &Line) -> u64 {
 }
 
 /// Positions of each axis at the ends of a line.
-pub(crate) fn end_positions(line: &Line) -> impl Iterator<Item = Vec<i64>> {
-    line.from().iter().zip(line.to()).map(|(&from, &to)| vec![from, to])
+pub(crate) fn end_positions(line: &Line) -> impl Iterator<Item = [i64; 2]> {
+    line.from().iter().zip(line.to()).map(|(&from, &to)| [from, to])
 }
 
 /// Positions of x and y at the ends of all sectors of an arc, in machine coordinates.
@@ -67,10 +68,10 @@ pub(crate) fn arc_positions(arc: &Arc, sectors: &[Sector]) -> [Vec<i64>; 2] {
     [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect())
 }
 
-/// The n of a deviation register, where magnitudes have `n` bits. Forced steps lead to an end off the circle, where F is up
+/// The n of a deviation register, where that of magnitudes is planned. Forced steps lead to an end off the circle, where F is up
 /// to twice the radius, which may need a bit more than the coordinates between both ends.
-pub(crate) fn off_circle_bits(arc: &Arc, plan: &Plan, n: u32) -> u32 {
-    n.max(plan.magnitude_bits(off_circle_radius(arc)))
+pub(crate) fn off_circle_bits(arc: &Arc, plan: &Plan) -> u32 {
+    plan.n.max(plan.magnitude_bits(off_circle_radius(arc)))
 }
 
 /// The radius of an arc whose end lies off the circle, in whole BLU, rounded up; 0 of others.
@@ -80,30 +81,21 @@ pub(crate) fn off_circle_radius(arc: &Arc) -> u64 {
     if arc.ends_on_circle() { 0 } else { arc.radius().ceil() as u64 }
 }
 
-/// Plans hardware that judges every step of an arc by its deviation: registers `f` of so many more bits than the largest
-/// coordinate (where the end point is on the circle, and where it is off it), `xi`, `yi`, `quad`, and `e` or `ex`, `ey`.
+/// Plans hardware that judges every step of an arc by its deviation: `f` has so many more bits than the largest coordinate
+/// (where the end point is on the circle, and where it is off it).
 pub(crate) fn judged_arc(arc: &Arc, plan: &mut Plan, crossing: Crossing, deviation: [u32; 2]) {
     let on_circle = arc.ends_on_circle();
-    let end_point = plan.decide(&END_POINT, if on_circle { EndPoint::Total } else { EndPoint::PerAxis });
+    plan.decide(&END_POINT, if on_circle { EndPoint::Total } else { EndPoint::PerAxis });
     let sectors = arc.sectors(crossing);
-    let n = plan.magnitude_bits(largest_coordinate(&sectors));
-    let f = off_circle_bits(arc, plan, n) + deviation[usize::from(!on_circle)];
-    plan.register("f", f).register("xi", n).register("yi", n).shown("quad");
-    match end_point {
-        EndPoint::PerAxis => plan.end_counters(2, n),
-        _ => plan.register("e", n + 3),
-    };
+    plan.n = plan.magnitude_bits(largest_coordinate(&sectors));
+    plan.set(F, off_circle_bits(arc, plan) + deviation[usize::from(!on_circle)]);
     plan.positions(arc_positions(arc, &sectors));
 }
 
-/// Plans hardware that decides at every step of a line whether it takes the long axis alone: registers `f` of `deviation`
-/// more bits than the long axis needs, `e`, and those of `held`.
-pub(crate) fn judged_line(line: &Line, plan: &mut Plan, held: [&str; 2], deviation: u32) {
-    let n = plan.magnitude_bits(longest(line));
-    for name in held {
-        plan.register(name, n);
-    }
-    plan.register("f", n + deviation).register("e", n).positions(end_positions(line));
+/// Plans hardware that decides at every step of a line whether it takes the long axis alone.
+pub(crate) fn judged_line(line: &Line, plan: &mut Plan) {
+    plan.n = plan.magnitude_bits(longest(line));
+    plan.positions(end_positions(line));
     plan.fix(&END_POINT, EndPoint::Longest);
     plan.pace = Pace::Longest;
 }

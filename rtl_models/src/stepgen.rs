@@ -8,13 +8,6 @@
 //!                                └┄┄┄┄ hold of all axes ◄── not yet ◄────┴──── timers: length, space, setup, hold
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | ratex, ratey, … | n+1+p-k, two's complement | d·2^(p-k) |
-//! | accx, accy, … | n+1+p, two's complement | the preset, below 2^p |
-//! | e | k+1 | 2^k accumulations |
-//! | stepx, dirx, … | 1 | the outputs; they and the timers run on between blocks |
-//!
 //! Every accumulation adds the rate to the accumulator of each axis. A change of its pick-off bit p is a step in the
 //! direction of the rate: the axis stands at floor(acc / 2^p) steps from its start. The position counters count the steps
 //! that are sent.
@@ -55,15 +48,23 @@ use stepwave_netlist::dsl::Scope;
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::hardware::names::{ACC, POSITION, RATE};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PICK_OFF, PRESET, Preset, StepTiming, TIMING, WIDTH};
-use crate::parts::{Block, DownCounter, PhaseAccumulator, StepOutput, axis_counter};
+use crate::parts::{ACC, Block, E, POSITION, PhaseAccumulator, RATE, StepOutput, axis_scope};
 use crate::plan::Plan;
+use crate::registers::{AXES, Reg, Rule};
 use crate::sizes;
 
 const NAME: &str = "stepgen";
+
+/// The outputs of each axis.
+const OUTPUTS: Reg<12> = Reg::each(
+    ["stepx", "dirx", "stepy", "diry", "stepz", "dirz", "stepa", "dira", "stepb", "dirb", "stepc", "dirc"],
+    Rule::Bits(1),
+    "step and direction output of each axis",
+)
+.hidden();
 
 /// Longest time of an output, in clocks.
 const LONGEST_TIME: u64 = 1 << 20;
@@ -75,11 +76,10 @@ pub static MODEL: Model = Model {
     method: "modern step generators",
     source: "the step generators of FPGA motion cards: direct digital synthesis of step and direction",
     registers: &[
-        RegisterDoc { name: "ratex, ratey, …", width: "n+1+p-k", about: "rate, d·2^(p-k), signed" },
-        RegisterDoc { name: "accx, accy, …", width: "n+1+p", about: "phase accumulator, signed, from the preset" },
-        RegisterDoc { name: "e", width: "k+1", about: "accumulations left, from 2^k" },
-        RegisterDoc { name: "stepx, dirx, …", width: "1", about: "step and direction output of each axis" },
-        RegisterDoc::AXIS_POSITIONS,
+        &(RATE, ACC),
+        &E.width(Rule::Planned("k+1")).about("accumulations left, from 2^k"),
+        &OUTPUTS,
+        &POSITION,
     ],
     options: &[
         &WIDTH,
@@ -101,18 +101,15 @@ fn log2_up(value: u64) -> u32 {
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
     let timing = timing(plan)?;
     let longest = sizes::longest(line);
-    let n = plan.magnitude_bits(longest);
-    let undelayed = n + log2_up(timing.length + timing.space);
+    plan.n = plan.magnitude_bits(longest);
+    let undelayed = plan.n + log2_up(timing.length + timing.space);
     let given = plan.get(&PICK_OFF).map(|bit| u32::try_from(bit).unwrap_or(u32::MAX));
-    plan.hidden("e", given.map_or(undelayed, |bit| undelayed.min(bit)).max(log2_up(longest)) + 1);
-    let k = plan.bits("e") - 1;
+    plan.set(E, given.map_or(undelayed, |bit| undelayed.min(bit)).max(log2_up(longest)) + 1);
+    let k = plan.bits(E) - 1;
     let pick_off = given.unwrap_or(k);
     accumulations(longest, k, pick_off)?;
-    let rate_bits = (n + 1).saturating_add(pick_off - k);
-    for axis in 0..plan.axes() {
-        plan.register(RATE[axis], rate_bits).register(ACC[axis], (n + 1).saturating_add(pick_off));
-    }
-    plan.shown("e").positions(sizes::end_positions(line));
+    plan.set_each(RATE, (plan.n + 1).saturating_add(pick_off - k));
+    plan.set_each(ACC, (plan.n + 1).saturating_add(pick_off)).positions(sizes::end_positions(line));
     plan.fix(&END_POINT, EndPoint::Iterations);
     plan.fix(&PICK_OFF, Some(u64::from(pick_off)));
     let given = plan.presets()?;
@@ -184,15 +181,14 @@ fn presets(presets: &[Preset], pick_off: u32) -> Result<(), ModelError> {
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
-    let e = DownCounter::new(m, &block, "e", hardware.bits("e"));
-    let axis = |(i, letter): (usize, &&'static str)| {
-        let scope = m.scope(&format!("axis_{letter}"));
-        let bits = [ACC[i], RATE[i]].map(|name| hardware.bits(name));
-        let acc = PhaseAccumulator::new(scope, &block, letter, bits, pick_off(hardware), hardware.get(&ON_OVERFLOW));
-        let output = StepOutput::new(scope, letter, hardware.get(&TIMING), acc.negative());
+    let e = hardware.counter(m, &block, E);
+    let axis = |axis: usize| {
+        let (scope, bits) = (axis_scope(m, axis), [ACC, RATE].map(|register| hardware.bits(register.of(axis))));
+        let acc = PhaseAccumulator::new(scope, &block, axis, bits, pick_off(hardware), hardware.get(&ON_OVERFLOW));
+        let output = StepOutput::new(scope, AXES[axis], hardware.get(&TIMING), acc.negative());
         (scope, acc, output)
     };
-    let axes: Vec<_> = hardware.letters().iter().enumerate().map(axis).collect();
+    let axes: Vec<_> = (0..hardware.axes).map(axis).collect();
 
     // An accumulation waits until every step that it makes may be sent.
     let waiting = axes.iter().map(|(_, acc, output)| acc.steps() & !output.ready()).reduce(|a, b| a | b);
@@ -202,7 +198,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let mut resting = e.count(accumulate);
     for (i, (scope, acc, output)) in axes.into_iter().enumerate() {
         let send = scope.name("send", accumulate & acc.steps());
-        axis_counter(scope, &block, POSITION[i], hardware.bits(POSITION[i]), send, acc.negative());
+        hardware.axis(scope, &block, i, send, acc.negative());
         acc.close(&block, accumulate);
         resting = resting & output.close(send);
     }
@@ -210,15 +206,14 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
-    let k = hardware.bits("e") - 1;
+    let k = hardware.bits(E) - 1;
     let step = 1_u128.checked_shl(u32::try_from(pick_off(hardware)).unwrap_or(u32::MAX)).unwrap_or(0);
     let unit = i128::try_from(step >> k).unwrap_or(0);
-    let mut words: Words = vec![("e", 1 << k)];
+    let mut words = Words::new().set(E, 1_i128 << k);
     for (axis, (delta, from)) in line.delta().into_iter().zip(line.from()).enumerate() {
         let preset = hardware.presets[axis].value(step).unwrap_or(0);
-        words.push((RATE[axis], i128::from(delta) * unit));
-        words.push((ACC[axis], i128::try_from(preset).unwrap_or(0)));
-        words.push((POSITION[axis], i128::from(*from)));
+        words = words.set(RATE.of(axis), i128::from(delta) * unit);
+        words = words.set(ACC.of(axis), i128::try_from(preset).unwrap_or(0)).set(POSITION.of(axis), *from);
     }
     vec![words]
 }

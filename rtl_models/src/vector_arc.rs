@@ -9,15 +9,6 @@
 //!   └── ± (2x ± 1) ± (2y ± 1) ◄─────────────────────────────────────────┴──► xi ± 1, yi ± 1, e (ex, ey) ──► done
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | xi, yi | n | abs(x), abs(y) relative to the centre |
-//! | f | n+2, two's complement | 0; behind a split x² + y² - R² |
-//! | quad | 2 | quadrant that the motion enters, Q1 = 0 |
-//! | ccw | 1 | 1: counter-clockwise (NR) |
-//! | e | n+3 | pulses to the end, across axes up to the path's extremes and back (`total`) |
-//! | ex, ey | n | pulses of each axis to the end or to the next axis (`per-axis`) |
-//!
 //! No primary source of the method survives; this is a definition of this project. The octant fixes an axis vector, x
 //! where |x| < |y| (or both are equal and |x| shrinks), else y, and the diagonal. F = x² + y² - R² >= 0 takes the one of
 //! the two that goes farther inwards, F < 0 the other. The radial error stays below 1 BLU; the axes are met where
@@ -35,10 +26,11 @@ use stepwave_netlist::dsl::Scope;
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator};
+use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, POSITION, QUAD, XI_YI};
 use crate::plan::Plan;
+use crate::registers::N;
 use crate::{sizes, words};
 
 /// Vector discrimination, arc.
@@ -48,12 +40,12 @@ pub static MODEL: Model = Model {
     method: "vector discrimination",
     source: "矢量判别法; no primary source survives: a definition of this project",
     registers: &[
-        RegisterDoc { name: "f", width: "n+2", about: "deviation F, two's complement, from 0" },
-        RegisterDoc::XI_YI,
-        RegisterDoc::QUAD,
-        RegisterDoc { name: "e", width: "n+3", about: "end-point down-counter of the pulses of both axes (total)" },
-        RegisterDoc::EX_EY,
-        RegisterDoc::POSITIONS,
+        &F,
+        &XI_YI,
+        &QUAD,
+        &E.width(N.plus(3)).about("end-point down-counter of the pulses of both axes (total)"),
+        &END,
+        &POSITION,
     ],
     options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
     claims: None,
@@ -73,7 +65,7 @@ fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let f = DeviationAccumulator::new(m, hardware.bits(F));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
 
     // Judge: the octant's axis vector; the other axis only joins it on the diagonal.

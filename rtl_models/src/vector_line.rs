@@ -7,12 +7,6 @@
 //!                                                                             └──► e ──► done
 //! ```
 //!
-//! | register | width | load value |
-//! |---|---|---|
-//! | xe, ye | n | a = abs(dx), b = abs(dy) |
-//! | f | n+1, two's complement | 0 |
-//! | e | n | max(a, b) |
-//!
 //! No primary source of the method survives; this is a definition of this project. The octant of the line fixes an axis
 //! vector (x where a >= b, else y) and the diagonal vector; on a line of 45° both are the diagonal. F = a·y - b·x is the
 //! cross product of the line and the way gone: an X pulse takes b off, a Y pulse puts a on. On the line, F = 0, the axis
@@ -27,17 +21,20 @@
 
 use stepwave_nc::Line;
 use stepwave_netlist::dsl::Scope;
-use stepwave_netlist::formula::name;
 
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model, RegisterDoc};
+use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{BeatRing, Block, DeviationAccumulator, LineFrame};
+use crate::parts::{BeatRing, Block, DeviationAccumulator, E, F, LONGEST, LineFrame, POSITION};
 use crate::plan::Plan;
+use crate::registers::{N, Reg};
 use crate::{sizes, words};
+
+/// Displacements.
+const XE_YE: Reg<2> = Reg::each(["xe", "ye"], N, "|dx|, |dy| of the line");
 
 /// Vector discrimination, line.
 pub static MODEL: Model = Model {
@@ -45,12 +42,7 @@ pub static MODEL: Model = Model {
     title: "Vector discrimination, line",
     method: "vector discrimination",
     source: "矢量判别法; no primary source survives: a definition of this project",
-    registers: &[
-        RegisterDoc { name: "xe, ye", width: "n", about: "|dx|, |dy| of the line" },
-        RegisterDoc { name: "f", width: "n+1", about: "deviation F, two's complement, from 0" },
-        RegisterDoc { name: "e", width: "n", about: "end-point down-counter of the long axis" },
-        RegisterDoc::POSITIONS,
-    ],
+    registers: &[&XE_YE, &F.width(N.plus(1)), &E.width(N).about("end-point down-counter of the long axis"), &POSITION],
     options: &[&WIDTH, &BEATS, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesByLength)),
     interpolates: Interpolates::Lines(2, Method { plan, load }),
@@ -58,7 +50,7 @@ pub static MODEL: Model = Model {
 };
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
-    sizes::judged_line(line, plan, ["xe", "ye"], 1);
+    sizes::judged_line(line, plan);
     plan.error_bound = Some(1.0);
     Ok(())
 }
@@ -66,8 +58,8 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let [xe, ye] = ["xe", "ye"].map(|name| block.held(m, name, hardware.bits(name)));
-    let f = DeviationAccumulator::new(m, hardware.bits("f"));
+    let [xe, ye] = [0, 1].map(|axis| hardware.held(m, &block, XE_YE.of(axis)));
+    let f = DeviationAccumulator::new(m, hardware.bits(F));
     let line = LineFrame::new(m, &block, hardware);
     let wide = xe.bits().max(ye.bits()) + 1;
     let [xe, ye] = [xe, ye].map(|way| way.extend(wide).as_signed());
@@ -90,7 +82,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
 /// F stays between what a step of the axis vector at 0 and one of the diagonal beside the line leave.
 fn invariants(m: Scope<'_>) {
-    let (f, xe, ye, x_is_long) = (|| name("f"), || name("xe"), || name("ye"), || name("x_is_longest"));
+    let (f, x_is_long) = (|| F.value(), || LONGEST.of(0).value());
+    let [xe, ye] = [0, 1].map(|axis| move || XE_YE.of(axis).value());
     m.between_steps("f_from_below_x", [f() + ye(), -x_is_long()]);
     m.between_steps("f_from_above_x", [xe() - ye() - 1 - f(), -f(), -x_is_long()]);
     m.between_steps("f_on_45_degrees", [f(), xe() - ye() - 1, -x_is_long()]);
@@ -99,7 +92,6 @@ fn invariants(m: Scope<'_>) {
 }
 
 fn load(line: &Line, _: &Hardware) -> Vec<Words> {
-    let ([a, b], mut words) = words::judged_line(line);
-    words.extend([("xe", a), ("ye", b), ("f", 0)]);
-    vec![words]
+    let (ways, words) = words::judged_line(line);
+    vec![words.set_each(XE_YE, ways).set(F, 0)]
 }

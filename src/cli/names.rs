@@ -1,9 +1,10 @@
 //! Names that shells complete: models, registers, and the values of lists. What is given is judged elsewhere, so that a
 //! wrong name has the sentence of whoever knows the right ones.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 
+use crate::models::registers::{Row, Rule};
 use crate::models::{AXES, Model, ModelError, installed};
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Command, Error};
@@ -46,20 +47,14 @@ pub(crate) enum Registers {
     Resizable,
 }
 
-/// Registers of a model: those of `jvx, jvy, …` for every axis that it takes.
+/// Registers of a model: those of each axis for every axis that it takes.
 pub(crate) fn registers(model: &Model, which: Registers) -> Vec<String> {
-    let axes = &AXES[..model.curve().max_axes().min(AXES.len())];
-    let mut names: Vec<String> = Vec::new();
-    let fixed = |width: &str| width.parse::<u32>().is_ok();
-    for doc in model.registers.iter().filter(|doc| which == Registers::All || !fixed(doc.width)) {
-        let given: Vec<&str> = doc.name.split(", ").filter(|name| *name != "…").collect();
-        names.extend(given.iter().map(|&name| name.to_owned()));
-        let common = given[0].strip_suffix(AXES[0]).filter(|_| doc.name.ends_with('…'));
-        names.extend(common.into_iter().flat_map(|common| axes.iter().map(move |axis| format!("{common}{axis}"))));
-    }
-    let mut seen = HashSet::new();
-    names.retain(|name| seen.insert(name.clone()));
-    names
+    let fixed = |row: &Row| matches!(row.declaration.rule, Rule::Bits(_));
+    let rows = model.rows().filter(|row| which == Registers::All || !fixed(row));
+    // Of the many units of a cascade the first are enough.
+    let few = |names: &'static [&'static str]| if names.len() > 2 * AXES.len() { &names[..2] } else { names };
+    let names = rows.flat_map(|row| few(row.names(model.curve().max_axes())));
+    names.map(|name| (*name).to_owned()).collect()
 }
 
 /// Registers of all models, as patterns of signals.

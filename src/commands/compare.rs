@@ -96,7 +96,7 @@ fn row(
     };
     // Positions are as wide as the way, whatever the method.
     let hardware = bench.hardware();
-    let own = hardware.widths.iter().filter(|(name, _)| !hardware.letters().contains(&name.as_str()));
+    let own = hardware.widths.iter().filter(|(name, _)| !hardware.letters().contains(name));
     let widest = own.max_by_key(|(name, width)| (width.get(), std::cmp::Reverse(*name)));
     Ok(Ok([
         format!("{}{form}", model.name),

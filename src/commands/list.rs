@@ -56,13 +56,13 @@ struct Columns {
 
 impl Columns {
     fn new() -> Columns {
-        let registers = || installed().iter().flat_map(|model| model.registers);
-        let options: Vec<String> =
-            installed().iter().flat_map(|model| model.options).map(|takes| format!("--{}", takes.name())).collect();
-        let widest = |texts: &mut dyn Iterator<Item = &str>| texts.map(|text| text.chars().count()).max().unwrap_or(0);
+        let of_model = |model: &'static Model| model.rows().map(|row| row.label(model.curve().max_axes()));
+        let options = installed().iter().flat_map(|model| model.options).map(|takes| format!("--{}", takes.name()));
+        let widest =
+            |texts: &mut dyn Iterator<Item = String>| texts.map(|text| text.chars().count()).max().unwrap_or(0);
         Columns {
-            name: widest(&mut registers().map(|register| register.name).chain(options.iter().map(String::as_str))),
-            width: widest(&mut registers().map(|register| register.width)),
+            name: widest(&mut installed().iter().flat_map(of_model).chain(options)),
+            width: widest(&mut installed().iter().flat_map(Model::rows).map(|row| row.declaration.rule.to_string())),
         }
     }
 
@@ -71,8 +71,9 @@ impl Columns {
         let _ = writeln!(text, "\n  {}  {}", model.name, model.title);
         let _ = writeln!(text, "    takes {}", model.curve().describe());
         let _ = writeln!(text, "    registers");
-        for register in model.registers {
-            let _ = writeln!(text, "      {:<name$}  {:<width$}  {}", register.name, register.width, register.about);
+        for row in model.rows() {
+            let (label, rule) = (row.label(model.curve().max_axes()), row.declaration.rule.to_string());
+            let _ = writeln!(text, "      {label:<name$}  {rule:<width$}  {}", row.declaration.about);
         }
         let _ = writeln!(text, "    options");
         for takes in model.options {
@@ -89,10 +90,10 @@ fn as_json(model: &Model) -> Value {
         CurveKind::Conic => "conic",
         CurveKind::Helix => "helix",
     };
-    let registers = model
-        .registers
-        .iter()
-        .map(|register| json!({ "name": register.name, "default_width": register.width, "about": register.about }));
+    let registers = model.rows().map(|row| {
+        let (label, rule) = (row.label(model.curve().max_axes()), row.declaration.rule.to_string());
+        json!({ "name": label, "default_width": rule, "about": row.declaration.about })
+    });
     let options = model.options.iter().map(|takes| {
         json!({
             "option": format!("--{}", takes.name()),

@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 use std::io::BufRead;
 
-use stepwave_models::program::Family;
+use stepwave_models::parts::PULSE_RATE;
+use stepwave_models::program::{Family, PROGRAM_WORDS};
 use stepwave_nc::{PulseBlock, ToolMove};
 
 use super::feed::{Pace, commanded, frequency, rate, shown_feed};
@@ -63,8 +64,8 @@ impl<'a, R: BufRead> Control<'a, R> {
                 let source_hz = frequency(self.pace, rate.word);
                 let feed = shown_feed(self.pace, self.speed, &part, source_hz);
                 let number = of.place.number.unwrap_or(of.place.line);
-                let mut words = part.words;
-                words.extend([("rate", rate.word.into()), ("block", number.into()), ("feed", feed.into())]);
+                let [shown, speed] = PROGRAM_WORDS;
+                let words = part.words.set(PULSE_RATE, rate.word).set(shown, number).set(speed, feed);
                 let loaded = self.bench.load(&[words])?;
                 self.losses.cut(of.place.line, &loaded.cut);
                 let part = Part {

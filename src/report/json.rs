@@ -123,7 +123,7 @@ impl Report {
             .map(|(name, value)| (name.replace('-', "_"), choice(name, &value)))
             .collect();
         let widths: Map<String, Value> =
-            self.hardware.widths.iter().map(|(name, width)| (name.clone(), json!(width.get()))).collect();
+            self.hardware.widths.iter().map(|(name, width)| ((*name).to_owned(), json!(width.get()))).collect();
         let registers: Vec<Value> = self
             .ranges
             .iter()

@@ -107,7 +107,7 @@ impl<'a, W: Write> ProgramJson<'a, W> {
     /// The output cannot be written.
     pub fn new(head: ProgramHead<'a>, mut out: W) -> io::Result<ProgramJson<'a, W>> {
         let widths: Map<String, Value> =
-            head.hardware.widths.iter().map(|(name, width)| (name.clone(), json!(width.get()))).collect();
+            head.hardware.widths.iter().map(|(name, width)| ((*name).to_owned(), json!(width.get()))).collect();
         let fields = json!({
             "schema": SCHEMA,
             "program": head.file,
@@ -324,7 +324,7 @@ impl<'a> ProgramTable<'a> {
             }
         }
         notes(&mut text, totals, losses);
-        let chosen = tail.ranges.iter().filter(|range| self.head.hardware.widths.contains_key(&range.name));
+        let chosen = tail.ranges.iter().filter(|range| self.head.hardware.widths.contains_key(range.name.as_str()));
         let spare = chosen.map(|range| format!("{} {}/{}", range.name, range.needed(), range.width.get()));
         let _ = writeln!(text, "bits needed/given: {}", spare.collect::<Vec<_>>().join(", "));
         text

@@ -106,7 +106,7 @@ impl Report {
 
     /// What the registers with a choice of width needed of it.
     fn registers(&self) -> String {
-        let chosen = || self.ranges.iter().filter(|range| self.hardware.widths.contains_key(&range.name));
+        let chosen = || self.ranges.iter().filter(|range| self.hardware.widths.contains_key(range.name.as_str()));
         let spare = chosen().map(|range| format!("{} {}/{}", range.name, self.needed_bits(range), range.width.get()));
         // The bits of an operand say nothing of the motion.
         let moving = chosen().filter(|range| !range.held);

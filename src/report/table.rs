@@ -26,7 +26,7 @@ impl<W: Write> CsvTable<W> {
         let front = if bench.machine().buffer.is_some() { "block," } else { "" };
         let letters = bench.hardware().letters();
         let mut names = vec!["step".to_owned(), "clock".to_owned()];
-        names.extend(bench.machine().table.iter().map(|(name, _)| name.clone()));
+        names.extend(bench.machine().table.iter().map(|(name, _)| (*name).to_owned()));
         names.extend(letters.iter().map(|axis| format!("d{axis}")));
         names.extend(letters.iter().map(|axis| (*axis).to_owned()));
         writeln!(out, "{front}{}", names.join(","))?;
@@ -80,11 +80,11 @@ impl TextbookTable {
     pub fn new(bench: &Testbench, bits: bool, textbook: bool) -> TextbookTable {
         let letters = bench.hardware().letters();
         let mut heading = vec!["step".to_owned()];
-        heading.extend(bench.machine().table.iter().map(|(name, _)| name.clone()));
+        heading.extend(bench.machine().table.iter().map(|(name, _)| (*name).to_owned()));
         heading.push("pulse".to_owned());
         heading.extend(letters.iter().map(|axis| (*axis).to_owned()));
         let ports = bench.machine().table.iter().map(|(_, port)| *port).collect();
-        let integrand = |(name, _): &(String, Port)| textbook && name.starts_with("jv");
+        let integrand = |(name, _): &(&'static str, Port)| textbook && name.starts_with("jv");
         let used = bench.machine().table.iter().map(integrand).collect();
         TextbookTable { heading, letters, ports, bits, used, rows: Vec::new(), complete: true }
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use serde_json::{Value as Json, json};
-use stepwave_models::Model;
+use stepwave_models::{Model, Options};
 use stepwave_nc::Curve;
 
 use super::columns::Layout;
@@ -161,12 +161,17 @@ impl Sweep {
                 Some((number, site, geometry.map_err(|error| error.to_string())))
             })
             .collect();
+        let options: Vec<(Options, Vec<&str>)> = if geometries.is_empty() {
+            Vec::new()
+        } else {
+            (0..variants).map(|index| self.variants.at(index)).collect()
+        };
         let tasks: Vec<Task> = (0..geometries.len() * variants)
             .into_par_iter()
             .map(|index| {
                 let (geometry, variant) = (index / variants, index % variants);
                 let machine = match &geometries[geometry].2 {
-                    Ok(curve) => self.machines.plan(curve, &self.variants.at(variant).0).map_err(|e| e.to_string()),
+                    Ok(curve) => self.machines.plan(curve, &options[variant].0).map_err(|e| e.to_string()),
                     Err(reason) => Err(reason.clone()),
                 };
                 Task { geometry, variant, machine }
@@ -194,8 +199,7 @@ impl Sweep {
         let row = |(task, run): (&Task, Option<Result<Measured, String>>)| {
             let (number, site, _) = &geometries[task.geometry];
             let index = number * self.variants() + task.variant as u64;
-            let words = self.variants.at(task.variant).1;
-            self.layout.row(index, site, &words, run.unwrap_or_else(|| Err(String::new())))
+            self.layout.row(index, site, &options[task.variant].1, run.unwrap_or_else(|| Err(String::new())))
         };
         Ok(tasks.par_iter().zip(measured).map(row).collect())
     }

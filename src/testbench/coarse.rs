@@ -37,7 +37,7 @@ impl<'a> CoarseWatch<'a> {
     #[must_use]
     pub fn new(bench: &Testbench, curve: &'a Curve) -> Option<CoarseWatch<'a>> {
         let sampling = bench.hardware().sampling?;
-        let port = |name: &str| bench.machine().table.iter().find(|(known, _)| known == name).map(|(_, port)| *port);
+        let port = |name: &str| bench.machine().table.iter().find(|(known, _)| *known == name).map(|(_, port)| *port);
         let points = [port("cx")?, port("cy")?].map(|port| (bench.columns().index(port.net), port));
         let (steps, unit) = (StepColumns::of(bench), 1 << sampling.fraction);
         Some(CoarseWatch { curve, steps, points, unit, rows: 0, at: [0, 0], worst: None })

@@ -69,7 +69,7 @@ fn whatever_register_is_too_narrow_the_machine_runs_and_lanes_agree() {
         for (register, width) in &own {
             for bits in [1, width.get() / 2, width.get().saturating_sub(1)].into_iter().filter(|&bits| bits > 0) {
                 for mode in [OnOverflow::Wrap, OnOverflow::Saturate] {
-                    let narrow = [(register.clone(), Width::new(bits.into()).unwrap())];
+                    let narrow = [((*register).to_owned(), Width::new(bits.into()).unwrap())];
                     let choices = with(mode, Options::default().with_single(&WIDTH, narrow.into()));
                     let what = format!("{} {register}={bits} {mode:?}", model.name);
                     let bench = match Testbench::loading(model, &curve, &choices) {

@@ -51,7 +51,7 @@ fn check_line(n: u32, from: &[i64], to: &[i64], engine: EngineKind) {
 
 /// Bits that the largest coordinate of the arc needs, as the model plans them.
 fn least_bits(curve: &Curve) -> u32 {
-    find("dda-arc").unwrap().plan(curve, &Options::default()).unwrap().bits("jrx")
+    find("dda-arc").unwrap().plan(curve, &Options::default()).unwrap().widths["jrx"].get()
 }
 
 /// Compares, hang for hang, and says whether the arc hung.

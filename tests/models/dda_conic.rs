@@ -11,7 +11,7 @@ use crate::reference::{self, Opens, Shape, Table, dda_conic};
 
 /// The least bits of an integrand, and so many more.
 fn bits(case: &Case, spare: u32) -> u32 {
-    find("dda-conic").unwrap().plan(&case.curve(), &Options::default()).unwrap().bits("jrx") + spare
+    find("dda-conic").unwrap().plan(&case.curve(), &Options::default()).unwrap().widths["jrx"].get() + spare
 }
 
 fn table(case: &Case, n: u32, preset: Preset, normalize: bool, end: reference::EndPoint) -> Table {

@@ -20,7 +20,7 @@ pub(super) fn helix(from: [i64; 3], to: [i64; 3], center: [i64; 2], clockwise: b
 /// fraction.
 fn check_helix(curve: &Curve, spare: u32, fraction: u32, preset: Preset, engine: EngineKind) -> bool {
     let Curve::Helix(given) = curve else { panic!("a helix") };
-    let n = find("dda-helix").unwrap().plan(curve, &Options::default()).unwrap().bits("jrx") + spare;
+    let n = find("dda-helix").unwrap().plan(curve, &Options::default()).unwrap().widths["jrx"].get() + spare;
     let wide = |bits: u32| Width::new(bits.into()).unwrap();
     let widths = [("jvz".to_owned(), wide(n + fraction)), ("jrz".to_owned(), wide(n + fraction))];
     let choices =

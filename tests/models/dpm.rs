@@ -141,7 +141,7 @@ fn the_feed_override_stands_before_decades_and_cascades_as_before_one_unit() {
 fn a_line_takes_the_least_whole_units_that_hold_it() {
     let bits = |choices: &Options| {
         let hardware = find(NAME).unwrap().plan(&line(&[0, 0], &[37, -1]), choices).unwrap();
-        (hardware.bits("mx"), hardware.bits("my"))
+        (hardware.widths["mx"].get(), hardware.widths["my"].get())
     };
     assert_eq!(bits(&Options::default()), (6, 6));
     for (unit, all) in [(1, 6), (2, 6), (3, 6), (4, 8), (5, 10), (6, 6), (7, 7)] {

@@ -112,7 +112,7 @@ fn run(model: &str, curve: &Curve, choices: &Options, engine: EngineKind) -> Ran
     let letters = bench.hardware().letters();
     // Clocks since the block was loaded, then the registers.
     let mut columns = vec!["clock".to_owned()];
-    columns.extend(bench.machine().table.iter().map(|(name, _)| name.clone()));
+    columns.extend(bench.machine().table.iter().map(|(name, _)| (*name).to_owned()));
     columns.extend(letters.iter().map(|axis| format!("d{axis}")));
     columns.extend(letters.iter().map(|axis| (*axis).to_owned()));
     let row = |step: Step| {

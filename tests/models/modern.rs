@@ -84,7 +84,7 @@ fn a_counter_traps_exactly_where_one_bit_less_cannot_hold_a_sum() {
         for (form, form_reference) in FORMS {
             let choices = Options::default().with(&FORM, form);
             let table = bresenham(&[0, 0], &to, form_reference, form == Form::Signed);
-            let usual = bench("bresenham", &line(&[0, 0], &to), &choices).hardware().bits("cntx");
+            let usual = bench("bresenham", &line(&[0, 0], &to), &choices).hardware().widths["cntx"].get();
             let ranges = [("x", to[0].abs()), ("y", to[1].abs())].map(|(axis, way)| sums(&table, axis, way));
             let limit = if form == Form::Signed { 1 << (usual - 1) } else { 1 << usual };
             assert!(ranges.iter().all(|(most, _)| *most < limit), "n + 1 bits hold every sum");
@@ -215,7 +215,7 @@ fn the_card_of_today_makes_lines_of_less_than_2_15_steps() {
 #[test]
 fn without_choices_a_generator_is_the_least_that_holds_the_line_and_never_waits_for_a_step() {
     let bench = bench("stepgen", &line(&[0, 0], &[6, 4]), &Options::default());
-    let bits = |name: &str| bench.hardware().bits(name);
+    let bits = |name: &str| bench.hardware().bits_of(name);
     // n = 3, and 2 more for four clocks a step.
     assert_eq!((bits("e"), bits("ratex"), bits("accx"), bench.hardware().get(&PICK_OFF)), (6, 4, 9, Some(5)));
     let ran = run("stepgen", &line(&[0, 0], &[6, 4]), &Options::default(), EngineKind::Word);

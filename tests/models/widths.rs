@@ -102,7 +102,8 @@ fn any_two_registers_of_any_width_build_or_are_refused() {
     let (mut built, mut refused) = (0, 0);
     for model in catalogue().iter() {
         for (curve, choices) in forms(model) {
-            let names: Vec<String> = model.plan(&curve, &choices).unwrap().widths.into_keys().collect();
+            let names: Vec<String> =
+                model.plan(&curve, &choices).unwrap().widths.into_keys().map(str::to_owned).collect();
             for (index, first) in names.iter().enumerate() {
                 for second in &names[index..] {
                     for (a, b) in WIDTHS.iter().flat_map(|a| WIDTHS.iter().map(move |b| (*a, *b))) {

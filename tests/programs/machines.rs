@@ -7,8 +7,9 @@ use stepwave::testbench::{
 };
 use stepwave_engine::EngineKind;
 use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
+use stepwave_models::parts::PULSE_RATE;
 use stepwave_models::program::{FAMILIES, Family, Size};
-use stepwave_models::{Hardware, OnOverflow, Options, Preset, Promise};
+use stepwave_models::{Hardware, OnOverflow, Options, Preset, Promise, Words};
 use stepwave_nc::{
     Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, Side, ToolMove, Way,
 };
@@ -25,15 +26,15 @@ fn tool_move(from: [f64; 3], to: [f64; 3], way: Way) -> ToolMove {
 /// Gives the machine its blocks, each with this rate of the pulse source and as a block of its own.
 struct Control<'a> {
     bench: &'a Testbench,
-    blocks: std::vec::IntoIter<(PulseBlock, Vec<(&'static str, i128)>)>,
+    blocks: std::vec::IntoIter<(PulseBlock, Words)>,
     rate: i128,
     given: u64,
 }
 
 impl Feeder for Control<'_> {
     fn next(&mut self) -> Result<Next, ObserverError> {
-        let Some((block, mut words)) = self.blocks.next() else { return Ok(Next::End) };
-        words.push(("rate", self.rate));
+        let Some((block, words)) = self.blocks.next() else { return Ok(Next::End) };
+        let words = words.set(PULSE_RATE, self.rate);
         let encoded = self.bench.machine().encode(self.bench.hardware(), &[words])?;
         self.given += 1;
         Ok(Next::Block(encoded.into_iter().next().unwrap(), Some(Box::new(Part::new(self.given, block)))))
@@ -65,11 +66,7 @@ impl Observer for Keep {
 }
 
 /// The blocks of the machine for these of a program.
-fn of_machine(
-    family: &Family,
-    hardware: &Hardware,
-    blocks: &[PulseBlock],
-) -> Vec<(PulseBlock, Vec<(&'static str, i128)>)> {
+fn of_machine(family: &Family, hardware: &Hardware, blocks: &[PulseBlock]) -> Vec<(PulseBlock, Words)> {
     let parts = |block: &PulseBlock| {
         family.words(hardware, block).into_iter().map(|part| (block.clone(), part.words)).collect::<Vec<_>>()
     };

@@ -73,7 +73,7 @@ fn cases() -> Vec<(&'static str, &'static str, (&'static str, OnOverflow))> {
 /// The names with a width of their own: one, or one for each axis.
 fn known(model: &'static Model, register: &str) -> bool {
     let plan = model.plan(&model.claims.unwrap().geometries.largest(4).unwrap(), &Options::default()).unwrap();
-    plan.widths.keys().any(|name| name == register || name.trim_end_matches(['x', 'y']) == register)
+    plan.widths.keys().any(|name| *name == register || name.trim_end_matches(['x', 'y']) == register)
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn a_verdict_on_one_hardware_is_what_every_geometry_of_its_box_shows() {
             let choices = Options::default().with(&ON_OVERFLOW, on_overflow).with_all(&WIDTH, Width::new(4).ok());
             let plan = model.plan(&model.claims.unwrap().geometries.largest(k).unwrap(), &choices).unwrap();
             let own =
-                plan.widths.iter().find(|(own, _)| own.trim_end_matches(['x', 'y']) == register || *own == register);
+                plan.widths.iter().find(|(own, _)| own.trim_end_matches(['x', 'y']) == register || **own == register);
             let bits = own?.1.get().checked_add_signed(more)?;
             let width = Width::new(u64::from(bits)).ok()?;
             let widths: BTreeMap<String, Width> = [(register.to_owned(), width)].into();

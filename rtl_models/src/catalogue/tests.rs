@@ -9,8 +9,9 @@ use super::catalogue;
 use crate::machine::Words;
 use crate::model::{Interpolates, Method, Model};
 use crate::options::WIDTH;
-use crate::parts::{Block, DownCounter, axis_counter};
+use crate::parts::{Block, E, END, F, POSITION};
 use crate::plan::Plan;
+use crate::registers::{N, Reg, Rule};
 use crate::{Hardware, ModelError};
 
 /// A line along x alone.
@@ -19,7 +20,7 @@ static ALONG_X: Model = Model {
     title: "",
     method: "",
     source: "",
-    registers: &[],
+    registers: &[&E, &POSITION],
     options: &[&WIDTH],
     claims: None,
     interpolates: Interpolates::Lines(2, Method { plan, load }),
@@ -27,25 +28,26 @@ static ALONG_X: Model = Model {
 };
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
-    plan.register("e", 5).positions(line.from().iter().zip(line.to()).map(|(&from, &to)| vec![from, to]));
+    plan.n = 4;
+    plan.positions(line.from().iter().zip(line.to()).map(|(&from, &to)| [from, to]));
     Ok(())
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    wired(m, hardware, "e");
+    wired(m, hardware, E);
 }
 
-fn wired(m: Scope<'_>, hardware: &Hardware, counter: &str) {
+fn wired(m: Scope<'_>, hardware: &Hardware, counter: Reg) {
     let block = Block::new(m);
-    for letter in ["x", "y"] {
-        axis_counter(m, &block, letter, hardware.bits(letter), block.busy, m.lit(1, 0));
+    for axis in [0, 1] {
+        hardware.axis(m, &block, axis, block.busy, m.lit(1, 0));
     }
-    let last = DownCounter::new(m, &block, counter, hardware.bits(counter)).count(block.busy);
+    let last = hardware.counter(m, &block, counter).count(block.busy);
     block.close(block.load, block.busy, last);
 }
 
 fn load(_: &Line, _: &Hardware) -> Vec<Words> {
-    vec![vec![("e", 8), ("x", 0), ("y", 0)]]
+    vec![Words::new().set(E, 8).set_each(POSITION.pair(), [0, 0])]
 }
 
 fn refused(model: &'static Model) -> String {
@@ -71,7 +73,7 @@ const PLAIN: Model = Model {
     title: "",
     method: "",
     source: "",
-    registers: &[],
+    registers: &[&E, &POSITION],
     options: &[],
     claims: None,
     interpolates: Interpolates::Lines(2, Method { plan, load }),
@@ -79,17 +81,59 @@ const PLAIN: Model = Model {
 };
 
 #[test]
-fn a_register_that_was_not_planned_is_refused_with_its_name() {
-    static TYPO: Model = Model { name: "typo", hardware: |m, hardware| wired(m, hardware, "ee"), ..PLAIN };
-    let reason = refused(&TYPO);
-    assert!(reason.starts_with("the model typo does not work: ") && reason.contains("ee"), "{reason}");
+fn a_register_that_is_not_listed_is_refused_with_its_name() {
+    static OTHER: Model = Model { name: "other", hardware: |m, hardware| wired(m, hardware, END.of(0)), ..PLAIN };
+    let reason = refused(&OTHER);
+    assert!(reason.starts_with("the model other does not work: ") && reason.contains("ex"), "{reason}");
+}
+
+#[test]
+fn a_register_that_no_hardware_has_is_refused_with_its_name() {
+    const NONE: Reg = Reg::new("none", N, "").hidden();
+    static LISTED: Model = Model { name: "listed", registers: &[&E, &POSITION, &NONE], ..PLAIN };
+    assert!(refused(&LISTED).ends_with("it has no register none with any option"), "{}", refused(&LISTED));
+}
+
+#[test]
+fn a_register_that_is_listed_twice_is_refused_with_its_name() {
+    static TWICE: Model = Model { name: "twice", registers: &[&E, &POSITION, &E.about("again")], ..PLAIN };
+    assert!(refused(&TWICE).ends_with("it lists the register e twice"), "{}", refused(&TWICE));
+}
+
+#[test]
+fn a_register_without_a_width_is_refused_with_its_name() {
+    const OPEN: Reg = Reg::new("open", Rule::Planned("as it needs"), "");
+    static WITHOUT: Model = Model { name: "without", registers: &[&OPEN, &E, &POSITION], ..PLAIN };
+    assert!(refused(&WITHOUT).ends_with("its plan gives no width to the register open"), "{}", refused(&WITHOUT));
+}
+
+#[test]
+fn a_register_of_another_width_than_planned_is_refused_with_both() {
+    static WIDE: Model = Model {
+        name: "wide",
+        hardware: |m, hardware| {
+            m.reg(A.name(), 9).set(m.lit(9, 0));
+            wired(m, hardware, E);
+        },
+        registers: &[&E, &POSITION, &A],
+        ..PLAIN
+    };
+    const A: Reg = Reg::new("a", N, "");
+    assert!(refused(&WIDE).ends_with("its register a has 9 bits, but 4 are planned"), "{}", refused(&WIDE));
+}
+
+#[test]
+fn every_model_of_the_crate_has_the_registers_that_it_lists() {
+    for model in catalogue().iter() {
+        assert_eq!(super::check(model), Ok(()), "{}", model.name);
+    }
 }
 
 #[test]
 fn a_word_for_a_register_that_does_not_exist_is_refused_with_its_name() {
     static WORD: Model = Model {
         name: "word",
-        interpolates: Interpolates::Lines(2, Method { plan, load: |_, _| vec![vec![("f", 1)]] }),
+        interpolates: Interpolates::Lines(2, Method { plan, load: |_, _| vec![Words::new().set(F, 1)] }),
         ..PLAIN
     };
     let reason = refused(&WORD);

@@ -5,6 +5,7 @@ use stepwave_netlist::formula::{Clause, name};
 
 use super::extremes::{self, Reach};
 use super::{Kind, coordinate, spread};
+use crate::parts::POSITION;
 
 /// Quadrants by the signs of their coordinates.
 const QUADRANTS: [[i64; 2]; 4] = [[1, 1], [-1, 1], [-1, -1], [1, -1]];
@@ -39,8 +40,8 @@ pub(super) fn kinds() -> Vec<Kind> {
                 Clause::at_least_zero("it ends inside", last - 1),
             ]);
             let ends = [
-                Clause::zero("x ends", name("x") - x * name("xt")),
-                Clause::zero("y ends", name("y") - y * name("yt")),
+                Clause::zero("x ends", POSITION.of(0).value() - x * name("xt")),
+                Clause::zero("y ends", POSITION.of(1).value() - y * name("yt")),
             ];
             kinds.push(Kind {
                 name: format!("{word}{}", quadrant + 1),

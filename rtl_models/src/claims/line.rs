@@ -5,6 +5,7 @@ use stepwave_netlist::formula::{Clause, name};
 
 use super::extremes::{self, Reach};
 use super::{Kind, coordinate, spread};
+use crate::parts::POSITION;
 
 /// Signs of the motion.
 const QUADRANTS: [(&str, [i128; 2]); 4] = [("Q1", [1, 1]), ("Q2", [-1, 1]), ("Q3", [-1, -1]), ("Q4", [1, -1])];
@@ -49,7 +50,10 @@ pub(super) fn kinds(lengths: &[&str], halved: bool) -> Vec<Kind> {
                 ", 45 degrees" => premises.extend(Clause::zero("both are as long", a() - b())),
                 _ => {}
             }
-            let ends = [Clause::zero("x ends", name("x") - x * a()), Clause::zero("y ends", name("y") - y * b())];
+            let ends = [
+                Clause::zero("x ends", POSITION.of(0).value() - x * a()),
+                Clause::zero("y ends", POSITION.of(1).value() - y * b()),
+            ];
             kinds.push(Kind {
                 name: format!("{quadrant}{length}"),
                 symbols,

@@ -11,7 +11,7 @@ use super::{ALL, AnyOption, Millionths, OptionDef, PerRegister};
 #[derive(Clone)]
 pub struct Value {
     pub(super) option: &'static dyn AnyOption,
-    pub(super) text: String,
+    pub(super) text: Arc<str>,
     pub(super) typed: Arc<dyn Any + Send + Sync>,
 }
 
@@ -30,7 +30,7 @@ impl Value {
 
     /// The value says that there is nothing of the kind, which is as if it was not given.
     fn is_absence(&self) -> bool {
-        matches!(self.text.as_str(), "" | "no" | "none")
+        matches!(&*self.text, "" | "no" | "none")
     }
 }
 
@@ -148,7 +148,7 @@ impl Options {
     #[must_use]
     pub fn words(&self) -> Vec<String> {
         let words = self.given.iter().flat_map(|value| {
-            let text = (!value.option.value_name().is_empty()).then(|| value.text.clone());
+            let text = (!value.option.value_name().is_empty()).then(|| value.text.to_string());
             [Some(format!("--{}", value.option.name())), text]
         });
         words.flatten().collect()

@@ -133,7 +133,7 @@ impl<T: Clone + PartialEq + Send + Sync + 'static> OptionDef<T> {
     #[must_use]
     pub fn value(&'static self, value: T) -> Value {
         let text = self.text(&value);
-        Value { option: self, text, typed: Arc::new(value) as Arc<dyn Any + Send + Sync> }
+        Value { option: self, text: text.into(), typed: Arc::new(value) as Arc<dyn Any + Send + Sync> }
     }
 
     /// The text of a value.

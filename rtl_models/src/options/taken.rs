@@ -142,7 +142,7 @@ impl<T: Clone + PartialEq + Send + Sync + 'static> Takes for Taken<T> {
 
     fn refusal(&'static self, value: &Value) -> Option<String> {
         let words = self.words();
-        if words.is_empty() || words.iter().any(|(word, _)| *word == value.text) {
+        if words.is_empty() || words.iter().any(|(word, _)| **word == *value.text) {
             return None;
         }
         let list: Vec<&str> = words.iter().map(|(word, _)| *word).collect();

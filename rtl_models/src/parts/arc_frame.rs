@@ -3,11 +3,15 @@
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{
-    BeatRing, Block, EndCounters, Kind, axis_counter, negated, next_quadrant, quadrant_register, up_down_counter,
-    x_grows,
+    BeatRing, Block, CCW, EndCounters, Kind, QUAD, axis_scope, negated, next_quadrant, quadrant_register,
+    up_down_counter, x_grows,
 };
 use crate::hardware::Hardware;
 use crate::options::{END_POINT, EndPoint};
+use crate::registers::{N, Reg};
+
+/// The coordinates of an arc.
+pub const XI_YI: Reg<2> = Reg::each(["xi", "yi"], N, "|x|, |y| relative to the centre");
 
 /// Coordinates, quadrant, end point and axes of an arc. The judgement between them says which axes a step takes.
 ///
@@ -33,9 +37,9 @@ impl<'m> ArcFrame<'m> {
     /// The registers; the quadrant is turned at an edge with `judge` = 1 (1 bit).
     #[must_use]
     pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware, judge: Signal<'m>) -> ArcFrame<'m> {
-        let [xi, yi] = ["xi", "yi"].map(|name| m.reg(name, hardware.bits(name)));
+        let [xi, yi] = [0, 1].map(|axis| hardware.reg(m, XI_YI.of(axis)));
         let quad = quadrant_register(m);
-        let ccw = block.held(m, "ccw", 1);
+        let ccw = hardware.held(m, block, CCW);
         let end = EndCounters::new(m, block, hardware);
         let q = m.scope("quadrant");
         let entered = if hardware.get(&END_POINT) == EndPoint::PerAxis {
@@ -45,7 +49,7 @@ impl<'m> ArcFrame<'m> {
             let cross = q.name("cross", x_grows(quad.q, ccw).mux(y_zero & !x_zero, x_zero & !y_zero));
             cross.mux(next_quadrant(q, quad.q, ccw), quad.q)
         };
-        quad.when(block.load, block.word("quad", 2)).when(judge, entered).else_hold();
+        quad.when(block.load, hardware.word(block, QUAD)).when(judge, entered).else_hold();
         // Behind the judge beat `entered` is `quad` itself, until the coordinates change.
         ArcFrame { m, block: *block, xi, yi, end, kind: Kind::decode(q, entered, ccw) }
     }
@@ -78,16 +82,14 @@ impl<'m> ArcFrame<'m> {
 
     /// The axes taken (1 bit each) get a pulse at an edge with `feed` = 1.
     pub fn feed(&self, hardware: &Hardware, feed: Signal<'m>, [x, y]: [Signal<'m>; 2]) {
-        let axes = [("x", x, self.kind.x_negative), ("y", y, self.kind.y_negative)];
-        for (letter, taken, negative) in axes {
-            let scope = self.m.scope(&format!("axis_{letter}"));
-            axis_counter(scope, &self.block, letter, hardware.bits(letter), feed & taken, negative);
+        for (axis, taken, negative) in [(0, x, self.kind.x_negative), (1, y, self.kind.y_negative)] {
+            hardware.axis(axis_scope(self.m, axis), &self.block, axis, feed & taken, negative);
         }
     }
 
     /// The coordinates taken (1 bit each) change at an edge with `compute` = 1.
     pub(super) fn compute(&self, compute: Signal<'m>, taken: [Signal<'m>; 2]) {
-        let registers = [(self.xi, "xi"), (self.yi, "yi")];
+        let registers = [(self.xi, XI_YI.of(0)), (self.yi, XI_YI.of(1))];
         count_coordinates(self.m, &self.block, registers, taken, self.grows(), |taken| compute & taken);
     }
 
@@ -110,14 +112,14 @@ impl<'m> ArcFrame<'m> {
 pub fn count_coordinates<'m>(
     m: Scope<'m>,
     block: &Block<'m>,
-    registers: [(Register<'m>, &str); 2],
+    registers: [(Register<'m>, Reg); 2],
     taken: [Signal<'m>; 2],
     grows: [Signal<'m>; 2],
     counts: impl Fn(Signal<'m>) -> Signal<'m>,
 ) {
-    for (((register, name), taken), grows) in registers.into_iter().zip(taken).zip(grows) {
+    for (((register, own), taken), grows) in registers.into_iter().zip(taken).zip(grows) {
         let count = counts(taken);
-        let load = [(block.load, block.word(name, register.q.bits()))];
+        let load = [(block.load, block.word(own.name(), register.q.bits()))];
         up_down_counter(register, &load, count & grows, count & !grows, m.lit(1, 1));
     }
 }

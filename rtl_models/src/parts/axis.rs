@@ -4,6 +4,20 @@ use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::{Block, up_down_counter};
+use crate::per_axis;
+use crate::registers::{AXES, PerAxis, Reg, Rule};
+
+/// Machine positions; the plan of a model [sets](crate::Plan::positions) their widths.
+pub const POSITION: PerAxis =
+    Reg::each(AXES, Rule::Planned("as the path needs, + 1"), "machine position, signed").signed().hidden();
+/// Directions of the axes: 1 is negative.
+pub const SIGN: PerAxis = Reg::each(per_axis!("s"), Rule::Bits(1), "direction of the axis, 1 is negative").hidden();
+
+/// The scope of an axis: `axis_x` of the first.
+#[must_use]
+pub fn axis_scope(m: Scope<'_>, axis: usize) -> Scope<'_> {
+    m.scope(&format!("axis_{}", AXES[axis]))
+}
 
 /// The axis of this letter: at an edge with `pulse` = 1 it sends one pulse, in the negative direction where `negative` is
 /// 1 (1 bit each).

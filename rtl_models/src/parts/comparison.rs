@@ -2,11 +2,16 @@
 
 use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
-use stepwave_netlist::formula::name;
 
-use super::{BeatRing, Block, DeviationAccumulator, EndCounters, axis_counter, negated};
+use super::{BeatRing, Block, DeviationAccumulator, EndCounters, F, axis_scope, negated};
 use crate::hardware::Hardware;
 use crate::options::{BEATS, WEIGHTS, Weights};
+use crate::registers::{N, Reg, Rule};
+
+/// Interval weights of an X and of a Y pulse.
+pub const A_B: Reg<2> = Reg::each(["a", "b"], N, "interval weights A of an X, B of a Y pulse");
+/// The base axis.
+pub const BASE: Reg = Reg::new("base", Rule::Bits(1), "base axis, X = 0, Y = 1");
 
 /// What is particular to one axis of a curve.
 #[derive(Clone, Copy, Debug)]
@@ -41,9 +46,8 @@ pub fn comparison_integral<'m>(m: Scope<'m>, block: Block<'m>, hardware: &Hardwa
     let taken = [beat.decided("take_x", taken[0]), beat.decided("take_y", taken[1])];
 
     // Feed.
-    for ((letter, side), taken) in ["x", "y"].into_iter().zip(sides).zip(taken) {
-        let scope = m.scope(&format!("axis_{letter}"));
-        axis_counter(scope, &block, letter, hardware.bits(letter), beat.feed & taken, side.negative);
+    for ((axis, side), taken) in sides.into_iter().enumerate().zip(taken) {
+        hardware.axis(axis_scope(m, axis), &block, axis, beat.feed & taken, side.negative);
     }
 
     // Compute.
@@ -71,13 +75,13 @@ impl<'m> Weighing<'m> {
     /// The registers.
     #[must_use]
     pub fn new(m: Scope<'m>, hardware: &Hardware) -> Weighing<'m> {
-        let f = DeviationAccumulator::new(m, hardware.bits("f"));
-        let weights = ["a", "b"].map(|name| m.reg(name, hardware.bits(name)));
+        let f = DeviationAccumulator::new(m, hardware.bits(F));
+        let weights = [0, 1].map(|axis| hardware.reg(m, A_B.of(axis)));
         let names = vec![(0, "X".to_owned()), (1, "Y".to_owned())];
-        let base = m.reg("base", 1).shown(Format::States(names));
-        let y_is_base = || name("base");
-        m.between_steps("x_is_base", [name("b") - name("a"), y_is_base() - 1]);
-        m.between_steps("y_is_base", [name("a") - name("b"), -y_is_base()]);
+        let base = hardware.reg(m, BASE).shown(Format::States(names));
+        let [a, b] = [0, 1].map(|axis| move || A_B.of(axis).value());
+        m.between_steps("x_is_base", [b() - a(), BASE.value() - 1]);
+        m.between_steps("y_is_base", [a() - b(), -BASE.value()]);
         Weighing { m, f, weights, base }
     }
 
@@ -101,7 +105,7 @@ impl<'m> Weighing<'m> {
         let bits = |register: Register<'m>| register.q.bits();
         // The weights behind the pulses, and F with the weight that the rule says.
         let wide = bits(a).max(bits(b)) + 3;
-        let [word_a, word_b] = [("a", a), ("b", b)].map(|(name, register)| block.word(name, bits(register)));
+        let [word_a, word_b] = [(0, a), (1, b)].map(|(axis, register)| block.word(A_B.of(axis).name(), bits(register)));
         let intervals = [(a, word_a, taken[0], changes[0]), (b, word_b, taken[1], changes[1])];
         let [(a_behind, a_weight), (b_behind, b_weight)] = intervals.map(|(register, word, taken, change)| {
             let behind = moved(block, compute, register, taken, change);

@@ -3,6 +3,10 @@
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::Block;
+use crate::registers::{N, Reg};
+
+/// The deviation F.
+pub const F: Reg = Reg::new("f", N.plus(2), "deviation F, two's complement, from 0").signed();
 
 /// Register `f`, two's complement, and the adder before it.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +18,7 @@ impl<'m> DeviationAccumulator<'m> {
     /// The register, `bits` bits wide.
     #[must_use]
     pub fn new(m: Scope<'m>, bits: u32) -> DeviationAccumulator<'m> {
-        DeviationAccumulator { f: m.reg_signed("f", bits) }
+        DeviationAccumulator { f: m.reg_signed(F.name(), bits) }
     }
 
     /// 1 bit: F >= 0, the tool stands outside the curve or on it.
@@ -33,7 +37,7 @@ impl<'m> DeviationAccumulator<'m> {
     /// exact result must fit where it does not. The operand may have any width and either reading.
     pub fn close_adding(self, block: &Block<'m>, compute: Signal<'m>, operand: Signal<'m>) {
         let sum = self.f.q.strict_add(operand, compute & !block.load);
-        let word = block.word_signed("f", self.f.q.bits());
+        let word = block.word_signed(F.name(), self.f.q.bits());
         self.f.when(block.load, word).when(compute, sum).else_hold();
     }
 
@@ -45,7 +49,7 @@ impl<'m> DeviationAccumulator<'m> {
         let (plus, minus) = (compute & !subtract, compute & subtract);
         let counts = !block.load;
         let (sum, difference) = (f.q.strict_add(operand, plus & counts), f.q.strict_sub(operand, minus & counts));
-        let word = block.word_signed("f", f.q.bits());
+        let word = block.word_signed(F.name(), f.q.bits());
         f.when(block.load, word).when(plus, sum).when(minus, difference).else_hold();
     }
 }

@@ -5,6 +5,15 @@ use stepwave_netlist::dsl::{Scope, Signal};
 use super::{Block, DownCounter};
 use crate::hardware::Hardware;
 use crate::options::{END_POINT, EndPoint};
+use crate::per_axis;
+use crate::registers::{N, PerAxis, Reg};
+
+/// The end-point down-counter of hardware that has one for all axes.
+pub const E: Reg =
+    Reg::new("e", N.plus(1), "end-point down-counter (total)").when(|plan| plan.get(&END_POINT) != EndPoint::PerAxis);
+/// The end-point down-counters of hardware that has one for each axis.
+pub const END: PerAxis = Reg::each(per_axis!("e"), N, "end-point down-counter of each axis (per-axis)")
+    .when(|plan| plan.get(&END_POINT) == EndPoint::PerAxis);
 
 /// End-point counters of two axes: `ex` and `ey` with [`EndPoint::PerAxis`], else `e`.
 #[derive(Clone, Copy, Debug)]
@@ -19,10 +28,9 @@ impl<'m> EndCounters<'m> {
     /// The counters, as wide as the hardware says.
     #[must_use]
     pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware) -> EndCounters<'m> {
-        let counter = |name: &str| DownCounter::new(m, block, name, hardware.bits(name));
         match hardware.get(&END_POINT) {
-            EndPoint::PerAxis => EndCounters::PerAxis(["ex", "ey"].map(counter)),
-            _ => EndCounters::Total(counter("e")),
+            EndPoint::PerAxis => EndCounters::PerAxis([0, 1].map(|axis| hardware.counter(m, block, END.of(axis)))),
+            _ => EndCounters::Total(hardware.counter(m, block, E)),
         }
     }
 

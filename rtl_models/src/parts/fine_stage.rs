@@ -3,9 +3,26 @@
 use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
-use super::{Block, Iteration, axis_counter, integrator, magnitude};
+use super::{Block, Iteration, JR, JV, SIGN, axis_scope, integrator, magnitude};
 use crate::hardware::Hardware;
-use crate::hardware::names::{JV, POSITION, SIGN};
+use crate::per_axis;
+use crate::registers::{PerAxis, Reg, Rule};
+
+/// The coarse point of the period.
+pub const POINT: PerAxis =
+    Reg::each(per_axis!("c"), Rule::Planned("n+2+q"), "coarse point of the period, in 2^-q BLU, signed")
+        .signed()
+        .follows(|_| true);
+/// The displacement of a period, in 2^-q BLU.
+pub const DISPLACEMENT: Reg = Reg::new("f", Rule::Planned("as it needs"), "displacement of a period");
+/// The whole pulses handed over so far, as a position.
+pub const TARGET: PerAxis =
+    Reg::each(per_axis!("t"), Rule::Planned("n+2"), "whole pulses handed over so far").signed().hidden();
+/// The integrators of a burst.
+pub const BURST: (PerAxis, PerAxis) = (
+    JV.width(Rule::Planned("as f needs")).about("whole pulses of the period, double buffered"),
+    JR.width(Rule::Planned("as jv")).about("remainder of the fine stage, from the preset"),
+);
 
 /// Two integrators whose integrands are double buffered. The coarse stage hands over a point of the curve, with
 /// a fraction, relative to the start or centre of the block; what whole pulses of it are still to be made goes into the
@@ -72,42 +89,41 @@ impl<'m> FineStage<'m> {
         self.last.when(block.load, no).when(take, self.next_last.q).else_hold();
 
         for axis in 0..2 {
-            let letter = POSITION[axis];
-            let scope = m.scope(&format!("axis_{letter}"));
+            let scope = axis_scope(m, axis);
             let (point, end) = (points[axis], ends[axis].extend(points[axis].bits() - fraction));
             let whole_bits = end.bits();
             // Rounded to the nearest pulse.
             let half = m.lit(point.bits(), 1 << (fraction - 1)).as_signed();
             let rounded = point.wrapping_add(half).slice(fraction, whole_bits).as_signed();
-            let target = scope.reg_signed(&format!("t{letter}"), whole_bits);
+            let target = scope.reg_signed(TARGET.of(axis).name(), whole_bits);
             let goal = last.mux(end, rounded);
             let fine = |whole: Signal<'m>| whole.concat(m.lit(fraction, 0)).as_signed();
-            let start = block.word_signed(&format!("t{letter}"), whole_bits);
+            let start = block.word_signed(TARGET.of(axis).name(), whole_bits);
             target.when(block.load, start).when(hand, goal).else_hold();
             let way = goal.wrapping_sub(target.q);
 
-            let bits = hardware.bits(JV[axis]);
-            let next = scope.reg(&format!("{}_next", JV[axis]), bits);
+            let bits = hardware.bits(JV.of(axis));
+            let next = scope.reg(&format!("{}_next", JV.of(axis).name()), bits);
             // An emptied buffer is 0.
             let ahead = next.q.strict_add(magnitude(m, way), hand & !block.load);
             next.when(block.load, m.lit(bits, 0)).when(hand, ahead).when(take, m.lit(bits, 0)).else_hold();
-            let jv = scope.reg(JV[axis], bits);
+            let jv = scope.reg(JV.of(axis).name(), bits);
             jv.when(block.load, m.lit(bits, 0)).when(take, next.q).else_hold();
             let buffered = |name: &str, value: Signal<'m>| {
                 let buffer = scope.reg(name, value.bits());
                 buffer.when(hand, value).else_hold();
                 buffer.q
             };
-            let next_sign = buffered(&format!("{}_next", SIGN[axis]), way.msb());
-            let sign = scope.reg(SIGN[axis], 1);
+            let next_sign = buffered(&format!("{}_next", SIGN.of(axis).name()), way.msb());
+            let sign = scope.reg(SIGN.of(axis).name(), 1);
             sign.when(take, next_sign).else_hold();
-            let next_point = scope.reg_signed(&format!("c{letter}_next"), point.bits());
+            let next_point = scope.reg_signed(&format!("{}_next", POINT.of(axis).name()), point.bits());
             next_point.when(hand, last.mux(fine(end), point)).else_hold();
-            let drawn = scope.reg_signed(&format!("c{letter}"), point.bits());
+            let drawn = scope.reg_signed(POINT.of(axis).name(), point.bits());
             drawn.when(block.load, fine(start)).when(take, next_point.q).else_hold();
 
             let pulse = integrator(scope, &block, hardware, axis, jv.q, Iteration { add: tick, complete: tick });
-            axis_counter(scope, &block, letter, hardware.bits(letter), pulse, sign.q);
+            hardware.axis(scope, &block, axis, pulse, sign.q);
         }
         block.close(block.load, over, self.last.q);
     }

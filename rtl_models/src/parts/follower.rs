@@ -3,6 +3,15 @@
 use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::Block;
+use crate::registers::{N, Reg, Rule};
+
+/// Pulses of both axes of the plane in a block.
+pub const WHOLE: Reg = Reg::new("whole", N.plus(1), "pulses of both axes of the plane").hidden();
+const AS_WHOLE: Rule = Rule::Planned("as whole");
+/// Those of the third axis.
+pub const SHARE: Reg = Reg::new("share", AS_WHOLE, "pulses of the third axis");
+/// What the third axis has in store.
+pub const REST: Reg = Reg::new("rest", AS_WHOLE, "what is left over of a pulse of the third axis");
 
 /// Spreads the pulses of a third axis over those of the two axes in the plane: `share` out of `whole`.
 ///
@@ -21,8 +30,8 @@ pub fn follower<'m>(
     taken: [Signal<'m>; 2],
 ) -> Signal<'m> {
     let m = m.scope("follower");
-    let [whole, share] = ["whole", "share"].map(|name| block.held(m, name, bits));
-    let rest = m.reg("rest", bits);
+    let [whole, share] = [WHOLE, SHARE].map(|register| block.held(m, register.name(), bits));
+    let rest = m.reg(REST.name(), bits);
     let wide = bits + 2;
     let zero = m.lit(wide, 0);
     let [first, second] = taken.map(|taken| taken.mux(share.extend(wide), zero));
@@ -30,6 +39,6 @@ pub fn follower<'m>(
     let (borrow, less) = sum.borrowing_sub(whole.extend(wide));
     let pulse = m.name("pulse", step & !borrow);
     let next = borrow.mux(sum, less).slice(0, bits);
-    rest.when(block.load, block.word("rest", bits)).when(step, next).else_hold();
+    rest.when(block.load, block.word(REST.name(), bits)).when(step, next).else_hold();
     pulse
 }

@@ -5,8 +5,14 @@ use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::{Block, Iteration, decimal_adder, digit_adder};
 use crate::hardware::Hardware;
-use crate::hardware::names::JR;
 use crate::options::{ADDER, Adder, RADIX, Radix};
+use crate::per_axis;
+use crate::registers::{N, PerAxis, Reg};
+
+/// Integrands.
+pub const JV: PerAxis = Reg::each(per_axis!("jv"), N, "integrand J_V of each axis, |d|");
+/// Remainders.
+pub const JR: PerAxis = Reg::each(per_axis!("jr"), N, "remainder J_R of each axis, from the preset").preset();
 
 /// One DDA integrator: in every iteration it adds the integrand J_V into the remainder register J_R of its axis (at least
 /// as wide as the integrand); returns the carry (1 bit), which is the axis's pulse.
@@ -22,7 +28,7 @@ pub fn integrator<'m>(
     integrand: Signal<'m>,
     step: Iteration<'m>,
 ) -> Signal<'m> {
-    let (name, bits) = (JR[axis], hardware.bits(JR[axis]));
+    let (name, bits) = (JR.of(axis).name(), hardware.bits(JR.of(axis)));
     let remainder = m.reg(name, bits).shown(digits(hardware));
     let word = block.word_in(hardware.get(&RADIX), name, bits);
     if hardware.get(&ADDER) == Adder::Serial {

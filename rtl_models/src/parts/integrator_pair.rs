@@ -2,11 +2,11 @@
 
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
-use super::{Block, DownCounter, Iteration, Normalized, axis_counter, integrator, population_count, up_down_counter};
+use super::{
+    Block, E, END, Iteration, JV, Normalized, axis_scope, integrator, population_count, shifted_left, up_down_counter,
+};
 use crate::hardware::Hardware;
-use crate::hardware::names::{END, JV, POSITION};
 use crate::options::{END_POINT, EndPoint};
-use crate::parts::shifted_left;
 
 /// What is particular to one axis of the curve.
 #[derive(Clone, Copy, Debug)]
@@ -37,8 +37,8 @@ impl<'m> IntegratorPair<'m> {
     /// The integrands.
     #[must_use]
     pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware) -> IntegratorPair<'m> {
-        let scopes = ["axis_x", "axis_y"].map(|name| m.scope(name));
-        let jv = [0, 1].map(|axis| scopes[axis].reg(JV[axis], hardware.bits(JV[axis])));
+        let scopes = [0, 1].map(|axis| axis_scope(m, axis));
+        let jv = [0, 1].map(|axis| hardware.reg(scopes[axis], JV.of(axis)));
         IntegratorPair { m, block: *block, scopes, jv }
     }
 
@@ -53,28 +53,24 @@ impl<'m> IntegratorPair<'m> {
     #[must_use]
     pub fn close(self, hardware: &Hardware, normalized: Normalized<'m>, sides: [PairSide<'m>; 2]) -> Signal<'m> {
         let IntegratorPair { m, block, scopes, jv } = self;
-        let counter = |axis: usize| DownCounter::new(scopes[axis], &block, END[axis], hardware.bits(END[axis]));
+        let counter = |axis: usize| hardware.counter(scopes[axis], &block, END.of(axis));
         let counters = (hardware.get(&END_POINT) == EndPoint::PerAxis).then(|| [0, 1].map(counter));
         let run = Iteration::new(m, &block, hardware, normalized.run);
         let steps = counters.map_or([run; 2], |counters| counters.map(|counter| run.only(counter.running())));
         let pulses = [0, 1].map(|axis| integrator(scopes[axis], &block, hardware, axis, jv[axis].q, steps[axis]));
         for axis in [0, 1] {
-            let (letter, negative) = (POSITION[axis], sides[axis].negative);
-            axis_counter(scopes[axis], &block, letter, hardware.bits(letter), pulses[axis], negative);
+            hardware.axis(scopes[axis], &block, axis, pulses[axis], sides[axis].negative);
         }
         for axis in [0, 1] {
             let (scope, register, PairSide { raised, unit, .. }) = (scopes[axis], jv[axis], sides[axis]);
-            let word = block.word(JV[axis], register.q.bits());
+            let word = block.word(JV.of(axis).name(), register.q.bits());
             let loads = [(block.load, word), (normalized.shift, shifted_left(scope, register.q))];
             let pulse = pulses[1 - axis];
             up_down_counter(register, &loads, pulse & raised, pulse & !raised, unit);
         }
         match counters {
             Some([ex, ey]) => ex.count(pulses[0]) & ey.count(pulses[1]),
-            None => {
-                let e = DownCounter::new(m, &block, "e", hardware.bits("e"));
-                e.count_pulses(population_count(m, 2, &pulses))
-            }
+            None => hardware.counter(m, &block, E).count_pulses(population_count(m, 2, &pulses)),
         }
     }
 }

@@ -3,9 +3,16 @@
 use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Scope, Signal};
 
-use super::Block;
+use super::{Block, JR};
 use crate::hardware::Hardware;
 use crate::options::{ADDER, Adder, RADIX};
+use crate::registers::{Reg, Rule};
+
+/// The digit that serial integrators add next.
+pub const PLACE: Reg =
+    Reg::new("place", Rule::Planned("as it needs"), "digit that is added next, 0 the lowest (serial)")
+        .inner()
+        .when(|plan| plan.get(&ADDER) == Adder::Serial);
 
 /// When integrators add; 1 bit each.
 #[derive(Clone, Copy, Debug)]
@@ -24,9 +31,9 @@ impl<'m> Iteration<'m> {
         if hardware.get(&ADDER) == Adder::Parallel {
             return Iteration { add: run, complete: run };
         }
-        let highest = (hardware.bits("jrx") / hardware.get(&RADIX).digit_bits()).saturating_sub(1);
+        let highest = (hardware.bits(JR.of(0)) / hardware.get(&RADIX).digit_bits()).saturating_sub(1);
         let bits = Width::needed_unsigned(highest.into());
-        let place = m.reg("place", bits);
+        let place = m.reg(PLACE.name(), bits);
         let complete = run & place.q.equals(m.lit(bits, highest.into()));
         let zero = m.lit(bits, 0);
         let next = place.q.wrapping_add(m.lit(bits, 1));

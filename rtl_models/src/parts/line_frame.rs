@@ -2,8 +2,14 @@
 
 use stepwave_netlist::dsl::{Scope, Signal};
 
-use super::{BeatRing, Block, DownCounter, axis_counter};
+use super::{BeatRing, Block, DownCounter, E, SIGN, axis_scope};
 use crate::hardware::Hardware;
+use crate::per_axis;
+use crate::registers::{PerAxis, Reg, Rule};
+
+/// Which axis is the longest one.
+pub const LONGEST: PerAxis =
+    Reg::each(per_axis!("", "_is_longest"), Rule::Bits(1), "the axis is the longest one").hidden();
 
 /// Axes and end point of a line in eight directions: every step takes the long axis, and the short one where it is
 /// diagonal.
@@ -23,17 +29,16 @@ impl<'m> LineFrame<'m> {
     /// The registers.
     #[must_use]
     pub fn new(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware) -> LineFrame<'m> {
-        let e = DownCounter::new(m, block, "e", hardware.bits("e"));
-        LineFrame { m, block: *block, e, x_is_longest: block.held(m, "x_is_longest", 1) }
+        let e = hardware.counter(m, block, E);
+        LineFrame { m, block: *block, e, x_is_longest: hardware.held(m, block, LONGEST.of(0)) }
     }
 
     /// Closes feed, end counter, beats and block. `diagonal` (1 bit) is what the judge beat decided.
     pub fn close(self, hardware: &Hardware, beat: BeatRing<'m>, diagonal: Signal<'m>) {
-        let axes = [("x", "sx", self.x_is_longest), ("y", "sy", !self.x_is_longest)];
-        for (letter, sign, long) in axes {
-            let scope = self.m.scope(&format!("axis_{letter}"));
-            let negative = self.block.held(scope, sign, 1);
-            axis_counter(scope, &self.block, letter, hardware.bits(letter), beat.feed & (long | diagonal), negative);
+        for (axis, long) in [self.x_is_longest, !self.x_is_longest].into_iter().enumerate() {
+            let scope = axis_scope(self.m, axis);
+            let negative = hardware.held(scope, &self.block, SIGN.of(axis));
+            hardware.axis(scope, &self.block, axis, beat.feed & (long | diagonal), negative);
         }
         let last = self.e.count(beat.compare);
         beat.close(self.block, last);

@@ -6,7 +6,10 @@ use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{SerialDivider, SerialMultiplier, SerialRoot};
+use crate::registers::{Reg, Rule};
 
+/// The step of a calculation.
+pub const STATE: Reg = Reg::new("state", Rule::Bits(STATE_BITS), "step of the coarse calculation").hidden();
 /// Bits of the state register.
 const STATE_BITS: u32 = 4;
 
@@ -109,7 +112,7 @@ impl<'m> Microprogram<'m> {
     pub fn new(m: Scope<'m>, [a, b]: [u32; 2], [dividend, divisor]: [u32; 2], root: u32) -> Microprogram<'m> {
         Microprogram {
             m,
-            state: m.reg("state", STATE_BITS),
+            state: m.reg(STATE.name(), STATE_BITS),
             waits: m.reg("waits", 1),
             multiplier: SerialMultiplier::new(m, a, b),
             divider: SerialDivider::new(m, dividend, divisor),

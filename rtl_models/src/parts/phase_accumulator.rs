@@ -4,6 +4,14 @@ use stepwave_netlist::OnOverflow;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::Block;
+use crate::per_axis;
+use crate::registers::{PerAxis, Reg, Rule};
+
+/// Rates.
+pub const RATE: PerAxis = Reg::each(per_axis!("rate"), Rule::Planned("n+1+p-k"), "rate, d·2^(p-k), signed").signed();
+/// Accumulators.
+pub const ACC: PerAxis =
+    Reg::each(per_axis!("acc"), Rule::Planned("n+1+p"), "phase accumulator, signed, from the preset").signed().preset();
 
 /// A signed phase accumulator: every accumulation adds the rate, and a change of the picked-off bit is a step in the
 /// direction of the rate.
@@ -27,14 +35,14 @@ impl<'m> PhaseAccumulator<'m> {
     pub fn new(
         m: Scope<'m>,
         block: &Block<'m>,
-        axis: &str,
+        axis: usize,
         [acc_bits, rate_bits]: [u32; 2],
         pick_off: u64,
         on_overflow: OnOverflow,
     ) -> PhaseAccumulator<'m> {
-        let rate = block.held_signed(m, &format!("rate{axis}"), rate_bits);
-        let name = format!("acc{axis}");
-        let acc = m.reg_signed(&name, acc_bits);
+        let rate = block.held_signed(m, RATE.of(axis).name(), rate_bits);
+        let name = ACC.of(axis).name();
+        let acc = m.reg_signed(name, acc_bits);
         let next = match on_overflow {
             OnOverflow::Saturate => acc.q.saturating_add(rate),
             OnOverflow::Trap | OnOverflow::Wrap => {
@@ -44,7 +52,7 @@ impl<'m> PhaseAccumulator<'m> {
         };
         let picked = u32::try_from(pick_off).unwrap_or(u32::MAX).min(acc_bits - 1);
         let steps = next.bit(picked) ^ acc.q.bit(picked);
-        PhaseAccumulator { acc, rate, word: block.word_signed(&name, acc_bits), steps }
+        PhaseAccumulator { acc, rate, word: block.word_signed(name, acc_bits), steps }
     }
 
     /// 1 bit: the rate is negative.

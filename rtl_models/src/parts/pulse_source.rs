@@ -3,9 +3,12 @@
 use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::Block;
+use crate::registers::{Reg, Rule};
 
 /// Bits of the phase of a pulse source: a pulse comes `rate` / 2^32 times a clock.
 pub const RATE_BITS: u32 = 32;
+/// The rate of a pulse source, in 2^-32 pulses a clock.
+pub const PULSE_RATE: Reg = Reg::new("rate", Rule::Bits(RATE_BITS + 1), "pulses a clock, in 2^-32");
 
 /// The pulse source f_g, a DDA on the clock: at every edge `rate` is added to `phase`, and the carry is its pulse.
 ///
@@ -17,7 +20,7 @@ pub const RATE_BITS: u32 = 32;
 #[must_use]
 pub fn pulse_source<'m>(m: Scope<'m>, block: &Block<'m>, waiting: Signal<'m>) -> Signal<'m> {
     let m = m.scope("pulse_source");
-    let rate = block.held(m, "rate", RATE_BITS + 1);
+    let rate = block.held(m, PULSE_RATE.name(), RATE_BITS + 1);
     let phase = m.reg("phase", RATE_BITS);
     let runs = block.busy | waiting;
     let sum = m.name("sum", phase.q.extend(RATE_BITS + 1).wrapping_add(rate));

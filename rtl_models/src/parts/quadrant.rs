@@ -4,6 +4,12 @@ use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Block, PairSide};
+use crate::registers::{Reg, Rule};
+
+/// The quadrant of the motion.
+pub const QUAD: Reg = Reg::new("quad", Rule::Bits(2), "quadrant of the step, Q1 = 0 … Q4 = 3");
+/// The direction of an arc: 1 is counter-clockwise.
+pub const CCW: Reg = Reg::new("ccw", Rule::Bits(1), "direction of the arc, 1 is counter-clockwise").hidden();
 
 /// The kind of an arc (SR1 … NR4), decoded. 1 bit each.
 #[derive(Clone, Copy, Debug)]
@@ -20,9 +26,9 @@ impl<'m> Kind<'m> {
     /// The kind of the arc that was loaded: `ccw`, 1 bit, and [`quad`](quadrant_register) hold their words.
     #[must_use]
     pub fn held(m: Scope<'m>, block: &Block<'m>) -> Kind<'m> {
-        let ccw = block.held(m, "ccw", 1);
+        let ccw = block.held(m, CCW.name(), 1);
         let quad = quadrant_register(m);
-        quad.when(block.load, block.word("quad", 2)).else_hold();
+        quad.when(block.load, block.word(QUAD.name(), 2)).else_hold();
         Kind::decode(m.scope("quadrant"), quad.q, ccw)
     }
 
@@ -79,7 +85,7 @@ impl<'m> Kind<'m> {
 /// The quadrant register `quad`: 2 bits, Q1 = 0 … Q4 = 3.
 pub fn quadrant_register(m: Scope<'_>) -> Register<'_> {
     let states = (0..).zip(["Q1", "Q2", "Q3", "Q4"]).map(|(value, name)| (value, name.to_owned())).collect();
-    m.reg("quad", 2).shown(Format::States(states))
+    m.reg(QUAD.name(), 2).shown(Format::States(states))
 }
 
 /// 1 bit: |x| grows and |y| shrinks on an arc in this quadrant (2 bits) and direction (1 bit): clockwise in Q1 and Q3.

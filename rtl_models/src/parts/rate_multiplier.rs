@@ -6,6 +6,13 @@ use stepwave_netlist::dsl::{Scope, Signal};
 
 use super::Block;
 use crate::options::Radix;
+use crate::per_axis;
+use crate::registers::{N, PerAxis, Reg};
+
+/// Coefficients.
+pub const COEFFICIENT: PerAxis = Reg::each(per_axis!("m"), N, "coefficient M of each axis, |d|");
+/// The counter that all axes share.
+pub const Q: Reg = Reg::new("q", N, "counter that all axes share");
 
 /// The units that a counter is made of, each cascaded behind the one before it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

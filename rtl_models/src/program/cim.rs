@@ -14,12 +14,12 @@
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
-use super::{Family, HardwareBlock, Size, planar};
-use crate::error::ModelError;
+use super::frame::MODE;
+use super::{Family, HardwareBlock, planar};
 use crate::hardware::Hardware;
+use crate::machine::Words;
 use crate::options::{ON_OVERFLOW, WIDTH, Weights};
-use crate::parts::{Change, Weighing};
-use crate::plan::Plan;
+use crate::parts::{A_B, BASE, Change, END, F, PLANE, POSITION, QUAD, WHOLE, Weighing};
 use crate::words;
 
 pub(super) const FAMILY: Family = Family {
@@ -28,20 +28,13 @@ pub(super) const FAMILY: Family = Family {
     arcs: true,
     crossing: Crossing::RoundedRadius,
     direct: true,
+    registers: &[&MODE, &PLANE, &QUAD, &F, &A_B, &BASE, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW],
-    plan,
+    plan: planar::judged,
     hardware,
     words: blocks,
     error_bound: |_, block| Some(planar::bound(block, 1.0)),
 };
-
-fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
-    planar::first(plan);
-    let n = plan.magnitude_bits(size.magnitude);
-    plan.register("f", n + 2).register("a", n).register("b", n).shown("base");
-    planar::last(plan, size, n);
-    Ok(())
-}
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let frame = super::frame::plain(m, hardware);
@@ -60,13 +53,10 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
 fn blocks(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
     planar::blocks(&FAMILY, block, |at| {
-        let words = match block.curve {
-            Curve::Line(_) => vec![("f", 0), ("a", at.pulses[1]), ("b", at.pulses[0])],
-            _ => {
-                let f = words::weighed(Weights::Mid, at.start, at.x_grows, at.deviation);
-                vec![("f", f), ("a", at.start[0]), ("b", at.start[1])]
-            }
+        let (f, weights) = match block.curve {
+            Curve::Line(_) => (0, [at.pulses[1], at.pulses[0]]),
+            _ => (words::weighed(Weights::Mid, at.start, at.x_grows, at.deviation), at.start),
         };
-        (words, planar::longest_steps(at))
+        (Words::new().set(F, f).set_each(A_B, weights), planar::longest_steps(at))
     })
 }

@@ -18,14 +18,22 @@ use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
-use super::frame::Frame;
+use super::frame::{Frame, MODE};
 use super::{Family, HardwareBlock, Size, planar};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::hardware::names::{JR, JV};
 use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
-use crate::parts::{Buffer, Iteration, integrator, shifted_left, up_down_counter};
+use crate::parts::{
+    Buffer, END, Iteration, JR, JV, PLANE, POSITION, QUAD, WHOLE, integrator, shifted_left, up_down_counter,
+};
 use crate::plan::Plan;
+use crate::registers::{N, Reg, Rule};
+use crate::words;
+
+/// By how much a pulse changes an integrand.
+const UNIT: Reg = Reg::new("unit", N, "correction of an integrand").follows(|_| true);
+/// The next block is an arc.
+const ARC: Reg = Reg::new("arc", Rule::Bits(1), "the next block is an arc");
 
 pub(super) const FAMILY: Family = Family {
     name: "dda",
@@ -33,10 +41,11 @@ pub(super) const FAMILY: Family = Family {
     arcs: true,
     crossing: Crossing::RoundedRadius,
     direct: false,
+    registers: &[&MODE, &PLANE, &QUAD, &(JV.pair(), JR.pair()), &UNIT, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N"), &NORMALIZE, &ON_OVERFLOW],
     plan,
     hardware,
-    words,
+    words: blocks,
     error_bound: |hardware, block| {
         // Each axis of a line is rounded to the nearest, or cut; an arc has no promise.
         let off = if hardware.presets.iter().all(|preset| *preset == Preset::Half) { 0.5 } else { 1.0 };
@@ -45,18 +54,13 @@ pub(super) const FAMILY: Family = Family {
 };
 
 fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
-    planar::first(plan);
     let normalized = plan.get(&NORMALIZE);
     // Normalised, the integrands of an arc keep a bit free.
     let n = plan.magnitude_bits(size.magnitude);
-    let n = plan.bits_or(n + u32::from(normalized));
-    for axis in [0, 1] {
-        plan.register(JV[axis], n).register(JR[axis], n);
-    }
-    plan.shown("unit");
-    planar::last(plan, size, n);
+    plan.n = plan.bits_or(n + u32::from(normalized));
+    planar::common_plan(plan, size);
     // Normalised, a block takes no more steps than its integrands need.
-    planar::one_scale(plan, &[JV[0], JV[1], JR[0], JR[1]], !normalized)?;
+    planar::one_scale(plan, &[JV.of(0), JV.of(1), JR.of(0), JR.of(1)], !normalized)?;
     plan.scale = &["jv", "jr"];
     plan.stall_clocks = 0;
     Ok(())
@@ -73,12 +77,14 @@ struct Normalized<'m> {
 fn normalized<'m>(m: Scope<'m>, buffer: &Buffer<'m>, bits: u32, normalize: bool) -> Normalized<'m> {
     let m = m.scope("normalizer");
     let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
-    let next = ["jvx", "jvy"].map(|name| (m.reg(&format!("next_{name}"), bits), buffer.word(name, bits)));
+    let next = [0, 1]
+        .map(|axis| JV.of(axis).name())
+        .map(|name| (m.reg(&format!("next_{name}"), bits), buffer.word(name, bits)));
     let unit = m.reg("next_unit", bits);
     let (shifting, shift) = if normalize {
         let busy = m.reg("normalizing", 1);
         let arc = m.reg("next_is_arc", 1);
-        arc.when(buffer.write, buffer.word("arc", 1)).else_hold();
+        arc.when(buffer.write, buffer.word(ARC.name(), 1)).else_hold();
         let any = next[0].0.q | next[1].0.q;
         let top = any.msb() | arc.q & any.bit(bits.saturating_sub(2));
         busy.when(buffer.write, yes).when(top, no).else_hold();
@@ -95,15 +101,15 @@ fn normalized<'m>(m: Scope<'m>, buffer: &Buffer<'m>, bits: u32, normalize: bool)
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    let bits = hardware.bits(JV[0]);
+    let bits = hardware.bits(JV.of(0));
     let buffer = Buffer::new(m);
     let next = normalized(m, &buffer, bits, hardware.get(&NORMALIZE));
     let frame = Frame::new(m, hardware, buffer, next.shifting);
     let block = frame.block;
-    let unit = m.reg("unit", bits);
+    let unit = m.reg(UNIT.name(), bits);
     unit.when(block.load, next.unit).else_hold();
     let scopes = ["integrator_x", "integrator_y"].map(|name| m.scope(name));
-    let jv = [0, 1].map(|axis| scopes[axis].reg(JV[axis], bits));
+    let jv = [0, 1].map(|axis| scopes[axis].reg(JV.of(axis).name(), bits));
 
     // Both integrators add with the old integrands; an exhausted axis freezes its remainder.
     let open = frame.open();
@@ -126,16 +132,15 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, pulses);
 }
 
-fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
-    let bits = hardware.bits(JV[0]);
+fn blocks(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+    let bits = hardware.bits(JV.of(0));
     planar::blocks(&FAMILY, block, |at| {
         let arc = !matches!(block.curve, Curve::Line(_));
         let [x, y] = if arc { [at.start[1], at.start[0]] } else { at.pulses };
-        let mut words = vec![("jvx", x), ("jvy", y)];
-        words.extend([("jrx", hardware.preset(0, "jrx")), ("jry", hardware.preset(1, "jry"))]);
+        let mut words = words::integrators(hardware, [x, y]);
         let mut shift = 0;
         if hardware.get(&NORMALIZE) {
-            words.push(("arc", i128::from(arc)));
+            words = words.set(ARC, arc);
             let needed = Width::needed_unsigned(x.max(y).unsigned_abs());
             shift = bits.saturating_sub(needed + u32::from(arc));
         }

@@ -16,9 +16,9 @@ use super::frame::program_words;
 use super::{Family, HardwareBlock, Size, planar};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::hardware::names::{COEFFICIENT, SIGN};
+use crate::machine::Words;
 use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, Radix, WIDTH};
-use crate::parts::{Buffer, RateMultiplier, Units, axis_counter, pulse_source};
+use crate::parts::{Buffer, COEFFICIENT, POSITION, Q, RateMultiplier, SIGN, Units, axis_scope, pulse_source};
 use crate::plan::Plan;
 
 pub(super) const FAMILY: Family = Family {
@@ -27,55 +27,51 @@ pub(super) const FAMILY: Family = Family {
     arcs: false,
     crossing: Crossing::RoundedRadius,
     direct: false,
+    registers: &[&Q, &COEFFICIENT, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW],
     plan,
     hardware,
     words,
     error_bound: |hardware, block| {
         let moving = (0..3).filter(|&axis| block.from[axis] != block.to[axis]);
-        let off = crate::dpm_line::rate_bound(Radix::Binary, hardware.bits("q"));
+        let off = crate::dpm_line::rate_bound(Radix::Binary, hardware.bits(Q));
         Some(moving.fold(0.0, |sum, _| f64::hypot(sum, off)))
     },
 };
 
 fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
-    let n = plan.magnitude_bits(size.magnitude);
-    plan.register("q", n);
-    for name in &COEFFICIENT[..3] {
-        plan.register(*name, n);
-    }
-    plan.positions(size.positions.iter().map(|reach| reach.to_vec()));
+    plan.n = plan.magnitude_bits(size.magnitude);
+    plan.positions(size.positions);
     plan.fix(&END_POINT, EndPoint::Iterations);
-    planar::one_scale(plan, &["q", COEFFICIENT[0], COEFFICIENT[1], COEFFICIENT[2]], true)?;
+    planar::one_scale(plan, &[Q, COEFFICIENT.of(0), COEFFICIENT.of(1), COEFFICIENT.of(2)], true)?;
     plan.scale = &["m"];
     plan.stall_clocks = 0;
     Ok(())
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    let bits = hardware.bits("q");
+    let bits = hardware.bits(Q);
     let buffer = Buffer::new(m);
     let block = buffer.block(m.lit(1, 0));
     let step = m.name("step", pulse_source(m, &block, buffer.full()) & block.busy);
-    program_words(m, &block);
+    program_words(m, &block, hardware);
     let units = Units { radix: Radix::Binary, bits, count: 1 };
-    let counter = RateMultiplier::new(m.scope("counter"), &block, "q", units, step);
-    for (axis, letter) in hardware.letters().iter().enumerate() {
-        let scope = m.scope(&format!("axis_{letter}"));
-        let coefficient = block.held(scope, COEFFICIENT[axis], bits);
-        let negative = block.held(scope, SIGN[axis], 1);
+    let counter = RateMultiplier::new(m.scope("counter"), &block, Q.name(), units, step);
+    for axis in 0..hardware.axes {
+        let scope = axis_scope(m, axis);
+        let coefficient = block.held(scope, COEFFICIENT.of(axis).name(), bits);
+        let negative = hardware.held(scope, &block, SIGN.of(axis));
         let pulse = scope.name("pulse", counter.gated(scope, coefficient));
-        axis_counter(scope, &block, letter, hardware.bits(letter), pulse, negative);
+        hardware.axis(scope, &block, axis, pulse, negative);
     }
     block.close(block.load, step, counter.carry);
 }
 
 fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
     let way = |axis: usize| i128::from(block.to[axis]) - i128::from(block.from[axis]);
-    let words = (0..3).flat_map(|axis| {
-        let way = way(axis);
-        [(COEFFICIENT[axis], way.abs()), (SIGN[axis], i128::from(way < 0))]
+    let words = (0..3).fold(Words::new(), |words, axis| {
+        words.set(COEFFICIENT.of(axis), way(axis).abs()).set(SIGN.of(axis), way(axis) < 0)
     });
-    let steps = 2f64.powi(hardware.bits("q").cast_signed());
-    vec![HardwareBlock { words: words.collect(), steps, length: block.curve.length() }]
+    let steps = 2f64.powi(hardware.bits(Q).cast_signed());
+    vec![HardwareBlock { words, steps, length: block.curve.length() }]
 }

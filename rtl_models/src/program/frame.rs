@@ -6,9 +6,15 @@ use stepwave_netlist::dsl::{Register, Scope, Signal};
 use super::PROGRAM_WORDS;
 use crate::hardware::Hardware;
 use crate::parts::{
-    Block, Buffer, DownCounter, Kind, Motion, count_coordinates, distributor, follower, handed_over, pulse_source,
-    quadrant_register,
+    Block, Buffer, CCW, DownCounter, END, Kind, Motion, QUAD, WHOLE, count_coordinates, distributor, follower,
+    handed_over, pulse_source, quadrant_register,
 };
+use crate::registers::{Reg, Rule};
+
+/// What a block is.
+pub(super) const MODE: Reg = Reg::new("mode", Rule::Bits(2), "mode, LINE = 1, ARC = 2");
+/// Direction of the third axis: 1 is negative.
+pub(super) const THIRD_SIGN: Reg = Reg::new("sw", Rule::Bits(1), "direction of the third axis, 1 is negative");
 
 /// Block buffer, pulse source, mode and quadrant of a machine that interpolates in a plane.
 ///
@@ -35,20 +41,20 @@ impl<'m> Frame<'m> {
     pub(super) fn new(m: Scope<'m>, hardware: &Hardware, buffer: Buffer<'m>, wait: Signal<'m>) -> Frame<'m> {
         let block = buffer.block(wait);
         let step = pulse_source(m, &block, buffer.full() & !wait);
-        program_words(m, &block);
+        program_words(m, &block, hardware);
         // One bit each, as viewers show no text for a single bit.
         let modes = [(0, "NONE"), (1, "LINE"), (2, "ARC")].map(|(value, name)| (value, name.to_owned()));
-        let mode = m.reg("mode", 2).shown(Format::States(modes.to_vec()));
-        mode.when(block.load, block.word("mode", 2)).else_hold();
+        let mode = hardware.reg(m, MODE).shown(Format::States(modes.to_vec()));
+        mode.when(block.load, hardware.word(&block, MODE)).else_hold();
         let arc = mode.q.bit(1);
         let quad = quadrant_register(m);
-        quad.when(block.load, block.word("quad", 2)).else_hold();
-        let ccw = block.held(m, "ccw", 1);
+        quad.when(block.load, hardware.word(&block, QUAD)).else_hold();
+        let ccw = hardware.held(m, &block, CCW);
         let kind = Kind::decode_in_modes(m.scope("quadrant"), quad.q, ccw, [arc, mode.q.bit(0)]);
         // A line into Q2 or Q3 has negative x, one into Q3 or Q4 negative y.
         let (low, high) = (quad.q.bit(0), quad.q.bit(1));
         let negative = [arc.mux(kind.x_negative, low ^ high), arc.mux(kind.y_negative, high)];
-        let end = ["ex", "ey"].map(|name| DownCounter::new(m, &block, name, hardware.bits(name)));
+        let end = [0, 1].map(|axis| hardware.counter(m, &block, END.of(axis)));
         Frame { m, block, step: m.name("step", step & block.busy), arc, x_grows: kind.x_grows & arc, negative, end }
     }
 
@@ -69,7 +75,7 @@ impl<'m> Frame<'m> {
 
     /// Closes a pair of registers that hold the ways of a line, and count the coordinates of an arc: those of the axes
     /// taken (1 bit each) change by one.
-    pub(super) fn coordinates(&self, registers: [(Register<'m>, &str); 2], taken: [Signal<'m>; 2]) {
+    pub(super) fn coordinates(&self, registers: [(Register<'m>, Reg); 2], taken: [Signal<'m>; 2]) {
         let counts = |taken: Signal<'m>| self.step & self.arc & taken;
         count_coordinates(self.m, &self.block, registers, taken, self.grows(), counts);
     }
@@ -77,8 +83,8 @@ impl<'m> Frame<'m> {
     /// Closes feed, end counters and block: a step gives the axes taken (1 bit each) a pulse.
     pub(super) fn close(self, hardware: &Hardware, taken: [Signal<'m>; 2]) {
         let Frame { m, block, step, negative, end: [ex, ey], .. } = self;
-        let third = follower(m, &block, hardware.bits("whole"), step, taken);
-        let third_negative = block.held(m, "sw", 1);
+        let third = follower(m, &block, hardware.bits(WHOLE), step, taken);
+        let third_negative = hardware.held(m, &block, THIRD_SIGN);
         let [first, second] = [0, 1].map(|axis| Motion { pulse: step & taken[axis], negative: negative[axis] });
         distributor(m, &block, hardware, [first, second, Motion { pulse: third, negative: third_negative }]);
         let last = ex.count(step & taken[0]) & ey.count(step & taken[1]);
@@ -90,10 +96,10 @@ impl<'m> Frame<'m> {
 ///
 /// - `block`, 41 bits: its N number, or its line where it has none.
 /// - `feed`, 32 bits: the speed that it is to have, in whole mm/min.
-pub(super) fn program_words<'m>(m: Scope<'m>, block: &Block<'m>) {
+pub(super) fn program_words<'m>(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware) {
     let m = m.scope("program");
-    for (name, bits) in PROGRAM_WORDS {
-        let _ = block.held(m, name, bits);
+    for register in PROGRAM_WORDS {
+        let _ = hardware.held(m, block, register);
     }
 }
 

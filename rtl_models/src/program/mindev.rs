@@ -14,8 +14,9 @@ use stepwave_netlist::dsl::Scope;
 
 use super::{Family, HardwareBlock, planar};
 use crate::hardware::Hardware;
+use crate::machine::Words;
 use crate::options::{ON_OVERFLOW, WIDTH};
-use crate::parts::{DeviationAccumulator, LeastDeviation, line_change, square_gains};
+use crate::parts::{DeviationAccumulator, F, LeastDeviation, XI_YI, line_change, square_gains};
 
 pub(super) const FAMILY: Family = Family {
     name: "mindev",
@@ -23,6 +24,7 @@ pub(super) const FAMILY: Family = Family {
     arcs: true,
     crossing: Crossing::RoundedRadius,
     direct: true,
+    registers: planar::JUDGED,
     options: &[&WIDTH, &ON_OVERFLOW],
     plan: planar::judged,
     hardware,
@@ -32,8 +34,8 @@ pub(super) const FAMILY: Family = Family {
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let frame = super::frame::plain(m, hardware);
-    let f = DeviationAccumulator::new(m, hardware.bits("f"));
-    let [xi, yi] = ["xi", "yi"].map(|name| m.reg(name, hardware.bits(name)));
+    let f = DeviationAccumulator::new(m, hardware.bits(F));
+    let [xi, yi] = [0, 1].map(|axis| hardware.reg(m, XI_YI.of(axis)));
     let bits = xi.q.bits().max(yi.q.bits());
     let [x, y] = [xi, yi].map(|register| register.q.extend(bits));
     let wide = f.value().bits().max(bits + 2) + 2;
@@ -56,7 +58,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let ways = [x_is_longest.mux(x, y), x_is_longest.mux(y, x)];
     let of_line = line_change(m, ways, wide, diagonal).as_signed();
     f.close_adding(&frame.block, frame.step, m.name("operand", frame.arc.mux(of_arc, of_line)));
-    frame.coordinates([(xi, "xi"), (yi, "yi")], taken);
+    frame.coordinates([(xi, XI_YI.of(0)), (yi, XI_YI.of(1))], taken);
 
     frame.close(hardware, taken);
 }
@@ -64,10 +66,10 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 fn words(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
     planar::blocks(&FAMILY, block, |at| {
         let [x, y] = at.pulses;
-        let words = match block.curve {
-            Curve::Line(_) => vec![("f", 2 * x.min(y) - x.max(y)), ("xi", x), ("yi", y)],
-            _ => vec![("f", at.deviation), ("xi", at.start[0]), ("yi", at.start[1])],
+        let (f, point) = match block.curve {
+            Curve::Line(_) => (2 * x.min(y) - x.max(y), at.pulses),
+            _ => (at.deviation, at.start),
         };
-        (words, planar::longest_steps(at))
+        (Words::new().set(F, f).set_each(XI_YI, point), planar::longest_steps(at))
     })
 }

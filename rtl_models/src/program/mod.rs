@@ -21,12 +21,17 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
 use crate::options::{ON_OVERFLOW, Options, Takes, chosen};
+use crate::parts::{SHARE, WHOLE};
 use crate::plan::Plan;
 use crate::promise::Promise;
+use crate::registers::{Reg, Registers, Rule};
 
 /// Words of every machine that only people read, and their bits: the number of the block, which a program has up to 2^40,
 /// and its feed in mm/min.
-pub const PROGRAM_WORDS: [(&str, u32); 2] = [("block", 41), ("feed", 32)];
+pub const PROGRAM_WORDS: [Reg; 2] = [
+    Reg::new("block", Rule::Bits(41), "N number of the block, or its line where it has none"),
+    Reg::new("feed", Rule::Bits(32), "speed that it is to have, in whole mm/min"),
+];
 
 /// What the registers of a machine must hold for all blocks of a program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -70,7 +75,7 @@ pub struct HardwareBlock {
 
 impl HardwareBlock {
     fn has_pulses(&self) -> bool {
-        self.words.iter().any(|&(name, value)| name == "whole" && value > 0)
+        self.words.get(WHOLE).is_some_and(|pulses| pulses > 0)
     }
 }
 
@@ -88,6 +93,8 @@ pub struct Family {
     /// A commanded feed sets the frequency of the pulse source, f_g = v / (60 δ), whatever the direction of the block;
     /// else it is a feed rate number: f_g makes the block take the time that the feed wants.
     pub direct: bool,
+    /// Its registers, in the order of the step table.
+    pub registers: Registers,
     /// The options that it takes.
     pub options: &'static [&'static dyn Takes],
     plan: fn(&Size, &mut Plan) -> Result<(), ModelError>,
@@ -106,7 +113,7 @@ impl Family {
     /// # Errors
     /// The family does not take an option, or a width is impossible.
     pub fn plan(&self, size: &Size, options: &Options) -> Result<Hardware, ModelError> {
-        let mut plan = Plan::new(self.name, 3, chosen(self.name, self.options, options)?);
+        let mut plan = Plan::new(self.name, 3, self.registers, chosen(self.name, self.options, options)?);
         (self.plan)(size, &mut plan)?;
         plan.finish()
     }
@@ -126,11 +133,9 @@ impl Family {
     #[must_use]
     pub fn too_steep(&self, block: &PulseBlock) -> bool {
         let Curve::Helix(_) = block.curve else { return false };
-        let word = |sector: &HardwareBlock, wanted: &str| {
-            sector.words.iter().find(|(name, _)| *name == wanted).map_or(0, |(_, value)| *value)
-        };
+        let word = |sector: &HardwareBlock, wanted| sector.words.get(wanted).unwrap_or(0);
         let sectors = planar::blocks(self, block, |_| (Words::new(), 0.0));
-        sectors.iter().any(|sector| 2 * word(sector, "share") > word(sector, "whole"))
+        sectors.iter().any(|sector| 2 * word(sector, SHARE) > word(sector, WHOLE))
     }
 
     /// What the method promises of a block, if it promises anything.

@@ -2,11 +2,14 @@
 
 use stepwave_nc::{Arc, Curve, Direction, Plane, PulseBlock, Sector};
 
+use super::frame::{MODE, THIRD_SIGN};
 use super::{Family, HardwareBlock, Size};
 use crate::error::ModelError;
 use crate::machine::Words;
 use crate::options::{END_POINT, EndPoint, Preset};
+use crate::parts::{CCW, END, F, PLANE, POSITION, QUAD, REST, SHARE, WHOLE, XI_YI};
 use crate::plan::Plan;
+use crate::registers::{Reg, Registers};
 
 /// A line, or one sector of an arc, as its machine starts it.
 pub(super) struct Start {
@@ -22,25 +25,20 @@ pub(super) struct Start {
     pub(super) angle: f64,
 }
 
-/// The registers that come first in the step table.
-pub(super) fn first(plan: &mut Plan) {
-    plan.shown("mode").shown("plane").shown("quad");
-}
-
-/// The registers of end point, third axis and positions.
-pub(super) fn last(plan: &mut Plan, size: &Size, n: u32) {
-    plan.end_counters(2, n).hidden("whole", n + 1);
-    plan.positions(size.positions.iter().map(|reach| reach.to_vec()));
+/// Plans end point, third axis and positions.
+pub(super) fn common_plan(plan: &mut Plan, size: &Size) {
+    plan.positions(size.positions);
     plan.fix(&END_POINT, EndPoint::PerAxis);
     plan.usual_preset(Preset::Half);
 }
 
+/// The registers of a machine that judges its steps by a deviation.
+pub(super) const JUDGED: Registers = &[&MODE, &PLANE, &QUAD, &F, &XI_YI, &END.pair(), &WHOLE, &POSITION];
+
 /// Plans a machine that judges its steps by a deviation `f`, with the coordinates or displacements `xi` and `yi`.
 pub(super) fn judged(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
-    first(plan);
-    let n = plan.magnitude_bits(size.magnitude);
-    plan.register("f", n + 2).register("xi", n).register("yi", n);
-    last(plan, size, n);
+    plan.n = plan.magnitude_bits(size.magnitude);
+    common_plan(plan, size);
     Ok(())
 }
 
@@ -48,11 +46,12 @@ pub(super) fn judged(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
 const SCALE_BITS: u32 = 52;
 
 /// Checks registers that share one scale: they are equally wide, and where it is `fixed` for all blocks, these end.
-pub(super) fn one_scale(plan: &Plan, names: &[&str], fixed: bool) -> Result<(), ModelError> {
-    let (Some((last, others)), name) = (names.split_last(), plan.model()) else { return Ok(()) };
-    let bits = plan.bits(last);
-    if others.iter().any(|other| plan.bits(other) != bits) {
-        let others = others.join(", ");
+pub(super) fn one_scale(plan: &Plan, registers: &[Reg], fixed: bool) -> Result<(), ModelError> {
+    let (Some((last, others)), name) = (registers.split_last(), plan.model()) else { return Ok(()) };
+    let bits = plan.bits(*last);
+    if others.iter().any(|other| plan.bits(*other) != bits) {
+        let others = others.iter().map(|other| other.name()).collect::<Vec<_>>().join(", ");
+        let last = last.name();
         return Err(ModelError::Widths(format!(
             "{name}: {others} and {last} share one scale and must be equally wide: give one --width"
         )));
@@ -81,8 +80,8 @@ pub(super) fn blocks(family: &Family, block: &PulseBlock, own: impl Fn(&Start) -
                 (false, true) => 3,
             };
             let (words, steps) = own(&start);
-            let common = common(block, [("mode", 1), ("quad", quad), ("ccw", 0)], start.pulses, third);
-            vec![HardwareBlock { words: [words, common].concat(), steps, length: line.length() }]
+            let common = common(block, Words::new().set(MODE, 1).set(QUAD, quad).set(CCW, false), start.pulses, third);
+            vec![HardwareBlock { words: words.and(common), steps, length: line.length() }]
         }
         Curve::Arc(arc) => sectors(family, block, arc, |_, _| 0, &own),
         Curve::Helix(helix) => {
@@ -120,33 +119,25 @@ fn sectors(
             x_grows: sector.quadrant.growing_axis(arc.direction()) == 0,
             angle,
         };
-        let ccw = i128::from(arc.direction() == Direction::CounterClockwise);
-        let mode = [("mode", 2), ("quad", i128::from(sector.quadrant.index())), ("ccw", ccw)];
+        let ccw = arc.direction() == Direction::CounterClockwise;
+        let mode = Words::new().set(MODE, 2).set(QUAD, sector.quadrant.index()).set(CCW, ccw);
         let (words, steps) = own(&at);
         let length = f64::hypot(arc.radius() * angle, third as f64);
-        HardwareBlock { words: [words, common(block, mode, at.pulses, third)].concat(), steps, length }
+        HardwareBlock { words: words.and(common(block, mode, at.pulses, third)), steps, length }
     };
     all.iter().zip(ways).map(begin).filter(|block| block.has_pulses()).collect()
 }
 
 /// Words that every machine in a plane has.
-fn common(block: &PulseBlock, mode: [(&'static str, i128); 3], [ex, ey]: [i128; 2], third: i128) -> Words {
+fn common(block: &PulseBlock, mode: Words, [ex, ey]: [i128; 2], third: i128) -> Words {
     let plane = match block.plane {
         Plane::Xy => 0,
         Plane::Zx => 1,
         Plane::Yz => 2,
     };
     let whole = ex + ey;
-    let own = [
-        ("plane", plane),
-        ("ex", ex),
-        ("ey", ey),
-        ("whole", whole),
-        ("share", third.abs()),
-        ("rest", whole / 2),
-        ("sw", i128::from(third < 0)),
-    ];
-    mode.into_iter().chain(own).collect()
+    let words = mode.set(PLANE, plane).set_each(END.pair(), [ex, ey]).set(WHOLE, whole);
+    words.set(SHARE, third.abs()).set(REST, whole / 2).set(THIRD_SIGN, third < 0)
 }
 
 /// Greatest distance from a curve in BLU, where it is `plane` in the plane and a third axis follows within a pulse.

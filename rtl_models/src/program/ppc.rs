@@ -15,8 +15,9 @@ use stepwave_netlist::dsl::Scope;
 
 use super::{Family, HardwareBlock, planar};
 use crate::hardware::Hardware;
+use crate::machine::Words;
 use crate::options::{ON_OVERFLOW, WIDTH};
-use crate::parts::{DeviationAccumulator, judged_by_sign, step_of_circle};
+use crate::parts::{DeviationAccumulator, F, XI_YI, judged_by_sign, step_of_circle};
 
 pub(super) const FAMILY: Family = Family {
     name: "ppc",
@@ -24,6 +25,7 @@ pub(super) const FAMILY: Family = Family {
     arcs: true,
     crossing: Crossing::PathExtreme,
     direct: true,
+    registers: planar::JUDGED,
     options: &[&WIDTH, &ON_OVERFLOW],
     plan: planar::judged,
     hardware,
@@ -33,8 +35,8 @@ pub(super) const FAMILY: Family = Family {
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let frame = super::frame::plain(m, hardware);
-    let f = DeviationAccumulator::new(m, hardware.bits("f"));
-    let [xi, yi] = ["xi", "yi"].map(|name| m.reg(name, hardware.bits(name)));
+    let f = DeviationAccumulator::new(m, hardware.bits(F));
+    let [xi, yi] = [0, 1].map(|axis| hardware.reg(m, XI_YI.of(axis)));
 
     // Judge: F >= 0 takes the first axis of a line, and the one that shrinks on an arc.
     let take_x = judged_by_sign(&f, frame.x_grows);
@@ -47,7 +49,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let (grows, gain) = step_of_circle(m, [x, y], take_x, frame.x_grows);
     let way = take_x.mux(y, x).extend(gain.bits());
     f.close(&frame.block, frame.step, !grows, m.name("operand", frame.arc.mux(gain, way)));
-    frame.coordinates([(xi, "xi"), (yi, "yi")], taken);
+    frame.coordinates([(xi, XI_YI.of(0)), (yi, XI_YI.of(1))], taken);
 
     frame.close(hardware, taken);
 }
@@ -55,10 +57,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 fn words(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
     let pulses = |[a, b]: [i128; 2]| (a + b) as f64;
     planar::blocks(&FAMILY, block, |at| {
-        let mut words = vec![("f", at.deviation), ("xi", at.start[0]), ("yi", at.start[1])];
-        if let Curve::Line(_) = block.curve {
-            words = vec![("f", 0), ("xi", at.pulses[0]), ("yi", at.pulses[1])];
-        }
-        (words, pulses(at.pulses))
+        let (f, point) = if let Curve::Line(_) = block.curve { (0, at.pulses) } else { (at.deviation, at.start) };
+        (Words::new().set(F, f).set_each(XI_YI, point), pulses(at.pulses))
     })
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use rayon::prelude::*;
-use stepwave_models::{AXES, Claims, Kind, Model, Options};
+use stepwave_models::{AXES, Claims, Kind, Model, Options, Reg};
 use stepwave_nc::Curve;
 use stepwave_netlist::bits::Reading;
 use stepwave_prove::{AxisNets, Followed, Sum, Word, follow, recount};
@@ -105,8 +105,8 @@ fn block(
     let words = |curve: &Curve| model.words(&hardware, curve).into_iter().next().unwrap_or_default();
     let common = words(first);
     for curve in &own {
-        for ((register, value), (_, usual)) in words(curve).into_iter().zip(&common) {
-            let axis = claims.counted.iter().position(|counted| *counted == register);
+        for ((register, value), (_, usual)) in words(curve).into_iter().zip(common.iter()) {
+            let axis = claims.counted.iter().position(|counted| counted.name() == register);
             let expected = axis.map_or(*usual, |axis| i128::from(curve.to()[axis]).abs());
             if value != expected {
                 return Err(wrong(register));
@@ -115,14 +115,14 @@ fn block(
     }
     // Before the words are encoded, so that the answer is the same for every kind, whichever comes first.
     let in_binary =
-        |register: &&&str| machine.inputs.get(**register).is_some_and(|port| port.reading == Reading::Unsigned);
+        |register: &&Reg| machine.inputs.get(register.name()).is_some_and(|port| port.reading == Reading::Unsigned);
     if let Some(register) = claims.counted.iter().find(|register| !in_binary(register)) {
-        return Err(wrong(register));
+        return Err(wrong(register.name()));
     }
     let encoded = machine.encode(&hardware, &model.words(&hardware, first))?.into_iter().next().unwrap_or_default();
     let (mut given, mut names, mut bounds) = (Vec::new(), Vec::new(), vec![0..0; claims.counted.len()]);
     for ((register, _), (net, bits)) in common.iter().zip(encoded) {
-        let Some(axis) = claims.counted.iter().position(|counted| counted == register) else {
+        let Some(axis) = claims.counted.iter().position(|counted| counted.name() == *register) else {
             given.push((net, Word::Known(bits)));
             continue;
         };

@@ -73,9 +73,9 @@ impl Fixed {
             registers_named(model, &usual, name)?;
         }
         let hardware = model.plan(&largest(&claims, k)?, &choices)?;
-        let offset = |(name, width): (&String, &Width)| {
-            let usual = usual.widths.get(name).copied().map_or(0, Width::get);
-            (name.clone(), i64::from(width.get()) - i64::from(usual))
+        let offset = |(name, width): (&&'static str, &Width)| {
+            let usual = usual.bits_of(name);
+            ((*name).to_owned(), i64::from(width.get()) - i64::from(usual))
         };
         let offsets = hardware.widths.iter().map(offset).filter(|(_, bits)| *bits != 0).collect();
         Ok(Fixed { model, claims, choices, k, extent, bits, hardware, offsets })

@@ -56,8 +56,8 @@ impl Subject {
             words,
             goals: kind.goals.clone(),
             rank: (self.claims.rank)(&self.members[0].1),
-            modes: self.claims.modes.iter().map(|mode| (*mode).to_owned()).collect(),
-            bitwise: self.claims.bitwise.iter().map(|register| (*register).to_owned()).collect(),
+            modes: self.claims.modes.iter().map(|mode| mode.name().to_owned()).collect(),
+            bitwise: self.claims.bitwise.iter().map(|register| register.name().to_owned()).collect(),
             steps: (!guesses.is_empty()).then(|| "steps".to_owned()),
             guesses,
         };

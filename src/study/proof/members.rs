@@ -67,10 +67,10 @@ pub(super) fn registers_named(
     let of_axis = |register: &str| AXES.iter().any(|axis| register.strip_suffix(axis) == Some(name));
     let exact = hardware.widths.contains_key(name);
     let meant =
-        hardware.widths.iter().filter(|(register, _)| if exact { *register == name } else { of_axis(register) });
-    let meant: Vec<_> = meant.map(|(register, width)| (register.clone(), *width)).collect();
+        hardware.widths.iter().filter(|(register, _)| if exact { **register == name } else { of_axis(register) });
+    let meant: Vec<_> = meant.map(|(register, width)| ((*register).to_owned(), *width)).collect();
     if meant.is_empty() {
-        let known: Vec<&str> = hardware.widths.keys().map(String::as_str).collect();
+        let known: Vec<&str> = hardware.widths.keys().copied().collect();
         return Err(ModelError::Widths(format!(
             "{} has no register {name} with a width to choose{}: give one of {}",
             model.name,

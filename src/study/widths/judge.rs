@@ -26,7 +26,7 @@ pub(super) fn ample(model: &'static Model, choices: &Options, extent: &Extent) -
     }
     let scaled = |hardware: &Hardware| {
         let own = hardware.widths.iter().filter(|(name, _)| hardware.shares_a_scale(name));
-        own.map(|(name, width)| (name.clone(), *width)).collect::<BTreeMap<String, Width>>()
+        own.map(|(name, width)| ((*name).to_owned(), *width)).collect::<BTreeMap<String, Width>>()
     };
     let (default_widths, own) = (scaled(&least.hardware), scaled(&given));
     let wider = own.iter().any(|(name, width)| default_widths.get(name).is_some_and(|default| width > default));
@@ -34,7 +34,8 @@ pub(super) fn ample(model: &'static Model, choices: &Options, extent: &Extent) -
         return Ok(default);
     }
     // All of the scale at once, as wide as the widest of them is wider.
-    let more = own.iter().map(|(name, width)| width.get().saturating_sub(least.hardware.bits(name))).max().unwrap_or(0);
+    let more =
+        own.iter().map(|(name, width)| width.get().saturating_sub(least.hardware.bits_of(name))).max().unwrap_or(0);
     let widths = default_widths.into_iter().map(|(name, width)| {
         let wide = own.get(&name).copied().unwrap_or(width).max(width);
         Ok((name, wide))
@@ -54,13 +55,13 @@ fn paces(model: &Model, least: &Geometries, given: &Hardware) -> BTreeMap<String
         let words = model.words(hardware, curve).into_iter().flatten();
         words.filter(|(register, _)| *register == name).map(|(_, word)| word).collect::<Vec<_>>()
     };
-    let is_pace = |name: &str, width: Width| {
+    let is_pace = |name: &'static str, width: Width| {
         let mut alone = least.hardware.clone();
-        let other = alone.widths.insert(name.to_owned(), width) != Some(width);
+        let other = alone.widths.insert(name, width) != Some(width);
         other && !given.shares_a_scale(name) && word(&alone, name) != word(&least.hardware, name)
     };
     let own = given.widths.iter().filter(|(name, width)| is_pace(name, **width));
-    own.map(|(name, width)| (name.clone(), *width)).collect()
+    own.map(|(name, width)| ((*name).to_owned(), *width)).collect()
 }
 
 /// The hardware with the widths that are given.
@@ -97,7 +98,7 @@ pub(super) fn judge(
     let set = Geometries::extremes(model, ample, &found.extent)?;
     let hardware = given(model, choices, &set)?;
     for register in &mut found.registers {
-        register.given = hardware.bits(&register.name);
+        register.given = hardware.bits_of(&register.name);
         if register.given >= register.needed {
             continue;
         }

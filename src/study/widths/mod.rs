@@ -194,7 +194,7 @@ pub fn simulated(
         Some(RegisterWidth {
             witness: too_narrow(model, &wide, (&name, below), &curves[worst], false),
             range: (seen.least.0, seen.greatest.0),
-            given: bench.hardware().bits(&name),
+            given: bench.hardware().bits_of(&name),
             shown: needed,
             fault: None,
             known,
@@ -244,14 +244,14 @@ fn by_form(
         let concluded = bounds
             .get(&name)
             .map(|(least, greatest)| Width::needed(*least, signed).max(Width::needed(*greatest, signed)));
-        let needed = concluded.into_iter().fold(narrow.bits(&name), u32::min).max(shown);
+        let needed = concluded.into_iter().fold(narrow.bits_of(&name), u32::min).max(shown);
         let curve = &set.curves[worst];
         let certain = AXES.contains(&name.as_str());
         let witness =
             shown.checked_sub(1).and_then(|below| too_narrow(model, &set.choices, (&name, below), curve, certain));
         registers.push(RegisterWidth {
             range: (seen.least.0, seen.greatest.0),
-            given: bench.hardware().bits(&name),
+            given: bench.hardware().bits_of(&name),
             known: if shown == needed { proved } else { Known::Enough },
             fault: None,
             name,
@@ -274,7 +274,7 @@ pub(super) fn least_seen(model: &'static Model, set: &Geometries) -> Result<Vec<
     let runs = simulate(&bench, &set.curves, LIMIT, &|_| {})?;
     let row = |(name, seen): (String, Seen)| {
         let (needed, _) = seen.needs(is_signed(&bench, &name));
-        let given = bench.hardware().bits(&name);
+        let given = bench.hardware().bits_of(&name);
         (name, given, needed)
     };
     Ok(runs.seen.into_iter().map(row).collect())

@@ -59,7 +59,7 @@ pub(super) fn simulate(bench: &Testbench, curves: &[Curve], limit: u64, tick: Ti
     let (machine, netlist) = (bench.machine(), bench.design().netlist());
     let names = bench.hardware().widths.keys();
     let registers: Vec<(String, Net, bool)> = names
-        .filter_map(|name| netlist.find(name).map(|named| (name.clone(), named.net, named.format.is_signed())))
+        .filter_map(|name| netlist.find(name).map(|named| ((*name).to_owned(), named.net, named.format.is_signed())))
         .collect();
     let ends =
         registers.iter().flat_map(|&(_, net, signed)| [Observe::Min { net, signed }, Observe::Max { net, signed }]);

@@ -5,7 +5,7 @@ use stepwave_netlist::Width;
 use stepwave_netlist::bits::Reading;
 use stepwave_netlist::dsl::Scope;
 
-use super::super::{Iteration, digits, integrator, rotated};
+use super::super::{Iteration, JV, digits, integrator, rotated};
 use super::bench::{Bench, loader, numbers, on_every_engine};
 use crate::options::{ADDER, RADIX, WIDTH};
 use crate::{Adder, Hardware, Options, Radix, find};
@@ -26,7 +26,7 @@ fn hardware(bits: u32, jv_bits: u32, radix: Radix, adder: Adder) -> Hardware {
 fn axis(m: Scope<'_>, hardware: &Hardware) {
     let block = loader(m);
     let step = m.input("step", 1);
-    let jv = m.input("jv", hardware.bits("jvx"));
+    let jv = m.input("jv", hardware.bits(JV.of(0)));
     let step = Iteration::new(m, &block, hardware, step);
     m.name("pulse", integrator(m, &block, hardware, 0, jv, step));
 }
@@ -34,8 +34,8 @@ fn axis(m: Scope<'_>, hardware: &Hardware) {
 /// The same, serial: the integrand `jv` goes round.
 fn serial_axis(m: Scope<'_>, hardware: &Hardware) {
     let block = loader(m);
-    let jv = m.reg("jv", hardware.bits("jvx")).shown(digits(hardware));
-    let word = block.word_in(hardware.get(&RADIX), "jv", hardware.bits("jvx"));
+    let jv = m.reg("jv", hardware.bits(JV.of(0))).shown(digits(hardware));
+    let word = block.word_in(hardware.get(&RADIX), "jv", hardware.bits(JV.of(0)));
     let step = Iteration::new(m, &block, hardware, m.input("step", 1));
     jv.when(block.load, word).when(step.add, rotated(hardware, jv.q)).else_hold();
     m.name("complete", step.complete);

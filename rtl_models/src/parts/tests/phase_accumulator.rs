@@ -9,7 +9,7 @@ use super::bench::{loader, numbers, on_every_engine, on_every_engine_with, wrapp
 /// Registers `accx` and `ratex` of so many bits; the bit `pick_off` is watched.
 fn accumulator(m: Scope<'_>, bits: [u32; 2], pick_off: u64, on_overflow: OnOverflow) {
     let block = loader(m);
-    let acc = PhaseAccumulator::new(m, &block, "x", bits, pick_off, on_overflow);
+    let acc = PhaseAccumulator::new(m, &block, 0, bits, pick_off, on_overflow);
     m.name("steps", acc.steps());
     m.name("negative", acc.negative());
     acc.close(&block, m.input("accumulate", 1));
