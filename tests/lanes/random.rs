@@ -109,7 +109,7 @@ fn jobs(design: &Design, plan: &Plan) -> Vec<Job> {
 }
 
 proptest! {
-    #![proptest_config(config(600))]
+    #![proptest_config(config(200))]
 
     #[test]
     fn every_lane_of_a_random_netlist_ends_as_its_job_alone(recipe in recipe(), plan in plan()) {
