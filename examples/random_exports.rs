@@ -7,7 +7,7 @@
 // The recipe of random netlists is test code.
 #![allow(clippy::unwrap_used)]
 
-#[path = "../tests/kernel/random/recipe.rs"]
+#[path = "../tests/engine/random/recipe.rs"]
 mod recipe;
 
 use std::error::Error;
