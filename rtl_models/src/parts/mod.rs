@@ -57,7 +57,7 @@ pub use minimum_deviation::{LeastDeviation, line_change};
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
 pub use phase_accumulator::PhaseAccumulator;
 pub use point_comparison::{judged_by_sign, step_of_circle};
-pub use pulse_source::{RATE_BITS, pulse_source};
+pub use pulse_source::{RATE_BITS, pulse_source, pulse_source_while};
 pub use quadrant::{Kind, next_quadrant, quadrant_register, x_grows};
 pub use rate_multiplier::{RateMultiplier, Units};
 pub use serial_divider::SerialDivider;
