@@ -4,6 +4,8 @@
 //! cargo run --release --example first_wave && gtkwave line.gtkw
 //! ```
 
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
 use stepwave::models::find;
 use stepwave::models::options::Options;
 use stepwave::nc::{Curve, Line};

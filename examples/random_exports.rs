@@ -7,7 +7,7 @@
 // The recipe of random netlists is test code.
 #![allow(clippy::unwrap_used)]
 
-#[path = "../tests/kernel/random/recipe.rs"]
+#[path = "../tests/engine/random/recipe.rs"]
 mod recipe;
 
 use std::error::Error;
@@ -110,7 +110,7 @@ fn stimulus(design: &Design, count: usize, runner: &mut TestRunner) -> Result<St
         }
         steps.push(Step { set, clocks: Some(draw(&(1u64..4), runner)?) });
     }
-    Ok(Stimulus { steps, done: None, never: Vec::new(), stall: None })
+    Ok(Stimulus { steps, done: Vec::new(), never: Vec::new(), stall: None })
 }
 
 fn wave(design: &Design, stimulus: &Stimulus, time: ClockTime, out: File) -> Result<(), Box<dyn Error>> {

@@ -8,6 +8,8 @@
 //! `waves/cases.toml` lists the runs. A difference fails the test with file, clock and signal; `git diff` shows what a
 //! blessing has changed.
 
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
 use stepwave::Error;
 
 /// The folder that holds `cases.toml` and the recorded waves.

@@ -4,6 +4,8 @@
 //! cargo run --release --example sweep
 //! ```
 
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
 use stepwave::Error;
 use stepwave::models::options::{BEATS, WIDTH};
 use stepwave::models::{Millionths, find};

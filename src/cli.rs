@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::models::Millionths;
+use crate::models::program::Family;
 use crate::nc::Opens;
 use clap::builder::StringValueParser;
 use clap::{Args, Parser, Subcommand};
@@ -24,7 +25,8 @@ pub(crate) use endings::{Format, file_of};
 pub(crate) use hardware::HardwareArgs;
 pub(crate) use names::{Registers, known_register, registers};
 use names::{all_registers, listed, model_name};
-pub(crate) use program::{ProgramArgs, Tool};
+use program::families;
+pub(crate) use program::{ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use usage::usage;
@@ -179,7 +181,8 @@ pub(crate) struct RunArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     stepwave export dda-line --to 8,6 --verilog dda_line.v --testbench dda_line_tb.v\n  \
-    stepwave export ppc-arc --from 5,0 --to 0,5 --ccw --width 16 --verilog -\n\
+    stepwave export ppc-arc --from 5,0 --to 0,5 --ccw --width 16 --verilog -\n  \
+    stepwave export --program part.ngc --method cim --verilog cim.v --testbench cim_tb.v\n\
     The wave of the test bench (Icarus Verilog, Verilator) holds the signals of `run --vcd`, so that\n\
     `stepwave diff` compares them clock by clock; --ignore '*.trap.*' leaves out the operands of a trap.\n\n  \
     stepwave export ppc-line --to 6,4 --width f=3 --smt2 line.smt2 && z3 line.smt2\n  \
@@ -191,7 +194,16 @@ pub(crate) struct RunArgs {
 pub(crate) struct ExportArgs {
     /// The model; `stepwave list` shows them
     #[arg(value_parser = model_name(), hide_possible_values = true)]
-    pub(crate) model: String,
+    #[arg(required_unless_present = "program")]
+    pub(crate) model: Option<String>,
+    /// An NC program in place of a model and its geometry: the machine of --method, which runs all of it
+    #[arg(long, value_name = "FILE", requires = "method", conflicts_with_all = ["model", "any_geometry"])]
+    pub(crate) program: Option<PathBuf>,
+    /// Family of the machine that runs the program
+    #[arg(long, requires = "program", value_parser = values::one_of(&families()))]
+    pub(crate) method: Option<&'static Family>,
+    #[command(flatten)]
+    pub(crate) text: TextArgs,
     #[command(flatten)]
     pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
@@ -201,7 +213,7 @@ pub(crate) struct ExportArgs {
     /// Write the netlist as a Verilog module
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Verilog]), group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) verilog: Option<PathBuf>,
-    /// Write a Verilog test bench that loads and runs the geometry as `run` does
+    /// Write a Verilog test bench that loads and runs the geometry as `run` does, or the program as `program` does
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Verilog]), group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) testbench: Option<PathBuf>,
     /// Write the netlist and its properties as BTOR2, for model checkers

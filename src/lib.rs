@@ -4,34 +4,27 @@
 //! per interpolation method, simulated clock by clock and dumped as VCD. This crate is the bench on which geometry
 //! ([`nc`]), models ([`models`]), engines ([`engine`]) and waves ([`trace`]) meet; the program `stepwave` is its command line.
 //!
-//! A DDA line to (8, 6) in four bits, step by step:
+//! A DDA line to (8, 6) in four bits, with its wave and its report:
 //!
 //! ```
-//! use stepwave::engine::EngineKind;
-//! use stepwave::models::{Options, find};
+//! use stepwave::Simulation;
+//! use stepwave::models::{find, options::Options};
 //! use stepwave::nc::{Curve, Line};
-//! use stepwave::testbench::{Observer, ObserverError, Step, Testbench};
 //!
-//! #[derive(Default)]
-//! struct Pulses { y: Vec<u64> }
-//!
-//! impl Observer for Pulses {
-//!     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
-//!         if step.pulses[1] != 0 {
-//!             self.y.push(step.number);
-//!         }
-//!         Ok(())
-//!     }
-//! }
-//!
-//! let curve = Curve::Line(Line::new(vec![0, 0], vec![8, 6])?);
-//! let bench = Testbench::new(find("dda-line")?, &curve, &Options::default())?;
-//! let mut pulses = Pulses::default();
-//! let outcome = bench.run(EngineKind::Word, &mut [&mut pulses]).unwrap();
-//! assert_eq!(pulses.y, [3, 6, 8, 11, 14, 16]);
-//! assert_eq!(outcome.reached, [8, 6]);
+//! let line = Curve::Line(Line::new(vec![0, 0], vec![8, 6])?);
+//! let simulation = Simulation::new(find("dda-line")?, line).options(Options::parse(["--width", "4"])?);
+//! # let folder = tempfile::tempdir()?;
+//! # let simulation = simulation.vcd(folder.path().join("line.vcd"));
+//! let (report, trace) = simulation.run_traced()?; // `.vcd("line.vcd")` writes the wave with GTKWave's files
+//! assert!(report.failures().is_empty());
+//! assert_eq!(trace.row("dy")?, "0000_1001_0010_0101_01");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! [`guide`] has programs to read first: a first wave, a method of one's own with every command, a netlist that is no
+//! interpolator, golden waves in `cargo test`, a sweep. One crate a layer: [`netlist`] is hardware as data, [`engine`] runs
+//! it, [`trace`] shows it, [`export`] hands it on, [`prove`] proves things of it, [`nc`] is geometry and NC programs,
+//! [`models`] the interpolators.
 
 pub use stepwave_engine as engine;
 pub use stepwave_export as export;
@@ -50,6 +43,7 @@ mod commands;
 mod error;
 #[cfg(feature = "cli")]
 pub mod golden;
+pub mod guide;
 mod output;
 pub mod program;
 pub mod report;

@@ -242,9 +242,15 @@ impl Simulation {
         let states = States::of(self, bench)?;
         // All are opened before the first is written: where one is refused, nothing has gone to standard output.
         let sinks = Sinks::open(&self.waves, outputs)?;
-        let mut files = Files::open(self, bench, outputs)?;
+        let mut open = |path: &Option<PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
+        let [steps, json, plot] = [open(&self.steps)?, open(&self.json)?, open(&self.plot)?];
         let mut states = states.map(|states| states.open(outputs)).transpose()?;
         let mut onlookers = onlookers(bench, outputs)?;
+        let mut files = Files {
+            table: steps.map(|sink| CsvTable::new(bench, sink)).transpose()?,
+            picture: plot.map(|sink| (Picture(Plot::new(&self.curve)), sink)),
+            json,
+        };
         let mut waves = sinks.map(|sinks| Waves::new(bench, &self.waves, sinks, time, &title)).transpose()?;
         let mut watches = Watches::new(bench, &self.curve);
 
@@ -329,13 +335,6 @@ struct Files {
 }
 
 impl Files {
-    fn open(simulation: &Simulation, bench: &Testbench, outputs: &mut Outputs) -> Result<Files, Error> {
-        let mut open = |path: &Option<PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
-        let (steps, json, plot) = (open(&simulation.steps)?, open(&simulation.json)?, open(&simulation.plot)?);
-        let picture = plot.map(|sink| (Picture(Plot::new(&simulation.curve)), sink));
-        Ok(Files { table: steps.map(|sink| CsvTable::new(bench, sink)).transpose()?, picture, json })
-    }
-
     fn observers(&mut self) -> impl Iterator<Item = &mut dyn Observer> {
         let table = self.table.iter_mut().map(|table| table as &mut dyn Observer);
         table.chain(self.picture.iter_mut().map(|(picture, _)| picture as &mut dyn Observer))

@@ -5,11 +5,11 @@
 #![allow(clippy::unwrap_used)]
 
 mod cli;
+mod engine;
 mod export;
 mod house;
-mod kernel;
-mod lanes;
 mod models;
+mod netlist;
 mod programs;
 mod proofs;
 mod reference;

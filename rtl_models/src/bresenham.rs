@@ -78,21 +78,44 @@ pub static MODEL: Model = Model {
 };
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
-    plan.n = plan.magnitude_bits(sizes::longest(line));
-    plan.positions(sizes::end_positions(line));
-    plan.fix(&END_POINT, EndPoint::Longest);
-    let right = if plan.get(&FORM) == Form::Signed { Compare::Greater } else { Compare::AtLeast };
-    let compare = plan.decide(&COMPARE, right);
-    plan.error_bound = (plan.axes() == 2 && compare == right).then_some(0.5);
+    registers(plan, sizes::longest(line), sizes::end_positions(line));
+    plan.error_bound = (plan.axes() == 2 && compares_right(plan.get(&FORM), plan.get(&COMPARE))).then_some(0.5);
     plan.pace = Pace::Longest;
     Ok(())
 }
 
+/// The registers for blocks of up to `longest` step events that lead to these positions of each axis.
+pub(crate) fn registers(
+    plan: &mut Plan,
+    longest: u64,
+    positions: impl IntoIterator<Item = impl IntoIterator<Item = i64>>,
+) {
+    plan.n = plan.magnitude_bits(longest);
+    plan.positions(positions);
+    plan.fix(&END_POINT, EndPoint::Longest);
+    plan.decide(&COMPARE, right_test(plan.get(&FORM)));
+}
+
+fn right_test(form: Form) -> Compare {
+    if form == Form::Signed { Compare::Greater } else { Compare::AtLeast }
+}
+
+/// The test is the one with which a path stays within half a BLU along each axis.
+pub(crate) fn compares_right(form: Form, compare: Compare) -> bool {
+    compare == right_test(form)
+}
+
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    let block = Block::new(m);
+    interpolator(m, hardware, Block::new(m), None);
+}
+
+/// The wiring after a block loader. Each `tick` (1 bit) of a pulse source begins a step event; without one, events follow
+/// each other.
+pub(crate) fn interpolator<'m>(m: Scope<'m>, hardware: &Hardware, block: Block<'m>, tick: Option<Signal<'m>>) {
     let names = [(0, "IDLE"), (1, "ADD"), (2, "TEST")].map(|(value, name)| (value, name.to_owned()));
     let beat = m.reg("beat", 2).shown(Format::States(names.to_vec()));
-    let [add, test] = [0, 1].map(|place| beat.q.bit(place));
+    let [ready, test] = [0, 1].map(|place| beat.q.bit(place));
+    let add = tick.map_or(ready, |tick| ready & tick);
     let events = hardware.held(m, &block, EVENTS);
     let e = hardware.counter(m, &block, E);
     for axis in 0..hardware.axes {
@@ -105,7 +128,12 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
         hardware.axis(scope, &block, axis, step, hardware.held(scope, &block, SIGN.of(axis)));
     }
     let last = e.count(test);
-    beat.when(block.load, m.lit(2, 1)).when(test & last, m.lit(2, 0)).otherwise(add.concat(test));
+    let sequence = beat.when(block.load, m.lit(2, 1)).when(test & last, m.lit(2, 0));
+    let next = add.concat(test);
+    match tick {
+        None => sequence.otherwise(next),
+        Some(tick) => sequence.when(ready & !tick, beat.q).otherwise(next),
+    }
     block.close(block.load, test, last);
 }
 
@@ -139,13 +167,22 @@ fn counter<'m>(
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
-    let events = i128::from(sizes::longest(line));
+    vec![words(&line.delta(), line.from(), hardware)]
+}
+
+/// The words of a block with these displacements of the axes, in BLU, and of the first block with the place that it starts
+/// from.
+pub(crate) fn words(delta: &[i64], from: &[i64], hardware: &Hardware) -> Words {
+    let events = i128::from(sizes::longest_of(delta));
     let half = events / 2;
     let start = if hardware.get(&FORM) == Form::Signed { -half } else { half };
     let mut words = Words::new().set(EVENTS, events).set(E, events);
-    for (axis, (delta, from)) in line.delta().into_iter().zip(line.from()).enumerate() {
+    for (axis, &delta) in delta.iter().enumerate() {
         words = words.set(STEPS.of(axis), delta.abs()).set(COUNTER.of(axis), start);
-        words = words.set(SIGN.of(axis), delta < 0).set(POSITION.of(axis), *from);
+        words = words.set(SIGN.of(axis), delta < 0);
+        if let Some(&from) = from.get(axis) {
+            words = words.set(POSITION.of(axis), from);
+        }
     }
-    vec![words]
+    words
 }

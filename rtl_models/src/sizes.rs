@@ -53,7 +53,12 @@ pub(crate) fn largest_coordinate(sectors: &[Sector]) -> u64 {
 
 /// Displacement of the longest axis of a line.
 pub(crate) fn longest(line: &Line) -> u64 {
-    line.delta().iter().map(|d| d.unsigned_abs()).max().unwrap_or(0)
+    longest_of(&line.delta())
+}
+
+/// The greatest of these displacements.
+pub(crate) fn longest_of(delta: &[i64]) -> u64 {
+    delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0)
 }
 
 /// Positions of each axis at the ends of a line.

@@ -44,7 +44,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use stepwave_nc::Line;
 use stepwave_netlist::Width;
-use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::dsl::{Scope, Signal};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
@@ -99,8 +99,29 @@ fn log2_up(value: u64) -> u32 {
 }
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
+    let accumulations = registers(plan, sizes::longest(line), sizes::end_positions(line))?;
+    // An axis of one step may make it at the end, after all delays.
+    let timing = plan.get(&TIMING);
+    let delays = 2 * (timing.length + timing.space + timing.setup + timing.hold);
+    plan.stall_clocks = accumulations.saturating_add(delays).saturating_add(16);
+    let off = axis_bound(&plan.presets()?);
+    plan.error_bound = (plan.axes() == 2).then_some(if off < 1.0 { FRAC_1_SQRT_2 } else { SQRT_2 });
+    Ok(())
+}
+
+/// How far an axis is from its ideal place at most, in BLU.
+pub(crate) fn axis_bound(presets: &[Preset]) -> f64 {
+    if presets.iter().all(|preset| *preset == Preset::Half) { 0.5 } else { 1.0 }
+}
+
+/// The registers for blocks of up to `longest` steps that lead to these positions of each axis. Returns the accumulations
+/// of the longest block.
+pub(crate) fn registers(
+    plan: &mut Plan,
+    longest: u64,
+    positions: impl IntoIterator<Item = impl IntoIterator<Item = i64>>,
+) -> Result<u64, ModelError> {
     let timing = timing(plan)?;
-    let longest = sizes::longest(line);
     plan.n = plan.magnitude_bits(longest);
     let undelayed = plan.n + log2_up(timing.length + timing.space);
     let given = plan.get(&PICK_OFF).map(|bit| u32::try_from(bit).unwrap_or(u32::MAX));
@@ -109,18 +130,11 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
     let pick_off = given.unwrap_or(k);
     accumulations(longest, k, pick_off)?;
     plan.set_each(RATE, (plan.n + 1).saturating_add(pick_off - k));
-    plan.set_each(ACC, (plan.n + 1).saturating_add(pick_off)).positions(sizes::end_positions(line));
+    plan.set_each(ACC, (plan.n + 1).saturating_add(pick_off)).positions(positions);
     plan.fix(&END_POINT, EndPoint::Iterations);
     plan.fix(&PICK_OFF, Some(u64::from(pick_off)));
-    let given = plan.presets()?;
-    presets(&given, pick_off)?;
-    let rounds = given.iter().all(|preset| *preset == Preset::Half);
-    // An axis of one step may make it at the end, behind all delays.
-    let delays = 2 * (timing.length + timing.space + timing.setup + timing.hold);
-    let accumulations = 1_u64.checked_shl(k).unwrap_or(u64::MAX);
-    plan.stall_clocks = accumulations.saturating_add(delays).saturating_add(16);
-    plan.error_bound = (plan.axes() == 2).then_some(if rounds { FRAC_1_SQRT_2 } else { SQRT_2 });
-    Ok(())
+    presets(&plan.presets()?, pick_off)?;
+    Ok(1_u64.checked_shl(k).unwrap_or(u64::MAX))
 }
 
 /// The times chosen, which must be possible.
@@ -180,7 +194,14 @@ fn presets(presets: &[Preset], pick_off: u32) -> Result<(), ModelError> {
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    let block = Block::new(m);
+    interpolator(m, hardware, Block::new(m), None);
+}
+
+/// A pulse source that runs while its last argument (1 bit) is 1.
+type Source<'m> = fn(Scope<'m>, &Block<'m>, Signal<'m>) -> Signal<'m>;
+
+/// The wiring after a block loader. Each pulse of a source is an accumulation; without one there is one a clock.
+pub(crate) fn interpolator<'m>(m: Scope<'m>, hardware: &Hardware, block: Block<'m>, source: Option<Source<'m>>) {
     let e = hardware.counter(m, &block, E);
     let axis = |axis: usize| {
         let (scope, bits) = (axis_scope(m, axis), [ACC, RATE].map(|register| hardware.bits(register.of(axis))));
@@ -194,7 +215,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let waiting = axes.iter().map(|(_, acc, output)| acc.steps() & !output.ready()).reduce(|a, b| a | b);
     let counting = block.busy & e.running();
     let hold = m.name("hold", waiting.map_or(!counting, |waiting| counting & waiting));
-    let accumulate = m.name("accumulate", counting & !hold);
+    let ready = counting & !hold;
+    let accumulate = m.name("accumulate", source.map_or(ready, |source| source(m, &block, ready)));
     let mut resting = e.count(accumulate);
     for (i, (scope, acc, output)) in axes.into_iter().enumerate() {
         let send = scope.name("send", accumulate & acc.steps());
@@ -206,14 +228,32 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
-    let k = hardware.bits(E) - 1;
+    vec![words(&line.delta(), line.from(), hardware, hardware.bits(E) - 1)]
+}
+
+/// The least k for a block of these displacements in BLU, at most that of `e`: 2^k accumulations make every step, and the
+/// rates, which are the greater the fewer accumulations there are, fit in their registers.
+pub(crate) fn least_accumulations(delta: &[i64], hardware: &Hardware) -> u32 {
+    let longest = sizes::longest_of(delta);
+    let rate = Width::needed_unsigned(u128::from(longest)) + 1;
+    let room = hardware.bits(RATE.of(0));
+    let by_rate = rate.saturating_add(u32::try_from(pick_off(hardware)).unwrap_or(u32::MAX)).saturating_sub(room);
+    by_rate.max(log2_up(longest)).min(hardware.bits(E).saturating_sub(1))
+}
+
+/// The words of a block with these displacements of the axes, in BLU, in 2^k accumulations, and of the first block with the
+/// place that it starts from.
+pub(crate) fn words(delta: &[i64], from: &[i64], hardware: &Hardware, k: u32) -> Words {
     let step = 1_u128.checked_shl(u32::try_from(pick_off(hardware)).unwrap_or(u32::MAX)).unwrap_or(0);
     let unit = i128::try_from(step >> k).unwrap_or(0);
     let mut words = Words::new().set(E, 1_i128 << k);
-    for (axis, (delta, from)) in line.delta().into_iter().zip(line.from()).enumerate() {
+    for (axis, &delta) in delta.iter().enumerate() {
         let preset = hardware.presets[axis].value(step).unwrap_or(0);
         words = words.set(RATE.of(axis), i128::from(delta) * unit);
-        words = words.set(ACC.of(axis), i128::try_from(preset).unwrap_or(0)).set(POSITION.of(axis), *from);
+        words = words.set(ACC.of(axis), i128::try_from(preset).unwrap_or(0));
+        if let Some(&from) = from.get(axis) {
+            words = words.set(POSITION.of(axis), from);
+        }
     }
-    vec![words]
+    words
 }

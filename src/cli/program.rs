@@ -65,8 +65,37 @@ fn parse_chords(text: &str) -> Result<f64, String> {
 }
 
 /// A family by its name.
-fn families() -> Vec<(&'static str, &'static Family)> {
+pub(super) fn families() -> Vec<(&'static str, &'static Family)> {
     FAMILIES.into_iter().map(|family| (family.name, family)).collect()
+}
+
+/// How the text of a program becomes blocks.
+#[derive(Debug, Args)]
+pub(crate) struct TextArgs {
+    /// Radius of the tool with a D number: 1=4mm (may be repeated)
+    #[arg(long, requires = "program", value_name = "D=RADIUS", value_parser = parse_tool)]
+    pub(crate) tool: Vec<Tool>,
+    /// Tool radius compensation: B, each block alone, or C, with a look at the next block
+    #[arg(long, requires = "program", value_name = "SCHEME", default_value = "C", value_parser = one_of(&[("B", Scheme::B), ("C", Scheme::C)]))]
+    pub(crate) compensation: Scheme,
+    /// How an outside corner is gone round where a block is inserted
+    #[arg(long, requires = "program", default_value = "straight",
+        value_parser = one_of(&[("straight", Corner::Straight), ("circular", Corner::Circular)]))]
+    pub(crate) corner: Corner,
+    /// What a coordinate without decimal point counts: mm or inch as RS-274 says, or pulses as textbooks write them
+    #[arg(long, requires = "program", default_value = "units",
+        value_parser = one_of(&[("units", Integers::Units), ("pulses", Integers::Pulses)]))]
+    pub(crate) integers: Integers,
+    /// Where the machine's zero is in the program, to which G28 and G53 move, or ignore: they do not move
+    #[arg(long, requires = "program", value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = parse_home)]
+    pub(crate) home: Home,
+    /// Feed of G00 in mm/min [default: a pulse of the source every second clock]
+    #[arg(long, requires = "program", value_name = "MM/MIN", value_parser = parse_feed)]
+    pub(crate) rapid: Option<f64>,
+    /// How far a chord may be off its arc, in BLU, for machines that draw lines only, and for helices whose third axis is too
+    /// steep for others
+    #[arg(long, requires = "program", value_name = "BLU", default_value = "0.5", value_parser = parse_chords)]
+    pub(crate) chords: f64,
 }
 
 #[derive(Debug, Args)]
@@ -80,34 +109,13 @@ fn families() -> Vec<(&'static str, &'static Family)> {
 )]
 pub(crate) struct ProgramArgs {
     /// The NC program
+    #[arg(id = "program", value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Family of the machine
     #[arg(long, value_parser = one_of(&families()))]
     pub(crate) method: &'static Family,
-    /// Radius of the tool with a D number: 1=4mm (may be repeated)
-    #[arg(long, value_name = "D=RADIUS", value_parser = parse_tool)]
-    pub(crate) tool: Vec<Tool>,
-    /// Tool radius compensation: B, each block alone, or C, with a look at the next block
-    #[arg(long, value_name = "SCHEME", default_value = "C", value_parser = one_of(&[("B", Scheme::B), ("C", Scheme::C)]))]
-    pub(crate) compensation: Scheme,
-    /// How an outside corner is gone round where a block is inserted
-    #[arg(long, default_value = "straight",
-        value_parser = one_of(&[("straight", Corner::Straight), ("circular", Corner::Circular)]))]
-    pub(crate) corner: Corner,
-    /// What a coordinate without decimal point counts: mm or inch as RS-274 says, or pulses as textbooks write them
-    #[arg(long, default_value = "units",
-        value_parser = one_of(&[("units", Integers::Units), ("pulses", Integers::Pulses)]))]
-    pub(crate) integers: Integers,
-    /// Where the machine's zero is in the program, to which G28 and G53 move, or ignore: they do not move
-    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = parse_home)]
-    pub(crate) home: Home,
-    /// Feed of G00 in mm/min [default: a pulse of the source every second clock]
-    #[arg(long, value_name = "MM/MIN", value_parser = parse_feed)]
-    pub(crate) rapid: Option<f64>,
-    /// How far a chord may be off its arc, in BLU, for machines that draw lines only, and for helices whose third axis is too
-    /// steep for others
-    #[arg(long, value_name = "BLU", default_value = "0.5", value_parser = parse_chords)]
-    pub(crate) chords: f64,
+    #[command(flatten)]
+    pub(crate) text: TextArgs,
     #[command(flatten)]
     pub(crate) hardware: HardwareArgs,
     #[command(flatten)]

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::export::{self, Checking, Options};
+use crate::engine::EngineKind;
+use crate::export::{self, Checking, Options, Stimulus};
 use crate::models::find;
 use crate::netlist::{Design, Net};
 use crate::report;
@@ -10,6 +11,7 @@ use crate::testbench::Testbench;
 use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
+use super::program::{Prepared, Source};
 use crate::Error;
 use crate::cli::ExportArgs;
 use crate::output::{self, Outputs};
@@ -17,50 +19,97 @@ use crate::output::{self, Outputs};
 /// Last clock of a question to a solver where nothing is said and the run is longer.
 const DEEPEST: u64 = 1000;
 
+/// What is exported: a machine, and what is to be done to it.
+struct Subject {
+    bench: Testbench,
+    title: String,
+    /// Where its widths come from.
+    widths_by: &'static str,
+    stimulus: Stimulus,
+    /// What there is to say of it.
+    text: String,
+}
+
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
-    let model = find(&args.model)?;
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
-    let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
-    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
-    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
-    let comment = [
-        report::title(model, bench.hardware(), &curve),
-        format!("Written by stepwave {}; the geometry gives the widths.", env!("CARGO_PKG_VERSION")),
-    ];
+    let prepared = args.program.as_deref().zip(args.method).map(|(file, family)| {
+        let ExportArgs { text, hardware, clock, .. } = args;
+        Source { file, family, text, hardware, clock_hz: clock.clock_hz }.machine()
+    });
+    let prepared = prepared.transpose()?;
+    let Subject { bench, title, widths_by, stimulus, text: mut notes } = match &prepared {
+        Some(prepared) => program(prepared, args)?,
+        None => geometry(args)?,
+    };
+    let version = env!("CARGO_PKG_VERSION");
+    let comment = [title, format!("Written by stepwave {version}; the {widths_by} gives the widths.")];
     let outputs = bench.outputs();
     let options = Options { comment: &comment, outputs: &outputs };
-    let mut files = Outputs::default();
+    let mut files = Outputs::reading(&args.program);
     if let Some(path) = &args.verilog {
         files.write(path, &export::verilog(bench.design(), &options))?;
     }
     if let Some(path) = &args.testbench {
         let dump = dump_name(path, &bench.design().netlist().scopes[0].name);
-        files.write(path, &export::testbench(bench.design(), &options, &bench.stimulus(), time, &dump))?;
+        files.write(path, &export::testbench(bench.design(), &options, &stimulus, time, &dump))?;
     }
-    let (design, held) = driven(&bench, &args.any_geometry)?;
+    let (design, held) = driven(&bench, &stimulus, &args.any_geometry)?;
     let checking = Checking { comment: &comment, held: &held };
     if let Some(path) = &args.btor2 {
         files.write(path, &export::btor2(&design, &checking))?;
     }
+    if let Some(path) = &args.smt2 {
+        let run = || match &prepared {
+            None => Ok::<_, Error>(bench.clocks_within(DEEPEST)),
+            Some(prepared) => Ok(bench.clocks_within_fed(DEEPEST, &mut prepared.control()?)),
+        };
+        let depth = match args.depth {
+            Some(depth) => depth,
+            None => run()?.unwrap_or(DEEPEST),
+        };
+        files.write(path, &export::smt2(&design, &checking, depth))?;
+        notes += &format!("asked is whether a property is violated in one of the clocks 0 to {depth}\n");
+    }
+    let quiet = files.uses_stdout();
+    files.commit()?;
+    if quiet { Ok(()) } else { output::print(&notes) }
+}
+
+/// A model with the blocks of a geometry.
+fn geometry(args: &ExportArgs) -> Result<Subject, Error> {
+    let model = find(args.model.as_deref().unwrap_or_default())?;
+    let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
+    let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
+    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
+    let title = report::title(model, bench.hardware(), &curve);
     let mut text = geometry::moved_center(&curve, &args.geometry).unwrap_or_default() + &summary(&bench);
     for word in bench.cut_words() {
         text += &format!("warning: {word}\n");
     }
-    if let Some(path) = &args.smt2 {
-        let depth = args.depth.or_else(|| bench.clocks_within(DEEPEST)).unwrap_or(DEEPEST);
-        files.write(path, &export::smt2(&design, &checking, depth))?;
-        text += &format!("asked is whether a property is violated in one of the clocks 0 to {depth}\n");
+    Ok(Subject { stimulus: bench.stimulus(), bench, title, widths_by: "geometry", text })
+}
+
+/// A machine with the blocks of a whole program.
+fn program(prepared: &Prepared<'_>, args: &ExportArgs) -> Result<Subject, Error> {
+    if let Some(option) = geometry::given(&args.geometry) {
+        return Err(Error::Invalid(format!("--program has the geometry: leave {option} out")));
     }
-    let quiet = files.uses_stdout();
-    files.commit()?;
-    if quiet { Ok(()) } else { output::print(&text) }
+    let bench = prepared.bench.clone();
+    let mut control = prepared.control()?;
+    let stimulus = bench.stimulus_fed(&mut control)?;
+    let title = prepared.head(EngineKind::Word).title();
+    let mut text = summary(&bench);
+    for (line, word) in &control.losses.cut {
+        text += &format!("warning: line {line}: {word}\n");
+    }
+    Ok(Subject { bench, title, widths_by: "program", stimulus, text })
 }
 
 /// The machine with a loader, and the load words that are left open.
-fn driven(bench: &Testbench, any: &[String]) -> Result<(Design, Vec<Net>), Error> {
+fn driven(bench: &Testbench, stimulus: &Stimulus, any: &[String]) -> Result<(Design, Vec<Net>), Error> {
     if any.is_empty() {
-        return Ok((bench.driven()?, Vec::new()));
+        return Ok((bench.driven_by(stimulus)?, Vec::new()));
     }
     let known: Vec<String> = bench.load_words().map(str::to_owned).collect();
     if any == ["all"] {

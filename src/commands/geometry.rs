@@ -86,6 +86,13 @@ fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)
     options
 }
 
+/// An option that says something of a geometry, if one is given.
+pub(super) fn given(args: &GeometryArgs) -> Option<&'static str> {
+    let ends = [(args.from.is_some(), "--from"), (args.to.is_some(), "--to")];
+    let options = ends.into_iter().chain(superfluous(CurveKind::Line { max_axes: 2 }, args));
+    options.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
+}
+
 /// The coordinates of a point of `N` axes of such a curve; the origin if none is given.
 fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Result<[i64; N], Error> {
     let Some(Point(point)) = given else { return Ok([0; N]) };

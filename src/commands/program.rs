@@ -5,7 +5,9 @@ use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::Path;
 
+use crate::engine::EngineKind;
 use crate::models::options::TOLERANCE;
+use crate::models::program::Family;
 use crate::nc::Reading;
 use crate::program::{Control, Estimate, Pace, Preparation, Stream, Survey, Totals};
 use crate::report::{CsvTable, ProgramHead, ProgramJson, ProgramTable, ProgramTail, Workpiece};
@@ -16,7 +18,7 @@ use super::progress::Progress;
 use super::run::Finished;
 use super::size::Size;
 use crate::Error;
-use crate::cli::{ProgramArgs, Tool};
+use crate::cli::{HardwareArgs, ProgramArgs, TextArgs, Tool};
 use crate::output::Outputs;
 use crate::waves::{Sinks, Waves};
 
@@ -57,64 +59,125 @@ fn tools(given: &[Tool]) -> Result<BTreeMap<u64, f64>, Error> {
     Ok(tools)
 }
 
-/// How the options want the program prepared.
-///
-/// # Errors
-/// A tool has two radii.
-pub(super) fn preparation(args: &ProgramArgs) -> Result<Preparation, Error> {
-    Ok(Preparation {
-        reading: Reading {
-            blu: args.hardware.blu,
-            integers: args.integers,
-            tools: tools(&args.tool)?,
-            tolerance: args.hardware.radii(),
-            home: args.home.0,
-        },
-        scheme: args.compensation,
-        corner: args.corner,
-        chords: args.chords,
-    })
+/// A program, and what its machine is to be.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub(super) file: &'a Path,
+    pub(super) family: &'static Family,
+    pub(super) text: &'a TextArgs,
+    pub(super) hardware: &'a HardwareArgs,
+    pub(super) clock_hz: f64,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn of(args: &'a ProgramArgs) -> Source<'a> {
+        let ProgramArgs { file, method, text, hardware, clock, .. } = args;
+        Source { file, family: method, text, hardware, clock_hz: clock.clock_hz }
+    }
+
+    /// How the options want the program prepared.
+    ///
+    /// # Errors
+    /// A tool has two radii.
+    pub(super) fn preparation(&self) -> Result<Preparation, Error> {
+        let text = self.text;
+        Ok(Preparation {
+            reading: Reading {
+                blu: self.hardware.blu,
+                integers: text.integers,
+                tools: tools(&text.tool)?,
+                tolerance: self.hardware.radii(),
+                home: text.home.0,
+            },
+            scheme: text.compensation,
+            corner: text.corner,
+            chords: text.chords,
+        })
+    }
+
+    /// Reads the program once and makes its machine.
+    ///
+    /// # Errors
+    /// The program is wrong, or the machine cannot be as the options want it.
+    pub(super) fn machine(self) -> Result<Prepared<'a>, Error> {
+        let (family, preparation) = (self.family, self.preparation()?);
+        let survey = Survey::of(open(self.file)?, family, &preparation).map_err(|error| self.told(&error))?;
+        // How far the radii of an arc may differ is not the machine's concern.
+        let choices = self.hardware.choices().without(&TOLERANCE);
+        let hardware = family.plan(&survey.size, &choices).map_err(|error| self.hardware.told(error))?;
+        let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware)?).as_hardware_loads();
+        let pace = Pace { clock_hz: self.clock_hz, blu_mm: self.hardware.blu, rapid: self.text.rapid };
+        Ok(Prepared { source: self, preparation, survey, bench, pace, name: self.file.display().to_string() })
+    }
+
+    fn told(&self, error: &dyn std::fmt::Display) -> Error {
+        Error::Invalid(format!("{}: {error}", self.file.display()))
+    }
+}
+
+/// The machine of a program.
+pub(super) struct Prepared<'a> {
+    source: Source<'a>,
+    preparation: Preparation,
+    survey: Survey,
+    pub(super) bench: Testbench,
+    pace: Pace,
+    name: String,
+}
+
+impl Prepared<'_> {
+    pub(super) fn head(&self, engine: EngineKind) -> ProgramHead<'_> {
+        let (family, pace) = (self.source.family, self.pace);
+        ProgramHead { file: &self.name, family, hardware: self.bench.hardware(), engine, pace }
+    }
+
+    /// Reads the program anew, and feeds its machine.
+    ///
+    /// # Errors
+    /// It can no longer be read.
+    pub(super) fn control(&self) -> Result<Control<'_, BufReader<File>>, Error> {
+        let source = self.source;
+        let stream = Stream::new(open(source.file)?, source.family, &self.preparation);
+        let stream = stream.map_err(|error| source.told(&error))?;
+        Ok(Control::new(stream, source.family, &self.bench, self.pace))
+    }
+
+    /// What a run of it comes to.
+    ///
+    /// # Errors
+    /// The program is wrong.
+    fn estimate(&self) -> Result<Estimate, Error> {
+        let (source, hardware) = (self.source, self.bench.hardware());
+        let estimate = Estimate::of(open(source.file)?, source.family, &self.preparation, hardware, self.pace);
+        estimate.map_err(|error| source.told(&error))
+    }
 }
 
 /// Simulates; the wave shows the operands of a trap that is known.
 fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>) -> Result<Finished, Error> {
-    let family = args.method;
-    let file = args.file.display().to_string();
-    let told = |error: &dyn std::fmt::Display| Error::Invalid(format!("{file}: {error}"));
-    let preparation = preparation(args)?;
-    let survey = Survey::of(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
-    // How far the radii of an arc may differ is not the machine's concern.
-    let choices = args.hardware.choices().without(&TOLERANCE);
-    let hardware = family.plan(&survey.size, &choices).map_err(|error| args.hardware.told(error))?;
-    let machine = family.machine(&hardware)?;
-    let bench = Testbench::of_machine(hardware, machine)
-        .as_hardware_loads()
-        .limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
+    let mut prepared = Source::of(args).machine()?;
+    let bench = prepared.bench.limited(args.simulation.max_clocks.unwrap_or(u64::MAX));
     let bench = if args.trace.wanted() { bench } else { bench.without_wave() };
-    let bench = trap.and_then(|event| bench.showing(event)).unwrap_or(bench);
+    prepared.bench = trap.and_then(|event| bench.showing(event)).unwrap_or(bench);
+    let (bench, head) = (&prepared.bench, prepared.head(args.simulation.engine));
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
-    let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
-    let head = ProgramHead { file: &file, family, hardware: bench.hardware(), engine: args.simulation.engine, pace };
-
     if args.trace.wanted() {
-        let text = open(&args.file)?;
-        let estimate =
-            Estimate::of(text, family, &preparation, bench.hardware(), pace).map_err(|error| told(&error))?;
-        Size::of(&bench, &args.trace, time)?.check(&args.trace, args.simulation.max_clocks, &estimate)?;
+        let size = Size::of(bench, &args.trace, time)?;
+        size.check(&args.trace, args.simulation.max_clocks, &prepared.estimate()?)?;
     }
     // All are opened before the first is written: where one is refused, nothing stands on standard output.
     let options = args.trace.options();
     let sinks = Sinks::open(&options, outputs)?;
     let mut sink = |path: &Option<std::path::PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
     let (steps, json, plot) = (sink(&args.outputs.steps)?, sink(&args.outputs.json)?, sink(&args.outputs.plot)?);
-    let waves = sinks.map(|sinks| Waves::new(&bench, &options, sinks, time, &head.title())).transpose()?;
+    let waves = sinks.map(|sinks| Waves::new(bench, &options, sinks, time, &head.title())).transpose()?;
     let mut waves = waves.map(|waves| waves.beginning_with(&LEADING));
-    let mut steps = steps.map(|sink| CsvTable::new(&bench, sink)).transpose()?;
+    let mut steps = steps.map(|sink| CsvTable::new(bench, sink)).transpose()?;
     let mut json = json.map(|sink| ProgramJson::new(head, sink)).transpose()?;
     let mut picture = plot.map(|sink| (Workpiece::new(&head.headline()), sink));
     let mut table = ProgramTable::new(head);
-    let (mut totals, mut progress) = (Totals::default(), Progress::of(survey.moves, "moves"));
-    let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
+    let (mut totals, mut progress) = (Totals::default(), Progress::of(prepared.survey.moves, "moves"));
+    let (mut overflow, mut ranges) = (OverflowWatch::new(bench), RangeWatch::new(bench));
 
     let mut observers: Vec<&mut dyn Observer> =
         vec![&mut overflow, &mut ranges, &mut totals, &mut table, &mut progress];
@@ -122,8 +185,7 @@ fn once(args: &ProgramArgs, outputs: &mut Outputs, trap: Option<&OverflowEvent>)
     observers.extend(steps.as_mut().map(|table| table as &mut dyn Observer));
     observers.extend(json.as_mut().map(|json| json as &mut dyn Observer));
     observers.extend(picture.as_mut().map(|(picture, _)| picture as &mut dyn Observer));
-    let stream = Stream::new(open(&args.file)?, family, &preparation).map_err(|error| told(&error))?;
-    let mut control = Control::new(stream, family, &bench, pace);
+    let mut control = prepared.control()?;
     let outcome = bench.run_fed(args.simulation.engine, &mut control, &mut observers)?;
     drop(observers);
     drop(progress);

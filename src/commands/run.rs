@@ -4,6 +4,7 @@ use crate::models::find;
 use crate::report::{Report, TEXTBOOK_STEPS, TextbookTable};
 use crate::simulation::{Onlookers, Simulation};
 use crate::testbench::{Ending, Observer, OverflowEvent};
+use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
 use super::progress::RunProgress;
@@ -80,6 +81,8 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         .blu_mm(args.hardware.blu)
         .waves(args.trace.options())
         .files(&args.outputs.steps, &args.outputs.json, &args.outputs.plot, &args.checkpoints);
+    // A clock that is not possible is refused as such, before a model finds it too slow.
+    ClockTime::from_hz(args.clock.clock_hz)?;
     let bench = simulation.bench().map_err(|error| args.hardware.told(error))?;
     let ran = simulation.run_on(bench, outputs, |bench, outputs| {
         if outputs.uses_stdout() {

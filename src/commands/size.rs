@@ -19,7 +19,7 @@ const NOTED: f64 = 1e8;
 /// every family.
 const BIT: f64 = 0.14;
 /// Registers that change with every step, also where it moves nothing.
-const COUNTING: [&str; 3] = ["q", "jrx", "jry"];
+const COUNTING: [&str; 6] = ["q", "jrx", "jry", "accx", "accy", "accz"];
 /// Bytes of the three flags that come and go with each step.
 const FLAGS: f64 = 18.0;
 /// Bytes of FST that a clock takes where the pulse source is shown, less where its phase comes round; and what changes at a

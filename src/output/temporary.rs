@@ -50,9 +50,11 @@ pub(crate) fn keep(paths: &[PathBuf], what: Option<String>) {
     present.kept = what;
 }
 
-/// This process was started and ends with ours, with all of its group; or none is left.
-pub(crate) fn attend(started: Option<u32>) {
-    present().started = started;
+/// Starts or ends a process, which a signal waits for. What is given is the process that runs from then on: it ends with
+/// ours, with all of its group.
+pub(crate) fn attend(change: &mut dyn FnMut() -> Option<u32>) {
+    let mut present = present();
+    present.started = change();
 }
 
 /// What is kept, in words.

@@ -6,7 +6,7 @@ use stepwave_models::ModelError;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_netlist::{Design, Diagnostics, Net, OnOverflow};
 
-use super::{Observer, ObserverError, Testbench};
+use super::{Feeder, Next, Observer, ObserverError, Testbench};
 
 impl Testbench {
     /// What [`run`](Testbench::run) does to the machine: each block is put on the inputs together with `load` for one
@@ -14,19 +14,60 @@ impl Testbench {
     /// it is looked for now and then only.
     #[must_use]
     pub fn stimulus(&self) -> Stimulus {
+        // The blocks of a geometry cannot fail.
+        self.stimulus_fed(&mut self.geometry(0)).unwrap_or_else(|_| self.sequence(Vec::new()))
+    }
+
+    /// What [`run_fed`](Testbench::run_fed) does to the machine with these blocks.
+    ///
+    /// # Errors
+    /// The feeder fails.
+    pub fn stimulus_fed(&self, feeder: &mut dyn Feeder) -> Result<Stimulus, ObserverError> {
         let machine = &self.machine;
-        let mut steps = Vec::new();
-        for (index, words) in self.blocks.iter().enumerate() {
-            let mut load = words.clone();
-            load.push((machine.load.net, 1));
-            load.push((machine.preset_position.net, u64::from(index == 0)));
-            steps.push(Step { set: load, clocks: Some(1) });
-            steps.push(Step { set: vec![(machine.load.net, 0), (machine.preset_position.net, 0)], clocks: None });
+        let more = |next: &Next| {
+            let block = u64::from(matches!(next, Next::Block(..)));
+            machine.buffer.map(|ports| (ports.more, block))
+        };
+        let mut steps: Vec<Step> = Vec::new();
+        let mut next = feeder.next()?;
+        // What comes before the next block: a machine without a buffer takes the first at once.
+        let mut wait = more(&next).map(|more| Step { set: vec![more], clocks: None });
+        let mut first = true;
+        loop {
+            steps.extend(wait.take());
+            match next {
+                Next::Block(mut words, _) => {
+                    let preset = |first| machine.buffer.is_none().then_some((machine.preset_position.net, first));
+                    words.push((machine.load.net, 1));
+                    words.extend(preset(u64::from(std::mem::take(&mut first))));
+                    steps.push(Step { set: words, clocks: Some(1) });
+                    next = feeder.next()?;
+                    let set = [Some((machine.load.net, 0)), preset(0), more(&next)].into_iter().flatten().collect();
+                    wait = Some(Step { set, clocks: None });
+                }
+                Next::Wait(clocks) => {
+                    steps.extend((clocks > 0).then(|| Step { set: Vec::new(), clocks: Some(clocks) }));
+                    next = feeder.next()?;
+                    // Nothing runs: what is waited for is there at the next clock.
+                    wait = Some(Step { set: more(&next).into_iter().collect(), clocks: Some(1) });
+                }
+                Next::End => return Ok(self.sequence(steps)),
+            }
         }
+    }
+
+    /// These steps, and what ends one of them and a run of this machine.
+    fn sequence(&self, steps: Vec<Step>) -> Stimulus {
+        let machine = &self.machine;
         let never = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap { self.properties() } else { Vec::new() };
-        let pulses = machine.pulses.iter().map(|port| port.net).collect();
-        let stall = Stall { nets: pulses, clocks: self.hardware.stall_clocks };
-        Stimulus { steps, done: Some(machine.done.net), never, stall: Some(stall) }
+        let (done, stall) = match machine.buffer {
+            Some(ports) => (vec![ports.call, ports.at_end], None),
+            None => {
+                let nets = machine.pulses.iter().map(|port| port.net).collect();
+                (vec![machine.done.net], Some(Stall { nets, clocks: self.hardware.stall_clocks }))
+            }
+        };
+        Stimulus { steps, done, never, stall }
     }
 
     /// The machine with a loader beside it, which loads each block as [`run`](Testbench::run) does: without inputs.
@@ -34,7 +75,15 @@ impl Testbench {
     /// # Errors
     /// None that a machine gives.
     pub fn driven(&self) -> Result<Design, Diagnostics> {
-        Ok(driven(self.design(), &self.stimulus(), &[])?.design)
+        self.driven_by(&self.stimulus())
+    }
+
+    /// The machine with a loader that does what this stimulus says: without inputs.
+    ///
+    /// # Errors
+    /// The stimulus is not one of this machine.
+    pub fn driven_by(&self, stimulus: &Stimulus) -> Result<Design, Diagnostics> {
+        Ok(driven(self.design(), stimulus, &[])?.design)
     }
 
     /// The machine with a loader beside it that loads one block in the first clock, with any words for these registers: the
@@ -69,7 +118,13 @@ impl Testbench {
     /// Clock of the last sample of a run, or `None` where a run goes on beyond `most`.
     #[must_use]
     pub fn clocks_within(&self, most: u64) -> Option<u64> {
-        let outcome = self.run(EngineKind::Compiled, &mut [&mut Until(most)]).ok()?;
+        self.clocks_within_fed(most, &mut self.geometry(0))
+    }
+
+    /// The same of a run with the blocks of a feeder; `None` too where that fails.
+    #[must_use]
+    pub fn clocks_within_fed(&self, most: u64, feeder: &mut dyn Feeder) -> Option<u64> {
+        let outcome = self.run_fed(EngineKind::Compiled, feeder, &mut [&mut Until(most)]).ok()?;
         (outcome.clocks <= most).then_some(outcome.clocks)
     }
 
@@ -79,7 +134,8 @@ impl Testbench {
         let machine = &self.machine;
         let strobes = [machine.done, machine.loaded, machine.stepped];
         let ports = strobes.iter().chain(&machine.pulses).chain(&machine.positions);
-        ports.map(|port| port.net).chain(self.properties()).collect()
+        let buffer = machine.buffer.into_iter().flat_map(|ports| [ports.call, ports.at_end]);
+        ports.map(|port| port.net).chain(buffer).chain(self.properties()).collect()
     }
 
     fn properties(&self) -> Vec<Net> {

@@ -51,7 +51,7 @@ fn values_of_options_complete() {
     assert_eq!(offered(&["stepwave", "run", "dda-line", "--engine", ""]), set("auto compiled word gates"));
     assert_eq!(offered(&["stepwave", "run", "dda-line", "--preset", ""]), set("zero half full"));
     assert_eq!(offered(&["stepwave", "sweep", "dda-line", "--adder", "s"]), set("serial"));
-    assert_eq!(offered(&["stepwave", "program", "--method", ""]), set("ppc dda dpm cim mindev"));
+    assert_eq!(offered(&["stepwave", "program", "--method", ""]), set("ppc dda dpm cim mindev stepgen bresenham"));
     assert_eq!(offered(&["stepwave", "completions", "z"]), set("zsh"));
 }
 

@@ -1,8 +1,12 @@
 //! A design with a loader beside it is the design under its test bench, sample by sample.
 
+use std::collections::BTreeMap;
+
+use stepwave::models::program::FAMILIES;
 use stepwave::models::{Options, find};
-use stepwave::nc::{Arc, Curve, Direction, Line};
-use stepwave::testbench::{Observer, ObserverError, Testbench};
+use stepwave::nc::{Arc, Corner, Curve, Direction, Integers, Line, Reading, Scheme};
+use stepwave::program::{Control, Pace, Preparation, Stream, Survey};
+use stepwave::testbench::{Ending, Observer, ObserverError, Testbench};
 use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_export::{Step, Stimulus, driven};
 use stepwave_netlist::{Design, Net};
@@ -37,17 +41,43 @@ fn a_machine_with_a_loader_runs_as_on_the_bench() {
         let bench = Testbench::new(find(model).unwrap(), curve, &Options::default()).unwrap();
         let mut seen = Samples(Vec::new());
         bench.run(EngineKind::Gates, &mut [&mut seen]).unwrap();
-        let driven = bench.driven().unwrap();
-        assert_eq!(driven.inputs(), []);
-        let netlist = bench.design().netlist();
-        let columns = netlist.names.iter().map(|named| driven.netlist().find(&netlist.path(named)).unwrap().net);
-        let found = samples(&driven, columns.collect(), seen.0.len());
-        for (clock, (found, seen)) in found.iter().zip(&seen.0).enumerate() {
-            for (value, named) in found.iter().zip(&netlist.names) {
-                let wanted = seen[bench.columns().index(named.net)];
-                assert_eq!(*value, wanted, "{model}: {} at clock {clock}", named.name);
-            }
+        as_on_the_bench(model, &bench, &bench.driven().unwrap(), &seen);
+    }
+}
+
+/// Every named net of a driven design is in every sample what was seen of it on the bench.
+fn as_on_the_bench(what: &str, bench: &Testbench, driven: &Design, seen: &Samples) {
+    assert_eq!(driven.inputs(), []);
+    let netlist = bench.design().netlist();
+    let columns = netlist.names.iter().map(|named| driven.netlist().find(&netlist.path(named)).unwrap().net);
+    let found = samples(driven, columns.collect(), seen.0.len());
+    for (clock, (found, seen)) in found.iter().zip(&seen.0).enumerate() {
+        for (value, named) in found.iter().zip(&netlist.names) {
+            let wanted = seen[bench.columns().index(named.net)];
+            assert_eq!(*value, wanted, "{what}: {} at clock {clock}", named.name);
         }
+    }
+}
+
+#[test]
+fn a_machine_of_a_program_with_a_loader_runs_as_on_the_bench() {
+    // Dwells first, between blocks, one after another and last; arcs, and three axes.
+    let text = "G21 G90 G4 P0.01\nG1 X0.3 Y0.09 F300\nX0.09 Y0.36 F500\nG4 P0.002\nG2 X0.24 Y0.21 I0.15 J0\n\
+        G1 X0 Y0 Z0.03\nG0 X0.1\nG4 P0\nG4 P0.001\nG18 G2 X0.3 Z0.03 I0.1 K0\nG4 P0.001\nM30\n"
+        .as_bytes();
+    let reading = Reading { blu: 0.01, integers: Integers::Units, tools: BTreeMap::new(), tolerance: 0.0, home: None };
+    let preparation = Preparation { reading, scheme: Scheme::C, corner: Corner::Straight, chords: 0.5 };
+    let pace = Pace { clock_hz: 20_000.0, blu_mm: 0.01, rapid: None };
+    for family in FAMILIES {
+        let survey = Survey::of(text, family, &preparation).unwrap();
+        let hardware = family.plan(&survey.size, &Options::default()).unwrap();
+        let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware).unwrap());
+        let control = || Control::new(Stream::new(text, family, &preparation).unwrap(), family, &bench, pace);
+        let mut seen = Samples(Vec::new());
+        let outcome = bench.run_fed(EngineKind::Word, &mut control(), &mut [&mut seen]).unwrap();
+        assert_eq!((outcome.ending, outcome.reached), (Ending::Done, vec![30, 0, 3]), "{}", family.name);
+        let driven = bench.driven_by(&bench.stimulus_fed(&mut control()).unwrap()).unwrap();
+        as_on_the_bench(family.name, &bench, &driven, &seen);
     }
 }
 
@@ -65,7 +95,7 @@ fn steps_last_as_long_as_they_are_to_and_done_counts_from_their_second_sample_on
     let step = |value, clocks| Step { set: vec![(a, value)], clocks };
     // Done in the first sample of the second step already, which does not end it; the last step has no end.
     let steps = vec![step(3, Some(2)), step(9, None), step(1, Some(1))];
-    let stimulus = Stimulus { steps, done: Some(done), never: Vec::new(), stall: None };
+    let stimulus = Stimulus { steps, done: vec![done], never: Vec::new(), stall: None };
     let driven = driven(&design, &stimulus, &[b]).unwrap();
     let rows = samples(&driven.design, vec![driven.net(a), driven.net(r)], 7);
     assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [3, 3, 9, 9, 1, 1, 1]);
@@ -78,7 +108,7 @@ fn steps_last_as_long_as_they_are_to_and_done_counts_from_their_second_sample_on
 #[test]
 fn without_steps_all_inputs_are_0() {
     let design = design("m", |m| _ = m.input("a", 4));
-    let stimulus = Stimulus { steps: Vec::new(), done: None, never: Vec::new(), stall: None };
+    let stimulus = Stimulus { steps: Vec::new(), done: Vec::new(), never: Vec::new(), stall: None };
     let driven = driven(&design, &stimulus, &[]).unwrap();
     let a = driven.net(design.inputs()[0]);
     assert_eq!(samples(&driven.design, vec![a], 3), [[0], [0], [0]]);

@@ -10,11 +10,14 @@ fn code_lines(text: &str) -> usize {
 
 #[test]
 fn examples_for_users_of_the_crates_are_at_most_60_lines_of_code() {
-    for (name, text) in [
-        ("own_model", include_str!("../../examples/own_model.rs")),
-        ("own_netlist", include_str!("../../examples/own_netlist.rs")),
-    ] {
-        assert!(code_lines(text) <= 60, "{name}: {} lines", code_lines(text));
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    for name in ["first_wave", "own_model", "own_netlist", "regression_test", "sweep"] {
+        let text = std::fs::read_to_string(folder.join(name).with_extension("rs")).unwrap();
+        assert!(code_lines(&text) <= 60, "{name}: {} lines", code_lines(&text));
+        assert!(
+            include_str!("../../src/guide.rs").contains(&format!("    {name}\n")),
+            "{name} is no page of the guide"
+        );
     }
 }
 
@@ -71,4 +74,37 @@ fn own_netlist_goes_through_all_states_but_0() {
     // A sequence of 255 states has 128 ones, and is back at its first state.
     assert!(text.contains("clock   0: state 00000001, 0 ones\nclock   1: state 00000010, 0 ones\n"), "{text}");
     assert!(text.contains("clock 255: state 00000001, 128 ones\n"), "{text}");
+}
+
+/// What an example prints in a folder of its own.
+fn printed(name: &str, folder: &Path) -> String {
+    let output = Command::new(example(name)).current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn first_wave_writes_the_files_of_the_run_and_shows_its_pulses() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = printed("first_wave", folder.path());
+    // 6/16 a clock from 0: carries at the additions 3, 6, 8, 11, 14 and 16; the load takes clock 1.
+    assert!(text.contains("pulses of y  0000_1001_0010_0101_01\n"), "{text}");
+    assert!(text.contains("16 steps in 17 clocks"), "{text}");
+    for file in ["line.vcd", "line.gtkw", "line.csv", "line.json"] {
+        assert!(folder.path().join(file).exists(), "{file}");
+    }
+}
+
+#[test]
+fn regression_test_finds_the_golden_waves_as_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(printed("regression_test", folder.path()).ends_with(" cases are as recorded, bit by bit\n"));
+}
+
+#[test]
+fn sweep_names_its_slowest_and_its_worst_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = printed("sweep", folder.path());
+    // 31 times 32 lines in three widths and two forms; the longest line has 62 steps of four beats, and the load.
+    assert!(text.starts_with("5952 runs\n") && text.contains(",249,"), "{text}");
 }

@@ -43,6 +43,7 @@ fn every_line_of_up_to_five_bits_in_every_quadrant() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn every_lattice_arc_and_full_circle_of_a_radius_below_30_by_every_weight_rule() {
     every_lattice_arc(900, |from, to, clockwise| {
         check_arc(from, to, [0, 0], clockwise, Beats::One, EngineKind::Word);

@@ -11,12 +11,12 @@ mod dda_helix;
 mod dda_serial;
 mod digests;
 mod dpm;
-mod eight;
-mod modern;
+mod mindev_vector;
 mod ppc;
 mod promises;
 mod sampled;
 mod spacing;
+mod stepgen_bresenham;
 mod widths;
 
 use std::cell::RefCell;

@@ -97,6 +97,7 @@ const ADDERS: [(Option<Radix>, Option<Adder>); 4] = [
 ];
 
 #[test]
+#[ignore = "exhaustive"]
 fn any_two_registers_of_any_width_build_or_are_refused() {
     const WIDTHS: [u64; 6] = [1, 2, 3, 8, 33, 64];
     let (mut built, mut refused) = (0, 0);

@@ -224,6 +224,7 @@ fn beside_its_circle(model: &str, choices: &Options) -> Proof {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn an_arc_that_ends_beside_its_circle_is_not_proved_with_one_counter() {
     let total = Options::default().with(&END_POINT, EndPoint::Total);
     let proof = beside_its_circle("ppc-arc", &total);

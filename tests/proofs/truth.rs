@@ -77,6 +77,7 @@ fn known(model: &'static Model, register: &str) -> bool {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn what_is_proved_of_narrower_registers_is_true_of_every_geometry() {
     let (proved, refuted): (Vec<bool>, Vec<bool>) = cases()
         .into_par_iter()
@@ -100,6 +101,7 @@ fn what_is_proved_of_narrower_registers_is_true_of_every_geometry() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_verdict_on_one_hardware_is_what_every_geometry_of_its_box_shows() {
     let verdicts: Vec<bool> = cases()
         .into_par_iter()

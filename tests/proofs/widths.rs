@@ -63,6 +63,7 @@ fn assert_as_alone(model: &'static Model, extent: &Extent) {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn lanes_and_single_runs_of_every_model_see_the_same_ranges() {
     for model in catalogue().iter() {
         assert_as_alone(model, &Extent::Bits(3));
@@ -155,6 +156,7 @@ fn the_table_names_a_run_that_one_bit_less_does_not_hold() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_large_box_of_bits_has_the_proved_width_and_a_run_that_needs_it() {
     let pre = Options::default().with(&WEIGHTS, Weights::Pre);
     for (model, choices, rows) in [
@@ -221,6 +223,7 @@ fn assert_proof_agrees(model: &'static Model, extent: &str) {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn what_is_proved_of_a_box_is_what_all_of_its_geometries_need() {
     for model in ["ppc-line", "cim-line", "mindev-line", "vector-line"] {
         for extent in ["0..8x0..8", "-3..16x2..5", "9..9x0..8", "-16..-4x-9..30", "0..31/6x3..29/2", "5..40x0..0"] {
@@ -233,6 +236,7 @@ fn what_is_proved_of_a_box_is_what_all_of_its_geometries_need() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn the_extreme_geometries_need_what_all_of_them_need() {
     for model in catalogue().iter() {
         let ks: &[u32] = match model.name {

@@ -55,7 +55,9 @@ pub fn driven(design: &Design, stimulus: &Stimulus, open: &[Net]) -> Result<Driv
         };
         loader.cell(op, cell.width);
     }
-    loader.close(stimulus.done.map(|done| shifted(done, shift)));
+    let done = stimulus.done.iter().map(|&done| shifted(done, shift)).collect::<Vec<_>>();
+    let done = done.into_iter().reduce(|a, b| loader.cell(Op::Or(a, b), Width::ONE));
+    loader.close(done);
     Ok(Driven { design: elaborate(loader.netlist(old, shift))?, shift })
 }
 

@@ -20,7 +20,7 @@ use stepwave_trace::timescale::ClockTime;
 pub struct Step {
     /// Inputs and their new values; the others keep theirs. Before the first step all are 0.
     pub set: Vec<(Net, u64)>,
-    /// Samples until the next step, at least 1; `None`: until `Stimulus::done` is 1, from the second sample on.
+    /// Samples until the next step, at least 1; `None`: until one of `Stimulus::done` is 1, from the second sample on.
     pub clocks: Option<u64>,
 }
 
@@ -39,8 +39,8 @@ pub struct Stall {
 pub struct Stimulus {
     /// One after another; the run ends with the last.
     pub steps: Vec<Step>,
-    /// 1 bit: the end of a step without a number of clocks.
-    pub done: Option<Net>,
+    /// 1 bit each: where one is 1, a step without a number of clocks ends.
+    pub done: Vec<Net>,
     /// 1 bit each: where one is 1 in a step without a number of clocks, the run is over.
     pub never: Vec<Net>,
     /// What else ends such a step, and the run.
@@ -179,7 +179,8 @@ fn instance(bench: &Bench<'_>) -> String {
 /// The inputs, step by step.
 fn process(bench: &Bench<'_>, stimulus: &Stimulus) -> String {
     let Bench { step, age, clocks, over, clk, .. } = bench;
-    let done = stimulus.done.map_or("1'b0", |net| bench.output(net));
+    let done = bench.any(&stimulus.done);
+    let done = if stimulus.done.len() > 1 { format!("({done})") } else { done };
     let counted = format!("{clocks} != 64'd0 ? {age} + 64'd1 == {clocks}");
     let mut text = format!("    wire {over} = {counted} : {age} != 64'd0 && {done};\n\n");
     text += "    initial begin\n";

@@ -19,10 +19,21 @@ pub const PULSE_RATE: Reg = Reg::new("rate", Rule::Bits(RATE_BITS + 1), "pulses 
 /// invariant `no_pulse_is_lost`. Returns the pulse, 1 bit.
 #[must_use]
 pub fn pulse_source<'m>(m: Scope<'m>, block: &Block<'m>, waiting: Signal<'m>) -> Signal<'m> {
+    source(m, block, || block.busy | waiting)
+}
+
+/// The same pulse source for an interpolator that is not always ready for a pulse: it stands still while `ready` (1 bit) is
+/// 0, so that none is lost.
+#[must_use]
+pub fn pulse_source_while<'m>(m: Scope<'m>, block: &Block<'m>, ready: Signal<'m>) -> Signal<'m> {
+    source(m, block, || ready)
+}
+
+fn source<'m>(m: Scope<'m>, block: &Block<'m>, runs: impl FnOnce() -> Signal<'m>) -> Signal<'m> {
     let m = m.scope("pulse_source");
     let rate = block.held(m, PULSE_RATE.name(), RATE_BITS + 1);
     let phase = m.reg("phase", RATE_BITS);
-    let runs = block.busy | waiting;
+    let runs = runs();
     let sum = m.name("sum", phase.q.extend(RATE_BITS + 1).wrapping_add(rate));
     phase.when(runs, sum.slice(0, RATE_BITS)).else_hold();
     let pulse = m.name("tick", runs & sum.msb());

@@ -1,5 +1,6 @@
 //! What every machine that runs whole programs has around its interpolator.
 
+use stepwave_nc::PulseBlock;
 use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
@@ -106,4 +107,9 @@ pub(super) fn program_words<'m>(m: Scope<'m>, block: &Block<'m>, hardware: &Hard
 /// A frame with a buffer that is ready as soon as it is full.
 pub(super) fn plain<'m>(m: Scope<'m>, hardware: &Hardware) -> Frame<'m> {
     Frame::new(m, hardware, Buffer::new(m), m.lit(1, 0))
+}
+
+/// The displacement of each axis in a block, in BLU.
+pub(super) fn delta(block: &PulseBlock) -> [i64; 3] {
+    [0, 1, 2].map(|axis| block.to[axis].saturating_sub(block.from[axis]))
 }

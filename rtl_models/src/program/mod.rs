@@ -6,6 +6,7 @@
 //! Every step is one clock, and the clock behind the last step of a block loads the next, while the phase of the pulse
 //! source goes on: pulses keep their distance across blocks.
 
+mod bresenham;
 mod cim;
 mod dda;
 mod dpm;
@@ -13,6 +14,7 @@ mod frame;
 mod mindev;
 mod planar;
 mod ppc;
+mod stepgen;
 
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::{Module, Scope};
@@ -105,7 +107,8 @@ pub struct Family {
 }
 
 /// Every family with a machine.
-pub const FAMILIES: [&Family; 5] = [&ppc::FAMILY, &dda::FAMILY, &dpm::FAMILY, &cim::FAMILY, &mindev::FAMILY];
+pub const FAMILIES: [&Family; 7] =
+    [&ppc::FAMILY, &dda::FAMILY, &dpm::FAMILY, &cim::FAMILY, &mindev::FAMILY, &stepgen::FAMILY, &bresenham::FAMILY];
 
 impl Family {
     /// Fixes every option for a program of this size.

@@ -20,13 +20,13 @@ fn args(words: &str) -> Box<ProgramArgs> {
 
 /// What is expected of the waves of a program.
 fn expected(args: &ProgramArgs) -> [f64; 2] {
-    let preparation = program::preparation(args).expect("options");
+    let preparation = program::Source::of(args).preparation().expect("options");
     let text = || BufReader::new(Cursor::new(TEXT));
     let survey = Survey::of(text(), args.method, &preparation).expect("a program");
     let hardware = args.method.plan(&survey.size, &args.hardware.choices()).expect("hardware");
     let machine = args.method.machine(&hardware).expect("a machine");
     let bench = Testbench::of_machine(hardware, machine);
-    let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.rapid };
+    let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.text.rapid };
     let estimate = Estimate::of(text(), args.method, &preparation, bench.hardware(), pace).expect("an estimate");
     let time = ClockTime::from_hz(args.clock.clock_hz).expect("a clock");
     Size::of(&bench, &args.trace, time).expect("a size").bytes(&args.trace, None, &estimate)
@@ -38,7 +38,7 @@ fn waves_take_about_what_is_expected_of_every_family_and_option() {
     let at = |name: &str| folder.path().join(name).display().to_string();
     std::fs::write(at("p.ngc"), TEXT).expect("a program");
     let mut wrong = Vec::new();
-    for method in ["ppc", "dda", "dpm", "cim", "mindev"] {
+    for method in ["ppc", "dda", "dpm", "cim", "mindev", "stepgen", "bresenham"] {
         for options in ["", " --trace-steps", " --no-clk", " --trace-from 2000 --trace-to 20000"] {
             let (file, vcd, fst) = (at("p.ngc"), at("w.vcd"), at("w.fst"));
             let own = format!("--method {method} --blu 0.01mm --clock-hz 20000 --vcd {vcd} --fst {fst}{options}");

@@ -24,7 +24,7 @@ use members::largest;
 pub use members::{Narrower, choices_at};
 use runs::number;
 pub use runs::{State, states};
-pub use solver::{Answer, Question, SolverError, ask, question};
+pub use solver::{Answer, Attend, Question, SolverError, ask, question};
 pub use subject::{Subject, strobes};
 
 /// Why nothing can be attempted.

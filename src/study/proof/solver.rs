@@ -162,12 +162,16 @@ pub fn question(
     Ok(Question { script, geometries, clocks })
 }
 
+/// Does a change of the process that runs, which gives that process, so that a signal comes before it or after it.
+pub type Attend<'a> = &'a dyn Fn(&mut dyn FnMut() -> Option<u32>);
+
 /// Asks a solver: its command, whose words stand apart by blanks, gets the script on its input. After the `limit` it is
-/// killed with all that it has started, and gives no answer. `running` is given its process as long as it runs.
+/// killed with all that it has started, and gives no answer. `attend` does what starts and what ends it, each of which
+/// gives the process that runs from then on, so that whoever ends this process can end that one, too.
 ///
 /// # Errors
 /// It cannot be run, or says neither `sat` nor `unsat`, or nothing in time.
-pub fn ask(command: &str, script: &str, limit: Duration, running: &dyn Fn(Option<u32>)) -> Result<Answer, SolverError> {
+pub fn ask(command: &str, script: &str, limit: Duration, attend: Attend<'_>) -> Result<Answer, SolverError> {
     let failed = |error| SolverError::Start { command: command.to_owned(), error };
     let mut words = command.split_whitespace();
     let program = words.next().unwrap_or_default();
@@ -176,8 +180,14 @@ pub fn ask(command: &str, script: &str, limit: Duration, running: &dyn Fn(Option
     // A group of its own, which ends as a whole.
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut asked, 0);
-    let mut child = asked.spawn().map_err(failed)?;
-    running(Some(child.id()));
+    let mut spawned = None;
+    attend(&mut || {
+        let child = spawned.insert(asked.spawn());
+        child.as_ref().ok().map(Child::id)
+    });
+    let Some(mut child) = spawned.transpose().map_err(failed)? else {
+        return Err(failed(std::io::ErrorKind::Interrupted.into()));
+    };
     let (input, output) = (child.stdin.take(), child.stdout.take());
     // The two threads are not waited for: children of the solver may hold its input and output open for ever.
     let owned = script.to_owned();
@@ -193,7 +203,7 @@ pub fn ask(command: &str, script: &str, limit: Duration, running: &dyn Fn(Option
     });
     // The first line is the answer.
     let said = receiver.recv_timeout(limit);
-    let ended = end(&mut child, running);
+    let ended = end(&mut child, attend);
     let Ok(said) = said else {
         return Err(SolverError::Late { command: command.to_owned(), seconds: limit.as_secs() });
     };
@@ -206,7 +216,7 @@ pub fn ask(command: &str, script: &str, limit: Duration, running: &dyn Fn(Option
 }
 
 /// Ends a solver and what it has started.
-fn end(child: &mut Child, running: &dyn Fn(Option<u32>)) -> std::io::Result<std::process::ExitStatus> {
+fn end(child: &mut Child, attend: Attend<'_>) -> std::io::Result<std::process::ExitStatus> {
     #[cfg(unix)]
     if let Ok(number) = i32::try_from(child.id())
         && let Some(group) = rustix::process::Pid::from_raw(number)
@@ -216,6 +226,6 @@ fn end(child: &mut Child, running: &dyn Fn(Option<u32>)) -> std::io::Result<std:
     }
     let killed = child.kill();
     // Once it was waited for, its number may be another's.
-    running(None);
+    attend(&mut || None);
     killed.and_then(|()| child.wait())
 }

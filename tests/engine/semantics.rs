@@ -3,7 +3,7 @@
 use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch};
 use stepwave_netlist::Design;
 
-use super::{design, net};
+use crate::netlist::{design, net};
 
 /// An engine that records some nets of a design and stops at some, with its rows.
 struct Run {

@@ -5,7 +5,7 @@ use stepwave_engine::lanes::{Job, LaneProgram, LaneWatch, Observe};
 use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_netlist::{Design, Net, OnOverflow};
 
-use crate::kernel::{design_with, net, values};
+use crate::netlist::{design_with, net, values};
 
 /// A register that is loaded, then adds or subtracts an operand, or 1 where there is none, for two clocks.
 fn counter(mode: OnOverflow, bits: u32, signed: bool, operand: Option<(u32, bool)>) -> Design {

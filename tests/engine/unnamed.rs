@@ -4,7 +4,7 @@ use stepwave_engine::lanes::{Job, LaneProgram, LaneStop, LaneWatch, Observe};
 use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
 use stepwave_netlist::{Design, Net};
 
-use super::{design, net};
+use crate::netlist::{design, net};
 
 /// A counter of 4 bits, and two nets that nothing depends on: its double, and that it stands at 5.
 fn counter() -> (Design, [Net; 2]) {

@@ -4,7 +4,7 @@
 use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
 use stepwave_netlist::Design;
 
-use super::{design, net};
+use crate::netlist::{design, net};
 
 /// Toggles, a ring of four beats, registers that load in one beat only, and a counter that now and then does something.
 fn machine() -> Design {

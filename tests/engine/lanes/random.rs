@@ -7,8 +7,8 @@ use stepwave_netlist::cells::Op;
 use stepwave_netlist::{Design, Net, elaborate};
 
 use super::assert_each_as_alone;
-use crate::kernel::random::config;
-use crate::kernel::random::recipe::{build, recipe, value};
+use crate::engine::random::config;
+use crate::engine::random::recipe::{build, recipe, value};
 
 /// Numbers that pick nets of whatever netlist there is.
 #[derive(Clone, Debug)]
@@ -109,7 +109,7 @@ fn jobs(design: &Design, plan: &Plan) -> Vec<Job> {
 }
 
 proptest! {
-    #![proptest_config(config(600))]
+    #![proptest_config(config(200))]
 
     #[test]
     fn every_lane_of_a_random_netlist_ends_as_its_job_alone(recipe in recipe(), plan in plan()) {

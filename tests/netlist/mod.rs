@@ -1,27 +1,21 @@
-//! What the kernel promises, tested through its public face and on every engine: the meaning of each operator, strict
-//! arithmetic, clocks and samples, diagnostics, and random netlists.
+//! What netlists promise, tested through their public face: strict arithmetic, simpler netlists of the same behaviour,
+//! diagnostics, and the text form. What the tests of engines use too is here.
 
 #![cfg(test)]
 
 mod diagnostics;
 mod mistakes;
-mod native;
 mod one_mistake;
-mod operators;
-mod passing;
-pub(crate) mod random;
-mod semantics;
 mod simplified;
 mod strict;
 mod text_form;
-mod unnamed;
 
 use stepwave_engine::{Engine, EngineKind, Rows, Watch};
 use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Module, Scope};
 use stepwave_netlist::{Design, Net, OnOverflow, Width, elaborate, text};
 
-fn design(describe: impl FnOnce(Scope<'_>)) -> Design {
+pub(crate) fn design(describe: impl FnOnce(Scope<'_>)) -> Design {
     design_with(OnOverflow::Trap, describe)
 }
 
@@ -31,7 +25,7 @@ pub(crate) fn design_with(on_overflow: OnOverflow, describe: impl FnOnce(Scope<'
     elaborate(module.finish().unwrap()).unwrap()
 }
 
-fn design_of_text(netlist: &str) -> Design {
+pub(crate) fn design_of_text(netlist: &str) -> Design {
     elaborate(text::parse(netlist).unwrap()).unwrap()
 }
 
@@ -39,17 +33,17 @@ pub(crate) fn net(design: &Design, name: &str) -> Net {
     design.netlist().find(name).unwrap_or_else(|| panic!("there is no net '{name}'")).net
 }
 
-fn width(bits: u32) -> Width {
+pub(crate) fn width(bits: u32) -> Width {
     Width::new(u64::from(bits)).unwrap()
 }
 
 /// Bits of a number in two's complement.
-fn encode(number: i128, bits: u32) -> u64 {
+pub(crate) fn encode(number: i128, bits: u32) -> u64 {
     u64::try_from(number.rem_euclid(1 << bits)).unwrap()
 }
 
 /// The number that these bits mean.
-fn decode(value: u64, bits: u32, signed: bool) -> i128 {
+pub(crate) fn decode(value: u64, bits: u32, signed: bool) -> i128 {
     let value = i128::from(value);
     if signed && value >= 1 << (bits - 1) { value - (1 << bits) } else { value }
 }
@@ -60,37 +54,37 @@ pub(crate) fn values(bits: u32) -> std::ops::Range<u64> {
 }
 
 /// An engine whose inputs are set and whose nets are read, sample by sample; nothing is recorded.
-struct Probe {
+pub(crate) struct Probe {
     engine: Box<dyn Engine>,
     rows: Rows,
 }
 
 impl Probe {
-    fn new(design: &Design, kind: EngineKind) -> Probe {
+    pub(crate) fn new(design: &Design, kind: EngineKind) -> Probe {
         Probe { engine: kind.build(design, &Watch::default()), rows: Rows::new(0, 0) }
     }
 
     /// One clock, behind whose edge the inputs have these values.
-    fn clock(&mut self, inputs: &[(Net, u64)]) {
+    pub(crate) fn clock(&mut self, inputs: &[(Net, u64)]) {
         for &(input, value) in inputs {
             self.engine.set_input(input, value);
         }
         self.engine.run(1, &mut self.rows);
     }
 
-    fn value(&self, net: Net) -> u64 {
+    pub(crate) fn value(&self, net: Net) -> u64 {
         self.engine.value(net)
     }
 }
 
 /// Every named net of a design that is an output of interest: its name and net.
-fn outputs(design: &Design) -> Vec<(String, Net)> {
+pub(crate) fn outputs(design: &Design) -> Vec<(String, Net)> {
     let netlist = design.netlist();
     let named = netlist.names.iter().filter(|named| !design.inputs().contains(&named.net));
     named.map(|named| (named.name.clone(), named.net)).collect()
 }
 
 /// Read as two's complement in a wave.
-fn is_signed(design: &Design, name: &str) -> bool {
+pub(crate) fn is_signed(design: &Design, name: &str) -> bool {
     matches!(design.netlist().find(name).unwrap().format, Format::Signed | Format::Analog)
 }

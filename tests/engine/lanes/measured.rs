@@ -10,7 +10,7 @@ use stepwave_netlist::OnOverflow;
 
 use super::geometry::widths;
 
-use crate::kernel::random::config;
+use crate::engine::random::config;
 
 const LIMIT: u64 = 1 << 20;
 /// Far more than what is not endless takes in 7 bits.

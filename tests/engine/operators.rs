@@ -4,7 +4,7 @@
 use stepwave_engine::EngineKind;
 use stepwave_netlist::Net;
 
-use super::{Probe, decode, design, design_of_text, encode, net, outputs, values};
+use crate::netlist::{Probe, decode, design, design_of_text, encode, net, outputs, values};
 
 /// Two operands of equal width in both readings.
 struct Operands {
@@ -282,7 +282,7 @@ fn constants_have_the_value_and_reading_that_they_were_given() {
             let probe = Probe::new(&design, kind);
             let value = |name| probe.value(net(&design, name));
             assert_eq!([value("zero"), value("most")], [0, mask], "{bits} bits on {}", kind.name());
-            let signed = |name| decode(value(name), bits, super::is_signed(&design, name));
+            let signed = |name| decode(value(name), bits, crate::netlist::is_signed(&design, name));
             assert_eq!(signed("least_signed"), i128::from(least), "{bits} bits on {}", kind.name());
             assert_eq!(signed("most_signed"), i128::from(-1 - least), "{bits} bits on {}", kind.name());
         }

@@ -1,0 +1,59 @@
+//! The machine of firmware for printers and mills: step counters, a tick of the pulse source for each step event.
+//!
+//! ```text
+//!   host ──► next block ──► block
+//!   rate ──► phase ──► tick ──► ADD, then TEST ──► for each axis: cnt ──► >= events ? ──► x, y, z
+//!                                                  └──► e ──► end
+//! ```
+//!
+//! It draws lines: the control gives it the chords of an arc. Ticks are two clocks apart at least, as a step event is.
+
+use stepwave_nc::{Crossing, PulseBlock};
+use stepwave_netlist::dsl::Scope;
+
+use super::frame::{delta, program_words};
+use super::{Family, HardwareBlock, Size};
+use crate::bresenham;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::options::{COMPARE, FORM};
+use crate::parts::{Buffer, pulse_source_while};
+use crate::plan::Plan;
+
+pub(super) const FAMILY: Family = Family {
+    name: "bresenham",
+    title: "Step counters of printer and mill firmware",
+    arcs: false,
+    crossing: Crossing::RoundedRadius,
+    direct: false,
+    registers: bresenham::MODEL.registers,
+    options: bresenham::MODEL.options,
+    plan,
+    hardware,
+    words,
+    error_bound: |hardware, block| {
+        let right = bresenham::compares_right(hardware.get(&FORM), hardware.get(&COMPARE));
+        // The longest axis is exact, every other one half a BLU off.
+        let others = delta(block).iter().filter(|way| **way != 0).count().saturating_sub(1);
+        right.then(|| (others as f64).sqrt() / 2.0)
+    },
+};
+
+fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
+    bresenham::registers(plan, size.magnitude, size.positions.iter().copied());
+    plan.stall_clocks = 0;
+    Ok(())
+}
+
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
+    let block = Buffer::new(m).block(m.lit(1, 0));
+    let tick = pulse_source_while(m, &block, block.busy);
+    program_words(m, &block, hardware);
+    bresenham::interpolator(m, hardware, block, Some(tick));
+}
+
+fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+    let delta = delta(block);
+    let steps = crate::sizes::longest_of(&delta) as f64;
+    vec![HardwareBlock { words: bresenham::words(&delta, &[], hardware), steps, length: block.curve.length() }]
+}

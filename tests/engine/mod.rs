@@ -1,0 +1,12 @@
+//! What engines promise: the meaning of each operator on every engine, clocks and samples, random netlists, native code,
+//! and many geometries in lanes.
+
+#![cfg(test)]
+
+mod lanes;
+mod native;
+mod operators;
+mod passing;
+pub(crate) mod random;
+mod semantics;
+mod unnamed;
