@@ -17,7 +17,7 @@
 //! # let simulation = simulation.vcd(folder.path().join("line.vcd"));
 //! let (report, trace) = simulation.run_traced()?; // `.vcd("line.vcd")` writes the wave with GTKWave's files
 //! assert!(report.failures().is_empty());
-//! assert_eq!(trace.row("dy")?, "0000_1001_0010_0101_01");
+//! assert_eq!(trace.row("dy")?, "0000_1001_0100_1001_01");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

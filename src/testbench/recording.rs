@@ -60,8 +60,8 @@ impl Observer for Recording {
 /// # use stepwave::{Simulation, models::find, nc::{Curve, Line}};
 /// let line = Curve::Line(Line::new(vec![0, 0], vec![4, 2])?);
 /// let (_, trace) = Simulation::new(find("dda-line")?, line).run_traced()?;
-/// assert_eq!(trace.row("dx")?, "0010_1010_11"); // the pulses along X, a digit a clock
-/// assert_eq!(trace.i64("position.x")?, [0, 0, 0, 1, 1, 2, 2, 3, 3, 4]);
+/// assert_eq!(trace.row("dx")?, "0001_0101_01"); // the pulses along X, a digit a clock
+/// assert_eq!(trace.i64("x")?, [0, 0, 0, 1, 1, 2, 2, 3, 3, 4]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
