@@ -188,7 +188,7 @@ pub(crate) struct RunArgs {
     stepwave export ppc-line --to 6,4 --width f=3 --smt2 line.smt2 && z3 line.smt2\n  \
     stepwave export ppc-line --to 7,7 --any-geometry=xe,ye --smt2 all.smt2 && cvc5 all.smt2\n\
     `sat` says that a property is violated: a register overflows. Clocks and names are those of `run --vcd`. The files\n\
-    hold a loader beside the machine, which loads each block as `run` does.")]
+    hold a loader next to the machine, which loads each block as `run` does.")]
 #[command(group(clap::ArgGroup::new("exports").required(true).multiple(true)))]
 #[command(group(clap::ArgGroup::new("checked").multiple(true)))]
 pub(crate) struct ExportArgs {
@@ -269,10 +269,10 @@ pub(crate) struct GeometryArgs {
 #[command(next_help_heading = "Wave")]
 #[command(group(clap::ArgGroup::new("wave").multiple(true)))]
 pub(crate) struct TraceArgs {
-    /// Write the wave as VCD, with a GTKWave save file and state-name files beside it
+    /// Write the wave as VCD, with a GTKWave save file and state-name files next to it
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Vcd]), group = "wave")]
     pub(crate) vcd: Option<PathBuf>,
-    /// Write the wave as FST, with the same files beside it; next to a --vcd of the same name they take the whole
+    /// Write the wave as FST, with the same files next to it; next to a --vcd of the same name they take the whole
     /// name of the FST file (w.fst.gtkw beside w.gtkw)
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Fst]), group = "wave")]
     pub(crate) fst: Option<PathBuf>,

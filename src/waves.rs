@@ -171,7 +171,7 @@ impl<'a> Waves<'a> {
         vcd.chain(self.fst.iter_mut().map(|wave| &mut wave.writer as &mut dyn Observer))
     }
 
-    /// Ends the waves and stages the files beside them.
+    /// Ends the waves and stages the files next to them.
     ///
     /// # Errors
     /// A wave is empty, or an output cannot be written.
@@ -183,7 +183,7 @@ impl<'a> Waves<'a> {
     ) -> Result<(), Error> {
         let (vcd, fst) = (self.vcd.take(), self.fst.take());
         let vcd_stem = vcd.as_ref().and_then(|wave| wave.path.file_stem());
-        // The files beside two waves of one stem would bear the same names.
+        // The files next to two waves of one stem would bear the same names.
         let twins = vcd_stem.is_some() && vcd_stem == fst.as_ref().and_then(|wave| wave.path.file_stem());
         if let Some(Wave { path, writer }) = vcd {
             let (written, background) = finish(writer, clocks)?;
@@ -198,7 +198,7 @@ impl<'a> Waves<'a> {
         Ok(())
     }
 
-    /// Stages the files beside a wave.
+    /// Stages the files next to a wave.
     fn beside(
         &self,
         path: &Path,

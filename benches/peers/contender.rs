@@ -5,7 +5,7 @@ use std::process::Command;
 
 use crate::Fallible;
 
-/// What a run writes beside its result.
+/// What a run writes next to its result.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Wave {
     /// Nothing.

@@ -25,7 +25,7 @@
 //!
 //! A path of the right test stays within half a BLU along each axis; the other test may add 1/(2N).
 //!
-//! The line (5, 3), from the golden file `waves/bresenham-5-3.csv`; the wave stands beside it:
+//! The line (5, 3), from the golden file `waves/bresenham-5-3.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/bresenham-5-3.csv")]

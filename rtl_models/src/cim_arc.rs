@@ -17,11 +17,11 @@
 //! arc at the axes, at R rounded to the nearest integer but never behind the point already reached.
 //!
 //! With `mid` the path stays within 1 BLU of the circle. F with `pre` and `post` is within [-R, R] while both axes run, in
-//! n+1 bits; forced steps behind that take it to 1.39 R where a split is beside the circle. Inside a quadrant with both
+//! n+1 bits; forced steps behind that take it to 1.39 R where a split is off the circle. Inside a quadrant with both
 //! ends on the circle n+1 bits always do: `pre` weighs half of what x² + y² gains less the steps of both axes, `post` half
 //! of that and the steps.
 //!
-//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/cim-arc-nr1.csv`; the wave stands beside it:
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/cim-arc-nr1.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/cim-arc-nr1.csv")]

@@ -26,7 +26,7 @@
 //! it meets its axes, and the others at their vertex. With `mid` a parabola counts in halves: F is 2(y² - cx).
 //!
 //! The ellipse 4x² + 9y² = 36 from (0, -2) to (-3, 0) with `post`, from the golden file
-//! `waves/cim-conic-ellipse.csv`; the wave stands beside it:
+//! `waves/cim-conic-ellipse.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/cim-conic-ellipse.csv")]

@@ -17,7 +17,7 @@
 //! abs(d). Normalised, all J_V are shifted left by the same Q until the largest has its top bit set, one bit a clock,
 //! and e is halved as often: 2^(n-Q) iterations.
 //!
-//! The line (8, 6) in 4 bits, from the golden file `waves/dda-line-8-6.csv`; the wave stands beside it:
+//! The line (8, 6) in 4 bits, from the golden file `waves/dda-line-8-6.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/dda-line-8-6.csv")]

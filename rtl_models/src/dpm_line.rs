@@ -33,7 +33,7 @@
 //! pulses by the digits of the percentage; the line's own counter takes a step at their pulses only. A block needs about
 //! 100/PERCENT times as many clocks for the same pulses in the same order.
 //!
-//! The line (5, 3) in 3 bits, from the golden file `waves/dpm-line-5-3.csv`; the wave stands beside it:
+//! The line (5, 3) in 3 bits, from the golden file `waves/dpm-line-5-3.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/dpm-line-5-3.csv")]

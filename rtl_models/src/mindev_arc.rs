@@ -12,9 +12,9 @@
 //! Every step looks at the three neighbours ahead (along x, along y, diagonal) and goes where the deviation
 //! F = x² + y² - R² is least in magnitude; of equals Y goes before X, and the diagonal before both. The radial error
 //! stays below half a BLU, so that an axis is met at R rounded to the nearest integer. A diagonal step counts two
-//! pulses in `e`. F stays within ±R, so n+1 bits; behind an end point beside the circle one more.
+//! pulses in `e`. F stays within ±R, so n+1 bits; behind an end point off the circle one more.
 //!
-//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/mindev-arc-nr1.csv`; the wave stands beside it:
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/mindev-arc-nr1.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/mindev-arc-nr1.csv")]

@@ -10,7 +10,7 @@
 //! axis step would leave less the one that the diagonal would, so the nearer of both is taken: the path stays within
 //! half a BLU, measured along the short axis.
 //!
-//! The line (5, 3), from the golden file `waves/mindev-line-5-3.csv`; the wave stands beside it:
+//! The line (5, 3), from the golden file `waves/mindev-line-5-3.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/mindev-line-5-3.csv")]

@@ -22,7 +22,7 @@
 //! The loader splits an ellipse where it meets its axes, and the others at their vertex.
 //!
 //! The quarter of the ellipse with semi-axes 6 and 4 from (6, 0) to (0, 4), from the golden file
-//! `waves/ppc-conic-ellipse.csv`; the wave stands beside it:
+//! `waves/ppc-conic-ellipse.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/ppc-conic-ellipse.csv")]

@@ -9,11 +9,11 @@
 //!
 //! Magnitude form: F >= 0 steps X and F -= b; F < 0 steps Y and F += a. In the signed form F = dx·y - dy·x, whose sign
 //! means the opposite in quadrants 2 and 4; there the tie F = 0 steps Y. A line of a = 0 steps Y only, one of b = 0
-//! steps X only. The bare form leaves this out, as textbooks do: F = 0 steps X, and a line along y ends beside its end.
+//! steps X only. The bare form leaves this out, as textbooks do: F = 0 steps X, and a line along y ends next to its end.
 //!
 //! Four beats a step: judge, feed, compute, compare; or all at one edge (`--beats 1`). Range of F: [-b, a-1].
 //!
-//! The line (6, 4), from the golden file `waves/ppc-line-6-4.csv`; the wave stands beside it:
+//! The line (6, 4), from the golden file `waves/ppc-line-6-4.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/ppc-line-6-4.csv")]
@@ -50,7 +50,7 @@ pub static MODEL: Model = Model {
         &END_POINT.only(
             Some(EndPoint::Total),
             &[(EndPoint::Total, ""), (EndPoint::PerAxis, ""), (EndPoint::Longest, "")],
-            "a point-by-point step has no iterations beside its pulses",
+            "a point-by-point step has no iterations next to its pulses",
         ),
         &BEATS,
         &ON_OVERFLOW,

@@ -35,7 +35,7 @@
 //! row of the step table.
 //!
 //! A quarter of the circle of 10 BLU with 4 BLU a period, from the golden file `waves/sampled-arc-7m.csv`; the wave
-//! stands beside it:
+//! stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/sampled-arc-7m.csv")]
@@ -98,7 +98,7 @@ fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
     let radius = arc.radius();
     let sampling = Sampling::plan(plan, radius, Some(radius))?;
     let sectors = arc.sectors(Crossing::PathExtreme);
-    // The end may lie 1 BLU beside the circle, and a path by the step factor ends outside it.
+    // The end may lie 1 BLU off the circle, and a path by the step factor ends outside it.
     let more = 2.0 + growth(&sampling, radius);
     let coarse = f64::from(coarse_clocks(&sampling));
     sampling.hardware(plan, [more, coarse], sizes::arc_positions(arc, &sectors))?;

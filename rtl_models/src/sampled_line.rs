@@ -28,7 +28,7 @@
 //! clock that leaves the coarse calculation too few clocks is refused. `stepped` marks the end of each period, which is a
 //! row of the step table.
 //!
-//! The line (12, -5) with 4 BLU a period, from the golden file `waves/sampled-line-12-5.csv`; the wave stands beside it:
+//! The line (12, -5) with 4 BLU a period, from the golden file `waves/sampled-line-12-5.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/sampled-line-12-5.csv")]

@@ -34,7 +34,7 @@
 //! Each axis is less than one step off its ideal place, and with the preset `half` at most half a step: the path stays
 //! within sqrt(2) BLU, or sqrt(1/2).
 //!
-//! The line (3, -2), from the golden file `waves/stepgen-3-2.csv`; the wave stands beside it:
+//! The line (3, -2), from the golden file `waves/stepgen-3-2.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/stepgen-3-2.csv")]

@@ -14,7 +14,7 @@
 //! the two that goes farther inwards, F < 0 the other. The radial error stays below 1 BLU; the axes are met where
 //! point-by-point comparison meets them. A diagonal step counts two pulses in `e`.
 //!
-//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/vector-arc-nr1.csv`; the wave stands beside it:
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/vector-arc-nr1.csv`; the wave stands next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/vector-arc-nr1.csv")]

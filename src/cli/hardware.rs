@@ -62,7 +62,7 @@ fn arg(option: &'static dyn AnyOption) -> Arg {
 
 impl Args for HardwareArgs {
     fn augment_args(command: Command) -> Command {
-        let heading = "Hardware (each model takes some; `stepwave list` tells which)";
+        let heading = "Hardware (each model takes some; `stepwave list` shows which)";
         let command = command.next_help_heading(heading).args(all().iter().map(|option| arg(*option)));
         UnitArgs::augment_args(command)
     }

@@ -19,7 +19,7 @@ pub(crate) struct Tool {
 }
 
 fn parse_tool(text: &str) -> Result<Tool, String> {
-    let way_out = || format!("'{text}' is no tool: give its D number and radius, such as 1=4mm");
+    let way_out = || format!("invalid tool '{text}': give its D number and radius, such as 1=4mm");
     let (number, radius) = text.split_once('=').ok_or_else(way_out)?;
     let number = number.trim().trim_start_matches(['D', 'd']).parse().map_err(|_| way_out())?;
     let radius = parse_length(radius.trim()).filter(|radius| *radius >= 0.0).ok_or_else(way_out)?;
@@ -56,12 +56,13 @@ fn parse_length(text: &str) -> Option<f64> {
 
 fn parse_feed(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|feed: &f64| feed.is_finite() && *feed > 0.0);
-    number.ok_or_else(|| format!("'{text}' is no feed: give mm/min, such as 3000"))
+    number.ok_or_else(|| format!("invalid feed '{text}': give mm/min, such as 3000"))
 }
 
 fn parse_chords(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|off: &f64| (0.01..=1e6).contains(off));
-    number.ok_or_else(|| format!("'{text}' is no distance of a chord from its arc: give BLU from 0.01 on, such as 0.5"))
+    number
+        .ok_or_else(|| format!("invalid distance of a chord from its arc '{text}': give BLU from 0.01 on, such as 0.5"))
 }
 
 /// A family by its name.

@@ -80,7 +80,7 @@ pub(crate) struct Travel(pub(crate) Extent);
 fn parse_travel(text: &str) -> Result<Travel, String> {
     let number = |word: &str| {
         let word = word.trim();
-        word.parse::<i64>().map_err(|_| format!("'{word}' is no travel: give whole BLU, such as 100 or 100,62"))
+        word.parse::<i64>().map_err(|_| format!("invalid travel '{word}': give whole BLU, such as 100 or 100,62"))
     };
     let (x, y) = text.split_once(',').unwrap_or((text, text));
     let travel = symmetric_box([number(x)?, number(y)?]);

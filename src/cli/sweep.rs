@@ -32,7 +32,7 @@ fn range(text: &str) -> Result<Range, String> {
 fn shard(text: &str) -> Result<[u64; 2], String> {
     let parts = text.split_once('/').and_then(|(number, of)| Some([number.parse().ok()?, of.parse().ok()?]));
     let fits = |[number, of]: &[u64; 2]| (1..=*of).contains(number) && *of <= 1 << 20;
-    parts.filter(fits).ok_or_else(|| format!("'{text}' is no part: give I/N, from 1/N to N/N, such as 3/8"))
+    parts.filter(fits).ok_or_else(|| format!("invalid part '{text}': give I/N, from 1/N to N/N, such as 3/8"))
 }
 
 #[derive(Debug, Args)]
@@ -61,7 +61,7 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     reason of a refusal. Rows are the same, byte for byte, whatever the number of threads\n\
     (RAYON_NUM_THREADS).\n\
     \n\
-    A sweep that was killed leaves its rows beside the final file; the same words with --resume go on.\n\
+    A sweep that was killed leaves its rows next to the final file; the same words with --resume go on.\n\
     The exit code is 0 whatever the rows say.")]
 pub(crate) struct SweepArgs {
     #[command(subcommand)]
@@ -166,7 +166,7 @@ fn list(option: &'static dyn AnyOption) -> Arg {
 
 impl Args for VariantArgs {
     fn augment_args(command: Command) -> Command {
-        let heading = "Hardware choices (lists; each model takes some, `stepwave list` tells which)";
+        let heading = "Hardware choices (lists; each model takes some, `stepwave list` shows which)";
         command.next_help_heading(heading).args(all().iter().map(|option| list(*option)))
     }
 
@@ -210,7 +210,7 @@ pub(crate) struct TableArgs {
     /// number shows; may be repeated
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Svg, Format::Png]))]
     pub(crate) plot: Vec<PathBuf>,
-    /// Go on with what a killed sweep of the same words has left beside the final file; with nothing left, begin
+    /// Go on with what a killed sweep of the same words has left next to the final file; with nothing left, begin
     #[arg(long)]
     pub(crate) resume: bool,
     /// Do part I of N only: every N-th geometry, from the I-th on

@@ -17,7 +17,7 @@ pub(crate) fn parse_point(text: &str) -> Result<Point, String> {
             std::num::IntErrorKind::PosOverflow | std::num::IntErrorKind::NegOverflow => {
                 format!("'{word}' is too large for a coordinate: give whole BLU within ±2^52")
             }
-            _ => format!("'{word}' is no coordinate: give whole numbers of BLU, such as 8,6"),
+            _ => format!("invalid coordinate '{word}': give whole numbers of BLU, such as 8,6"),
         })
     };
     text.split(',').map(coordinate).collect::<Result<_, _>>().map(Point)
@@ -36,13 +36,13 @@ pub(crate) fn opens() -> impl TypedValueParser<Value = Opens> {
 
 /// The clock frequency in Hz.
 fn parse_clock(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| format!("'{text}' is no frequency: give Hz, such as 1000000 or 1e6"))
+    text.parse().map_err(|_| format!("invalid frequency '{text}': give Hz, such as 1000000 or 1e6"))
 }
 
 /// One BLU in millimetres.
 pub(super) fn parse_blu(text: &str) -> Result<f64, String> {
     const UNITS: [(&str, f64); 4] = [("mm", 1.0), ("um", 1e-3), ("µm", 1e-3), ("in", 25.4)];
-    let way_out = || format!("'{text}' is no length: give one such as 0.001mm, 1um or 0.0001in");
+    let way_out = || format!("invalid length '{text}': give one such as 0.001mm, 1um or 0.0001in");
     let (unit, scale) = UNITS.iter().find(|(unit, _)| text.ends_with(unit)).ok_or_else(way_out)?;
     let number = text.strip_suffix(unit).unwrap_or_default().trim();
     let length: f64 = number.parse().map_err(|_| way_out())?;
@@ -72,7 +72,7 @@ pub(super) fn parse_narrower(text: &str) -> Result<Narrower, String> {
         let pair = part.split_once('=').map(|(name, bits)| (name.trim().to_owned(), bits.trim().parse()));
         match pair {
             Some((name, Ok(bits @ 1..=63))) => Ok((name, bits)),
-            _ => Err(format!("'{part}' is no register with a number of bits from 1 to 63: give f=1")),
+            _ => Err(format!("invalid register and bits '{part}': give a register and 1 to 63 bits, such as f=1")),
         }
     };
     text.split(',').map(one).collect::<Result<_, _>>().map(Narrower)
@@ -84,13 +84,13 @@ pub(super) fn parse_millionths(text: &str) -> Result<Millionths, String> {
     number
         .and_then(Millionths::nearest)
         .filter(|length| length.0 > 0)
-        .ok_or_else(|| format!("'{text}' is no length: give BLU from 0.000001 to 1e9, such as 80 or 102.4"))
+        .ok_or_else(|| format!("invalid length '{text}': give BLU from 0.000001 to 1e9, such as 80 or 102.4"))
 }
 
 /// A speed in mm/min.
 pub(super) fn parse_feed(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
-    number.ok_or_else(|| format!("'{text}' is no feed: give mm/min, such as 600"))
+    number.ok_or_else(|| format!("invalid feed '{text}': give mm/min, such as 600"))
 }
 
 /// The clock frequency, for commands that write waves.

@@ -85,7 +85,7 @@ fn row(
                 Ending::Done if outcome.reached == curve.to() => "exact",
                 Ending::Done => "missed",
                 Ending::Trapped => "overflow",
-                Ending::Stalled { .. } => "came to a stand",
+                Ending::Stalled { .. } => "stalled",
                 Ending::Endless { .. } => "endless",
                 Ending::Limit => "given up at --max-clocks",
             };

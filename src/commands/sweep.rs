@@ -209,7 +209,7 @@ impl Heat {
         let known: Vec<&str> = numbers.map(|column| column.name.as_str()).collect();
         if !known.contains(&name) {
             let what = match sweep.column(name) {
-                Some(_) => format!("the column '{name}' is no measure"),
+                Some(_) => format!("the column '{name}' is not a measure"),
                 None => format!("there is no column '{name}'{}", did_you_mean(name, known.iter().copied())),
             };
             return Err(StudyError::Column { what, known: known.join(", ") }.into());

@@ -38,7 +38,7 @@ pub struct Totals {
     pub missed: u64,
     /// Moves whose path error, or distance from the compensated contour, was beyond what is promised.
     pub beyond: u64,
-    /// Greatest distance from the curve that the machine was told, in BLU.
+    /// Greatest distance from the commanded curve, in BLU.
     pub error: Greatest,
     /// Greatest distance from the compensated contour, in BLU.
     pub off_compensated: Greatest,
@@ -121,9 +121,7 @@ impl Totals {
         if !report.end_exact() {
             self.missed += 1;
             let ([x, y, z], [a, b, c]) = (report.wanted, report.reached);
-            fail(format!(
-                "line {line}: the end point ({x}, {y}, {z}) was missed: the machine stands at ({a}, {b}, {c})"
-            ));
+            fail(format!("line {line}: the end point ({x}, {y}, {z}) was missed: the machine is at ({a}, {b}, {c})"));
         }
         if let (false, Some(promise)) = (report.within_bound(), report.promise) {
             self.beyond += 1;

@@ -115,7 +115,7 @@ impl Report {
             Ending::Done => {}
         }
         warnings.extend(self.tallies.iter().map(|tally| self.went_on(tally)));
-        let since = self.tallies.first().map(|tally| format!("behind clock {}", tally.first.clock()));
+        let since = self.tallies.first().map(|tally| format!("after clock {}", tally.first.clock()));
         if let Some(since) = if self.cut.is_empty() { since } else { Some("from the load on".to_owned()) } {
             warnings.push(format!(
                 "what registers held {since} is not what the method makes of this curve, so ranges and bits needed say \
@@ -168,9 +168,8 @@ impl Report {
                 } else {
                     ""
                 };
-                failures.push(format!(
-                    "the motion came to a stand at {position}: no pulse for {clocks} clocks, and none will come{way_out}"
-                ));
+                failures
+                    .push(format!("stalled at {position}: no pulse for {clocks} clocks, and none will come{way_out}"));
             }
             Ending::Endless { since } => {
                 let position = summary::point(&self.outcome.reached);
@@ -178,7 +177,7 @@ impl Report {
                 let way_out = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap {
                     ""
                 } else {
-                    "; --on-overflow trap shows where it lost its way"
+                    "; --on-overflow trap shows where it first went wrong"
                 };
                 failures.push(format!(
                     "the motion never ends: at clock {clock}, at {position}, every register is what it was at clock \
@@ -200,7 +199,7 @@ impl Report {
         failures.extend(self.wrong_counters());
         if !self.end_exact() {
             let (wanted, reached) = (summary::point(self.curve.to()), summary::point(&self.outcome.reached));
-            failures.push(format!("the end point {wanted} was missed: the machine stands at {reached}"));
+            failures.push(format!("the end point {wanted} was missed: the machine is at {reached}"));
         }
         if let (false, Some(worst), Some(promise)) = (self.path_within_bound(), &self.worst, self.promise()) {
             let curve = match self.curve {

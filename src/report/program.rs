@@ -314,7 +314,7 @@ impl<'a> ProgramTable<'a> {
         }
         let um = pace.blu_mm * 1000.0;
         for (what, greatest) in [
-            ("off the curve that the machine was told", totals.error),
+            ("deviation from the commanded curve", totals.error),
             ("tool's centre off the compensated contour", totals.off_compensated),
             ("tool's edge off the programmed contour", totals.off_programmed),
         ] {

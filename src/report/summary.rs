@@ -79,7 +79,7 @@ impl Report {
         let _ = match outcome.ending {
             Ending::Done => writeln!(text, "end point {} {exact}", point(self.curve.to())),
             Ending::Trapped => writeln!(text, "stopped by an overflow at {}", point(&outcome.reached)),
-            Ending::Stalled { .. } => writeln!(text, "came to a stand at {}", point(&outcome.reached)),
+            Ending::Stalled { .. } => writeln!(text, "stalled at {}", point(&outcome.reached)),
             Ending::Endless { .. } | Ending::Limit => {
                 writeln!(text, "was still under way at {}", point(&outcome.reached))
             }

@@ -1,4 +1,4 @@
-//! The picture of a program as SVG: the programmed contour, and the pulses of the tool's centre beside it.
+//! The picture of a program as SVG: the programmed contour, and the pulses of the tool's centre next to it.
 //!
 //! The memory is bounded whatever the length of the program: a long path is thinned.
 

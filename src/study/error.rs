@@ -7,10 +7,10 @@ use stepwave_netlist::did_you_mean;
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// A word is no range.
-    #[error("'{0}' is no range: give a whole number, or FIRST..LAST, or FIRST..LAST/STEP")]
+    #[error("invalid range '{0}': give a whole number, or FIRST..LAST, or FIRST..LAST/STEP")]
     NoRange(String),
     /// A range whose last number is less than its first.
-    #[error("the range {first}..{last} begins behind its end: give {last}..{first}")]
+    #[error("the range {first}..{last} begins after its end: give {last}..{first}")]
     Reversed {
         /// Its first number.
         first: i64,
@@ -26,7 +26,7 @@ pub enum StudyError {
         last: i64,
     },
     /// A word among the values of a hardware option.
-    #[error("'{word}' is no value of --{option}{}: give {values}", did_you_mean(.word, .values.split(", ")))]
+    #[error("invalid value '{word}' of --{option}{}: give {values}", did_you_mean(.word, .values.split(", ")))]
     NoValue {
         /// The word.
         word: String,

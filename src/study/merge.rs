@@ -163,7 +163,7 @@ impl Source {
         if let (Some((before, _)), Some((index, _))) = (&self.next, &next)
             && before >= index
         {
-            return Err(self.wrong(format!("row {index} stands behind row {before}")));
+            return Err(self.wrong(format!("row {index} comes after row {before}")));
         }
         Ok(std::mem::replace(&mut self.next, next).map(|(_, row)| row))
     }

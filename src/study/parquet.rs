@@ -199,7 +199,7 @@ impl ParquetPart {
         if rows != count {
             return Err(format!("it has {rows} of its {count} rows"));
         }
-        let columns = head.columns().ok_or("its columns are not told")?;
+        let columns = head.columns().ok_or("its columns are not named")?;
         let names = file.schema_descr().columns().iter().map(|column| column.name());
         if names.ne(columns.iter().map(|column| column.name.as_str())) {
             return Err("its columns are not those of its sweep".to_owned());

@@ -31,7 +31,7 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
         return Err(mistake(1, message));
     }
     if heading.iter().enumerate().any(|(place, name)| heading[..place].contains(name)) {
-        return Err(mistake(1, "a column stands twice".to_owned()));
+        return Err(mistake(1, "a column is given twice".to_owned()));
     }
     let axes = AXES.iter().take_while(|axis| heading.contains(&format!("to_{axis}"))).count();
     if axes < 2 {

@@ -179,7 +179,7 @@ impl Stage {
         for line in lines.filter(|line| !line.as_ref().is_ok_and(|line| line.starts_with('#') || *line == begin)) {
             let line = line.map_err(failed)?;
             let row = read_line(&columns, &line)
-                .ok_or_else(|| failed(io::Error::other(format!("'{line}' is no row of this sweep"))))?;
+                .ok_or_else(|| failed(io::Error::other(format!("invalid row '{line}' of this sweep"))))?;
             each(row)?;
         }
         self.part.seek(SeekFrom::End(0)).map_err(failed)?;

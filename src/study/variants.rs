@@ -199,10 +199,10 @@ mod tests {
     #[test]
     fn what_is_no_value_is_told_with_those_there_are() {
         let wrong: [(&'static dyn AnyOption, &str, &str); 6] = [
-            (&WIDTH, "8,65", "'65' is no value of --width: give bits from 1 to 64"),
-            (&WIDTH, "12..8", "begins behind its end"),
+            (&WIDTH, "8,65", "invalid value '65' of --width: give bits from 1 to 64"),
+            (&WIDTH, "12..8", "begins after its end"),
             (&PRESET, "quarter", "zero, half, full"),
-            (&END_POINT, "total,both", "'both' is no value of --end-point: give total, per-axis"),
+            (&END_POINT, "total,both", "invalid value 'both' of --end-point: give total, per-axis"),
             (&NORMALIZE, "maybe", "no, yes"),
             (&PICK_OFF, "none", "bits from 1 to 62"),
         ];

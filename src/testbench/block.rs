@@ -65,7 +65,7 @@ pub struct BlockReport {
     pub source_hz: f64,
     /// The pulse source was asked for more than it can give.
     pub limited: bool,
-    /// Greatest distance from the curve that the machine was told, in BLU.
+    /// Greatest distance from the commanded curve, in BLU.
     pub error: f64,
     /// What its method promises of it.
     pub promise: Option<Promise>,

@@ -54,7 +54,7 @@ impl Observer for Recording {
     }
 }
 
-/// The samples of a run, by signal. Sample k is what every net has settled to after clock edge k.
+/// The samples of a run, by signal. Sample k is the settled value of every net after clock edge k.
 ///
 /// ```
 /// # use stepwave::{Simulation, models::find, nc::{Curve, Line}};

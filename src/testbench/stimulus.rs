@@ -70,7 +70,7 @@ impl Testbench {
         Stimulus { steps, done, never, stall }
     }
 
-    /// The machine with a loader beside it, which loads each block as [`run`](Testbench::run) does: without inputs.
+    /// The machine with a loader next to it, which loads each block as [`run`](Testbench::run) does: without inputs.
     ///
     /// # Errors
     /// None that a machine gives.
@@ -86,8 +86,8 @@ impl Testbench {
         Ok(driven(self.design(), stimulus, &[])?.design)
     }
 
-    /// The machine with a loader beside it that loads one block in the first clock, with any words for these registers: the
-    /// words are its inputs, and given beside it. All other words are those of the first block.
+    /// The machine with a loader next to it that loads one block in the first clock, with any words for these registers: the
+    /// words are its inputs, and given next to it. All other words are those of the first block.
     ///
     /// # Errors
     /// No load word bears such a name.

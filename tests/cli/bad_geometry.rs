@@ -28,8 +28,8 @@ fn a_coordinate_that_is_no_whole_number_is_named() {
 
 #[test]
 fn an_empty_point_is_refused() {
-    refused_words(&["run", "ppc-line", "--to", ""], &["'' is no coordinate"]);
-    refused_words(&["run", "ppc-line", "--to", "5, x"], &["'x' is no coordinate"]);
+    refused_words(&["run", "ppc-line", "--to", ""], &["invalid coordinate ''"]);
+    refused_words(&["run", "ppc-line", "--to", "5, x"], &["invalid coordinate 'x'"]);
 }
 
 #[test]

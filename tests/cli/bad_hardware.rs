@@ -12,9 +12,9 @@ fn a_width_that_is_no_number_from_1_to_64_is_refused() {
     for width in ["abc", "f=", "=5", "f=x", "3.5", "f=3,", ",", "1e1", "99999999999999999999"] {
         run_refused(&format!("ppc-line --to 6,4 --width {width}"), &["--width"]);
     }
-    run_refused("ppc-line --to 6,4 --width abc", &["'abc' is no width", "such as 8 or f=9"]);
-    refused_words(&["run", "ppc-line", "--to", "6,4", "--width", ""], &["'' is no width"]);
-    refused_words(&["run", "ppc-line", "--to", "6,4", "--width=-3"], &["'-3' is no width"]);
+    run_refused("ppc-line --to 6,4 --width abc", &["invalid width 'abc'", "such as 8 or f=9"]);
+    refused_words(&["run", "ppc-line", "--to", "6,4", "--width", ""], &["invalid width ''"]);
+    refused_words(&["run", "ppc-line", "--to", "6,4", "--width=-3"], &["invalid width '-3'"]);
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn a_choice_that_the_model_does_not_take_is_refused_with_those_it_takes() {
 fn an_end_point_scheme_that_the_model_does_not_have_is_refused_with_the_reason() {
     run_refused(
         "ppc-line --to 6,4 --end-point iterations",
-        &["no iterations beside its pulses", "total, per-axis, longest"],
+        &["no iterations next to its pulses", "total, per-axis, longest"],
     );
     for (model, taken) in [("ppc-arc", "total, per-axis"), ("dda-arc", "per-axis, total")] {
         for scheme in ["longest", "iterations"] {
@@ -234,10 +234,10 @@ fn a_preset_that_is_none_is_refused() {
     for preset in ["nope", "1.5", "0x3", "Half", "jrx=", "jrx=nope", "99999999999999999999", "1,", "1;2"] {
         run_refused(
             &format!("dda-line --to 8,6 --preset {preset}"),
-            &["is no preset: give zero, half, full or a number from 0 on"],
+            &["invalid preset", "give zero, half, full or a number from 0 on"],
         );
     }
-    run_refused("dda-line --to 8,6 --preset=-1", &["'-1' is no preset"]);
+    run_refused("dda-line --to 8,6 --preset=-1", &["invalid preset '-1'"]);
     run_refused("dda-line --to 8,6 --preset -1", &["-1"]);
 }
 
@@ -250,9 +250,9 @@ fn a_clock_that_no_wave_can_carry_is_refused() {
         );
     }
     for clock in ["abc", "1MHz", "1,000", "0x10"] {
-        run_refused(&format!("dda-line --to 8,6 --clock-hz {clock}"), &[clock, "is no frequency: give Hz"]);
+        run_refused(&format!("dda-line --to 8,6 --clock-hz {clock}"), &[clock, "invalid frequency", "give Hz"]);
     }
-    refused_words(&["run", "dda-line", "--to", "8,6", "--clock-hz", ""], &["'' is no frequency"]);
+    refused_words(&["run", "dda-line", "--to", "8,6", "--clock-hz", ""], &["invalid frequency ''"]);
     // The limits themselves are possible.
     for clock in ["1e-3", "1e14"] {
         Folder::new().good(&format!("run dda-line --to 8,6 --clock-hz {clock} --vcd w.vcd"));
@@ -263,9 +263,9 @@ fn a_clock_that_no_wave_can_carry_is_refused() {
 fn a_blu_that_is_no_length_is_refused() {
     for blu in ["0", "0mm", "1", "mm", "-1mm", "nanmm", "infmm", "1e400mm", "1cm", "abc", "1 2mm", "0um", "1e-400in"] {
         let words = ["run", "dda-line", "--to", "8,6", &format!("--blu={blu}"), "--json", "r.json"];
-        refused_words(&words, &[&format!("'{blu}' is no length: give one such as 0.001mm, 1um or 0.0001in")]);
+        refused_words(&words, &[&format!("invalid length '{blu}': give one such as 0.001mm, 1um or 0.0001in")]);
     }
-    refused_words(&["run", "dda-line", "--to", "8,6", "--blu", ""], &["'' is no length"]);
+    refused_words(&["run", "dda-line", "--to", "8,6", "--blu", ""], &["invalid length ''"]);
 }
 
 #[test]
@@ -284,7 +284,7 @@ fn a_subcommand_or_option_that_does_not_exist_is_refused_with_the_way_to_the_hel
 #[test]
 fn a_message_is_one_line_whatever_the_words_that_it_quotes() {
     refused_words(&["run", "a\nb\u{1b}[31m", "--to", "6,4"], &["there is no model 'a b\\x1b[31m'"]);
-    refused_words(&["run", "ppc-line", "--to", "6\n7,4"], &["is no coordinate"]);
+    refused_words(&["run", "ppc-line", "--to", "6\n7,4"], &["invalid coordinate"]);
     refused_words(
         &["run", "ppc-line", "--to", "6,4", "--vcd", "w.vcd", "--trace", "x\ny"],
         &["no signal is called 'x y'"],

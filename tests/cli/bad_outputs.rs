@@ -48,7 +48,7 @@ fn patterns_that_leave_nothing_or_cannot_be_read_are_refused() {
     refused("run dda-line --to 8,6 --vcd w.vcd --trace-exclude *", &["no signal is left to trace", "leave out '*'"]);
     for pattern in ["a[", "[z-a]", "{a"] {
         for option in ["--trace", "--trace-exclude"] {
-            let hint = format!("'{pattern}' is no name pattern");
+            let hint = format!("invalid name pattern '{pattern}'");
             refused(&format!("run dda-line --to 8,6 --vcd w.vcd {option} {pattern}"), &[&hint]);
         }
     }
@@ -92,7 +92,7 @@ fn one_output_that_cannot_be_written_keeps_all_others_from_being_written() {
     }
     let long = "n".repeat(300);
     refused(&format!("run ppc-line --to 6,4 --vcd w.vcd --steps {long}"), &["cannot write", &long]);
-    // The wave's name fits, those of the files beside it do not.
+    // The wave's name fits, those of the files next to it do not.
     let long = "n".repeat(250);
     refused(&format!("run ppc-line --to 6,4 --vcd {long}.vcd --steps s.csv"), &["cannot write", &long]);
 }

@@ -92,9 +92,9 @@ fn an_arc_that_comes_to_a_stand_ends_soon_and_says_so() {
     let ran = Folder::new().run("run dda-arc --from 3,7 --to 0,8 --ccw --width 4 --preset zero");
     assert_eq!(ran.code, 1, "{ran:?}");
     let lines: Vec<&str> = ran.err.lines().collect();
-    assert!(lines[0].starts_with("stepwave: the motion came to a stand at (0, 7): no pulse for "), "{ran:?}");
+    assert!(lines[0].starts_with("stepwave: stalled at (0, 7): no pulse for "), "{ran:?}");
     assert!(lines[0].contains("--preset half"), "{ran:?}");
-    assert_eq!(lines[1], "stepwave: the end point (0, 8) was missed: the machine stands at (0, 7)");
+    assert_eq!(lines[1], "stepwave: the end point (0, 8) was missed: the machine is at (0, 7)");
     // Four bits: after 16 additions without a pulse there will be none. The run may look up only now and then.
     let clocks = ran.out.lines().find_map(|line| line.split_once(" steps in ")?.1.split_once(" clocks"));
     let clocks: u64 = clocks.unwrap().0.parse().unwrap();
@@ -110,10 +110,10 @@ fn the_preset_that_the_message_advises_brings_that_arc_to_its_end() {
 
 #[test]
 fn an_end_point_missed_by_a_total_counter_is_exit_code_1() {
-    // (1, 5) lies beside the circle through (6, 0).
+    // (1, 5) lies off the circle through (6, 0).
     let ran = Folder::new().run("run ppc-arc --from 6,0 --to 1,5 --ccw --end-point total");
     assert_eq!(ran.code, 1);
-    assert_eq!(ran.err, "stepwave: the end point (1, 5) was missed: the machine stands at (2, 6)\n");
+    assert_eq!(ran.err, "stepwave: the end point (1, 5) was missed: the machine is at (2, 6)\n");
     reaches("ppc-arc --from 6,0 --to 1,5 --ccw", "(1, 5)");
 }
 

@@ -23,8 +23,8 @@ fn a_slip_of_the_pen_is_answered_with_the_nearest_name() {
             "there is no signal 'don' in this netlist (did you mean 'done'?)",
         ),
         (&format!("{sweep} --width jxr=3"), "no register 'jxr' here for --width (did you mean 'jrx'?)"),
-        (&format!("{sweep} --preset zro,half"), "'zro' is no value of --preset (did you mean 'zero'?)"),
-        (&format!("{sweep} --adder paralel"), "'paralel' is no value of --adder (did you mean 'parallel'?)"),
+        (&format!("{sweep} --preset zro,half"), "invalid value 'zro' of --preset (did you mean 'zero'?)"),
+        (&format!("{sweep} --adder paralel"), "invalid value 'paralel' of --adder (did you mean 'parallel'?)"),
         (&format!("{sweep} --heat eror_max --plot p.svg"), "there is no column 'eror_max' (did you mean 'error_max'?)"),
     ] {
         let folder = Folder::new();

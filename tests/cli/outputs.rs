@@ -50,7 +50,7 @@ fn json_to_standard_output_is_the_report_and_nothing_else() {
     let expected = json!({ "name": "f", "path": "ppc_line.f", "width": 4, "signed": true, "radix": 2,
                            "least": -4, "greatest": 4, "needed_width": 4, "stuck_bits": "---0", "limits": [] });
     assert_eq!(*f, expected);
-    // After the first step the machine stands at (1, 0): 4/sqrt(52) off the line.
+    // After the first step the machine is at (1, 0): 4/sqrt(52) off the line.
     let error = &report["path_error"];
     assert!((error["greatest"].as_f64().unwrap() - 4.0 / 52f64.sqrt()).abs() < 1e-12, "{error}");
     assert_eq!((&error["step"], &error["position"], &error["within_bound"]), (&json!(1), &json!([1, 0]), &json!(true)));

@@ -102,7 +102,7 @@ fn wrapped_around_the_run_goes_on_and_misses_its_end() {
     assert_eq!(table.column("f"), [0, -4, 2, -2, -4, 2, -2, -4, 2, -2, -4]);
     assert_eq!(table.moves(), "X Y X Y Y X Y Y X Y");
     // (4, 6) is (6·6 - 4·4)/sqrt(52) = 2.774 off the line.
-    let expected = "stepwave: the end point (6, 4) was missed: the machine stands at (4, 6)\n\
+    let expected = "stepwave: the end point (6, 4) was missed: the machine is at (4, 6)\n\
                     stepwave: the path left the line: 2.774 BLU off at (4, 6) after step 10, where the method promises at \
                     most 1 BLU\n";
     assert_eq!(sentences, expected);
@@ -115,7 +115,7 @@ fn saturated_the_run_goes_on_and_misses_its_end() {
     assert_eq!(table.column("f"), [0, -4, 2, -2, 3, -1, 3, -1, 3, -1, 3]);
     assert_eq!(table.moves(), "X Y X Y X Y X Y X Y");
     // (5, 5) is (6·5 - 4·5)/sqrt(52) = 1.387 off the line.
-    let expected = "stepwave: the end point (6, 4) was missed: the machine stands at (5, 5)\n\
+    let expected = "stepwave: the end point (6, 4) was missed: the machine is at (5, 5)\n\
                     stepwave: the path left the line: 1.387 BLU off at (5, 5) after step 10, where the method promises at \
                     most 1 BLU\n";
     assert_eq!(sentences, expected);

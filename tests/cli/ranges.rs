@@ -91,7 +91,7 @@ fn a_good_run_has_no_warning() {
 fn a_register_that_wrapped_while_the_run_went_on_is_a_warning() {
     // F is -2 before the steps 4, 7 and 10, and each makes -2 + 6 of it: see the table in `overflow`.
     let words = "ppc-line --to 6,4 --width f=3 --on-overflow";
-    let little = "what registers held behind clock 15 is not what the method makes of this curve, so ranges and bits needed \
+    let little = "what registers held after clock 15 is not what the method makes of this curve, so ranges and bits needed \
                   say little about it";
     let tally = |count| json!([{ "component": "ppc_line.f", "count": count, "first_clock": 15, "needed_width": 4 }]);
     for engine in engines() {

@@ -46,9 +46,9 @@ fn what_data_sampling_does_not_take_is_refused_with_the_way_out() {
     run_refused(&format!("{arc} --feed 1e30"), &["give --step 282.842 or less"]);
     run_refused(&format!("{arc} --step 5 --fraction 7"), &["--fraction 7", "8 to 30 bits"]);
     run_refused(&format!("{arc} --step 5 --feed 5"), &["--step", "--feed"]);
-    run_refused("sampled-line --to 9,5 --step 0", &["'0' is no length"]);
-    run_refused("sampled-line --to 9,5 --step nan", &["'nan' is no length"]);
-    run_refused("sampled-line --to 9,5 --feed=-1", &["'-1' is no feed"]);
+    run_refused("sampled-line --to 9,5 --step 0", &["invalid length '0'"]);
+    run_refused("sampled-line --to 9,5 --step nan", &["invalid length 'nan'"]);
+    run_refused("sampled-line --to 9,5 --feed=-1", &["invalid feed '-1'"]);
     run_refused("sampled-line --to 9,5 --tolerance 1", &["sampled-line does not take --tolerance"]);
     run_refused("dda-line --to 9,5 --feed 100", &["dda-line does not take --feed; it takes --width"]);
 }

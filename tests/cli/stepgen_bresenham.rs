@@ -63,7 +63,7 @@ fn an_accumulator_too_narrow_for_its_pick_off_is_trapped_at_its_clock() {
 #[test]
 fn an_accumulator_without_its_pick_off_bit_makes_wrong_steps_when_it_goes_on() {
     let words = "stepgen --to 6,4 --width acc=5 --on-overflow";
-    let missed = "stepwave: the end point (6, 4) was missed: the machine stands at";
+    let missed = "stepwave: the end point (6, 4) was missed: the machine is at";
     assert_eq!(fails(&format!("{words} wrap")), format!("{missed} (12, 8)\n"));
     assert_eq!(fails(&format!("{words} saturate")), format!("{missed} (0, 0)\n"));
     // With its pick-off bit 5 it makes every step all the same, and the overflows are told.
@@ -79,7 +79,7 @@ fn choices_of_a_step_generator_that_cannot_be_are_refused() {
     run_refused("stepgen --to 6,4 --preset 32", &["--preset 32", "from 0 to 31", "pick-off bit 5"]);
     run_refused("stepgen --to 6,4 --preset jrx=1", &["no register 'jrx'", "accx, accy"]);
     run_refused("stepgen --to 6,4 --pick-off 63", &["63", "--pick-off"]);
-    run_refused("stepgen --to 6,4 --timing length=0", &["'0' is no time from 1 to 1048576"]);
+    run_refused("stepgen --to 6,4 --timing length=0", &["invalid time '0': it must be from 1 to 1048576"]);
     run_refused("stepgen --to 6,4 --timing wait=3", &["there is no time 'wait'"]);
     run_refused("stepgen --to 6,4 --compare gt", &["stepgen does not take --compare"]);
     run_refused("bresenham --to 6,4 --timing setup=3", &["bresenham does not take --timing"]);
@@ -106,7 +106,7 @@ fn a_line_by_counters_of_firmware() {
 fn a_block_of_one_step_does_not_move_with_the_test_of_early_firmware() {
     for (to, shown) in [("1,0", "(1, 0)"), ("0,-1", "(0, -1)"), ("-1,1", "(-1, 1)"), ("1,1,-1", "(1, 1, -1)")] {
         let stays = if to.split(',').count() == 3 { "(0, 0, 0)" } else { "(0, 0)" };
-        let missed = format!("stepwave: the end point {shown} was missed: the machine stands at {stays}\n");
+        let missed = format!("stepwave: the end point {shown} was missed: the machine is at {stays}\n");
         assert_eq!(fails(&format!("bresenham --to {to} --compare gt")), missed);
         good(&format!("run bresenham --to {to} --compare ge"));
         good(&format!("run bresenham --to {to} --form signed"));
@@ -116,7 +116,7 @@ fn a_block_of_one_step_does_not_move_with_the_test_of_early_firmware() {
 
 #[test]
 fn a_block_of_one_step_moves_the_idle_axis_with_the_other_test_of_the_signed_form() {
-    let missed = "stepwave: the end point (0, 1) was missed: the machine stands at (1, 1)\n";
+    let missed = "stepwave: the end point (0, 1) was missed: the machine is at (1, 1)\n";
     assert_eq!(fails("bresenham --to 0,1 --form signed --compare ge"), missed);
     good("run bresenham --to 0,2 --form signed --compare ge");
 }
@@ -130,7 +130,7 @@ fn a_counter_one_bit_too_narrow_is_trapped_at_the_sum_that_it_cannot_hold() {
     good("run bresenham --to 5,4 --width cnt=4");
     // Going on, 8 becomes 0, and two steps are lost.
     let words = "bresenham --to 5,4 --width cnt=3 --on-overflow wrap";
-    assert!(fails(words).starts_with("stepwave: the end point (5, 4) was missed: the machine stands at (5, 2)\n"));
+    assert!(fails(words).starts_with("stepwave: the end point (5, 4) was missed: the machine is at (5, 2)\n"));
 }
 
 #[test]

@@ -336,7 +336,7 @@ fn bad_words_are_refused_and_leave_no_file() {
     let sweep = "sweep dda-line --to-grid 0..9x0..9";
     for (words, hints) in [
         ("sweep dda-line --csv s.csv", &["the end points are missing", "--to-grid"][..]),
-        ("sweep dda-line --to-grid 9..0x0..9 --csv s.csv", &["9..0 begins behind its end", "0..9"]),
+        ("sweep dda-line --to-grid 9..0x0..9 --csv s.csv", &["9..0 begins after its end", "0..9"]),
         ("sweep dda-line --to-grid 0..9 --csv s.csv", &["1 coordinates"]),
         ("sweep ppc-line --to-grid 0..9x0..9x0..9 --csv s.csv", &["3 coordinates", "lines of 2 axes"]),
         ("sweep dda-line --to-grid 0..9x0..9/0 --csv s.csv", &["a step of 0"]),
@@ -352,11 +352,11 @@ fn bad_words_are_refused_and_leave_no_file() {
         refused(words, hints);
     }
     for (more, hints) in [
-        ("--width 0..4", &["'0..4' is no value of --width", "1 to 64"][..]),
-        ("--end-point both", &["'both' is no value of --end-point", "per-axis"]),
+        ("--width 0..4", &["invalid value '0..4' of --width", "1 to 64"][..]),
+        ("--end-point both", &["invalid value 'both' of --end-point", "per-axis"]),
         ("--beats 1", &["dda-line does not take --beats"]),
         ("--plot p.svg --heat speed", &["there is no column 'speed'", "error_max"]),
-        ("--plot p.svg --heat ending", &["the column 'ending' is no measure"]),
+        ("--plot p.svg --heat ending", &["the column 'ending' is not a measure"]),
         ("--heat clocks", &["--plot"]),
         ("--resume", &["--csv FILE or --parquet FILE"]),
         ("--csv - --resume", &["--csv FILE or --parquet FILE"]),
@@ -366,8 +366,8 @@ fn bad_words_are_refused_and_leave_no_file() {
         ("--plot p.png --plot p.png", &["two outputs would go to p.png"]),
         ("--plot - --plot -", &["two outputs cannot both go to standard output"]),
         ("--parquet -", &["name a file"]),
-        ("--shard 4/3", &["'4/3' is no part"]),
-        ("--shard 0/3", &["'0/3' is no part"]),
+        ("--shard 4/3", &["invalid part '4/3'"]),
+        ("--shard 0/3", &["invalid part '0/3'"]),
         ("--samples 0", &["0"]),
         ("--max-clocks 0", &["0"]),
         ("--file p.csv", &["cannot be used with"]),

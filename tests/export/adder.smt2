@@ -3,7 +3,7 @@
 (set-option :produce-models true)
 (set-logic QF_BV)
 
-; The same in every clock; what is known of them may be asserted behind these lines.
+; The same in every clock; what is known of them may be asserted after these lines.
 (declare-const m.go (_ BitVec 1))
 
 ; Registers before the first edge.

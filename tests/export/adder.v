@@ -1,5 +1,5 @@
 // an adder
-// Registers have their reset values from the beginning, and again behind an edge with rst = 1.
+// Registers have their reset values from the beginning, and again after an edge with rst = 1.
 
 module adder(
     input wire clk,

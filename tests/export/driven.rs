@@ -1,4 +1,4 @@
-//! A design with a loader beside it is the design under its test bench, sample by sample.
+//! A design with a loader next to it is the design under its test bench, sample by sample.
 
 use std::collections::BTreeMap;
 

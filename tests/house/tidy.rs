@@ -66,3 +66,26 @@ fn architecture_stays_short() {
     let text = include_str!("../../ARCHITECTURE.md");
     assert!(text.lines().count() < 150);
 }
+
+/// Phrases that no engineer of this field writes, in what a user reads: messages, help, and documents.
+#[test]
+fn messages_and_documents_are_in_the_words_of_the_field() {
+    let odd = ["came to a stand", "come to a stand", "lost its way", "that the machine was told", "behind edge"];
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let pages =
+        files(&root.join("docs")).into_iter().chain(["README.md", "CONTRIBUTING.md"].map(|page| root.join(page)));
+    let pages = pages.filter(|path| path.extension().is_some_and(|ending| ending == "md"));
+    let pages = pages.map(|path| (path.clone(), fs::read_to_string(path).unwrap()));
+    let sources = sources().into_iter().filter(|(path, _)| !path.starts_with(root.join("tests")));
+    let mut found = Vec::new();
+    for (path, text) in sources.chain(pages) {
+        let is_rust = path.extension().is_some_and(|ending| ending == "rs");
+        for (number, line) in text.lines().enumerate() {
+            let invalid = is_rust && line.contains('"') && line.contains("' is no ");
+            if invalid || odd.iter().any(|phrase| line.contains(phrase)) {
+                found.push(format!("{}:{}: {line}", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}

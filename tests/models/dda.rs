@@ -70,7 +70,7 @@ fn check_arc(n: u32, curve: &Curve, preset: Preset, normalize: bool, engine: Eng
     true
 }
 
-/// Wants the machine to come to a stand where the reference does.
+/// Wants the machine to stall where the reference does.
 pub(super) fn check_hang(model: &str, curve: &Curve, choices: &Options, engine: EngineKind, table: &Table) {
     let what = format!("{model} {curve:?} {choices:?} on {}", engine.name());
     let mut ran = run(model, curve, choices, engine);

@@ -55,7 +55,7 @@ fn conics_of_every_shape_and_orientation() {
             }
         }
     }
-    println!("of {} conics with the presets zero, half, full, 1 came to a stand: {hangs:?}", various().len());
+    println!("of {} conics with the presets zero, half, full, 1 stalled: {hangs:?}", various().len());
 }
 
 #[test]

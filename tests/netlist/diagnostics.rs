@@ -105,7 +105,7 @@ fn example(code: Code) -> (Diagnostics, String) {
             described(|m| {
                 let _ = m.input("2nd", 4);
             }),
-            "'2nd' is no name: letters, digits and _ only, not beginning with a digit",
+            "invalid name '2nd': letters, digits and _ only, not beginning with a digit",
         ),
         Code::Order => (parsed("%0:4 = not %1\n%1:4 = input"), "net %0 reads a net that does not come before it"),
         Code::ForeignSignal => {
@@ -217,7 +217,7 @@ fn every_rule_of_widths_is_checked_on_a_parsed_netlist_too() {
         ("property \"p\" never %9 invariant", Code::Order, "the property's net does not exist"),
         ("property \"p\" never %2 add %0 signed %9 unsigned", Code::Order, "an operand of the property does not exist"),
         ("property \"p\" never %2 sub %9 signed %0 unsigned", Code::Order, "an operand of the property does not exist"),
-        ("name %0 in 0 \"a b\" unsigned", Code::BadName, "'a b' is no name for a wave"),
+        ("name %0 in 0 \"a b\" unsigned", Code::BadName, "invalid name for a wave 'a b'"),
         ("name %0 in 0 \"one\" unsigned", Code::DuplicateName, "'m.one' is given to net %2 and to net %0"),
         (
             "name %9 in 0 \"ghost\" unsigned",
@@ -229,7 +229,7 @@ fn every_rule_of_widths_is_checked_on_a_parsed_netlist_too() {
             Code::Order,
             "the name 'ghost' is given to a net or in a scope that does not exist",
         ),
-        ("scope 1 in 0 \"a b\"", Code::BadName, "'a b' is no name for a wave"),
+        ("scope 1 in 0 \"a b\"", Code::BadName, "invalid name for a wave 'a b'"),
         ("scope 1 in 0 \"one\"", Code::DuplicateName, "'m.one' is given to scope 1 and to net %2"),
         (
             "scope 1 in 0 \"x\"\nscope 2 in 1 \"y\"\nscope 3 in 1 \"y\"",

@@ -103,7 +103,7 @@ fn a_tool_of_radius_0_runs_on_the_contour() {
         let report = report(&folder, text, &format!("--method cim --blu 0.01mm --tool 8={zero}"));
         assert_eq!(report["reached"], serde_json::json!([1000, 2000, 0]));
     }
-    refused(&folder, "program p.ngc --method cim --tool 8=-1mm", &["'8=-1mm' is no tool"]);
+    refused(&folder, "program p.ngc --method cim --tool 8=-1mm", &["invalid tool '8=-1mm'"]);
 }
 
 #[test]

@@ -315,7 +315,7 @@ proptest! {
 
 #[test]
 fn an_integrator_that_would_stand_beside_an_axis_steps_at_once() {
-    // From (3, 14) to (15, 0) clockwise about the origin in 8 bits: with half presets the pair comes to a stand there.
+    // From (3, 14) to (15, 0) clockwise about the origin in 8 bits: with half presets the pair stalls there.
     let arc = Arc::new([3, 14], [15, 0], [0, 0], Direction::Clockwise).unwrap();
     let line = Line::new(vec![0, 0, 0], vec![3, 14, 0]).unwrap();
     let block = |curve: Curve, from, to| {

@@ -24,7 +24,7 @@ pub(crate) fn mindev_line(from: [i64; 2], to: [i64; 2]) -> Table {
 ///
 /// F = a·|y| - b·|x| with a = |dx|, b = |dy|, the cross product of the direction and the present
 /// point; 0 at the start. The octant fixes an axis vector (X when a >= b, else Y) and a diagonal
-/// vector (XY). On the line, `F = 0`, the axis vector is taken; beside it the one that leads back: on
+/// vector (XY). On the line, `F = 0`, the axis vector is taken; next to it the one that leads back: on
 /// the Y side, `F > 0`, the one nearer to X, on the X side the one nearer to Y. The diagonal of a
 /// line with a = b is the line.
 ///

@@ -52,7 +52,7 @@ pub(super) fn cases() -> Vec<Case> {
         case("arc in four beats", "ppc-arc", arc([6, 0], [0, 6], [0, 0], CounterClockwise), &usual),
         case("full circle in one beat", "ppc-arc", arc([-3, 4], [-3, 4], [0, 0], Clockwise), &one_beat),
         case("arc far off", "ppc-arc", arc([-95, 70], [-104, 67], [-100, 70], Clockwise), &usual),
-        case("arc that ends beside its circle", "ppc-arc", arc([6, 0], [-5, -4], [0, 0], CounterClockwise), &usual),
+        case("arc that ends next to its circle", "ppc-arc", arc([6, 0], [-5, -4], [0, 0], CounterClockwise), &usual),
         case("comparison-integral line", "cim-line", line(&[5, 3]), &usual),
         case("comparison-integral arc", "cim-arc", arc([-5, -3], [-3, 5], [0, 0], Clockwise), &one_beat),
         case("comparison-integral ellipse", "cim-conic", quarter([3, 2]), &usual),

@@ -65,7 +65,7 @@ pub(super) struct Gates {
     /// Where each net's bits stand in `state`.
     place: Vec<Range<usize>>,
     state: BitVec<u64>,
-    /// Inputs as the test bench wants them from behind the next edge on; same index as the design's inputs.
+    /// Inputs as the test bench wants them from after the next edge on; same index as the design's inputs.
     pending: Vec<u64>,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! One clock is an edge, at which all registers take their next values at once from the old ones, and the settling of
 //! the combinational nets behind it. *Sample k* is the value of every net settled after edge k; sample 0 is the state
-//! after reset. An input set between two calls changes right behind the next edge, as the output of a register outside
+//! after reset. An input set between two calls changes right after the next edge, as the output of a register outside
 //! would: the edge itself still sees the old value.
 //!
 //! A counter of four bits, in every sample of 18 clocks:
@@ -72,7 +72,7 @@ pub enum Stop {
 
 /// A machine that runs one design.
 pub trait Engine: Send {
-    /// Sets an input from behind the next edge (or from reset) on. Bits above its width are ignored, and so is a net
+    /// Sets an input from after the next edge (or from reset) on. Bits above its width are ignored, and so is a net
     /// that is no input.
     fn set_input(&mut self, input: Net, value: u64);
 

@@ -47,7 +47,7 @@ pub(super) struct WordEngine {
     next: Vec<u64>,
     columns: Vec<u32>,
     stops: Vec<u32>,
-    /// Inputs that change behind the next edge.
+    /// Inputs that change after the next edge.
     pending: Vec<(u32, u64)>,
 }
 
@@ -181,7 +181,7 @@ impl WordEngine {
 /// What the compiled engine needs to hand a run over and take it back.
 #[cfg(feature = "jit")]
 impl WordEngine {
-    /// An input changes behind the next edge.
+    /// An input changes after the next edge.
     pub(super) fn input_pending(&self) -> bool {
         !self.pending.is_empty()
     }

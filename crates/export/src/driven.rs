@@ -1,4 +1,4 @@
-//! A design that drives itself: a loader beside it sets its inputs as a test bench would, so that a model checker sees the
+//! A design that drives itself: a loader next to it sets its inputs as a test bench would, so that a model checker sees the
 //! very run that an engine would show, and nothing is left to assume.
 //!
 //! The loader counts steps of the stimulus and the clocks of a step. Both are registers of a scope of their own, and every

@@ -41,7 +41,7 @@ pub fn smt2_asking(
     );
     text += "(set-option :produce-models true)\n(set-logic QF_BV)\n";
     if !checking.held.is_empty() {
-        text += "\n; The same in every clock; what is known of them may be asserted behind these lines.\n";
+        text += "\n; The same in every clock; what is known of them may be asserted after these lines.\n";
     }
     for &net in checking.held {
         _ = writeln!(text, "(declare-const {} {})", script.name(net), sort(script.netlist.width(net)));

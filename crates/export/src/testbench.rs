@@ -1,4 +1,4 @@
-//! A Verilog test bench: it sets inputs right behind clock edges, as an engine's caller does, and dumps every named net,
+//! A Verilog test bench: it sets inputs right after clock edges, as an engine's caller does, and dumps every named net,
 //! so that its wave is the engine's wave, clock by clock.
 //!
 //! Behind an edge means at the edge, without blocking: the edge itself still sees the old values. Between two edges the
@@ -156,11 +156,13 @@ fn declarations(bench: &Bench<'_>) -> String {
     for (net, name) in &bench.outputs {
         _ = writeln!(text, "    wire {}{name};", vector(bench.netlist.width(*net), false));
     }
-    text +=
-        "    // The inputs of this step are set; so many samples ago; it lasts so many samples, 0: until it is done.\n";
     let Bench { step, age, clocks, quiet, .. } = bench;
+    _ = writeln!(
+        text,
+        "    // Index of the step; samples since its inputs were set; its length in samples, 0: until it is done."
+    );
     _ = writeln!(text, "    integer {step};\n    reg [63:0] {age};\n    reg [63:0] {clocks};");
-    _ = writeln!(text, "    // Samples without a sign of life.\n    reg [63:0] {quiet};\n");
+    _ = writeln!(text, "    // Samples in which nothing has moved.\n    reg [63:0] {quiet};\n");
     text
 }
 

@@ -402,7 +402,7 @@ impl Netlist {
             if w(net) == width {
                 Ok(())
             } else {
-                let message = format!("{} stands where {width} belong", self.describe(net));
+                let message = format!("{} is given where {width} are needed", self.describe(net));
                 Err((Code::WidthMismatch, message))
             }
         };

@@ -131,7 +131,7 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
     for (scope, name, bearer) in scopes.chain(nets) {
         let place = Place::Component(name.to_owned());
         if !is_identifier(name) {
-            report(Code::BadName, place.clone(), format!("'{name}' is no name for a wave"));
+            report(Code::BadName, place.clone(), format!("invalid name for a wave '{name}'"));
         }
         if let Some(first) = used.get(&(scope, name)) {
             let path = scope.map_or_else(String::new, |scope| netlist.scope_path(scope) + ".");

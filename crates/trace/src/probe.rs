@@ -56,7 +56,7 @@ impl Probe {
 #[derive(Debug, thiserror::Error)]
 pub enum PatternError {
     /// The glob has a syntax error.
-    #[error("'{0}' is no name pattern ({1}): use * and ? as in a shell, such as 'jr*' or 'dda_line.x.*'")]
+    #[error("invalid name pattern '{0}' ({1}): use * and ? as in a shell, such as 'jr*' or 'dda_line.x.*'")]
     Syntax(String, String),
     /// A pattern that is to keep signals keeps none.
     #[error("no signal is called '{pattern}'{hint}; `stepwave list` names the registers")]
@@ -211,6 +211,6 @@ mod tests {
     #[test]
     fn a_bad_pattern_is_explained() {
         let error = Selection::new(&["a[".into()], &[], None).unwrap_err().to_string();
-        assert!(error.starts_with("'a[' is no name pattern"), "{error}");
+        assert!(error.starts_with("invalid name pattern 'a['"), "{error}");
     }
 }

@@ -199,7 +199,7 @@ options! {
             },
             parse: |text| PerRegister::parse("width", text, |word| {
                 let bits: u64 = word.parse().map_err(|_| {
-                    format!("'{word}' is no width: give a number of bits from 1 to 64, such as 8 or f=9")
+                    format!("invalid width '{word}': give a number of bits from 1 to 64, such as 8 or f=9")
                 })?;
                 Width::new(bits).map_err(|error| error.to_string())
             }),
@@ -274,7 +274,7 @@ options! {
     /// Weight rule of comparison-integral.
     WEIGHTS: Weights = OptionDef {
         name: "weights",
-        help: "Interval weight that counts for a pulse: of the middle, before it, or behind it",
+        help: "Interval weight that counts for a pulse: of the middle, before it, or after it",
         value_name: "WEIGHTS",
         values: Values::Words(Weights::ALL),
         about: "",
@@ -300,7 +300,7 @@ options! {
                 let number = text.strip_suffix('%').unwrap_or(text).trim();
                 let percent = number.parse().ok().filter(|percent| (1..=99).contains(percent));
                 percent.ok_or_else(|| format!(
-                    "'{text}' is no feed override: give a percentage from 1 to 99, or leave --override out for 100"
+                    "invalid feed override '{text}': give a percentage from 1 to 99, or leave --override out for 100"
                 ))
             }),
             text: |percent| text_or_none(percent.as_ref()),
@@ -317,7 +317,7 @@ options! {
             shape: Shape::Numbers { least: 1, most: 64, none: true, values: "none or bits from 1 to 64" },
             parse: |text| or_none(text, |text| {
                 let bits =
-                    text.parse().map_err(|_| format!("'{text}' is no number of bits: give one from 1 to 64"))?;
+                    text.parse().map_err(|_| format!("invalid number of bits '{text}': give one from 1 to 64"))?;
                 Width::new(bits).map_err(|error| error.to_string())
             }),
             text: |bits| text_or_none(bits.map(Width::get).as_ref()),

@@ -83,7 +83,7 @@ impl Millionths {
         number
             .and_then(Millionths::nearest)
             .filter(|length| length.0 > 0)
-            .ok_or_else(|| format!("'{text}' is no length: give BLU from 0.000001 to 1e9, such as 80 or 102.4"))
+            .ok_or_else(|| format!("invalid length '{text}': give BLU from 0.000001 to 1e9, such as 80 or 102.4"))
     }
 
     /// As a number of units.
@@ -145,11 +145,11 @@ impl StepTiming {
         let way_out = "give clocks such as length=2,space=2,setup=4,hold=4";
         let (mut timing, mut named) = (StepTiming::default(), Vec::new());
         for part in text.split(',') {
-            let (name, clocks) = part.split_once('=').ok_or_else(|| format!("'{part}' is no time: {way_out}"))?;
+            let (name, clocks) = part.split_once('=').ok_or_else(|| format!("invalid time '{part}': {way_out}"))?;
             let least = u64::from(matches!(name.trim(), "length" | "space"));
             let number = clocks.trim().parse().ok().filter(|clocks| (least..=1 << 20).contains(clocks));
-            let number =
-                number.ok_or_else(|| format!("'{clocks}' is no time from {least} to {}: {way_out}", 1 << 20))?;
+            let number = number
+                .ok_or_else(|| format!("invalid time '{clocks}': it must be from {least} to {}: {way_out}", 1 << 20))?;
             if named.contains(&name.trim()) {
                 return Err(format!("'{}' is given two times: leave one of them out", name.trim()));
             }
@@ -193,7 +193,7 @@ impl Preset {
             number => number
                 .parse()
                 .map(Preset::Value)
-                .map_err(|_| format!("'{number}' is no preset: give zero, half, full or a number from 0 on")),
+                .map_err(|_| format!("invalid preset '{number}': give zero, half, full or a number from 0 on")),
         }
     }
 

@@ -10,7 +10,7 @@
 //!
 //! A line loads J_VX = abs(dx), J_VY = abs(dy), which stay; an arc J_VX = abs(y), J_VY = abs(x), which pulses of the
 //! other axis change. An exhausted axis stops adding. Where one axis is exhausted and the integrand of the other is 0, the
-//! other steps at once: beside an axis an arc would come to a stand there otherwise. Normalised, the integrands of the
+//! other steps at once: beside an axis an arc would stall there otherwise. Normalised, the integrands of the
 //! *next* block shift left in the buffer while the present one runs, until one has its highest bit set, on an arc its
 //! second highest.
 

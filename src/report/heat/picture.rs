@@ -45,7 +45,7 @@ const BAR_MOST: i32 = 300;
 /// Half of the mark's width.
 const REACH: i32 = 8;
 
-/// Where a text stands beside its point.
+/// Where a text stands next to its point.
 #[derive(Clone, Copy)]
 enum Side {
     Right,
@@ -242,7 +242,7 @@ impl HeatMap {
         plane.text(LETTERS, [left - 24, top - 14], Side::Right, &format!("{} (BLU)", self.names[1]));
     }
 
-    /// The scale of the colours from this place downwards, its numbers beside it and its name above.
+    /// The scale of the colours from this place downwards, its numbers next to it and its name above.
     fn scale_at(&self, plane: &mut Plane, [x, y]: [i32; 2], height: i32, scale: &[(f64, String)], name: &str) {
         plane.text(LETTERS, [x, y - 14], Side::Right, name);
         for line in 0..height {

@@ -45,7 +45,7 @@ impl FromStr for Extent {
             return if fits { Ok(Extent::Bits(bits)) } else { Err(format!("a box has 1 to {MOST_BITS} bits")) };
         }
         let no_box =
-            || format!("'{text}' is no box: give bits, such as 8, or a range for each axis, such as 0..255x0..255");
+            || format!("invalid box '{text}': give bits, such as 8, or a range for each axis, such as 0..255x0..255");
         let grid: Grid = text.parse().map_err(|error: super::StudyError| error.to_string())?;
         if grid.0.len() < 2 { Err(no_box()) } else { Ok(Extent::Grid(grid)) }
     }
@@ -196,7 +196,7 @@ impl Geometries {
     ) -> Result<Geometries, ProofError> {
         if matches!(extent, Extent::Grid(_)) {
             return Err(ProofError::Box(format!(
-                "the box of {} is told in bits: give --box 4; `stepwave sweep` studies ranges of such curves",
+                "the box of {} is given in bits: give --box 4; `stepwave sweep` studies ranges of such curves",
                 model.name
             )));
         }

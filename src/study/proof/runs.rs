@@ -29,7 +29,7 @@ pub(super) fn number(machine: &Machine, net: Net, bits: u64) -> i128 {
     netlist.name_of(net).map_or(i128::from(bits), |named| named.format.reading().number(width, bits))
 }
 
-/// Rows of one run at most: a block that comes to a stand may go on completing steps.
+/// Rows of one run at most: a block that stalls may go on completing steps.
 const MOST_ROWS: usize = 2000;
 /// Clocks without a row after which none is waited for.
 const LONGEST: u32 = 4096;

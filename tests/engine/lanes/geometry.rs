@@ -234,7 +234,7 @@ fn a_geometry_that_takes_too_long_ends_at_the_limit() {
 #[test]
 #[ignore = "exhaustive"]
 fn arcs_that_come_to_rest_are_given_up_as_alone() {
-    // In 11 bits a motion that has come to a stand is at rest long before 2^11 clocks are over.
+    // In 11 bits a motion that has stall is at rest long before 2^11 clocks are over.
     // With `half`, the default, arcs with both ends on their circle never do.
     let stalls = widths(11, 13).with_all(&PRESET, Preset::Zero);
     let outcomes = assert_each_as_alone("dda-arc", &arcs(8), &stalls);

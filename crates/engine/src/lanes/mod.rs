@@ -5,9 +5,9 @@
 //! [`Engine`](super::Engine) that runs its job alone:
 //!
 //! 1. The inputs of the job's first block are set, and the machine is reset: sample 0.
-//! 2. The inputs [`LaneWatch::rest`] take their values behind the next edge, and the job runs, at least one clock, until
+//! 2. The inputs [`LaneWatch::rest`] take their values after the next edge, and the job runs, at least one clock, until
 //!    `done` or a trap is 1 in a sample, the limit is reached, or nothing happens any more.
-//! 3. If it was `done` and there is a further block, its inputs change behind the next edge, one clock is done whatever
+//! 3. If it was `done` and there is a further block, its inputs change after the next edge, one clock is done whatever
 //!    the sample says, and 2. follows.
 //!
 //! What is loaded only while the inputs do not rest is folded away from the code that runs the lanes (`lower`,

@@ -42,16 +42,16 @@ pub enum ProgramErrorKind {
         character: char,
     },
     /// A comment has no end.
-    #[error("the comment that begins here is not closed in its line: put a ) behind it")]
+    #[error("the comment that begins here is not closed in its line: put a ) after it")]
     OpenComment,
     /// A comment begins in a comment.
     #[error("a ( inside a comment would begin a second one, which RS-274 does not allow: remove it")]
     NestedComment,
     /// A per cent sign is not alone.
-    #[error("% marks the beginning and the end of a program and stands alone in its line: break the line there")]
+    #[error("% marks the beginning and the end of a program and is alone in its line: break the line there")]
     PercentInBlock,
     /// A letter has no number.
-    #[error("{letter} has no number: write one behind it, such as {letter}1")]
+    #[error("{letter} has no number: write one after it, such as {letter}1")]
     NumberExpected {
         /// The letter.
         letter: char,
@@ -174,7 +174,7 @@ pub enum ProgramErrorKind {
     #[error("under G93 every block with G01, G02 or G03 needs its own F word: write one, or go back to G94")]
     NoInverseTime,
     /// A feed is 0 or negative.
-    #[error("{word} is no feed, which must be more than 0: correct the F word")]
+    #[error("invalid feed {word}, which must be more than 0: correct the F word")]
     FeedNotPositive {
         /// The word.
         word: String,
@@ -258,7 +258,7 @@ pub enum ProgramErrorKind {
     ZeroRadius,
     /// An arc by its radius ends where it starts.
     #[error(
-        "the arc ends where it starts, and {word} does not tell where its centre is: give a full circle by I, J or K"
+        "the arc ends where it starts, and {word} does not say where its centre is: give a full circle by I, J or K"
     )]
     CircleByRadius {
         /// The R word.
@@ -304,7 +304,7 @@ pub enum ProgramErrorKind {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ReadingError {
     /// The BLU is not a length.
-    #[error("a BLU of {blu} mm is no length: give more than 0, such as 0.001")]
+    #[error("invalid BLU of {blu} mm: give more than 0, such as 0.001")]
     Blu {
         /// The BLU given, in mm.
         blu: f64,

@@ -37,7 +37,7 @@
 //! | G54 | the first coordinate system, and the only one: its zero is the zero of the program |
 //! | G61, G61.1 | every block is run exactly to its end |
 //! | G64 P Q | allows the path to be left by P, which is a permission and not a duty |
-//! | G80 | there are no canned cycles to be ended; no motion mode is in force after it, unless G00 to G03 stand beside it |
+//! | G80 | there are no canned cycles to be ended; no motion mode is in force after it, unless G00 to G03 stand next to it |
 //! | G98, G99 | where canned cycles retract to |
 //!
 //! Words of a block are executed in the order of RS-274: feed mode, F, S, T, tool change, spindle, coolant, dwell, plane,

@@ -163,7 +163,7 @@ impl Module {
     #[track_caller]
     fn check_name(&self, name: &str) {
         if !is_identifier(name) {
-            let message = format!("'{name}' is no name: letters, digits and _ only, not beginning with a digit");
+            let message = format!("invalid name '{name}': letters, digits and _ only, not beginning with a digit");
             self.report(Code::BadName, message);
         }
     }

@@ -124,7 +124,9 @@ fn count(explored: Result<usize, Stop>, findings: &mut Findings) {
         Err(Stop::TooLarge) => findings.astray = Some("there are too many paths".to_owned()),
         // It is among what was found.
         Err(Stop::Broken) => {}
-        Err(Stop::Impossible | Stop::Undecided) => findings.astray = Some("a path lost its way".to_owned()),
+        Err(Stop::Impossible | Stop::Undecided) => {
+            findings.astray = Some("a path was cut short, which is a mistake of the prover".to_owned())
+        }
     }
 }
 

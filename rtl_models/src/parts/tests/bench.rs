@@ -86,7 +86,7 @@ impl Bench {
         &self.design
     }
 
-    /// Sets an input from behind the next edge on.
+    /// Sets an input from after the next edge on.
     pub(super) fn set(&mut self, name: &str, number: i128) {
         let (net, signed) = self.net(name);
         let width = self.design.netlist().width(net);

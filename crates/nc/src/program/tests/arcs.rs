@@ -104,7 +104,7 @@ fn a_radius_gives_the_short_arc_and_a_negative_one_the_long_arc() {
         ("G3 X1 Y1 R1", [0.0, 100.0], CounterClockwise),
         ("G2 X1 Y1 R-1", [0.0, 100.0], Clockwise),
         ("G3 X1 Y1 R-1", [100.0, 0.0], CounterClockwise),
-        // Chord 6, radius 5, so that the centre is 4 beside it.
+        // Chord 6, radius 5, so that the centre is 4 next to it.
         ("G2 X6 R5", [300.0, -400.0], Clockwise),
         ("G3 Y-6 R5", [400.0, -300.0], CounterClockwise),
         ("G3 Y-6 R-5", [-400.0, -300.0], CounterClockwise),
@@ -201,7 +201,7 @@ fn what_is_no_arc_is_an_error_at_its_word() {
         (
             "F1 G3 X0 R5",
             10,
-            "the arc ends where it starts, and R5 does not tell where its centre is: give a full circle by I, J or K",
+            "the arc ends where it starts, and R5 does not say where its centre is: give a full circle by I, J or K",
         ),
         (
             "F1 G90.1 G3 X2 I1",

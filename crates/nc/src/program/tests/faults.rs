@@ -29,13 +29,13 @@ fn every_message_tells_what_is_wrong_and_the_way_out() {
              not supported: write the blocks out in the order in which they run"
                 .into(),
         ),
-        ("G0 X", 1, 4, "X has no number: write one behind it, such as X1".into()),
-        ("G0 X-", 1, 4, "X has no number: write one behind it, such as X1".into()),
-        ("G0 X. Y1", 1, 4, "X has no number: write one behind it, such as X1".into()),
-        ("G0 X(1)2", 1, 4, "X has no number: write one behind it, such as X1".into()),
+        ("G0 X", 1, 4, "X has no number: write one after it, such as X1".into()),
+        ("G0 X-", 1, 4, "X has no number: write one after it, such as X1".into()),
+        ("G0 X. Y1", 1, 4, "X has no number: write one after it, such as X1".into()),
+        ("G0 X(1)2", 1, 4, "X has no number: write one after it, such as X1".into()),
         ("G0 X1(1)2", 1, 9, "'2' does not belong here, only words such as X12.5 and comments do: remove it".into()),
         ("G0 X1.2.3", 1, 8, "'.' does not belong here, only words such as X12.5 and comments do: remove it".into()),
-        ("G0 Xé", 1, 4, "X has no number: write one behind it, such as X1".into()),
+        ("G0 Xé", 1, 4, "X has no number: write one after it, such as X1".into()),
         ("G0 X1 é", 1, 7, "'é' does not belong here, only words such as X12.5 and comments do: remove it".into()),
         ("G0 X1\0", 1, 6, "'\\0' does not belong here, only words such as X12.5 and comments do: remove it".into()),
         ("G0 / X1", 1, 4, "'/' does not belong here, only words such as X12.5 and comments do: remove it".into()),
@@ -65,19 +65,19 @@ fn every_message_tells_what_is_wrong_and_the_way_out() {
             1,
             "G53 moves in a straight line, and no G00 or G01 is in force: write the one that is meant into the block".into(),
         ),
-        ("G0 (x", 1, 4, "the comment that begins here is not closed in its line: put a ) behind it".into()),
+        ("G0 (x", 1, 4, "the comment that begins here is not closed in its line: put a ) after it".into()),
         ("G0 (x(y))", 1, 6, "a ( inside a comment would begin a second one, which RS-274 does not allow: remove it".into()),
         (
             "% G0",
             1,
             3,
-            "% marks the beginning and the end of a program and stands alone in its line: break the line there".into(),
+            "% marks the beginning and the end of a program and is alone in its line: break the line there".into(),
         ),
         (
             "G0 X1 %",
             1,
             7,
-            "% marks the beginning and the end of a program and stands alone in its line: break the line there".into(),
+            "% marks the beginning and the end of a program and is alone in its line: break the line there".into(),
         ),
         ("G0 X000000000000000000000000000000001", 1, 4, "the number of X has more than 32 digits: round it".into()),
         ("T1.5", 1, 1, "T1.5 is not a whole number: the number of T counts, give it without a fraction".into()),
@@ -123,8 +123,8 @@ fn every_message_tells_what_is_wrong_and_the_way_out() {
             5,
             "the block moves at a feed, but no F word has been given: write one into this block or one in front of it".into(),
         ),
-        ("G1 X1 F0", 1, 7, "F0 is no feed, which must be more than 0: correct the F word".into()),
-        ("F-10", 1, 1, "F-10 is no feed, which must be more than 0: correct the F word".into()),
+        ("G1 X1 F0", 1, 7, "invalid feed F0, which must be more than 0: correct the F word".into()),
+        ("F-10", 1, 1, "invalid feed F-10, which must be more than 0: correct the F word".into()),
         (
             "G0 X10995116277.77",
             1,
@@ -168,7 +168,7 @@ fn every_message_tells_what_is_wrong_and_the_way_out() {
 #[test]
 fn an_error_displays_its_line_and_column_in_front() {
     let error = run_with("G0 X1\n\nG0 Y", reading()).unwrap_err();
-    assert_eq!(error.to_string(), "line 3, column 4: Y has no number: write one behind it, such as Y1");
+    assert_eq!(error.to_string(), "line 3, column 4: Y has no number: write one after it, such as Y1");
 }
 
 #[test]
@@ -253,6 +253,6 @@ fn a_reading_without_lengths_is_refused() {
     );
     assert_eq!(
         new(Reading { blu: -0.5, ..reading() }).unwrap().to_string(),
-        "a BLU of -0.5 mm is no length: give more than 0, such as 0.001"
+        "invalid BLU of -0.5 mm: give more than 0, such as 0.001"
     );
 }
