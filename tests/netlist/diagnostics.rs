@@ -50,7 +50,7 @@ fn example(code: Code) -> (Diagnostics, String) {
     let (diagnostics, message) = match code {
         Code::WidthMismatch => (
             described(|m| m.reg("r", 4).set(m.scope("part").input("a", 3))),
-            "next value of register m.r (4 bits): m.part.a (3 bits) stands where 4 bits belong",
+            "next value of register m.r (4 bits): m.part.a (3 bits) is given where 4 bits are needed",
         ),
         Code::NotOneBit => (
             described(|m| {
@@ -194,22 +194,22 @@ fn a_mismatch_names_both_sides_with_their_paths_and_widths() {
 #[test]
 fn every_rule_of_widths_is_checked_on_a_parsed_netlist_too() {
     for (cell, code, message) in [
-        ("%3:4 = not %1", Code::WidthMismatch, "m.three (3 bits) stands where 4 bits belong"),
+        ("%3:4 = not %1", Code::WidthMismatch, "m.three (3 bits) is given where 4 bits are needed"),
         ("%3:4 = and %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
-        ("%3:3 = xor %0 %0", Code::WidthMismatch, "m.four (4 bits) stands where 3 bits belong"),
+        ("%3:3 = xor %0 %0", Code::WidthMismatch, "m.four (4 bits) is given where 3 bits are needed"),
         ("%3:4 = sub %1 %0", Code::WidthMismatch, "m.three (3 bits) and m.four (4 bits) are not equally wide"),
         ("%3:1 = carry %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
         ("%3:4 = equal %0 %0", Code::NotOneBit, "a yes-or-no result is 1 bit wide, not 4 bits"),
         ("%3:4 = mux %1 %0 %0", Code::NotOneBit, "m.three (3 bits) selects, so it must be 1 bit"),
         ("%3:4 = mux %2 %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
-        ("%3:3 = mux %2 %0 %0", Code::WidthMismatch, "m.four (4 bits) stands where 3 bits belong"),
+        ("%3:3 = mux %2 %0 %0", Code::WidthMismatch, "m.four (4 bits) is given where 3 bits are needed"),
         ("%3:2 = slice %0 3", Code::OutOfRange, "a slice of 2 bits from bit 3 of m.four (4 bits) reaches past its top"),
         ("%3:8 = concat %0 %1", Code::WidthMismatch, "m.four (4 bits) above m.three (3 bits) do not make 8 bits"),
         ("%3:3 = zero-extend %0", Code::OutOfRange, "m.four (4 bits) cannot be extended to 3 bits"),
         ("%3:3 = sign-extend %0", Code::OutOfRange, "m.four (4 bits) cannot be extended to 3 bits"),
         ("%3:4 = const 0x10", Code::ValueTooWide, "the value 16 does not fit in 4 bits"),
         ("%3:4 = register reset 0x10 next %0", Code::ValueTooWide, "the value 16 does not fit in 4 bits"),
-        ("%3:4 = register reset 0x0 next %1", Code::WidthMismatch, "m.three (3 bits) stands where 4 bits belong"),
+        ("%3:4 = register reset 0x0 next %1", Code::WidthMismatch, "m.three (3 bits) is given where 4 bits are needed"),
         ("%3:4 = register reset 0x0", Code::UndrivenRegister, "register %3 never gets a next value"),
         ("%3:4 = register reset 0x0 next %4", Code::Order, "net %3 reads a net that does not come before it"),
         ("%3:4 = not %3", Code::Order, "net %3 reads a net that does not come before it"),
