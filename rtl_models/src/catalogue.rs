@@ -171,7 +171,10 @@ fn check(model: &'static Model) -> Result<(), ModelError> {
         let netlist = machine.design.netlist();
         missing.retain(|name| netlist.find(name).is_none());
         for (name, planned) in &hardware.widths {
-            let bits = netlist.find(name).map_or(0, |named| netlist.width(named.net).get());
+            let Some(named) = netlist.find(name) else {
+                return Err(ModelError::defect(model.name, format!("with '{words}': it has no register {name}")));
+            };
+            let bits = netlist.width(named.net).get();
             if bits != planned.get() {
                 let what = format!("its register {name} has {bits} bits, but {} are planned", planned.get());
                 return Err(ModelError::defect(model.name, what));

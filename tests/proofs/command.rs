@@ -136,7 +136,7 @@ fn bad_input_is_refused_in_a_sentence() {
         ("prove nonsense", "no model"),
         ("prove ppc-conic", "no box of geometries"),
         ("prove ppc-line --narrower g=1", "has no register g"),
-        ("prove ppc-line --narrower f", "give f=1"),
+        ("prove ppc-line --narrower f", "such as f=1"),
         ("prove ppc-line --narrower f=40", "cannot be 40 bits narrower"),
         ("prove ppc-line --preset half", "does not take --preset"),
         ("prove ppc-line --feed 600 --blu 0.01mm", "does not take --feed"),
