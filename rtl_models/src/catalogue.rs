@@ -5,36 +5,10 @@ use std::sync::OnceLock;
 
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
+use crate::MODELS;
 use crate::error::ModelError;
 use crate::model::{CurveKind, Model};
 use crate::options::{ALL, AnyOption, Options, Shape};
-use crate::{
-    bresenham, cim_arc, cim_conic, cim_line, dda_arc, dda_conic, dda_helix, dda_line, dpm_line, mindev_arc,
-    mindev_line, ppc_arc, ppc_conic, ppc_line, sampled_arc, sampled_line, stepgen, vector_arc, vector_line,
-};
-
-/// The models of this crate.
-static OWN: [&Model; 19] = [
-    &ppc_line::MODEL,
-    &ppc_arc::MODEL,
-    &ppc_conic::MODEL,
-    &dda_line::MODEL,
-    &dda_arc::MODEL,
-    &dda_conic::MODEL,
-    &dda_helix::MODEL,
-    &dpm_line::MODEL,
-    &cim_line::MODEL,
-    &cim_arc::MODEL,
-    &cim_conic::MODEL,
-    &mindev_line::MODEL,
-    &mindev_arc::MODEL,
-    &vector_line::MODEL,
-    &vector_arc::MODEL,
-    &sampled_line::MODEL,
-    &sampled_arc::MODEL,
-    &stepgen::MODEL,
-    &bresenham::MODEL,
-];
 
 /// Models, in the order of `stepwave list`.
 #[derive(Clone, Debug)]
@@ -46,7 +20,7 @@ pub struct Catalogue {
 /// The models of this crate.
 #[must_use]
 pub fn catalogue() -> Catalogue {
-    Catalogue { models: OWN.to_vec(), options: ALL.to_vec() }
+    Catalogue { models: MODELS.to_vec(), options: ALL.to_vec() }
 }
 
 #[cfg(test)]
@@ -109,7 +83,7 @@ impl Catalogue {
     /// # Errors
     /// A model does not work, or models are installed or were looked up before.
     pub fn install(self) -> Result<(), ModelError> {
-        for (index, model) in self.models.iter().enumerate().skip(OWN.len()) {
+        for (index, model) in self.models.iter().enumerate().skip(MODELS.len()) {
             if self.models[..index].iter().any(|other| other.name == model.name) {
                 return Err(ModelError::defect(model.name, "another model has this name".to_owned()));
             }

@@ -1,7 +1,7 @@
 //! The interpolators of numerical control as netlists: [`parts`] that more than one method uses, and one file per model
 //! that holds what is particular to its method.
 //!
-//! Models use the public interface of the netlist crate only. [`catalogue`] is the one list of models.
+//! Models use the public interface of the netlist crate only. [`catalogue`] holds them all.
 //!
 //! ```
 //! use stepwave_models::parts::JR;
@@ -40,6 +40,29 @@ pub mod sampled_line;
 pub mod stepgen;
 pub mod vector_arc;
 pub mod vector_line;
+
+/// The models of this crate, in the order of `stepwave list`: with its module above, a model is known everywhere.
+static MODELS: &[&Model] = &[
+    &ppc_line::MODEL,
+    &ppc_arc::MODEL,
+    &ppc_conic::MODEL,
+    &dda_line::MODEL,
+    &dda_arc::MODEL,
+    &dda_conic::MODEL,
+    &dda_helix::MODEL,
+    &dpm_line::MODEL,
+    &cim_line::MODEL,
+    &cim_arc::MODEL,
+    &cim_conic::MODEL,
+    &mindev_line::MODEL,
+    &mindev_arc::MODEL,
+    &vector_line::MODEL,
+    &vector_arc::MODEL,
+    &sampled_line::MODEL,
+    &sampled_arc::MODEL,
+    &stepgen::MODEL,
+    &bresenham::MODEL,
+];
 
 mod catalogue;
 mod claims;
