@@ -184,6 +184,7 @@ fn arcs_stay_within_the_bounds_of_their_methods() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn comparison_integral_stays_within_one_blu_with_the_weights_of_the_middle_only() {
     let with = |weights| one_beat("cim-arc").with(&WEIGHTS, weights);
     assert!(arcs("cim-arc", &with(Weights::Mid)) <= 1.0);
@@ -192,6 +193,7 @@ fn comparison_integral_stays_within_one_blu_with_the_weights_of_the_middle_only(
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn arcs_of_the_dda_may_leave_the_circle_by_more_than_one_blu() {
     let with = |preset| Options::default().with_all(&PRESET, preset);
     assert!(arcs("dda-arc", &with(Preset::Half)) > 1.0);
@@ -222,6 +224,7 @@ fn ellipses_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_noth
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn helices_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_nothing() {
     for preset in [Preset::Zero, Preset::Half, Preset::Full] {
         let worst = Worst::default();

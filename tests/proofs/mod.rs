@@ -78,6 +78,7 @@ fn arcs_inside_a_quadrant_are_proved_for_every_width_in_both_directions() {
 
 /// What the weights of the pulses sum up to is half of what a polynomial gives.
 #[test]
+#[ignore = "exhaustive"]
 fn weights_on_one_side_of_a_pulse_need_one_bit_less_than_those_of_its_middle() {
     for weights in [Weights::Pre, Weights::Post] {
         let choices = Options::default().with(&WEIGHTS, weights);
@@ -106,6 +107,7 @@ fn integrators_are_proved_for_every_width_and_every_preset() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn lines_of_integrators_end_exactly_by_counters_of_pulses_too() {
     let of = |end_point, preset| Options::default().with(&END_POINT, end_point).with_all(&PRESET, preset);
     for end_point in [EndPoint::PerAxis, EndPoint::Total, EndPoint::Longest] {

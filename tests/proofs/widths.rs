@@ -22,6 +22,7 @@ fn needed(found: &Widths, k: u32) -> BTreeMap<&str, i64> {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn the_least_widths_of_the_methods_are_those_of_the_literature() {
     let pre = Options::default().with(&WEIGHTS, Weights::Pre);
     for (model, choices, rows) in [
@@ -186,6 +187,7 @@ fn a_large_box_of_bits_has_the_proved_width_and_a_run_that_needs_it() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_box_of_ranges_may_need_less_than_its_bits() {
     let of = |model: &str, extent: &str| {
         let found = widths(find(model).unwrap(), &Options::default(), &extent.parse().unwrap()).unwrap();
@@ -276,6 +278,7 @@ fn conics_of_the_largest_box_lie_on_their_curves() {
 }
 
 #[test]
+#[ignore = "exhaustive"]
 fn a_width_that_is_given_is_judged() {
     let folder = Folder::new();
     // F of 6-bit lines needs 7 bits, of 6-bit arcs 8.
