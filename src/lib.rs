@@ -44,13 +44,17 @@ mod error;
 #[cfg(feature = "cli")]
 pub mod golden;
 pub mod guide;
+#[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]
 mod output;
 pub mod program;
 pub mod report;
+#[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]
 mod simulation;
+#[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]
 mod stop;
 pub mod study;
 pub mod testbench;
+#[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]
 mod waves;
 
 #[cfg(feature = "cli")]

@@ -200,7 +200,9 @@ impl WordEngine {
         self.clock += 1;
         self.record(rows);
     }
+}
 
+impl WordEngine {
     /// The stop net that is 1 in the present sample.
     pub(super) fn stopped(&self) -> Option<Stop> {
         self.stops.iter().position(|&net| self.values[net as usize] == 1).map(Stop::Net)
