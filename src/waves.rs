@@ -275,7 +275,7 @@ pub(crate) fn probes(bench: &Testbench, args: &WaveOptions) -> Result<Vec<Probe>
 fn flag_column(bench: &Testbench, name: &str) -> Result<usize, Error> {
     let refuse = |why: String| Error::Invalid(format!("--trace-on: {why}"));
     let netlist = bench.design().netlist();
-    let net = net_named(netlist, name).map_err(refuse)?;
+    let net = net_named(netlist, name).map_err(refuse)?.net;
     let width = netlist.width(net);
     if width.get() != 1 {
         return Err(refuse(format!("{name} has {width}, but a trigger is 1 bit wide")));

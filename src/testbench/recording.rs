@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::engine::Rows;
-use crate::netlist::bits::number;
+use crate::netlist::cells::NamedNet;
 use crate::netlist::{Net, Netlist};
 
 use super::{Observer, ObserverError, Testbench, net_named};
@@ -89,22 +89,21 @@ impl Trace {
     /// # Errors
     /// No signal or several have this name.
     pub fn bits(&self, signal: &str) -> Result<&[u64], Error> {
-        Ok(&self.values[self.column(signal)?])
+        Ok(self.find(signal)?.1)
     }
 
-    /// Every sample of a signal as it is read: two's complement where the signal is declared so.
+    /// Every sample of a signal as the number that it is declared to hold: unsigned, in two's complement, or in decimal digits.
     ///
     /// # Errors
-    /// No signal or several have this name, or it is unsigned and does not fit.
+    /// No signal or several have this name, or a value exceeds 64 bits.
     pub fn i64(&self, signal: &str) -> Result<Vec<i64>, Error> {
-        let column = self.column(signal)?;
-        let net = self.nets[column];
-        let (width, signed) = (self.netlist.width(net), self.signed(net));
+        let (named, column) = self.find(signal)?;
+        let (width, reading) = (self.netlist.width(named.net), named.format.reading());
         let read = |&value: &u64| {
-            let number = number(width, value, signed);
+            let number = reading.number(width, value);
             i64::try_from(number).map_err(|_| Error::Invalid(format!("{signal} is {number}, which exceeds 64 bits")))
         };
-        self.values[column].iter().map(read).collect()
+        column.iter().map(read).collect()
     }
 
     /// The samples of a signal as digits in groups of four: 0, 1, and - for -1.
@@ -131,13 +130,10 @@ impl Trace {
         Ok(row)
     }
 
-    fn signed(&self, net: Net) -> bool {
-        self.netlist.names.iter().any(|named| named.net == net && named.format.is_signed())
-    }
-
-    fn column(&self, signal: &str) -> Result<usize, Error> {
-        let net = net_named(&self.netlist, signal).map_err(Error::Invalid)?;
+    fn find(&self, signal: &str) -> Result<(&NamedNet, &[u64]), Error> {
+        let named = net_named(&self.netlist, signal).map_err(Error::Invalid)?;
         let unseen = || Error::Invalid(format!("{signal} is not recorded"));
-        self.nets.iter().position(|seen| *seen == net).ok_or_else(unseen)
+        let column = self.nets.iter().position(|seen| *seen == named.net).ok_or_else(unseen)?;
+        Ok((named, &self.values[column]))
     }
 }

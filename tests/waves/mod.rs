@@ -7,6 +7,7 @@ mod own_designs;
 mod pane;
 mod save_file;
 mod second_reader;
+mod trace;
 mod window;
 mod written;
 

@@ -1,7 +1,7 @@
 //! Verilog-2001, readable and synthesizable, of any design.
 //!
 //! One module. A scope of the design is a named generate block, so that names and their paths are those of a wave. An
-//! input or output that stands in an inner scope has a port of the top module next to it. A register has its reset value
+//! input or output of an inner scope has a port of the top module next to it. A register has its reset value
 //! from the beginning (`initial`), and takes it at an edge where `rst` is 1. All logic between registers is continuous
 //! assignments; every scope with registers has one `always` block.
 
