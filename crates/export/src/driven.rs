@@ -11,7 +11,7 @@ use super::verilog::names::claim;
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Cell, Format, NamedNet, Net, Netlist, Op, ScopeData, ScopeId};
 use stepwave_netlist::diag::Diagnostics;
-use stepwave_netlist::passes::{move_property, moved};
+use stepwave_netlist::passes::move_property;
 use stepwave_netlist::{Design, elaborate};
 
 /// A design with a loader.
@@ -51,7 +51,7 @@ pub fn driven(design: &Design, stimulus: &Stimulus, open: &[Net]) -> Result<Driv
             // As wide, so that it is the value itself.
             (Some(&value), _) => Op::ZeroExtend(value),
             (None, Op::Register { next, reset }) => Op::Register { next: next.map(go), reset },
-            (None, op) => moved(op, go),
+            (None, op) => op.map_inputs(go),
         };
         loader.cell(op, cell.width);
     }

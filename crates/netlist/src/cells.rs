@@ -93,32 +93,38 @@ pub enum Op {
 }
 
 impl Op {
-    /// Calls `visit` with every combinational operand; the next value of a register is not one.
-    pub fn visit_inputs(&self, mut visit: impl FnMut(Net)) {
-        match *self {
-            Op::Input | Op::Const(_) | Op::Register { .. } => {}
-            Op::Not(a) | Op::ZeroExtend(a) | Op::SignExtend(a) | Op::Slice { of: a, .. } => visit(a),
-            Op::And(a, b)
-            | Op::Or(a, b)
-            | Op::Xor(a, b)
-            | Op::Add(a, b)
-            | Op::Sub(a, b)
-            | Op::Carry(a, b)
-            | Op::Borrow(a, b)
-            | Op::AddOverflow(a, b)
-            | Op::SubOverflow(a, b)
-            | Op::Equal(a, b)
-            | Op::LessSigned(a, b)
-            | Op::Concat { high: a, low: b } => {
-                visit(a);
-                visit(b);
-            }
-            Op::Mux { select, high, low } => {
-                visit(select);
-                visit(high);
-                visit(low);
-            }
+    /// The same operator on other nets: `go` is called with every combinational operand, in order. The next value of a
+    /// register is not one. This is the only list of operands.
+    #[must_use]
+    pub fn map_inputs(self, mut go: impl FnMut(Net) -> Net) -> Op {
+        match self {
+            Op::Input | Op::Const(_) | Op::Register { .. } => self,
+            Op::Not(a) => Op::Not(go(a)),
+            Op::And(a, b) => Op::And(go(a), go(b)),
+            Op::Or(a, b) => Op::Or(go(a), go(b)),
+            Op::Xor(a, b) => Op::Xor(go(a), go(b)),
+            Op::Mux { select, high, low } => Op::Mux { select: go(select), high: go(high), low: go(low) },
+            Op::Add(a, b) => Op::Add(go(a), go(b)),
+            Op::Sub(a, b) => Op::Sub(go(a), go(b)),
+            Op::Carry(a, b) => Op::Carry(go(a), go(b)),
+            Op::Borrow(a, b) => Op::Borrow(go(a), go(b)),
+            Op::AddOverflow(a, b) => Op::AddOverflow(go(a), go(b)),
+            Op::SubOverflow(a, b) => Op::SubOverflow(go(a), go(b)),
+            Op::Equal(a, b) => Op::Equal(go(a), go(b)),
+            Op::LessSigned(a, b) => Op::LessSigned(go(a), go(b)),
+            Op::Slice { of, low } => Op::Slice { of: go(of), low },
+            Op::Concat { high, low } => Op::Concat { high: go(high), low: go(low) },
+            Op::ZeroExtend(a) => Op::ZeroExtend(go(a)),
+            Op::SignExtend(a) => Op::SignExtend(go(a)),
         }
+    }
+
+    /// Calls `visit` with every combinational operand, in order.
+    pub fn visit_inputs(&self, mut visit: impl FnMut(Net)) {
+        let _ = self.map_inputs(|net| {
+            visit(net);
+            net
+        });
     }
 }
 

@@ -64,18 +64,11 @@ impl fmt::Display for Op {
             Op::Concat { high, low } => write!(f, "concat {high} {low}"),
             Op::ZeroExtend(a) => write!(f, "zero-extend {a}"),
             Op::SignExtend(a) => write!(f, "sign-extend {a}"),
-            Op::And(a, b)
-            | Op::Or(a, b)
-            | Op::Xor(a, b)
-            | Op::Add(a, b)
-            | Op::Sub(a, b)
-            | Op::Carry(a, b)
-            | Op::Borrow(a, b)
-            | Op::AddOverflow(a, b)
-            | Op::SubOverflow(a, b)
-            | Op::Equal(a, b)
-            | Op::LessSigned(a, b) => {
-                let word = BINARY.iter().find(|(_, make)| make(a, b) == *self).map_or("?", |(word, _)| word);
+            binary => {
+                let mut operands = Vec::with_capacity(2);
+                binary.visit_inputs(|net| operands.push(net));
+                let [a, b] = operands[..] else { return Err(fmt::Error) };
+                let (word, _) = BINARY.iter().find(|(_, make)| make(a, b) == binary).ok_or(fmt::Error)?;
                 write!(f, "{word} {a} {b}")
             }
         }

@@ -49,7 +49,7 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
         let new = match (fixed.get(&net), cell.op) {
             (Some(&value), _) => builder.constant(value, cell.width),
             (None, Op::Input | Op::Register { .. }) => builder.leaf(*cell),
-            (None, op) => builder.make(moved(op, |old| map[old.index()]), cell.width),
+            (None, op) => builder.make(op.map_inputs(|old| map[old.index()]), cell.width),
         };
         map.push(new);
     }
@@ -86,30 +86,6 @@ pub fn move_property(property: &mut Property, go: impl Fn(Net) -> Net) {
         for operand in [left, right] {
             operand.net = go(operand.net);
         }
-    }
-}
-
-/// The operator on other nets.
-pub fn moved(op: Op, go: impl Fn(Net) -> Net) -> Op {
-    match op {
-        Op::Input | Op::Const(_) | Op::Register { .. } => op,
-        Op::Not(a) => Op::Not(go(a)),
-        Op::And(a, b) => Op::And(go(a), go(b)),
-        Op::Or(a, b) => Op::Or(go(a), go(b)),
-        Op::Xor(a, b) => Op::Xor(go(a), go(b)),
-        Op::Mux { select, high, low } => Op::Mux { select: go(select), high: go(high), low: go(low) },
-        Op::Add(a, b) => Op::Add(go(a), go(b)),
-        Op::Sub(a, b) => Op::Sub(go(a), go(b)),
-        Op::Carry(a, b) => Op::Carry(go(a), go(b)),
-        Op::Borrow(a, b) => Op::Borrow(go(a), go(b)),
-        Op::AddOverflow(a, b) => Op::AddOverflow(go(a), go(b)),
-        Op::SubOverflow(a, b) => Op::SubOverflow(go(a), go(b)),
-        Op::Equal(a, b) => Op::Equal(go(a), go(b)),
-        Op::LessSigned(a, b) => Op::LessSigned(go(a), go(b)),
-        Op::Slice { of, low } => Op::Slice { of: go(of), low },
-        Op::Concat { high, low } => Op::Concat { high: go(high), low: go(low) },
-        Op::ZeroExtend(a) => Op::ZeroExtend(go(a)),
-        Op::SignExtend(a) => Op::SignExtend(go(a)),
     }
 }
 
