@@ -62,7 +62,7 @@ pub(super) struct Gates {
     design: Design,
     watch: Watch,
     clock: u64,
-    /// Where each net's bits stand in `state`.
+    /// Index of each net's bits in `state`.
     place: Vec<Range<usize>>,
     state: BitVec<u64>,
     /// Inputs as the test bench wants them from after the next edge on; same index as the design's inputs.

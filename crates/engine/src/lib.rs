@@ -1,7 +1,7 @@
 //! Engines: what runs a [`Design`] clock by clock. They know nets and values, no names, no files, no methods.
 //!
 //! One clock is an edge, at which all registers take their next values at once from the old ones, and the settling of
-//! the combinational nets behind it. *Sample k* is the value of every net settled after edge k; sample 0 is the state
+//! the combinational nets after it. *Sample k* is the value of every net settled after edge k; sample 0 is the state
 //! after reset. An input set between two calls changes right after the next edge, as the output of a register outside
 //! would: the edge itself still sees the old value.
 //!
@@ -48,12 +48,12 @@ pub struct Watch {
     pub stops: Vec<Net>,
 }
 
-/// When a machine is idle: in a sample in which no register but the running ones has just changed or is about to, and no
-/// flag or stop is 1. An engine that is [told](EngineKind::build_passing) may pass over such a sample, recording only what
-/// the running registers came to.
+/// When a machine is idle: in a sample in which no register but the running ones has just changed or is about to, and
+/// no flag or stop is 1. An engine [built to pass over idle samples](EngineKind::build_passing) may skip such a sample,
+/// recording only what the running registers reached.
 #[derive(Clone, Debug)]
 pub struct Idle {
-    /// Registers that go on at every clock, read as unsigned numbers: the phase of a pulse source.
+    /// Registers that change at every clock, read as unsigned numbers: the phase of a pulse source.
     pub running: Vec<Net>,
     /// Nets (1 bit) whose 1 is always recorded.
     pub flags: Vec<Net>,
@@ -73,7 +73,7 @@ pub enum Stop {
 /// A machine that runs one design.
 pub trait Engine: Send {
     /// Sets an input from after the next edge (or from reset) on. Bits above its width are ignored, and so is a net
-    /// that is no input.
+    /// that is not an input.
     fn set_input(&mut self, input: Net, value: u64);
 
     /// Registers take their reset values, clock 0; `rows` forgets what it holds, whose clocks end here, and sample 0 is
@@ -88,8 +88,8 @@ pub trait Engine: Send {
     fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]);
 
     /// Runs until `clocks` clocks are done, `rows` is full, or a stop net is 1 in a sample; at least one clock is done
-    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded that is not passed over; what `rows`
-    /// holds already must be the samples right before.
+    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded that is not passed over; what
+    /// `rows` holds already must be the samples right before.
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
 
     /// Number of edges since reset.

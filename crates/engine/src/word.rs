@@ -98,7 +98,7 @@ impl WordEngine {
                 *value = constant;
             }
         }
-        // Cells that nothing depends on stand behind all others; a description leaves next to none.
+        // Cells that nothing depends on come after all others; a description leaves hardly any.
         let mut seen = vec![false; netlist.cells.len()];
         design.order().iter().for_each(|net| seen[net.index()] = true);
         let order = design.order().iter().copied().chain(netlist.nets().filter(|net| !seen[net.index()]));

@@ -1,8 +1,8 @@
 //! BTOR2, the word-level language of hardware model checkers, of any design.
 //!
-//! A register is a state with its reset value as `init` and its next value as `next`; a property is a `bad`. Paths of nets
-//! are symbols: of the first name at the line of the net, of further ones at an `output`. Step k of a model checker is
-//! sample k of an engine.
+//! A register is a state with its reset value as `init` and its next value as `next`; a property is a `bad`. Paths of
+//! nets are symbols: of the first name at the line of the net, of further ones at an `output`. Step k of a model
+//! checker is sample k of an engine.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -77,7 +77,7 @@ struct Model<'a> {
     text: String,
     /// Number of the last line.
     last: u64,
-    /// Lines that say the same whoever needs them, by what they say.
+    /// Lines that several others share, by their text.
     known: HashMap<String, u64>,
     /// Of each net so far.
     lines: HashMap<Net, u64>,

@@ -1,8 +1,8 @@
-//! A design that drives itself: a loader next to it sets its inputs as a test bench would, so that a model checker sees the
-//! very run that an engine would show, and nothing is left to assume.
+//! A design that drives itself: a loader next to it sets its inputs as a test bench would, so that a model checker sees
+//! the very run that an engine would show, and nothing is left to assume.
 //!
-//! The loader counts steps of the stimulus and the clocks of a step. Both are registers of a scope of their own, and every
-//! input becomes what the step at hand sets it to. Behind the last step nothing changes any more.
+//! The loader counts steps of the stimulus and the clocks of a step. Both are registers of a scope of their own, and
+//! every input becomes what the step at hand sets it to. After the last step nothing changes any more.
 
 use std::collections::{HashMap, HashSet};
 
@@ -34,8 +34,8 @@ fn shifted(net: Net, by: usize) -> Net {
     Net(u32::try_from(net.index() + by).unwrap_or(u32::MAX))
 }
 
-/// The design with a loader that sets its inputs step by step. What else ends a run in a test bench (`never`, `stall`) does
-/// not end it here. Inputs in `open` stay inputs.
+/// The design with a loader that sets its inputs step by step. What else ends a run in a test bench (`never`, `stall`)
+/// does not end it here. Inputs in `open` stay inputs.
 ///
 /// # Errors
 /// The stimulus is not one of this design.
@@ -164,7 +164,7 @@ impl<'a> Loader<'a> {
         self.select(&values)
     }
 
-    /// The logic of the loader's registers, behind the design, whose `done` it reads.
+    /// The logic of the loader's registers, after the design, whose `done` it reads.
     fn close(&mut self, done: Option<Net>) {
         let (step, age) = (self.step, self.age);
         let (step_width, age_width) = (self.width(step), self.width(age));

@@ -1,4 +1,4 @@
-//! Words that are no names in Verilog or SystemVerilog: many tools read every file as the latter.
+//! Reserved words of Verilog and SystemVerilog: many tools read every file as the latter.
 
 /// Sorted, for a binary search.
 const KEYWORDS: &[&str] = &[

@@ -1,5 +1,6 @@
-//! Designs for other tools: a design as Verilog, and a test bench that drives it as an engine would be driven; for model
-//! checkers and solvers as BTOR2 and as SMT-LIB 2, if need be with a loader that drives it in the test bench's stead.
+//! Designs for other tools: a design as Verilog, and a test bench that drives it as an engine would be driven; for
+//! model checkers and solvers as BTOR2 and as SMT-LIB 2, if need be with a loader that drives it in the test bench's
+//! stead.
 //!
 //! ```
 //! use stepwave_export as export;
@@ -33,7 +34,7 @@ pub use verilog::verilog;
 
 use stepwave_netlist::cells::Net;
 
-/// What an export is to say and to show beside the design itself.
+/// What an export says and shows in addition to the design.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options<'a> {
     /// Lines of the comment at the head.
@@ -42,7 +43,7 @@ pub struct Options<'a> {
     pub outputs: &'a [Net],
 }
 
-/// What is said to a model checker or a solver beside the design itself.
+/// What a model checker or a solver gets in addition to the design.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Checking<'a> {
     /// Lines of the comment at the head.
@@ -51,7 +52,7 @@ pub struct Checking<'a> {
     pub held: &'a [Net],
 }
 
-/// Lines of comment, each behind a mark.
+/// Lines of comment, each after a mark.
 fn comment(lines: &[String], mark: &str) -> String {
     lines.iter().flat_map(|text| text.lines()).map(|line| format!("{mark}{line}\n")).collect()
 }

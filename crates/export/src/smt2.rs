@@ -1,11 +1,10 @@
-//! SMT-LIB 2 in the logic of bit vectors, of any design: what holds in every clock, and the question whether a property is
-//! violated within some clocks.
+//! SMT-LIB 2 in the logic of bit vectors, of any design: what holds in every clock, and the question whether a property
+//! is violated within some clocks.
 //!
-//! Four functions say what the design is. `init`: the registers have their reset values. `settled`: every net is what its
-//! cell makes of its operands. `edge`: the registers take their next values, which are
-//! marked with a `+`. `violated`: a property is. The question
-//! strings clocks together, each with a constant `PATH@CLOCK` for every net, so that a solver that answers `sat` can be
-//! asked for all of them; clock k is sample k of an engine.
+//! Four functions say what the design is. `init`: the registers have their reset values. `settled`: every net is what
+//! its cell makes of its operands. `edge`: the registers take their next values, which are marked with a `+`.
+//! `violated`: a property is. The question strings clocks together, each with a constant `PATH@CLOCK` for every net, so
+//! that a solver that answers `sat` can be asked for all of them; clock k is sample k of an engine.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -16,16 +15,16 @@ use stepwave_netlist::Design;
 use stepwave_netlist::bits::{Bits, Width};
 use stepwave_netlist::cells::{Net, Netlist, Op};
 
-/// The design as an SMT-LIB 2 script that asks whether a property is violated in one of the clocks 0 to `depth`: `sat` if
-/// one is. The last two lines are the question. An input that is held is one constant for all clocks. The same design gives
-/// the same text.
+/// The design as an SMT-LIB 2 script that asks whether a property is violated in one of the clocks 0 to `depth`: `sat`
+/// if one is. The last two lines are the question. An input that is held is one constant for all clocks. The same
+/// design gives the same text.
 #[must_use]
 pub fn smt2(design: &Design, checking: &Checking<'_>, depth: u64) -> String {
     smt2_asking(design, checking, depth, |violated, _| format!("(assert {violated})\n(check-sat)\n"))
 }
 
-/// As [`smt2`], with another question in its place: `ask` gets the term for a violated property, and a function that tells
-/// the name of a net at a clock, or of one that is held (no clock).
+/// As [`smt2`], with another question in its place: `ask` gets the term for a violated property, and a function that
+/// gives the name of a net at a clock, or of one that is held (no clock).
 #[must_use]
 pub fn smt2_asking(
     design: &Design,
@@ -194,7 +193,7 @@ impl<'a> Script<'a> {
         text
     }
 
-    /// One of the properties is violated. What each is about stands behind it, as a comment to the end of the line.
+    /// One of the properties is violated. A comment after each says what it is about, up to the end of the line.
     fn violated(&self) -> String {
         let properties = self.netlist.properties.iter().zip(&self.symbols.properties);
         let lines = properties.map(|(property, name)| format!("(= {} #b1) ; {name}", self.read(property.never)));

@@ -1,8 +1,8 @@
 //! A Verilog test bench: it sets inputs right after clock edges, as an engine's caller does, and dumps every named net,
 //! so that its wave is the engine's wave, clock by clock.
 //!
-//! Behind an edge means at the edge, without blocking: the edge itself still sees the old values. Between two edges the
-//! nets are settled; there the bench looks whether the run is over, so that no edge follows the last sample.
+//! "After an edge" means at the edge, without blocking: the edge itself still sees the old values. Between two edges
+//! the nets are settled; there the bench looks whether the run is over, so that no edge follows the last sample.
 
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -33,8 +33,8 @@ pub struct Stall {
     pub clocks: u64,
 }
 
-/// What is to be done to a design, from sample 0 on. The nets that it looks at are to be among [`Options::outputs`]; one
-/// that is not counts as 0.
+/// What is to be done to a design, from sample 0 on. The nets that it looks at are to be among [`Options::outputs`];
+/// one that is not counts as 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stimulus {
     /// One after another; the run ends with the last.

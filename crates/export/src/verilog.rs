@@ -24,7 +24,7 @@ use stepwave_netlist::cells::{Net, Op, ScopeId};
 /// The head of both kinds of file.
 pub(super) fn header(comment: &[String]) -> String {
     let line = |line: &str| {
-        // A comment that begins with the word is an order to Verilator; one that ends in a backslash goes on.
+        // A comment that begins with the word is a directive to Verilator; one that ends in a backslash continues.
         let mark = if line.trim_start().to_lowercase().starts_with("verilator") { ": " } else { "" };
         format!("// {mark}{}\n", line.trim_end_matches('\\'))
     };
@@ -242,7 +242,7 @@ impl Module<'_> {
     fn inner_scopes(&self, scope: ScopeId, depth: usize) -> String {
         let netlist = self.design.netlist();
         let mut text = String::new();
-        // Only the outermost blocks stand in the words that open and close them.
+        // `generate` and `endgenerate` enclose only the outermost blocks.
         let depth = if scope == ScopeId::TOP { depth + 1 } else { depth };
         for (index, inner) in (0u32..).map(ScopeId).zip(&netlist.scopes) {
             if inner.parent == Some(scope) {

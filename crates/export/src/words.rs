@@ -61,7 +61,7 @@ pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
         op.visit_inputs(|input| operands.push(Term::Net(input)));
         Term::Apply(word, width, operands, numbers)
     };
-    // One bit more, and what stands in it.
+    // One bit more, and its value.
     let wider = |word: Word, extend: Word, a: Net, b: Net| {
         let wide = bits(a) + 1;
         let operand = |net: Net| Term::Apply(extend, wide, vec![Term::Net(net)], vec![1]);
@@ -100,8 +100,8 @@ pub(super) struct Symbols {
     pub(super) nets: Vec<Option<String>>,
     /// Further paths of nets that have one.
     pub(super) further: Vec<(Net, String)>,
-    /// Of each property: `never.` and the path of its net, or where that has none the words of the property's author, with
-    /// a line below for whatever is no part of a name.
+    /// Of each property: `never.` and the path of its net, or where that has none the words of the property's author,
+    /// with an underscore for every character that a name cannot have.
     pub(super) properties: Vec<String>,
 }
 

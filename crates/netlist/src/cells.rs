@@ -204,7 +204,7 @@ impl Format {
 pub struct NamedNet {
     /// The net.
     pub net: Net,
-    /// Scope that the name stands in.
+    /// Scope that the name belongs to.
     pub scope: ScopeId,
     /// The name, unique in its scope.
     pub name: String,
@@ -322,9 +322,9 @@ impl Netlist {
         (0..u32::try_from(self.cells.len()).unwrap_or(u32::MAX)).map(Net)
     }
 
-    /// The same netlist with a further scope `trap` that shows the operands of a strict cell, `left` and `right`, and the
-    /// exact result, `exact`, at every clock; `None` where the property is of no strict cell, or the result of operands of
-    /// 63 bits and more would need more than 64. The nets that were there keep their numbers.
+    /// The same netlist with a further scope `trap` that shows the operands of a strict cell, `left` and `right`, and
+    /// the exact result, `exact`, at every clock; `None` where the property is of no strict cell, or the result of
+    /// operands of 63 bits and more would need more than 64. The nets that were there keep their numbers.
     #[must_use]
     pub fn showing_operands(&self, property: &Property) -> Option<Netlist> {
         let Claim::NoOverflow { operation, left, right } = property.claim else { return None };

@@ -47,7 +47,7 @@ impl Design {
         &self.inner.inputs
     }
 
-    /// The combinational cells that a register, a property or a name depends on, level by level: a cell stands behind
+    /// The combinational cells that a register, a property or a name depends on, level by level: a cell comes after
     /// all its operands.
     #[must_use]
     pub fn order(&self) -> &[Net] {

@@ -48,7 +48,7 @@ impl Clause {
         Clause { name: name.to_owned(), any: any.into_iter().collect() }
     }
 
-    /// Whether it holds where the names stand for these numbers; `None` where one stands for none, or beyond 128 bits.
+    /// Whether it holds for these values of the names; `None` where a name has no value, or beyond 128 bits.
     #[must_use]
     pub fn holds(&self, of: impl Fn(&str) -> Option<i128>) -> Option<bool> {
         let values: Option<Vec<i128>> = self.any.iter().map(|formula| formula.value(&of)).collect();
@@ -94,7 +94,7 @@ impl Formula {
         names
     }
 
-    /// Its value where the names stand for these numbers; `None` where one stands for none, or beyond 128 bits.
+    /// Its value for these values of the names; `None` where a name has no value, or beyond 128 bits.
     #[must_use]
     pub fn value(&self, of: impl Fn(&str) -> Option<i128>) -> Option<i128> {
         self.terms.iter().try_fold(0_i128, |sum, (product, coefficient)| {
@@ -103,7 +103,7 @@ impl Formula {
         })
     }
 
-    /// The formula that is written like this, as [`Display`](fmt::Display) writes it; `None` if there is none.
+    /// Reads a formula as [`Display`](fmt::Display) writes it; `None` if the text is not a formula.
     #[must_use]
     pub fn parse(text: &str) -> Option<Formula> {
         let text = text.trim();

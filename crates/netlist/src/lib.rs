@@ -1,7 +1,8 @@
-//! Hardware as data: netlists of clocked, fixed-width components, how they are described, checked and simplified, and the
-//! samples that come of them.
+//! Hardware as data: netlists of clocked, fixed-width components, how they are described, checked and simplified, and
+//! the samples that come of them.
 //!
-//! It knows registers, adders and nets; it knows no interpolation method, no engine and no file. Data flows one way:
+//! It knows registers, adders and nets; it knows no interpolation method, no engine and no file. Data flows in one
+//! direction:
 //!
 //! ```text
 //! dsl → Netlist → elaborate → Design → (an engine) → Rows

@@ -1,7 +1,7 @@
 //! Recorded samples: a block with a column for each net, filled by an engine, read by observers, and used again.
 //!
-//! Column by column, because whoever looks for a change, a least value or a flag reads one net over many clocks. Rows may
-//! be sparse: then each has its own clock, and of the samples between them only extremes are told.
+//! Column by column, because a search for a change, a least value or a flag reads one net over many clocks. Rows may
+//! be sparse: then each has its own clock, and of the samples between them only extremes are kept.
 
 use fearless_simd::{Level, dispatch};
 
@@ -41,7 +41,7 @@ pub struct Rows {
     stride: usize,
     len: usize,
     first_clock: u64,
-    /// Column `c` begins at `c * stride`. Behind the last one stand the clocks of sparse rows.
+    /// Column `c` begins at `c * stride`. After the last one come the clocks of sparse rows.
     values: Vec<u64>,
     sparse: bool,
     /// What columns came to in samples that were passed over.
@@ -122,8 +122,8 @@ impl Rows {
         self.column(column).iter().fold(0, |seen, value| seen | value) != 0
     }
 
-    /// A bit for each of the next 64 rows from `first` on, or of those there are, the first the lowest: 1 where the value
-    /// of a column is not 0.
+    /// A bit for each of the next 64 rows from `first` on, or of those there are, the first the lowest: 1 where the
+    /// value of a column is not 0.
     ///
     /// # Panics
     /// If there is no such column.
@@ -134,9 +134,9 @@ impl Rows {
         dispatch!(self.level, _simd => nonzero(&values[..values.len().min(64)]))
     }
 
-    /// What the values of a column came to, those passed over among them, all taken with the bits of `turned` turned over;
-    /// `None` without a sample. With the sign bit turned over, two's complement sorts as unsigned numbers do; what runs on
-    /// while samples are passed over is unsigned.
+    /// The extremes of a column, those of skipped samples included, with the bits of `turned` inverted in every value;
+    /// `None` without a sample. With the sign bit inverted, two's complement sorts as unsigned numbers do; a register
+    /// that runs on while samples are skipped is unsigned.
     ///
     /// # Panics
     /// If there is no such column.
@@ -252,7 +252,8 @@ impl Rows {
     }
 }
 
-/// Least and greatest of the values with the bits of `turned` turned over, and the bits in which one differs from `first`.
+/// Least and greatest of the values with the bits of `turned` turned over, and the bits in which one differs from
+/// `first`.
 #[inline(always)]
 fn extremes(values: &[u64], turned: u64, first: u64) -> (u64, u64, u64) {
     // Vector units compare signed numbers; with the highest bit turned over they are in the order of the unsigned ones.

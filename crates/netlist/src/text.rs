@@ -15,7 +15,8 @@
 //! ```
 //!
 //! `name` ends in the format: `unsigned`, `signed`, `analog`, `binary` or `states 0x1 "JUDGE" 0x2 "FEED"`. `property`
-//! ends in `invariant` or in the strict operation with its operands, `between-steps` in formulas with `|` between them. Text in quotes is escaped as in Rust.
+//! ends in `invariant` or in the strict operation with its operands, `between-steps` in formulas with `|` between them.
+//! Text in quotes is escaped as in Rust.
 
 use std::fmt::{self, Write as _};
 use std::str::CharIndices;
@@ -146,7 +147,7 @@ pub fn parse(text: &str) -> Result<Netlist, Diagnostics> {
         None => report(1, "expected 'netlist NAME' in the first line".to_owned()),
         Some((index, line)) if line.split_whitespace().next() != Some("netlist") => {
             report(index + 1, format!("expected 'netlist NAME' first in '{line}'"));
-            // Whatever else it is, it has been told of.
+            // Any other mistake has been reported.
             let (_, line) = lines.next().unwrap_or_default();
             _ = parser.line(line);
         }
@@ -163,8 +164,8 @@ pub fn parse(text: &str) -> Result<Netlist, Diagnostics> {
 /// What was expected but not found.
 type Expected = String;
 
-/// What has been read. Behind a line whose number is wrong or cannot be read the next one is not known, and what is
-/// given is taken for right, so that the line alone is told of.
+/// What has been read. After a line whose number is wrong or cannot be read the next number is not known: the number
+/// given is accepted, so that only this line is reported.
 struct Parser {
     netlist: Netlist,
     /// The line `netlist` was there.
@@ -378,7 +379,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// The character behind a backslash: those escapes that the `Debug` form of a string uses.
+/// The character after a backslash: those escapes that the `Debug` form of a string uses.
 fn escaped(chars: &mut CharIndices<'_>) -> Option<char> {
     Some(match chars.next()?.1 {
         'n' => '\n',

@@ -3,9 +3,9 @@
 //! # What is compared with what
 //! By clock (the default), sample *k* of A with sample *k* + offset of B, a sample being what [`read`](super::read)
 //! says; the clocks themselves are not compared. By time, the values after every change, the times of both sides taken
-//! to one unit; if one file alone names no timescale, its times cannot be compared. Only what both sides have is compared by value; that
-//! one side lasts longer is a difference of its own. With an offset it is enough that both have the same number of
-//! cycles, or that they end together.
+//! to one unit; if one file alone names no timescale, its times cannot be compared. Only what both sides have is
+//! compared by value; that one side lasts longer is a difference of its own. With an offset it is enough that both have
+//! the same number of cycles, or that they end together.
 //!
 //! Signals are matched by name:
 //! 1. The name of a signal is its dotted path, without a bit range.
@@ -56,7 +56,7 @@ impl Default for Options {
 /// The axis along which two waves are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
-    /// The cycles of each side's clock; cycle *k* of A stands beside cycle *k* + `offset` of B.
+    /// The cycles of each side's clock; cycle *k* of A is paired with cycle *k* + `offset` of B.
     Clock {
         /// In cycles; positive if B starts late.
         offset: i64,
@@ -228,7 +228,7 @@ pub fn first_divergence<'w>(
 /// Compares two waves.
 ///
 /// # Errors
-/// [`CompareError`] if they cannot be compared as asked; that they differ is no error.
+/// [`CompareError`] if they cannot be compared as asked; a difference is not an error.
 pub fn compare<'w>(a: &'w Wave, b: &'w Wave, options: &Options) -> Result<Comparison<'w>, CompareError> {
     let frames = Frames::new(a, b, options.by)?;
     let mut signals = 0;

@@ -1,7 +1,7 @@
 //! The FST writer: the names, times and samples of the VCD writer in a compressed file, through the crate `fst-writer`.
 //!
-//! As there, edge k stands at k periods, the clock falls half a period later, and the same run gives the same bytes on
-//! any machine: the header's date is empty. FST has no comment, so model and choices are not told in the file.
+//! As there, edge k is at k periods, the clock falls half a period later, and the same run gives the same bytes on
+//! any machine: the header's date is empty. FST has no comment, so the file does not name model and options.
 
 use std::io::{self, Cursor, Seek, SeekFrom, Write};
 use std::ops::Range;
@@ -18,7 +18,7 @@ use super::timescale::ClockTime;
 use super::vcd::{digits, has_range, variable_type};
 use stepwave_netlist::Rows;
 
-/// Changes are gathered in memory up to so many bytes; then a section of the file is written.
+/// Bytes of changes that are gathered in memory before a section of the file is written.
 const SECTION: usize = 32 << 20;
 /// Type of a block that holds changes.
 const CHANGES: u8 = 8;
@@ -85,7 +85,7 @@ impl FstHeader<'_> {
     /// # Errors
     /// The output cannot be written.
     pub fn write<W: Write + Seek>(&self, out: W) -> io::Result<FstBody<W>> {
-        // The crate does not tell where the changes begin; an empty wave with the same header does.
+        // The crate does not report where the changes begin; an empty wave with the same header does.
         let empty = self.declare(Cursor::new(Vec::new())).and_then(|empty| empty.body.finish()).map_err(io_error)?;
         let first_section =
             first_section(empty.get_ref()).ok_or_else(|| io::Error::other("the FST header is broken"))?;
@@ -141,7 +141,7 @@ impl FstHeader<'_> {
     }
 }
 
-/// Where the first block of changes begins. A block is its type in a byte, its length behind that byte, and the rest.
+/// Where the first block of changes begins. A block is its type in a byte, its length after that byte, and the rest.
 fn first_section(file: &[u8]) -> Option<u64> {
     let mut at = 0;
     while *file.get(at)? != CHANGES {
@@ -179,7 +179,7 @@ impl<W: Write + Seek> FstBody<W> {
         if self.body.size() >= SECTION { self.body.flush().map_err(io_error) } else { Ok(()) }
     }
 
-    /// The state with which the file begins. What is told before the first time counts from the beginning, which
+    /// The state with which the file begins. What is given before the first time counts from the beginning, which
     /// `finish` sets.
     fn first(&mut self, clock: u64, rows: &Rows, row: usize) -> Result<(), FstWriteError> {
         if let Some(clk) = self.clk {

@@ -1,19 +1,20 @@
-//! The GTKWave save file and its state-name files, written beside every wave.
+//! The GTKWave save file and its state-name files, written next to every wave.
 //!
 //! A trace line must be GTKWave's own name of the signal, or the row vanishes without a message: vectors of type `reg`
 //! and `wire` carry their range, `integer` and `parameter` do not.
 //!
-//! File names are written as if all files stood in `/`, the save file too: GTKWave then takes the way from the one to
-//! the other, so that `gtkwave ANY/FOLDER/x.gtkw` finds the wave and the state names beside the save file from any
+//! File names are written as if all files were in `/`, the save file too: GTKWave then takes the path from one to
+//! the other, so that `gtkwave ANY/FOLDER/x.gtkw` finds the wave and the state names next to the save file from any
 //! working folder. (Plain relative names are taken from the working folder.)
 //!
 //! Leading rows come first, then the data path, one group a scope; then the operands of a trap and the flags of the
-//! properties, closed where none rose; last the scopes that hold inputs, which are the test bench's side of the machine.
+//! properties, closed where none rose; last the scopes that hold inputs, which are the test bench's side of the
+//! machine.
 //!
-//! GTKWave scales every analog row by itself, from the least to the greatest value that it takes, and a save file cannot
-//! say otherwise. Rows of positions therefore have heights in proportion to their ranges, so that one BLU is equally high
-//! in all of them, as well as whole rows allow. At reset a position counter is 0, at clock 1 the start is loaded: where that
-//! is another place, the view begins at clock 1, and rows are scaled to what is in view.
+//! GTKWave scales every analog row by itself, from the least to the greatest value that it takes, and a save file
+//! cannot say otherwise. Rows of positions therefore have heights in proportion to their ranges, so that one BLU is
+//! equally high in all of them, as well as whole rows allow. At reset a position counter is 0, at clock 1 the start is
+//! loaded: where that is another place, the view begins at clock 1, and rows are scaled to what is in view.
 
 use std::fmt::Write as _;
 
@@ -63,7 +64,7 @@ const ZOOM_PIXELS: f64 = 200.0;
 /// What a save file shows.
 #[derive(Clone, Debug)]
 pub struct View<'a> {
-    /// File name of the wave, without folder: the viewer looks beside the save file.
+    /// File name of the wave, without folder: the viewer looks in the folder of the save file.
     pub dump_name: &'a str,
     /// File name without extension, for the state-name files.
     pub stem: &'a str,
@@ -89,7 +90,7 @@ pub struct View<'a> {
     pub marks: &'a [(u64, String)],
 }
 
-/// A file to be written beside the wave.
+/// A file to be written next to the wave.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SideFile {
     /// File name without folder.
@@ -303,8 +304,8 @@ fn time_of(view: &View<'_>, clock: u64) -> u64 {
     clock.saturating_mul(period)
 }
 
-/// `*ZOOM PRIMARY A … Z`: 200 pixels show 2^-ZOOM units of time, chosen so that the whole run fills a pane of so many
-/// pixels; -1 is no marker.
+/// `*ZOOM PRIMARY A … Z`: 200 pixels show 2^-ZOOM units of time, chosen so that the whole run fills a pane of that many
+/// pixels; -1 means no marker.
 // An approximation of a picture.
 #[allow(clippy::cast_precision_loss)]
 fn zoom_and_markers(view: &View<'_>, pixels: usize) -> String {

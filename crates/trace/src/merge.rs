@@ -1,12 +1,12 @@
 //! Two waves in one VCD for the viewer: side A under the scope `a`, side B under `b`, their exclusive-or under `xor`.
 //!
 //! The signals are those that a [comparison](super::diverge) with the same options compares, under the names by which
-//! it pairs them. Under `xor` stand the bit vectors of equal width on both sides; a bit of it is 0 where the
+//! it pairs them. Scope `xor` holds the bit vectors of equal width on both sides; a bit is 0 where the
 //! comparison sees no difference, 1 where one side is 0 and the other 1, and `x` where only the states differ.
 //!
-//! By clock, the file has the times of A: the sample of a cycle stands from the rising edge that begins the cycle, on
+//! By clock, the file has the times of A: the sample of a cycle is shown from the rising edge that begins the cycle, on
 //! both sides, so that delays within a cycle are gone; A's clock is added to scope `a`. Cycles that A does not have are
-//! left out. By time, each change stands at its own time, in a unit that divides those of both sides. A side that has
+//! left out. By time, each change is at its own time, in a unit that divides those of both sides. A side that has
 //! ended keeps its last values, one that has not begun is `x`.
 
 #[cfg(test)]
@@ -44,7 +44,7 @@ pub enum MergeError {
 /// Writes both waves and their exclusive-or as one VCD.
 ///
 /// # Errors
-/// [`MergeError`]; what is written by then is no whole file.
+/// [`MergeError`]; the file written so far is incomplete.
 pub fn write_merged(a: &Wave, b: &Wave, options: &Options, out: &mut dyn Write) -> Result<(), MergeError> {
     let frames = Frames::new(a, b, options.by)?;
     let mut entries = entries(&frames, options)?;

@@ -1,7 +1,7 @@
 //! Which nets change in which samples: what the writers of waves walk along.
 //!
-//! Samples are looked at 64 at a time. A column gives a word with a bit for each sample; turned over, these are words with
-//! a bit for each net, one a sample.
+//! Samples are looked at 64 at a time. A column gives a word with a bit for each sample; turned over, these are words
+//! with a bit for each net, one a sample.
 
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ impl Moves {
         Moves { level: Level::new(), last: vec![0; columns.len()], columns, groups }
     }
 
-    /// Takes the first sample: changes are told against it.
+    /// Takes the first sample: changes are relative to it.
     pub(super) fn start(&mut self, rows: &Rows, row: usize) {
         for (last, &column) in self.last.iter_mut().zip(&self.columns) {
             *last = rows.value(column, row);
@@ -51,7 +51,7 @@ impl Moves {
     }
 }
 
-/// Takes the samples of every net, in order, equally many of each; `before` tells and takes the value of a net before
+/// Takes the samples of every net, in order, equally many of each; `before` gives and takes the value of a net before
 /// them.
 #[inline(always)]
 fn scan<'r>(groups: &mut [[u64; SPAN]], nets: impl Iterator<Item = (&'r [u64], &'r mut u64)>) {

@@ -3,12 +3,12 @@
 use crate::guard::guarded;
 use globset::{Glob, GlobMatcher};
 
-/// The longest glob, in bytes, and the most braces within one another: longer and deeper ones, which no name needs, take
-/// the crate's memory and stack.
+/// The longest glob, in bytes, and the most braces within one another: longer and deeper ones, which no name needs,
+/// take the crate's memory and stack.
 const LONGEST: usize = 1000;
 const DEEPEST: usize = 8;
 
-/// Compiles a glob; inside, why it is none.
+/// Compiles a glob; the error says why the text is not one.
 pub(crate) fn glob(pattern: &str) -> Result<GlobMatcher, String> {
     if pattern.len() > LONGEST {
         return Err(format!("it has {} bytes; at most {LONGEST} are read", pattern.len()));

@@ -112,8 +112,8 @@ impl Selection {
             && self.depth.is_none_or(|depth| scopes.len() <= depth)
     }
 
-    /// The names kept, in the order of the hierarchy: a scope's own names first, then its inner scopes. `columns` tells
-    /// where each net stands in the rows; a net that is not among them is left out.
+    /// The names kept, in the order of the hierarchy: a scope's own names first, then its inner scopes. `columns` gives
+    /// the column of each net; a net that is not among them is left out.
     ///
     /// # Errors
     /// Nothing is left, or a pattern that is to keep signals fits none.
@@ -127,7 +127,7 @@ impl Selection {
             path.push(scope.name.clone());
             scopes.push(path);
         }
-        // Scopes in depth-first order: an inner scope stands directly behind its parent's own names.
+        // Scopes in depth-first order: an inner scope comes directly after its parent's own names.
         let mut order: Vec<usize> = Vec::new();
         let mut pending = vec![0];
         while let Some(scope) = pending.pop() {

@@ -10,7 +10,7 @@
 //! - the last cycle is sampled at the end of the file.
 //!
 //! So the samples depend neither on the time unit, nor on the period of the clock, nor on delays within a cycle. A
-//! rising edge is a change to 1 from 0, `x` or `z`; the first value of the clock is none. Where a signal changes
+//! rising edge is a change to 1 from 0, `x` or `z`; the first value of the clock is not an edge. Where a signal changes
 //! several times at one time, the last counts. Values before the first time of a VCD are those at time 0.
 //!
 //! ```
@@ -191,14 +191,14 @@ pub enum WaveError {
     /// Anything else; the reason is the decoder's.
     #[error("{name}: broken wave file: {reason}")]
     Malformed { name: String, reason: String },
-    /// The file is a wave, but has no such clock.
+    /// The file is a wave, but has no clock of that name.
     #[error(transparent)]
     Clock(#[from] ClockError),
 }
 
 impl Wave {
-    /// Reads a whole file or pipe; the format is recognised by its content. The clock is the one found as [`Clock`] says; a file without a clock is no error until cycles are
-    /// asked for.
+    /// Reads a whole file or pipe; the format is recognised by its content. The clock is the one found as [`Clock`]
+    /// says; a file without a clock is an error only when cycles are asked for.
     ///
     /// # Errors
     /// [`WaveError`], whatever is wrong with the file.

@@ -31,7 +31,7 @@ impl ClockTime {
     /// coarsest that is true to 1 in 10^9, or else femtoseconds.
     ///
     /// # Errors
-    /// `hz` is no number from 1e-3 to 1e14.
+    /// `hz` is not a number from 1e-3 to 1e14.
     pub fn from_hz(hz: f64) -> Result<ClockTime, ClockError> {
         if !(1e-3..=1e14).contains(&hz) {
             return Err(ClockError(hz));

@@ -1,6 +1,6 @@
 //! The VCD writer: a header through the crate `vcd`, then value changes written by hand, since they are the hot path.
 //!
-//! Edge k stands at k periods; the clock falls half a period later. Only changes are written, apart from the first
+//! Edge k is at k periods; the clock falls half a period later. Only changes are written, apart from the first
 //! sample, which holds every variable. There is no date: the same run gives the same bytes on any machine.
 //!
 //! Samples come in blocks, in which `Moves` finds the nets that change; a row costs what changes in it.
@@ -47,14 +47,14 @@ struct Change {
 /// Takes samples, one after another.
 pub struct VcdBody<W: Write> {
     out: W,
-    /// Room for `BUFFER` bytes and the longest row behind them; the first `filled` bytes wait to be written.
+    /// Room for `BUFFER` bytes and the longest row after them; the first `filled` bytes wait to be written.
     buffer: Vec<u8>,
     filled: usize,
     changes: Vec<Change>,
     moves: Moves,
     /// Value lines of the clock, high and low, if it is dumped.
     clk: Option<[Tail; 2]>,
-    /// Times of the next rising edge and of the falling one behind it.
+    /// Times of the next rising edge and of the falling one after it.
     rise: Stamps,
     fall: Stamps,
     ticks: u64,
@@ -64,14 +64,14 @@ pub struct VcdBody<W: Write> {
 pub(super) fn variable_type(probe: &Probe) -> VarType {
     match (probe.role, probe.format.is_signed()) {
         (Role::Constant, _) => VarType::Parameter,
-        // Viewers show an integer of any width as signed decimal without being told.
+        // Viewers show an integer of any width as signed decimal by default.
         (_, true) => VarType::Integer,
         (Role::Register, false) => VarType::Reg,
         (Role::Input | Role::Wire | Role::Flag, false) => VarType::Wire,
     }
 }
 
-/// A bit range stands behind vectors, except where viewers want the bare name.
+/// A bit range follows the name of a vector, except where viewers want the bare name.
 pub(super) fn has_range(probe: &Probe) -> bool {
     probe.width.get() > 1 && probe.role != Role::Constant && !probe.format.is_signed()
 }
@@ -173,7 +173,7 @@ impl<W: Write> VcdBody<W> {
         Ok(())
     }
 
-    /// Sets the stamps to a clock, where they do not stand there; true before the first sample.
+    /// Sets the stamps to a clock, where they are not there yet; true before the first sample.
     fn seek(&mut self, clock: u64) -> bool {
         if self.last_clock.is_none_or(|last| clock != last + 1) {
             self.rise.set(clock * self.ticks);
@@ -262,7 +262,7 @@ impl<W: Write> VcdBody<W> {
     }
 }
 
-/// Room for a line. The buffer holds the longest row behind any place where a row may begin.
+/// Room for a line. The buffer holds the longest row after any place where a row may begin.
 #[inline]
 fn window(buffer: &mut [u8], at: usize) -> &mut [u8; WINDOW] {
     buffer[at..].first_chunk_mut().expect("the buffer holds the longest row")

@@ -1,8 +1,8 @@
 //! Code generation: a loop over clocks in which registers are SSA values.
 //!
-//! The loop body holds one or more *phases*, one clock each. In a phase some registers are fixed to known values (a beat
-//! of a ring counter, `busy` = 1), so that the logic behind them folds away; wherever a fixed register's next value is
-//! not known to be the one that the next phase expects, a guard compares them and leaves the loop.
+//! The loop body holds one or more *phases*, one clock each. In a phase some registers are fixed to known values (a
+//! beat of a ring counter, `busy` = 1), so that the logic that they drive folds away; wherever a fixed register's next
+//! value is not known to be the one that the next phase expects, a guard compares them and leaves the loop.
 //!
 //! ```text
 //! entry:   one edge from the sample that the caller holds; guard
@@ -11,8 +11,8 @@
 //! phase p-1: …; leave if less than a whole round is left; edge; guard; back to phase 0
 //! ```
 //!
-//! Left in two ways: *behind a recorded sample* (a stop net, or the budget), or *behind an edge* whose sample is not
-//! recorded yet (a guard failed), which the last word of the state says.
+//! It ends at one of two points: *after a recorded sample* (a stop net, or the budget), or *after an edge* whose sample
+//! is not recorded yet (a guard failed), which the last word of the state says.
 
 use std::collections::{HashMap, HashSet};
 
@@ -39,7 +39,7 @@ pub(super) struct Plan<'a> {
     pub(super) phases: &'a [Phase],
     /// Each register and the net of its next value; the state begins with them.
     pub(super) registers: &'a [(Net, Net)],
-    /// Inputs, behind the registers in the state.
+    /// Inputs, after the registers in the state.
     pub(super) inputs: &'a [Net],
     pub(super) columns: &'a [Net],
     /// Rows from one column to the next.
@@ -116,7 +116,7 @@ pub(super) fn immediate(value: u64) -> i64 {
 }
 
 /// Generates the body of `fn(state, rows, clocks) -> recorded`, `rows` being the place of the next row in the first
-/// column; the builder stands in the entry block with those parameters. `clocks` is at least the number of phases.
+/// column; the builder is in the entry block with those parameters. `clocks` is at least the number of phases.
 /// Columns that are `resting` are not stored.
 pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuilder<'_>, entry: Block) {
     let parameters = f.block_params(entry).to_vec();
@@ -160,10 +160,10 @@ pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuild
             generator.leave_if(stop, &sample, recorded, false);
         }
         let last = number + 1 == plan.phases.len();
-        let mut left_behind = left;
+        let mut left_after = left;
         if last {
-            left_behind = generator.f.ins().iadd_imm(left, -rounds);
-            let ended = generator.f.ins().icmp_imm(IntCC::SignedLessThan, left_behind, rounds);
+            left_after = generator.f.ins().iadd_imm(left, -rounds);
+            let ended = generator.f.ins().icmp_imm(IntCC::SignedLessThan, left_after, rounds);
             generator.leave_if(ended, &sample, recorded, false);
         }
         let next = generator.edge(&phase.logic, &values, &sample);
@@ -172,7 +172,7 @@ pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuild
         sample = next;
         if last {
             let mut arguments: Vec<BlockArg> = carried.iter().map(|&index| sample[index].into()).collect();
-            arguments.extend([row, left_behind, recorded].map(BlockArg::from));
+            arguments.extend([row, left_after, recorded].map(BlockArg::from));
             generator.f.ins().jump(header, &arguments);
         }
     }
@@ -273,7 +273,7 @@ impl<'a, 'c> Generator<'a, 'c> {
         next.map(|(index, &(_, next))| values.get(&logic.net(next)).copied().unwrap_or(sample[index])).collect()
     }
 
-    /// Leaves behind an edge if a register is not as the phase wants it. With `logic` the next values that are
+    /// Leaves after an edge if a register is not as the phase expects. With `logic` the next values that are
     /// constants in it need no comparison.
     fn guard(&mut self, next: &Sample, logic: Option<&Simplified>, phase: &Phase, recorded: Value) {
         let mut unequal: Option<Value> = None;
@@ -314,7 +314,7 @@ impl<'a, 'c> Generator<'a, 'c> {
         self.f.switch_to_block(stay);
     }
 
-    /// Goes on where `condition` is not 0, with the registers written back; the other way begins with the block returned.
+    /// Leaves where `condition` is not 0, with the registers written back; the block returned is the other branch.
     pub(super) fn leaving(&mut self, condition: Value, sample: &Sample) -> Block {
         let (exit, stay) = (self.f.create_block(), self.f.create_block());
         self.f.set_cold_block(exit);

@@ -1,11 +1,11 @@
 //! The compiled engine: native code for long runs, the word engine for everything else.
 //!
 //! A run begins in the word engine. Once it has proved long, the clock loop is compiled (a millisecond or so) with
-//! what is known by then folded in: inputs of one bit (`load` = 0), and registers of few bits that have gone round in a
+//! what is known by then folded in: inputs of one bit (`load` = 0), and registers of few bits that have cycled with a
 //! short period all the time (a beat ring, `busy`). Guards leave the native loop where such a register does something
 //! else; the word engine then takes over, and a loop for the new circumstances is compiled, or one without assumptions
-//! after some tries. Every sample is recorded, so the outside sees no difference; or, where that is asked for, every sample in
-//! which a machine behind a pulse source is not idle.
+//! after some tries. Every sample is recorded, so the outside sees no difference; or, where that is asked for, every
+//! sample in which a machine driven by a pulse source is not idle.
 //!
 //! When inputs have changed (a block was loaded), a loop that was compiled for such inputs is entered at once.
 
@@ -38,7 +38,7 @@ struct Variant {
     native: Native,
     /// Values of the folded inputs.
     inputs: HashMap<Net, u64>,
-    /// Values of the fixed registers in the last phase: a call may begin behind it.
+    /// Values of the fixed registers in the last phase: a call may begin after it.
     last_phase: HashMap<Net, u64>,
     assumes_registers: bool,
     /// Times that a guard was left through.
@@ -144,7 +144,7 @@ impl Compiled {
         values.iter().all(|(&net, &value)| self.word.value(net) == value)
     }
 
-    /// The loop that may be entered behind the present sample and fills rows of this room.
+    /// The loop that may be entered after the present sample and fills this many rows.
     fn fitting(&self, stride: usize) -> Option<usize> {
         let fits = |variant: &Variant| {
             variant.native.stride() == stride && self.holds(&variant.inputs) && self.holds(&variant.last_phase)
@@ -185,7 +185,7 @@ impl Compiled {
         }
     }
 
-    /// Runs a loop behind the present sample, at most `clocks` clocks.
+    /// Runs a loop from the present sample on, at most `clocks` clocks.
     fn run_native(&mut self, variant: usize, clocks: u64, rows: &mut Rows) -> Option<Stop> {
         let count = self.registers.len();
         for (word, &(net, _)) in self.state.iter_mut().zip(&self.registers) {
@@ -208,7 +208,7 @@ impl Compiled {
         self.variants[variant].clocks += recorded;
         if edge {
             self.variants[variant].guards += 1;
-            // The word engine records the sample behind the edge that the loop left at.
+            // The word engine records the sample after the edge that the loop left at.
             self.word.finish_edge(rows);
             self.quiet = self.warm_up.saturating_sub(self.history.window());
             self.history.clear();

@@ -36,7 +36,7 @@ impl Native {
     /// Compiles a plan; `None` where this machine has no code generator, or the rows are too large for one.
     pub(super) fn compile(plan: &Plan<'_>) -> Option<Native> {
         let passes = !plan.running.is_empty();
-        // Behind the columns of sparse rows stand their clocks.
+        // After the columns of sparse rows come their clocks.
         let values = (plan.columns.len() + usize::from(passes)).checked_mul(plan.stride)?;
         if values > FARTHEST {
             return None;
@@ -97,8 +97,8 @@ impl Native {
         self.stride
     }
 
-    /// Runs up to `clocks` clocks, recording a row of each into `rows` from row `first` on; gives the number recorded. Where
-    /// samples are passed over, as many rows as the state says, and the number of clocks.
+    /// Runs up to `clocks` clocks, recording a row of each into `rows` from row `first` on; gives the number recorded.
+    /// Where samples are passed over, as many rows as the state says, and the number of clocks.
     ///
     /// # Panics
     /// If `state` or `rows` is too short, or `clocks` less than the number of phases.
@@ -111,9 +111,9 @@ impl Native {
             assert!((1..=room).contains(&most), "{most} rows, room for {room}");
             assert!(rows.len() >= self.columns * self.stride, "{} values", rows.len());
         }
-        // SAFETY: the code touches `state_words` words of `state`, and in each of `columns` columns of `stride` values at
-        // most `clocks` values behind `first`, or as many as its word of the room says, all of which the assertions have
-        // checked; it calls nothing and keeps no pointer. The module that holds it lives.
+        // SAFETY: the code touches `state_words` words of `state`, and in each of `columns` columns of `stride` values
+        // at most `clocks` values after `first`, or as many as its word of the room says, all of which the assertions
+        // have checked; it calls nothing and keeps no pointer. The module that holds it lives.
         unsafe { (self.code)(state.as_mut_ptr(), rows[first..].as_mut_ptr(), clocks) }
     }
 }

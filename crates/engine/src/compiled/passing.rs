@@ -1,19 +1,20 @@
 //! Code generation: a loop that passes over the samples in which a machine is idle.
 //!
-//! Most clocks of a machine behind a pulse source do no more than add to its phase. The inner loop computes nothing but
-//! the running registers and whether anything else wakes; all other registers stay in it, so that whatever depends on
-//! them alone is computed outside.
+//! Most clocks of a machine driven by a pulse source do no more than add to its phase. The inner loop computes nothing
+//! but the running registers and whether anything else wakes; all other registers stay in it, so that whatever depends
+//! on them alone is computed outside.
 //!
 //! ```text
 //! entry:  one edge from the sample that the caller holds
-//! awake:  settle; record a row; leave at a stop net, with no room, or no clocks left; if all rests: idle, with the edge of
+//! awake:  settle; record a row; leave at a stop net, with no room, or no clocks left; if all rests: idle, with the
+//! edge of
 //!         the running registers; otherwise: edge; awake
 //! idle:   settle the running registers; if anything wakes: awake; extremes; leave if no clocks are left; edge; idle
 //! ```
 //!
-//! The words of the state behind registers and inputs: [`ROOM`] rows that fit, and on return those recorded; [`CLOCK`], of
-//! the sample that the caller holds; four [`Extremes`](stepwave_netlist::Extremes) words of each running register, of
-//! unsigned values passed over: the least, the greatest, bits that were 1 in any and in all of them.
+//! The words of the state after registers and inputs: [`ROOM`] rows that fit, and on return those recorded; [`CLOCK`],
+//! of the sample that the caller holds; four [`Extremes`](stepwave_netlist::Extremes) words of each running register,
+//! of unsigned values passed over: the least, the greatest, bits that were 1 in any and in all of them.
 
 use std::collections::BTreeSet;
 
@@ -35,15 +36,15 @@ pub(super) const HEAD: usize = 2;
 /// Words of a running register.
 pub(super) const EXTREMES: usize = 4;
 
-/// Words of the state behind registers and inputs.
+/// Words of the state after registers and inputs.
 pub(super) fn words(plan: &Plan<'_>) -> usize {
     HEAD + EXTREMES * plan.running.len()
 }
 
 /// When a machine rests: no register but the running ones changes at the next edge.
 struct Rest {
-    /// Nets of the entry, 1 bit each, in the order of evaluation: one of them is 1 where a register that holds its value
-    /// otherwise takes another.
+    /// Nets of the entry, 1 bit each, in the order of evaluation: one of them is 1 where a register that holds its
+    /// value otherwise takes another.
     enables: Vec<Net>,
     /// The netlist while they are all 0.
     logic: Simplified,
@@ -89,7 +90,7 @@ fn enables(netlist: &Netlist, register: Net, mut next: Net) -> Vec<Net> {
     found
 }
 
-/// What goes round in both loops beside the registers.
+/// Loop-carried values of both loops, other than the registers.
 #[derive(Clone)]
 struct Account {
     /// Clocks since the caller's sample.
@@ -283,7 +284,7 @@ impl Passing<'_, '_> {
         self.generator.f.ins().jump(block, &arguments);
     }
 
-    /// Goes on in a block, with its parameters in the place of some registers.
+    /// Continues in a block, with its parameters in the place of some registers.
     fn enter(&mut self, block: Block, registers: &[usize], others: &Sample) -> (Sample, Account) {
         self.generator.f.switch_to_block(block);
         let parameters = self.generator.f.block_params(block).to_vec();

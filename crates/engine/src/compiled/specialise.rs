@@ -105,7 +105,7 @@ pub(super) struct Specialised {
 
 impl Specialised {
     /// Folds in the inputs of one bit that matter, at their present values, and the registers of `period`. `watched`
-    /// adds the nets observed beside the registers.
+    /// adds the observed nets to the registers.
     pub(super) fn new(
         netlist: &Netlist,
         inputs: &[Net],

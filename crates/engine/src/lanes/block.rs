@@ -92,8 +92,8 @@ fn any<T: Lane>(row: &Row<T>, lanes: usize) -> bool {
     seen.iter().fold(T::default(), |any, &word| any.or(word)) != T::default()
 }
 
-/// The rows that operations read. Operands are copied a group at a time: that tells the compiler that writing the result
-/// does not change them, so that it uses vectors, and the copies are registers.
+/// The rows that operations read. Operands are copied a group at a time: so the compiler knows that writing the result
+/// does not change them: it uses vectors, and keeps the copies in registers.
 struct Operands<'a, T> {
     rows: &'a [Box<Row<T>>],
     groups: usize,

@@ -20,7 +20,7 @@ pub(super) struct Wanted<'a> {
     pub(super) accumulators: &'a [(Reduce, Vec<Net>)],
     /// Nets to be seen in each sample.
     pub(super) outputs: &'a [Net],
-    /// Nets of which the code is to say whether one is 1, in an output of its own behind the others.
+    /// Nets of which an extra output, after the others, says whether one is 1.
     pub(super) any: &'a [Net],
 }
 
@@ -148,7 +148,7 @@ fn numbers<const N: usize>(lowering: &mut Lowering, nets: [Net; N]) -> [(Value, 
     nets.map(|net| (lowering.net(net), lowering.width(net).get()))
 }
 
-/// Which value stands in which row, and until when.
+/// Which value is in which row, and until when.
 struct Rows {
     last_use: Vec<Option<usize>>,
     row: HashMap<Value, Slot>,

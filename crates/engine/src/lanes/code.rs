@@ -51,7 +51,7 @@ pub(super) enum Do<V> {
     EqualIf(V, u64, V),
     /// a = pattern where the second is ones, or the third.
     EqualIfOr(V, u64, V, V),
-    /// Ones where a is a pattern and the value beside the pattern is ones, for one of two; or where the last is ones.
+    /// Ones where a is a pattern and the value next to the pattern is ones, for one of two; or where the last is ones.
     EqualEitherOr(V, [(u64, V); 2], V),
     /// a + b leaves the range in two's complement.
     AddOverflow(V, V),
@@ -83,7 +83,7 @@ pub(super) enum Do<V> {
     LeastSigned(V, V),
     /// Accumulator: greatest value in two's complement.
     GreatestSigned(V, V),
-    /// Accumulator: sum of the numbers of so many bits.
+    /// Accumulator: sum of numbers of this many bits.
     Sum(V, V, u32),
     /// Accumulator: sum of the gaps of roots; base and offset with their numbers of bits.
     RootGaps(V, [(V, u32); 2]),
@@ -172,7 +172,7 @@ pub(super) struct Operation {
     pub(super) what: Do<Slot>,
 }
 
-/// A register of the machine, and the row that holds its next value behind the operations; none if it keeps its value.
+/// A register of the machine, and the row that holds its next value after the operations; none if it keeps its value.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegisterRow {
     pub(super) width: Width,

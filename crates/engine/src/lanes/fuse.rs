@@ -56,8 +56,8 @@ fn and(lowering: &mut Lowering, a: Value, b: Value) -> Option<Simpler> {
     match lowering.what(a)? {
         Do::Invert(inner, u64::MAX) => Some(As(Do::AndNot(b, inner))),
         Do::EqualTo(inner, p) => Some(As(Do::EqualIf(inner, p, b))),
-        // Adding nothing carries nothing, so the condition may stand before the adder, where its sum is needed too. But
-        // a number under the condition of a carry is no condition.
+        // Adding nothing carries nothing, so the condition may be applied before the adder, where its sum is needed
+        // too. But a number gated by a carry is not a condition.
         Do::Carry(x, y) if lowering.is_single(b) => {
             let sum = lowering.make(Do::AddIf(x, y, b));
             Some(As(Do::Less(sum, x)))

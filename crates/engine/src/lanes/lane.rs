@@ -1,6 +1,6 @@
 //! One machine word of a lane, and the arrays of them that an operation runs over.
 //!
-//! A value stands at the *top* of its word, zeros below it: sums and differences wrap, carries and comparisons come out
+//! A value is at the *top* of its word, zeros below it: sums and differences wrap, carries and comparisons come out
 //! right without a mask. A net of one bit fills its word instead: all ones or all zeros, so that it selects with `&`.
 
 use stepwave_netlist::bits::Width;

@@ -125,7 +125,7 @@ impl<'n> Lowering<'n> {
         }
     }
 
-    /// The operation behind a value, if it is one.
+    /// The operation that computes a value, if there is one.
     pub(super) fn what(&self, value: Value) -> Option<Do<Value>> {
         match self.nodes[value.0] {
             Node::Do(what) => Some(what),

@@ -40,7 +40,7 @@ use worker::Worker;
 #[derive(Clone, Debug)]
 pub struct LaneProgram {
     watch: LaneWatch,
-    /// Width of the net behind each number asked for.
+    /// Width of the net of each number asked for.
     widths: Vec<Width>,
     /// All inputs with their widths.
     inputs: Vec<(Net, Width)>,
@@ -57,7 +57,7 @@ impl LaneProgram {
     /// Code for a design.
     ///
     /// # Panics
-    /// If a net of the watch is none of the design's.
+    /// If a net of the watch is not in the design.
     #[must_use]
     pub fn new(design: &Design, watch: &LaneWatch) -> LaneProgram {
         let netlist = design.netlist();
@@ -153,7 +153,7 @@ fn accumulators(watch: &LaneWatch) -> (Vec<(Reduce, Vec<Net>)>, Vec<Net>) {
     let mut last = Vec::new();
     let mut since: Vec<Net> = Vec::new();
     let mut accumulators: Vec<(Reduce, Vec<Net>)> = Vec::new();
-    // Where the clocks since a net was not 0 will be counted: behind all that is observed.
+    // Where the clocks since a net was not 0 will be counted: after all that is observed.
     let observed = watch.observe.iter().filter(|observe| !matches!(observe, Observe::Last(_))).count();
     let mut counted = |net: Net| {
         let known = since.iter().position(|&known| known == net);
@@ -194,7 +194,7 @@ fn is_wide(observe: &Observe, limit: u64) -> bool {
     }
 }
 
-/// The registers that the roots depend on, through any number of edges, and the widest net on the way.
+/// The registers that the roots depend on, through any number of edges, and the widest net on these paths.
 fn needed(design: &Design, mut pending: Vec<Net>) -> (Vec<Net>, u32) {
     let netlist = design.netlist();
     let mut seen = vec![false; netlist.cells.len()];

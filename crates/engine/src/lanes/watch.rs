@@ -1,4 +1,4 @@
-//! What lanes run and what they tell: jobs in, ends out.
+//! What lanes run and report: jobs in, ends out.
 
 use super::lane::Lane;
 use stepwave_netlist::cells::Net;
@@ -28,7 +28,7 @@ pub enum Observe {
     Sum {
         /// The net.
         net: Net,
-        /// Bits that hold every sum; 64 at most. A sum that needs more is told modulo 2^64 or 2^32.
+        /// Bits that hold every sum; 64 at most. A sum that needs more is given modulo 2^64 or 2^32.
         bits: u32,
     },
     /// Sum of [`root_gap`] over all samples.
@@ -40,9 +40,9 @@ pub enum Observe {
         /// As of [`Observe::Sum`].
         bits: u32,
     },
-    /// Fewest clocks between a sample in which the net is not 0 and the next such one; 0 where there are no two.
+    /// Fewest clocks between a sample in which the net is not 0 and the next such sample; 0 with fewer than two.
     LeastGap(Net),
-    /// Most clocks between a sample in which the net is not 0 and the next such one; 0 where there are no two.
+    /// Most clocks between a sample in which the net is not 0 and the next such sample; 0 with fewer than two.
     GreatestGap(Net),
 }
 
@@ -115,7 +115,7 @@ impl Reduce {
 pub struct Quiet {
     /// Nets that are not 0 as long as something happens.
     pub nets: Vec<Net>,
-    /// So many clocks with all of them 0 are borne, as long as registers change.
+    /// This many clocks with all of them 0 are allowed, as long as registers change.
     pub clocks: u64,
     /// A lane is looked at in the samples whose clock plus 1 is a multiple of this; at least 1. With all of the nets 0
     /// for as many clocks it is given up if no register changes at the next edge. (A register that nothing observed
@@ -164,7 +164,7 @@ pub enum LaneStop {
     Done,
     /// The net `LaneWatch::traps[_]` of this index was 1, the first of those that were.
     Trap(usize),
-    /// Nothing happened for so many clocks.
+    /// Nothing happened for this many clocks.
     Quiet {
         /// Clocks since one of the nets was not 0.
         clocks: u64,

@@ -140,7 +140,7 @@ impl<'p, T: Lane> Worker<'p, T> {
         }
     }
 
-    /// Reads the sample before the last edge in up to a group of lanes: they end, load, or go on.
+    /// Reads the sample before the last edge in up to a group of lanes: they end, load, or continue.
     fn look(&mut self, lanes: &[usize], free: &mut Vec<usize>) {
         let (running, whole) = (&self.program.running, &self.program.whole);
         for (place, &lane) in lanes.iter().enumerate() {
@@ -227,7 +227,7 @@ impl<'p, T: Lane> Worker<'p, T> {
             }
             Observe::LeastGap(_) => {
                 let least = word(accumulators.next(), &self.lanes, lane);
-                // Where there were no two, it is negative.
+                // With fewer than two it is negative.
                 if least.less_signed(T::default()) { 0 } else { least.get() }
             }
             Observe::Min { .. } | Observe::Max { .. } => word(accumulators.next(), &self.lanes, lane).decode(*width),
@@ -236,7 +236,7 @@ impl<'p, T: Lane> Worker<'p, T> {
         LaneEnd { stop, clock: self.tick.wrapping_sub(self.busy[lane].start), values }
     }
 
-    /// Loads the next block of up to a group of lanes, behind the last edge: one sample and the edge behind it.
+    /// Loads the next block of up to a group of lanes, after the last edge: one sample and the next edge.
     fn load(&mut self, lanes: &[usize]) {
         if lanes.is_empty() {
             return;
@@ -272,7 +272,7 @@ impl<'p, T: Lane> Worker<'p, T> {
         }
     }
 
-    /// The inputs of the next block, and the clock behind its load.
+    /// The inputs of the next block, and the clock after its load.
     fn next_block(&mut self, lane: usize) {
         let busy = &mut self.busy[lane];
         busy.start = if busy.loaded == 0 { self.tick } else { busy.start.wrapping_sub(1) };

@@ -1,7 +1,7 @@
 //! Expressions: exactly as many bits as the net has, in every context.
 //!
 //! Verilog widens operands to their context and takes a context as signed where all operands are. Neither happens here:
-//! operands of one operator are equally wide, as the netlist has them; what changes a width stands in braces, which are
+//! operands of one operator are equally wide, as the netlist has them; what changes a width is in braces, which are
 //! a context of their own; comparisons say `$signed` or `$unsigned` where their operands do not.
 
 use std::cell::RefCell;
@@ -94,7 +94,7 @@ impl Writer<'_> {
     pub(super) fn name(&self, net: Net, place: ScopeId) -> String {
         let Some(entry) = self.names.first(net) else { return self.names.unnamed(net) };
         match self.names.path_from(self.netlist, entry, place) {
-            // Yosys takes no escaped name behind a dot: the scope has a further name for it.
+            // Yosys accepts no escaped name after a dot: the scope has a further name for it.
             Some(path) if self.names.is_escaped(entry) && path.contains('.') => {
                 let scopes = path.strip_suffix(&self.names.named[entry]).unwrap_or_default();
                 format!("{scopes}{}", self.names.unnamed(net))
@@ -224,7 +224,7 @@ impl Writer<'_> {
 
     fn both(&self, a: Net, operator: &str, b: Net, binding: Binding, place: ScopeId) -> Expression {
         let (a, b) = (self.read(a, place), self.read(b, place));
-        // Only of these may an equal one stand on the right without parentheses; mixed ones get them for the reader.
+        // Only these may have an equal operator on the right without parentheses; mixed ones get them for the reader.
         let chains = matches!(binding, Binding::And | Binding::Or | Binding::Xor);
         let side = |side: &Expression, chained: bool| {
             let same = side.binding == binding && chained;

@@ -135,7 +135,7 @@ impl Layout {
                 uses[next.index()] += 1;
             }
         }
-        // Users come behind what they use, so that all uses of a net are known when it is its turn.
+        // Users come after what they use, so that all uses of a net are known when it is its turn.
         for net in netlist.nets().collect::<Vec<_>>().into_iter().rev() {
             let index = net.index();
             if root[index] || uses[index] > 0 || self.wide_of(net).is_some() {
@@ -219,7 +219,7 @@ impl Layout {
                 continue;
             };
             join(&mut wide_places[wide], place);
-            // All other parts came before this one, from behind.
+            // All other parts came before this one, from the end.
             let place = wide_places[wide].unwrap_or(ScopeId::TOP);
             self.operands(netlist, net, |input, _| join(&mut places[input.index()], place));
         }

@@ -33,7 +33,7 @@ pub(crate) struct Names {
     parents: Vec<Option<ScopeId>>,
     /// Entry in `Netlist::names` of the first name of each net.
     first: Vec<Option<usize>>,
-    /// What stands in front of the names of unnamed nets.
+    /// The prefix of the names of unnamed nets.
     prefix: String,
     /// Names that occur in each scope.
     taken: Vec<HashSet<String>>,
@@ -134,24 +134,24 @@ impl Names {
     }
 
     /// Scopes from the top to this one.
-    fn way(&self, scope: ScopeId) -> Vec<ScopeId> {
-        let mut way = vec![scope];
-        while let Some(parent) = way.last().and_then(|scope| self.parents[scope.index()]) {
-            way.push(parent);
+    fn scope_path(&self, scope: ScopeId) -> Vec<ScopeId> {
+        let mut path = vec![scope];
+        while let Some(parent) = path.last().and_then(|scope| self.parents[scope.index()]) {
+            path.push(parent);
         }
-        way.reverse();
-        way
+        path.reverse();
+        path
     }
 
     /// The innermost scope around both.
     pub(super) fn common(&self, a: ScopeId, b: ScopeId) -> ScopeId {
-        let (a, b) = (self.way(a), self.way(b));
+        let (a, b) = (self.scope_path(a), self.scope_path(b));
         a.iter().zip(&b).take_while(|(a, b)| a == b).last().map_or(ScopeId::TOP, |(scope, _)| *scope)
     }
 
     /// The path of an entry of `Netlist::names` from the top scope.
     pub(crate) fn path(&self, netlist: &Netlist, entry: usize) -> String {
-        let scopes = &self.way(netlist.names[entry].scope)[1..];
+        let scopes = &self.scope_path(netlist.names[entry].scope)[1..];
         let scopes: String = scopes.iter().map(|scope| format!("{}.", self.scopes[scope.index()])).collect();
         scopes + &self.named[entry]
     }
@@ -160,12 +160,12 @@ impl Names {
     pub(super) fn path_from(&self, netlist: &Netlist, entry: usize, from: ScopeId) -> Option<String> {
         let target = netlist.names[entry].scope;
         let common = self.common(from, target);
-        let down = &self.way(target)[self.way(common).len()..];
+        let down = &self.scope_path(target)[self.scope_path(common).len()..];
         let path: String = down.iter().map(|scope| format!("{}.", self.scopes[scope.index()])).collect();
         let path = path + &self.named[entry];
         let head = down.first().map_or(&self.named[entry], |scope| &self.scopes[scope.index()]);
         let head = head.trim_start_matches('\\').trim_end();
-        let between = &self.way(from)[self.way(common).len()..];
+        let between = &self.scope_path(from)[self.scope_path(common).len()..];
         let hidden = between.iter().any(|scope| self.taken[scope.index()].contains(head));
         (!hidden).then_some(path)
     }

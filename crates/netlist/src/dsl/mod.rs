@@ -2,13 +2,13 @@
 //!
 //! A [`Module`] is the builder; a [`Scope`] is an instance in its hierarchy; a [`Signal`] is a net with a reading
 //! (unsigned or two's complement); a [`Register`] is closed by a chain of `when`s. A plain function that takes a scope
-//! and signals is a part. There is no `+`: arithmetic bears the names of Rust's integer methods, so that the reader
+//! and signals is a part. There is no `+`: arithmetic has the names of Rust's integer methods, so that the reader
 //! sees where the carry goes.
 //!
 //! Mistakes (unequal widths, a register without next value, a name used twice) never panic; they are collected and
 //! come out of [`Module::finish`], each with the source line that made it. What only follows from a mistake is not
-//! told: a cell that breaks a rule is replaced by a constant of the width asked for; where that width is the mistake,
-//! the constant is a *guess*, and what is made from a guess is one too, without a further word.
+//! reported: a cell that breaks a rule is replaced by a constant of the width asked for; where that width is the
+//! mistake, the constant is a *guess*, and what is made from a guess is one too, without a further diagnostic.
 
 mod register;
 mod signal;
@@ -41,7 +41,7 @@ struct State {
     used_names: HashMap<(ScopeId, String), Place>,
     /// Where each register got its next value.
     driven: HashMap<Net, Place>,
-    /// Nets whose width means nothing, because of a mistake that has been told.
+    /// Nets whose width means nothing, because of a mistake that has been reported.
     guesses: HashSet<Net>,
 }
 
@@ -53,7 +53,7 @@ impl Module {
         Module::with_overflow(name, OnOverflow::Trap)
     }
 
-    /// An empty module whose strict cells do as told when their exact result does not fit.
+    /// An empty module whose strict cells do as `on_overflow` says when their exact result does not fit.
     #[track_caller]
     #[must_use]
     pub fn with_overflow(name: &str, on_overflow: OnOverflow) -> Module {
@@ -69,7 +69,7 @@ impl Module {
         module
     }
 
-    /// A module that goes on where a finished netlist ended: its nets keep their numbers, and [`Scope::net`] makes
+    /// A module that continues a finished netlist: its nets keep their numbers, and [`Scope::net`] makes
     /// signals of them. What is added is measured or shown; the netlist itself stays as it is. Its strict cells trap.
     #[must_use]
     pub fn continuing(netlist: Netlist) -> Module {
@@ -176,7 +176,7 @@ fn place_of(netlist: &Netlist, net: Net) -> Place {
     }
 }
 
-/// An instance in the hierarchy: the place where a part's registers and named nets stand.
+/// An instance in the hierarchy: the scope of a part's registers and named nets.
 #[derive(Clone, Copy, Debug)]
 pub struct Scope<'m> {
     module: &'m Module,
@@ -258,7 +258,7 @@ impl<'m> Scope<'m> {
     #[track_caller]
     #[must_use]
     pub fn lit_signed(self, bits: u32, value: i64) -> Signal<'m> {
-        // That there is no such width is told with the cell.
+        // The diagnostic of the cell says that there is no such width.
         let width = Width::new(u64::from(bits)).unwrap_or(Width::MAX);
         let constant = Bits::exact(width, i128::from(value), true);
         if constant.is_none() {
@@ -303,7 +303,7 @@ impl<'m> Scope<'m> {
     fn add_property(self, property: Property) {
         let width = self.module.state.borrow().netlist.width(property.never);
         if self.module.is_guess(property.never) {
-            // Its mistake has been told.
+            // Its mistake has been reported.
         } else if width == Width::ONE {
             self.module.state.borrow_mut().netlist.properties.push(property);
         } else {

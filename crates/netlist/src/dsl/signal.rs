@@ -63,13 +63,13 @@ impl<'m> Signal<'m> {
         Signal::new(self.scope, self.scope.module.push(op, bits), signed)
     }
 
-    /// A signal that stands beside this one, if it is of the same module; else a diagnostic and a guess.
+    /// Another operand of the same cell, if it is of the same module; else a diagnostic and a guess.
     #[track_caller]
     pub(super) fn own(self, other: Signal<'m>) -> Signal<'m> {
         self.scope.own(other)
     }
 
-    /// Stands for a signal that cannot be, of which a diagnostic has been told.
+    /// A placeholder for a signal that cannot exist, after a diagnostic.
     pub(super) fn is_guess(self) -> bool {
         self.scope.module.is_guess(self.net)
     }
@@ -100,7 +100,7 @@ impl<'m> Signal<'m> {
         make: fn(Net, Net) -> Op,
     ) -> (Signal<'m>, Signal<'m>) {
         let rhs = self.own(rhs);
-        // That the operands are not equally wide is told of the result alone.
+        // Operands of unequal width are reported once, of the result.
         let equally_wide = self.bits() == rhs.bits();
         let flag = if equally_wide { self.compared(rhs, flag) } else { self.scope.lit(1, 0) };
         (flag, self.with(rhs, make))
@@ -214,7 +214,7 @@ impl<'m> Signal<'m> {
     #[must_use]
     pub fn mux(self, high: Signal<'m>, low: Signal<'m>) -> Signal<'m> {
         let high = self.own(high);
-        // Where the select is the one of another module, it is told once.
+        // A select of another module is reported once.
         let low = if high.is_guess() { high } else { self.own(low) };
         high.same_width(Op::Mux { select: self.net, high: high.net, low: low.net })
     }

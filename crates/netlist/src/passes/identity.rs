@@ -95,7 +95,7 @@ fn mux(builder: &mut Builder, select: Net, high: Net, low: Net, width: Width) ->
     if let Op::Not(inner) = builder.op(select) {
         return Some(As(Op::Mux { select: inner, high: low, low: high }));
     }
-    // A multiplexer behind another one with the same select never shows the other side.
+    // A multiplexer fed by another one with the same select never shows the other side.
     if let Op::Mux { select: inner, high: shown, .. } = builder.op(high)
         && inner == select
     {
@@ -148,7 +148,7 @@ fn slice(builder: &mut Builder, of: Net, low: u8, width: Width) -> Option<Simple
             if top <= split {
                 Some(As(Op::Slice { of: part, low }))
             } else if from >= split {
-                // At most 63 bits lie below the high part.
+                // At most 63 bits are below the high part.
                 Some(As(Op::Slice { of: high, low: low - u8::try_from(split).unwrap_or(low) }))
             } else {
                 None

@@ -15,7 +15,7 @@ pub(super) struct Builder {
 }
 
 impl Builder {
-    /// The operator behind a net.
+    /// The operator that drives a net.
     pub(super) fn op(&self, net: Net) -> Op {
         self.cells[net.index()].op
     }

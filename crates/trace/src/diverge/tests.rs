@@ -129,7 +129,7 @@ fn more_cycles_on_one_side_are_a_difference_of_their_own() {
 }
 
 #[test]
-fn an_offset_lays_a_sample_beside_a_later_or_an_earlier_one() {
+fn an_offset_pairs_a_sample_with_a_later_or_an_earlier_one() {
     let (a, b) = (COUNTER.wave(), Counter { start: 3, cycles: 9, ..COUNTER }.wave());
     let by = |offset| options(|o| o.by = By::Clock { offset });
     assert!(!same(&a, &b));

@@ -77,7 +77,7 @@ fn the_exclusive_or_of_a_flipped_bit_is_that_bit_in_that_cycle() {
 }
 
 #[test]
-fn by_time_each_change_stands_at_its_own_time_in_the_finer_unit() {
+fn by_time_each_change_is_at_its_own_time_in_the_finer_unit() {
     let by_time = Options { by: By::Time, ..Options::default() };
     let late = Counter { unit: "100 ps", period: 100, delay: 7, cycles: 13, ..COUNTER }.wave();
     let merged = wave(&merged(&COUNTER.wave(), &late, &by_time));
@@ -135,7 +135,7 @@ fn a_time_scale_that_is_not_1_10_or_100_becomes_one_that_is() {
         file("$var wire 1 ! clk $end $var wire 1 \" q $end", "#0 0! 0\" #5 1! #9 1\"").replace("1 ns", unit)
     };
     let odd = merged(&wave(&text("500 ps")), &wave(&text("500 ps")), &Options::default());
-    // The samples of a cycle stand from its edge on, which comes after 5 times 500 ps; the end after 9.
+    // The samples of a cycle are shown from its edge on, which comes after 5 times 500 ps; the end after 9.
     assert!(odd.contains("$timescale 100 ps $end") && odd.ends_with("#25\n1!\n1\"\n1#\n#45\n"), "{odd}");
     let none = text("1 ns").replace("$timescale 1 ns $end", "");
     let none = merged(&wave(&none), &wave(&none), &Options { by: By::Time, ..Options::default() });

@@ -106,7 +106,8 @@ impl<'f, 'w> Track<'f, 'w> {
                 if width > 1 {
                     line.push(b'b');
                 }
-                // Nearly all values are plain numbers; the others are taken bit by bit. Wide vectors are never written whole.
+                // Nearly all values are plain numbers; the others are taken bit by bit. Wide vectors are never written
+                // whole.
                 match (number(value), other.map(|other| (other, number(other)))) {
                     (None, other) if width > WIDE => push_wide(line, value, other.map(|(other, _)| other), width),
                     (Some(a), None) => push_number(line, a, width),
@@ -162,7 +163,7 @@ fn push_wide(line: &mut Vec<u8>, value: Value<'_>, other: Option<Value<'_>>, wid
         return;
     };
     let length = a.len().max(b.len());
-    // One digit more stands for all those that neither has.
+    // One digit more represents all those that neither has.
     let from = if length < width as usize { length + 1 } else { length };
     let digit = |digits: &[u8], place: usize| {
         digits

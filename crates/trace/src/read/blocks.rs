@@ -1,5 +1,5 @@
-//! A quick look at the blocks of an FST file before it is decoded: what is cut off, and sizes that cannot be true or that
-//! would fill the memory.
+//! A quick look at the blocks of an FST file before it is decoded: what is cut off, and sizes that cannot be true or
+//! that would fill the memory.
 
 use super::{WaveError, limits};
 use std::collections::HashMap;
@@ -69,8 +69,8 @@ fn too_much(name: &str, what: &str, limit: u64) -> WaveError {
     WaveError::TooMuch { name: name.into(), what: what.into(), limit: limits::mebibytes(limit) }
 }
 
-/// Walks the blocks of an FST file: each must end inside the file, claim no more content than its bytes can hold, and all
-/// together no more than the [limit](limits::inflated).
+/// Walks the blocks of an FST file: each must end inside the file, claim no more content than its bytes can hold, and
+/// all together no more than the [limit](limits::inflated).
 pub(super) fn check(input: &mut (impl Read + Seek), name: &str, length: u64) -> Result<(), WaveError> {
     let cut = |at: u64| WaveError::CutOff { name: name.into(), place: format!("byte {at}"), what: "a block" };
     let io = |source| WaveError::Io { name: name.into(), source };
@@ -98,7 +98,8 @@ pub(super) fn check(input: &mut (impl Read + Seek), name: &str, length: u64) -> 
         }
         at = next;
     }
-    // A file that is cut off between two blocks looks whole but for their number. While one is written the header says 0.
+    // A file that is cut off between two blocks looks whole but for their number. While one is written the header says
+    // 0.
     if found < said {
         return Err(WaveError::CutOff {
             name: name.into(),
@@ -109,9 +110,9 @@ pub(super) fn check(input: &mut (impl Read + Seek), name: &str, length: u64) -> 
     Ok(())
 }
 
-/// The bytes of memory that the block of this kind, whose length field is at `at`, claims; nothing if its sizes cannot be
-/// true. The decoder reserves memory by them before it looks any further, and running out of memory is no error that can
-/// be caught.
+/// The bytes of memory that the block of this kind, whose length field is at `at`, claims; nothing if its sizes cannot
+/// be true. The decoder reserves memory by them before it looks any further, and running out of memory is not an error
+/// that can be caught.
 fn plausible(input: &mut (impl Read + Seek), kind: u8, at: u64, length: u64) -> io::Result<Option<u64>> {
     // The most that deflate makes of a byte; LZ4 stays below.
     let expanded = |bytes: u64| bytes.saturating_mul(1032);
@@ -138,7 +139,7 @@ fn plausible(input: &mut (impl Read + Seek), kind: u8, at: u64, length: u64) -> 
     })
 }
 
-/// As [`plausible`], of a block of changes. At its end stand the size of the table of places, the table of times, and the
+/// As [`plausible`], of a block of changes. At its end are the size of the table of places, the table of times, and the
 /// sizes of the latter.
 fn changes(input: &mut (impl Read + Seek), kind: u8, at: u64, length: u64) -> io::Result<Option<u64>> {
     let expanded = |bytes: u64| bytes.saturating_mul(1032);
@@ -173,7 +174,7 @@ fn changes(input: &mut (impl Read + Seek), kind: u8, at: u64, length: u64) -> io
             0 => length,
             size => size,
         };
-        // Unpacking of FastLZ goes on beyond what is claimed.
+        // Unpacking of FastLZ continues beyond the claimed size.
         let beyond = if fastlz { length.saturating_mul(255).saturating_mul(used - 1) } else { 0 };
         claimed = claimed.saturating_add(size.saturating_mul(*used)).saturating_add(beyond);
     }

@@ -96,8 +96,8 @@ impl Names {
         Ok(())
     }
 
-    /// The signals, no two of one path. A vector whose bits are declared one by one becomes whole; its changes are added
-    /// to `stored`.
+    /// The signals, no two of one path. A vector whose bits are declared one by one becomes whole; its changes are
+    /// added to `stored`.
     pub(super) fn signals(self, stored: &mut Vec<Changes>) -> Result<Vec<Signal>, String> {
         let mut unique = Unique::default();
         let mut signals = Vec::with_capacity(self.vars.len());
@@ -134,7 +134,7 @@ impl Parts {
         Self { order: VecDeque::from([first.stored]), range: first.index.unwrap_or_default() }
     }
 
-    /// Whether the variable goes on with the vector that began with `first`, as some simulators declare vectors.
+    /// Whether the variable continues the vector that began with `first`, as some simulators declare vectors.
     fn takes(&self, first: &Declared, next: &Declared, stored: &[Changes]) -> bool {
         let bits = |var: &Declared| stored.get(var.stored).is_some_and(|changes| changes.kind().0 == Kind::Unsigned);
         let Some((msb, lsb)) = next.index.filter(|_| first.index.is_some()) else { return false };
@@ -224,8 +224,8 @@ impl Index {
     }
 }
 
-/// Takes a name apart: without its bit range, and the range. An index that is no bit range, but picks an element of an
-/// array, stays as a part of the path.
+/// Takes a name apart: without its bit range, and the range. An index that is not a bit range, but picks an element of
+/// an array, stays as a part of the path.
 fn split(raw: &str, width: u32, bits: bool) -> Result<(String, Option<(i64, i64)>), String> {
     let raw = raw.trim_end();
     // All of an escaped name up to its blank is its name.

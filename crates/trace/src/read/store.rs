@@ -52,10 +52,10 @@ impl Written {
     }
 }
 
-/// Why a value is none of a signal.
+/// Why a value does not fit a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Misfit {
-    /// A character that is no state of a bit.
+    /// A character that is not a state of a bit.
     Digit(u8),
     /// No digit at all.
     Empty,
@@ -144,7 +144,7 @@ impl Changes {
         Ok(())
     }
 
-    /// A real number; one equal to the last is no change.
+    /// A real number; one equal to the last is not a change.
     pub(super) fn real(&mut self, time: u32, real: f64) -> Result<(), Misfit> {
         let Values::Reals(reals) = &mut self.values else { return Err(Misfit::Kind) };
         if reals.last().is_none_or(|last| last.to_bits() != real.to_bits()) {
@@ -154,7 +154,7 @@ impl Changes {
         Ok(())
     }
 
-    /// A text; one equal to the last is no change.
+    /// A text; one equal to the last is not a change.
     pub(super) fn text(&mut self, time: u32, text: &str) -> Result<(), Misfit> {
         let Values::Texts(texts) = &mut self.values else { return Err(Misfit::Kind) };
         if self.times.is_empty() || texts.get(self.times.len() - 1) != text.as_bytes() {
@@ -164,7 +164,7 @@ impl Changes {
         Ok(())
     }
 
-    /// The digits of a vector, the most significant first; equal to the last ones they are no change.
+    /// The digits of a vector, the most significant first; equal to the last ones they are not a change.
     pub(super) fn bits(&mut self, time: u32, written: &[u8]) -> Result<(), Misfit> {
         let (Kind::Unsigned, width) = self.kind() else { return Err(Misfit::Kind) };
         let mut lower = Vec::new();

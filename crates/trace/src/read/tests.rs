@@ -123,7 +123,7 @@ fn the_clock_is_the_shallowest_clk_or_clock_unless_named() {
 }
 
 #[test]
-fn a_file_without_a_clock_is_read_and_points_to_the_way_out() {
+fn a_file_without_a_clock_is_read_and_names_the_remedy() {
     let wave = wave(&file("$var wire 1 ! q $end", "#0 0! #1 1!"));
     let problem = wave.cycles().expect_err("no clock");
     assert!(matches!(&problem, ClockError::None { name, .. } if name == "memory"));

@@ -2,8 +2,8 @@
 
 use super::Timescale;
 
-/// Reads what stands between `$timescale` and `$end`: a number, also a decimal fraction, and a unit. Inside, why it cannot
-/// be read.
+/// Reads the text between `$timescale` and `$end`: a number, also a decimal fraction, and a unit. The error says why it
+/// cannot be read.
 pub(super) fn parse(text: &str) -> Result<Timescale, String> {
     let packed: String = text.split_ascii_whitespace().collect();
     let unit = packed.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');

@@ -76,8 +76,8 @@ pub struct Vector<'w> {
     pub(super) content: Content<'w>,
 }
 
-/// What a vector holds. Equal vectors of one width have equal content: digits stand only where a number cannot, and are
-/// the fewest that extend to the value, in lower case.
+/// What a vector holds. Equal vectors of one width have equal content: digits are used only where a number cannot be,
+/// and are the fewest that extend to the value, in lower case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content<'w> {
     Number(u128),
@@ -106,7 +106,7 @@ impl<'w> Vector<'w> {
             .chain(written.iter().map(|digit| char::from(*digit)))
     }
 
-    /// The fewest digits that extend to the value, of a vector that is no number.
+    /// The fewest digits that extend to the value, of a vector that is not a number.
     pub(crate) fn shortest(self) -> Option<&'w [u8]> {
         if let Content::Digits(digits) = self.content { Some(digits) } else { None }
     }
@@ -131,7 +131,7 @@ impl<'w> Vector<'w> {
     }
 }
 
-/// What stands to the left of digits that are fewer than the bits.
+/// The digit that extends a value with fewer digits than bits.
 pub(crate) fn extension(digits: &[u8]) -> char {
     match digits.first() {
         Some(b'x') => 'x',

@@ -239,7 +239,7 @@ fn quoted(word: &[u8]) -> String {
     if text.chars().count() <= 60 { text.into_owned() } else { text.chars().take(57).chain("...".chars()).collect() }
 }
 
-/// A time. Some programs write times as reals; what such a number does not say exactly is none.
+/// A time. Some programs write times as reals; an inexact number is not a time.
 fn whole(text: &str) -> Option<u64> {
     const EXACT: f64 = 9_007_199_254_740_992.0;
     let (digits, fraction) = text.split_once('.').unwrap_or((text, ""));

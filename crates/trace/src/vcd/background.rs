@@ -4,9 +4,9 @@ use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
 use std::thread::{self, JoinHandle};
 
-/// Parts under way: one that is written, and one that waits.
+/// Parts in flight: one that is written, and one that waits.
 const PARTS: usize = 2;
-/// An output that stays below so many bytes never needs a thread.
+/// An output smaller than this, in bytes, never needs a thread.
 const SMALL: usize = 1 << 20;
 
 /// Writes to `W` in a thread, in order, byte by byte the same. An error of the thread comes out of the next call.
@@ -21,7 +21,7 @@ enum State<W> {
         written: usize,
     },
     Thread(Worker<W>),
-    /// An error was told, or nothing is left.
+    /// An error was reported, or nothing is left.
     Closed,
 }
 
@@ -148,7 +148,7 @@ impl<W: Write + Send + 'static> Drop for Background<W> {
 mod tests {
     use super::*;
 
-    /// Takes so many bytes, then fails.
+    /// Takes this many bytes, then fails.
     struct Disk(Vec<u8>, usize);
 
     impl Write for Disk {
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_disk_is_told_in_its_own_words_wherever_it_happens() {
+    fn a_full_disk_is_reported_in_its_own_words_wherever_it_happens() {
         for room in [0, 100_000, SMALL + 50_000, 3_000_000] {
             let mut background = Background::new(Disk(Vec::new(), room));
             let written = parts().try_for_each(|part| background.write_all(&part));
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_at_the_very_end_is_told_by_finish() {
+    fn an_error_at_the_very_end_is_reported_by_finish() {
         let all = parts().map(|part| part.len()).sum::<usize>();
         let mut background = Background::new(Disk(Vec::new(), all - 1));
         let written = parts().try_for_each(|part| background.write_all(&part));

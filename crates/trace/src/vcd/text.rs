@@ -3,7 +3,7 @@
 //! Everything is stored in whole words over a window of fixed size, of which only the first bytes count: the next text
 //! is written over the rest. So there is one check of bounds a line, and none a character.
 
-/// Bytes that a line may touch: `b`, 64 digits, and a tail of 8 bytes, behind any start.
+/// Bytes that a line may touch: `b`, 64 digits, and a tail of 8 bytes, after any start.
 pub(super) const WINDOW: usize = 144;
 
 /// Bytes that a time may touch: `#`, 24 digits, and a tail of 8 bytes.
@@ -67,7 +67,7 @@ impl Tail {
 pub(super) struct Line {
     /// Bits to shift a value up, so that its first digit is bit 63.
     shift: u32,
-    /// Where the digits begin: behind the `b` of a vector.
+    /// Where the digits begin: after the `b` of a vector.
     digits: usize,
     tail: Tail,
     tail_at: usize,
