@@ -76,9 +76,9 @@ pub static MODEL: Model = Model {
 /// Steps of z per radian in units of 2^-`fraction`, rounded up.
 fn rate(helix: &Helix, fraction: u32) -> i128 {
     #[expect(clippy::cast_precision_loss, reason = "at most 2^53, which f64 holds exactly")]
-    let way = helix.z_way().abs() as f64;
+    let travel = helix.z_travel().abs() as f64;
     #[expect(clippy::cast_possible_truncation, reason = "rounded; a cast saturates")]
-    let rate = (way / helix.angle() * 2f64.powi(fraction.cast_signed())).ceil() as i128;
+    let rate = (travel / helix.angle() * 2f64.powi(fraction.cast_signed())).ceil() as i128;
     rate
 }
 
@@ -118,7 +118,7 @@ fn load(helix: &Helix, hardware: &Hardware) -> Vec<Words> {
     for sector in helix.sectors() {
         let plane = words::integrated_sector(hardware, helix.arc(), &sector.plane);
         let words = plane.set(JVZ, jvz).set(JRZ, hardware.preset(JRZ)).set(EZ, sector.z_steps - made);
-        blocks.push(words.set(SIGN.of(2), helix.z_way() < 0).set(POSITION.of(2), helix.from()[2]));
+        blocks.push(words.set(SIGN.of(2), helix.z_travel() < 0).set(POSITION.of(2), helix.from()[2]));
         made = sector.z_steps;
     }
     blocks

@@ -4,7 +4,7 @@
 
 use std::collections::VecDeque;
 
-use stepwave_nc::{Cause, Direction, Side, ToolMove, Way, swept};
+use stepwave_nc::{Cause, Direction, SegmentShape, Side, ToolMove, swept};
 
 use super::plot::{FONT, HEAD, Page, Pair, TITLE_FONT, View, cut, escaped, reaching, text_width};
 use crate::testbench::{BlockReport, Observer, ObserverError, Step};
@@ -61,7 +61,7 @@ impl Workpiece {
     /// The programmed segment of a move, as points.
     fn outline(&self, of: &ToolMove) -> Vec<Pair> {
         let segment = &of.programmed;
-        let Way::Arc { plane, center, direction } = segment.way else {
+        let SegmentShape::Arc { plane, center, direction } = segment.shape else {
             return vec![self.shown(segment.from), self.shown(segment.to)];
         };
         let angle = swept(segment, plane, center, direction);

@@ -155,7 +155,7 @@ fn lies_on_no_curve(error: &GeometryError) -> bool {
             | GeometryError::ZeroRadius { .. }
             | GeometryError::OffCurve { .. }
             | GeometryError::OffBranch { .. }
-            | GeometryError::EndBesideStart { .. }
+            | GeometryError::EndsAcrossCurve { .. }
             | GeometryError::ZeroLengthConic { .. }
     )
 }

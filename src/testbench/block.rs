@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use stepwave_engine::Rows;
 use stepwave_models::Promise;
-use stepwave_nc::{Cause, Curve, Feed, PulseBlock, ROUNDING_LIMIT, ToolMove, Way};
+use stepwave_nc::{Cause, Curve, Feed, PulseBlock, ROUNDING_LIMIT, SegmentShape, ToolMove};
 
 use super::contour;
 use super::ripple::Ripple;
@@ -162,7 +162,7 @@ impl BlockReport {
             return;
         };
         self.promise = Some(self.promise.map_or(promise, |before| promise.or_wider(before)));
-        let drawn = matches!((&part.block.curve, self.of.segment.way), (Curve::Line(_), Way::Arc { .. }));
+        let drawn = matches!((&part.block.curve, self.of.segment.shape), (Curve::Line(_), SegmentShape::Arc { .. }));
         let allowed = ROUNDING_LIMIT + contour::radii_apart(&self.of.segment) + if drawn { part.chords } else { 0.0 };
         let bound = promise.bound() + allowed;
         self.contour_bound = Some(self.contour_bound.map_or(bound, |before| before.max(bound)));
@@ -183,14 +183,14 @@ impl BlockReport {
     /// `line`, `arc`, and why where it was not programmed.
     #[must_use]
     pub fn kind(&self) -> &'static str {
-        match (self.of.cause, self.of.segment.way, self.of.feed) {
+        match (self.of.cause, self.of.segment.shape, self.of.feed) {
             (Cause::StartUp, ..) => "start-up",
             (Cause::Cancel, ..) => "cancel",
-            (Cause::Inserted, Way::Line, _) => "inserted line",
-            (Cause::Inserted, Way::Arc { .. }, _) => "inserted arc",
+            (Cause::Inserted, SegmentShape::Line, _) => "inserted line",
+            (Cause::Inserted, SegmentShape::Arc { .. }, _) => "inserted arc",
             (Cause::Programmed, _, Feed::Rapid) => "rapid",
-            (Cause::Programmed, Way::Line, _) => "line",
-            (Cause::Programmed, Way::Arc { .. }, _) => "arc",
+            (Cause::Programmed, SegmentShape::Line, _) => "line",
+            (Cause::Programmed, SegmentShape::Arc { .. }, _) => "arc",
         }
     }
 }

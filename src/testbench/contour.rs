@@ -1,13 +1,13 @@
 //! How far a place of the tool lies off a contour in real numbers.
 
-use stepwave_nc::{Cause, Point, Segment, Side, ToolMove, Way, swept};
+use stepwave_nc::{Cause, Point, Segment, SegmentShape, Side, ToolMove, swept};
 
 /// The distance of a place from the infinite line or the whole circle of a segment, in BLU: of an arc in its plane.
 #[must_use]
 pub(super) fn off_segment(segment: &Segment, at: Point) -> f64 {
-    match segment.way {
-        Way::Line => off_line(segment.from, segment.to, at),
-        Way::Arc { plane, center, direction } => {
+    match segment.shape {
+        SegmentShape::Line => off_line(segment.from, segment.to, at),
+        SegmentShape::Arc { plane, center, direction } => {
             let radius = |point: Point| {
                 let [u, v, _] = plane.of(point);
                 f64::hypot(u - center[0], v - center[1])
@@ -28,7 +28,7 @@ pub(super) fn off_segment(segment: &Segment, at: Point) -> f64 {
 /// How far the two radii of an arc are apart, in BLU; 0 of a line.
 #[must_use]
 pub(super) fn radii_apart(segment: &Segment) -> f64 {
-    let Way::Arc { plane, center, .. } = segment.way else { return 0.0 };
+    let SegmentShape::Arc { plane, center, .. } = segment.shape else { return 0.0 };
     let [start, end] = [segment.from, segment.to].map(|point| {
         let [u, v, _] = plane.of(point);
         f64::hypot(u - center[0], v - center[1])
@@ -38,12 +38,12 @@ pub(super) fn radii_apart(segment: &Segment) -> f64 {
 
 /// The distance from a line through two points, or from the point that both are.
 fn off_line(from: Point, to: Point, at: Point) -> f64 {
-    let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+    let delta = [0, 1, 2].map(|axis| to[axis] - from[axis]);
     let gone = [0, 1, 2].map(|axis| at[axis] - from[axis]);
-    let square: f64 = way.iter().map(|c| c * c).sum();
-    let along = way.iter().zip(gone).map(|(a, b)| a * b).sum::<f64>() / square;
+    let square: f64 = delta.iter().map(|c| c * c).sum();
+    let along = delta.iter().zip(gone).map(|(a, b)| a * b).sum::<f64>() / square;
     let along = if along.is_finite() { along } else { 0.0 };
-    [0, 1, 2].map(|axis| gone[axis] - along * way[axis]).iter().map(|c| c * c).sum::<f64>().sqrt()
+    [0, 1, 2].map(|axis| gone[axis] - along * delta[axis]).iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
 /// How far the edge of the tool is off the programmed contour while its centre is at a place, in BLU; `None` on the ways

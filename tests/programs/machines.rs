@@ -11,14 +11,14 @@ use stepwave_models::parts::PULSE_RATE;
 use stepwave_models::program::{FAMILIES, Family, Size};
 use stepwave_models::{Hardware, OnOverflow, Options, Preset, Promise, Words};
 use stepwave_nc::{
-    Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, Side, ToolMove, Way,
+    Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, SegmentShape, Side, ToolMove,
 };
 
 use crate::reference::{self, EndPoint, Form, cim_arc, cim_line, dpm_line, mindev_arc, mindev_line, ppc_arc, ppc_line};
 
 /// A move of the tool without compensation.
-fn tool_move(from: [f64; 3], to: [f64; 3], way: Way) -> ToolMove {
-    let segment = Segment { from, to, way };
+fn tool_move(from: [f64; 3], to: [f64; 3], shape: SegmentShape) -> ToolMove {
+    let segment = Segment { from, to, shape };
     let (place, cause) = (Place { line: 1, number: None }, Cause::Programmed);
     ToolMove { place, segment, feed: Feed::Rapid, cause, programmed: segment, side: Side::On }
 }
@@ -167,7 +167,7 @@ fn moves() -> impl Strategy<Value = Vec<ToolMove>> {
                 let from = at;
                 let Some((axis, quarters, clockwise)) = arc else {
                     at = [from[0] + dx, from[1] + dy];
-                    return tool_move(real(from), real(at), Way::Line);
+                    return tool_move(real(from), real(at), SegmentShape::Line);
                 };
                 let about = |axis: usize| [[dx, 0], [0, dx], [-dx, 0], [0, -dx]][axis % 4];
                 let start = about(axis);
@@ -176,7 +176,7 @@ fn moves() -> impl Strategy<Value = Vec<ToolMove>> {
                 at = [center[0] + end[0], center[1] + end[1]];
                 let direction = if clockwise { Direction::Clockwise } else { Direction::CounterClockwise };
                 let center = [center[0] as f64, center[1] as f64];
-                tool_move(real(from), real(at), Way::Arc { plane: Plane::Xy, center, direction })
+                tool_move(real(from), real(at), SegmentShape::Arc { plane: Plane::Xy, center, direction })
             })
             .collect()
     })
@@ -267,11 +267,11 @@ proptest! {
             for plane in [Plane::Zx, Plane::Yz] {
                 let turned: Vec<ToolMove> = moves.iter().map(|of| {
                     let turn = |point: [f64; 3]| plane.point(point);
-                    let way = match of.segment.way {
-                        Way::Line => Way::Line,
-                        Way::Arc { center, direction, .. } => Way::Arc { plane, center, direction },
+                    let shape = match of.segment.shape {
+                        SegmentShape::Line => SegmentShape::Line,
+                        SegmentShape::Arc { center, direction, .. } => SegmentShape::Arc { plane, center, direction },
                     };
-                    tool_move(turn(of.segment.from), turn(of.segment.to), way)
+                    tool_move(turn(of.segment.from), turn(of.segment.to), shape)
                 }).collect();
                 let ran = run(family, &turned, &choices(false), EngineKind::Word);
                 let back: Vec<Vec<[i64; 3]>> = ran.paths.iter()
@@ -279,7 +279,7 @@ proptest! {
                 // A line along one axis lies in two planes, so that only its ends need be the same.
                 prop_assert_eq!(back.iter().map(|path| path.last().copied()).collect::<Vec<_>>(),
                     flat.paths.iter().map(|path| path.last().copied()).collect::<Vec<_>>());
-                if moves.iter().all(|of| of.segment.way != Way::Line) {
+                if moves.iter().all(|of| of.segment.shape != SegmentShape::Line) {
                     prop_assert_eq!(&back, &flat.paths, "{}", family.name);
                 }
             }
@@ -296,8 +296,8 @@ proptest! {
         let end = [center[0] + about[0] as f64, center[1] + about[1] as f64, z + climb as f64];
         let direction = Direction::CounterClockwise;
         let moves = [
-            tool_move([0.0; 3], [x, y, z], Way::Line),
-            tool_move([x, y, z], end, Way::Arc { plane: Plane::Xy, center, direction }),
+            tool_move([0.0; 3], [x, y, z], SegmentShape::Line),
+            tool_move([x, y, z], end, SegmentShape::Arc { plane: Plane::Xy, center, direction }),
         ];
         for family in FAMILIES {
             let ran = run(family, &moves, &choices(false), EngineKind::Word);
@@ -319,7 +319,7 @@ fn an_integrator_that_would_stand_beside_an_axis_steps_at_once() {
     let arc = Arc::new([3, 14], [15, 0], [0, 0], Direction::Clockwise).unwrap();
     let line = Line::new(vec![0, 0, 0], vec![3, 14, 0]).unwrap();
     let block = |curve: Curve, from, to| {
-        let of = tool_move([0.0; 3], [0.0; 3], Way::Line);
+        let of = tool_move([0.0; 3], [0.0; 3], SegmentShape::Line);
         PulseBlock { of, plane: Plane::Xy, curve, from, to }
     };
     let blocks =

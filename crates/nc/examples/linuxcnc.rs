@@ -13,7 +13,7 @@ use std::error::Error;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 
-use stepwave_nc::{Direction, Event, Feed, Integers, Move, Place, Plane, Program, Reading, Way};
+use stepwave_nc::{Direction, Event, Feed, Integers, Move, Place, Plane, Program, Reading, SegmentShape};
 
 /// 0.1 µm: what LinuxCNC writes of a length in mm.
 const BLU: f64 = 1e-4;
@@ -50,9 +50,9 @@ impl Call {
 
 fn of_move(one: &Move) -> Call {
     let to = one.segment.to.map(|value| value * BLU);
-    let (end, arc) = match one.segment.way {
-        Way::Line => (to, None),
-        Way::Arc { plane, center: [x, y], direction } => {
+    let (end, arc) = match one.segment.shape {
+        SegmentShape::Line => (to, None),
+        SegmentShape::Arc { plane, center: [x, y], direction } => {
             let turns = if direction == Direction::Clockwise { -1.0 } else { 1.0 };
             (plane.of(to), Some([x * BLU, y * BLU, turns]))
         }

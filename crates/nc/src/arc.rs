@@ -53,9 +53,10 @@ impl Arc {
         Ok(Arc { from, to, center, direction })
     }
 
-    /// The arc between two points about a centre, whose two radii may differ by so many BLU beyond the one that
-    /// [`new`](Arc::new) allows. Where they do, both ends stay and the centre moves: to the whole point about which an arc
-    /// between the ends is nearest to the one wanted, whose radius goes evenly from that of the start to that of the end.
+    /// The arc between two points about a centre, whose two radii may differ by this many BLU beyond the one that
+    /// [`new`](Arc::new) allows. Where they do, both ends stay and the centre moves: to the whole point about which an
+    /// arc between the ends is nearest to the one wanted, whose radius goes evenly from that of the start to that of
+    /// the end.
     ///
     /// # Errors
     /// As [`new`](Arc::new); also where the radii differ by more than half of the first.
@@ -162,7 +163,7 @@ impl Arc {
 
     /// The quadrant that the motion leaves at the end point.
     ///
-    /// An end point on an axis belongs to the quadrant behind: (R, 0) is in Q4 counter-clockwise, in Q1 clockwise.
+    /// An end point on an axis belongs to the quadrant it leaves: (R, 0) is in Q4 counter-clockwise, in Q1 clockwise.
     #[must_use]
     pub fn end_quadrant(&self) -> Quadrant {
         self.turn().end_quadrant()

@@ -1,8 +1,9 @@
-//! Tool radius compensation: from the contour as programmed (G41, G42) to the way of the tool's centre.
+//! Tool radius compensation: from the contour as programmed (G41, G42) to the path of the tool's centre.
 //!
 //! With s = 1 for G41 and s = -1 for G42, the tool's centre is at the distance r from the contour along the normal
-//! n = s·(-ly, lx). A line is moved by r·n; a counter-clockwise arc gets the radius R - s·r, a clockwise one R + s·r. At a
-//! corner P, with the unit tangents l1 (leaving) and l2 (entering), p = -(l1·l2) and q = s·(l2x·l1y - l1x·l2y) decide:
+//! n = s·(-ly, lx). A line is moved by r·n; a counter-clockwise arc gets the radius R - s·r, a clockwise one R + s·r.
+//! At a corner P, with the unit tangents l1 (leaving) and l2 (entering), p = -(l1·l2) and q = s·(l2x·l1y - l1x·l2y)
+//! decide:
 //!
 //! | class | when | the tool's centre |
 //! |---|---|---|
@@ -12,23 +13,23 @@
 //! | straight on | q = 0, p < 0 | passes P + r·n |
 //! | reversal | q = 0, p > 0 | goes round P as on an insertion |
 //!
-//! q counts as 0 within 1e-9 (the sine of the angle between the tangents), and so does p where it tells extension from
-//! insertion. Beside an arc, an extension whose offset paths do not meet is an insertion; a tangent of the arc then is a
-//! move of its own. Two paths with an arc meet in two points; the one nearest to P + r·n is taken. A reversal whose
-//! second block bends into the tool has no room for it and is an error.
+//! q counts as 0 within 1e-9 (the sine of the angle between the tangents), and so does p where it separates extension
+//! from insertion. Next to an arc, an extension whose offset paths do not meet is an insertion; a tangent of the arc
+//! then is a move of its own. Two paths with an arc meet in two points; the one nearest to P + r·n is taken. A reversal
+//! whose second block bends into the tool has no room for it and is an error.
 //!
 //! **Scheme B** sees each block alone. From normal to normal, blocks whose offset paths do not meet are joined by a
-//! straight move: inside corners are overcut, outside corners are cut off, unless the programmer rounds them with arcs, as
-//! machines of that kind want it. **Scheme C** looks one block ahead and does what the table says; what two blocks that are
-//! no neighbours do to one another it does not see either.
+//! straight move: inside corners are overcut, outside corners are cut off, unless the programmer rounds them with arcs,
+//! as machines of that kind want it. **Scheme C** looks one block ahead and does what the table says; what two blocks
+//! that are no neighbours do to one another it does not see either.
 //!
 //! - *Start-up* (On to Left or Right): a straight move, at least r long in the plane, from the uncompensated point to
 //!   P + r·n of the block that follows, at its start; if none follows, of its own end. This is done at outside corners
 //!   too. *Cancel*: the block before ends at P + r·n of its end, and a straight move of at least r goes to the programmed
 //!   point.
 //! - A *stop* or the end of the program ([`Compensator::flush`]): the tool stops at P + r·n of the last block's end. If
-//!   the contour goes on, the tool goes round an outside corner from there, and straight to the next normal at an inside
-//!   corner, which it has overcut by then.
+//!   the contour continues, the tool goes round an outside corner from there, and straight to the next normal at an
+//!   inside corner, which it has overcut by then.
 //! - Moves *without motion in the plane* (along the third axis) are done where the block before them ends, with the
 //!   look-ahead passing over them; at most [`WAITING_LIMIT`] between two blocks. A start-up or cancel in such a block
 //!   takes effect on the next move in the plane.

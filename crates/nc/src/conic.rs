@@ -70,7 +70,7 @@ impl Conic {
     /// # Errors
     /// If c is not in 1..=[`PARABOLA_LIMIT`], if a coordinate is beyond [`CONIC_LIMIT`] relative to the vertex or
     /// beyond [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT), if both ends are the same, if one is more than one BLU
-    /// off the curve or behind its vertex, or if both are off it on different sides of one place, so that the motion
+    /// off the curve or beyond its vertex, or if both are off it on different sides of one place, so that the motion
     /// does not lead from one to the other.
     ///
     /// ```
@@ -213,8 +213,8 @@ impl Conic {
     /// two of an open curve.
     ///
     /// The first starts at [`start`](Conic::start), the last ends at [`end`](Conic::end), and between them they join
-    /// where the curve crosses the axes: an ellipse at (±a, 0) and (0, ±b), but never behind a start or an end that
-    /// lies farther out, an open curve at its vertex. In every sector the motion leads from the start to the end.
+    /// where the curve crosses the axes: an ellipse at (±a, 0) and (0, ±b), but never before a start or beyond an end
+    /// that lies farther out, an open curve at its vertex. In every sector the motion leads from the start to the end.
     ///
     /// ```
     /// use stepwave_nc::{Conic, Quadrant};
@@ -319,7 +319,7 @@ impl Conic {
                 Some(GeometryError::ZeroLengthConic { shape })
             }
             _ if self.sectors().iter().all(ConicSector::reaches_its_end) => None,
-            _ => Some(GeometryError::EndBesideStart { from: self.from, to: self.to, shape }),
+            _ => Some(GeometryError::EndsAcrossCurve { from: self.from, to: self.to, shape }),
         });
         (fault.map_or(Ok(self), Err), farthest)
     }

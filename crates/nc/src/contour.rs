@@ -1,4 +1,4 @@
-//! What an NC program says of the way of a tool, in real numbers: segments of a contour, before they are rounded to
+//! The tool path that an NC program describes, in real numbers: segments of a contour, before they are rounded to
 //! pulses.
 
 use crate::Direction;
@@ -48,11 +48,11 @@ impl Plane {
 
 /// The shape of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Way {
+pub enum SegmentShape {
     /// Straight.
     Line,
-    /// A circular arc in a plane, with an even way along the third axis (a helix where that is not 0). An arc that ends
-    /// where it starts, seen in the plane, is a full circle.
+    /// A circular arc in a plane, with an even travel along the third axis (a helix where that is not 0). An arc that
+    /// ends where it starts, seen in the plane, is a full circle.
     Arc {
         /// The plane.
         plane: Plane,
@@ -70,11 +70,11 @@ pub struct Segment {
     pub from: Point,
     /// The end, in BLU.
     pub to: Point,
-    /// What lies between.
-    pub way: Way,
+    /// The shape between them.
+    pub shape: SegmentShape,
 }
 
-/// Where a block stands in its program.
+/// The place of a block in its program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Place {
     /// The line of the file, from 1.
@@ -88,7 +88,7 @@ pub struct Place {
 pub enum Feed {
     /// G00: as fast as the machine runs.
     Rapid,
-    /// G94: of the tool's centre along its way, in mm/min.
+    /// G94: of the tool's centre along its path, in mm/min.
     PerMinute(f64),
     /// G93: the block takes one such part of a minute, in 1/min.
     Inverse(f64),
@@ -109,9 +109,9 @@ pub enum Side {
 /// A block of a program that moves the tool, as programmed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
-    /// Where it stands.
+    /// Its line and number.
     pub place: Place,
-    /// The way, of the programmed contour.
+    /// The segment of the programmed contour.
     pub segment: Segment,
     /// How fast.
     pub feed: Feed,
@@ -134,12 +134,12 @@ pub enum Cause {
     Inserted,
 }
 
-/// A move of the tool's centre, behind tool radius compensation.
+/// A move of the tool's centre, after tool radius compensation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ToolMove {
     /// The block that it belongs to; of an inserted one the block before it.
     pub place: Place,
-    /// The way of the tool's centre.
+    /// The segment of the tool's centre.
     pub segment: Segment,
     /// How fast.
     pub feed: Feed,

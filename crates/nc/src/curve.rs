@@ -28,7 +28,7 @@ pub enum Curve {
     Arc(Arc),
     /// An ellipse, a parabola or a hyperbola in x and y.
     Conic(Conic),
-    /// An arc in x and y with a way in z.
+    /// An arc in x and y with a travel in z.
     Helix(Helix),
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::{AXES_MAX, AXES_MIN, CONIC_LIMIT, COORDINATE_LIMIT, Shape};
 
-/// Why a geometry cannot be built; every message names the value, the limit and the way out.
+/// Why a geometry cannot be built; every message names the value, the limit and the remedy.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum GeometryError {
     /// A line has fewer than two or more than six axes.
@@ -130,7 +130,7 @@ pub enum GeometryError {
         /// The curve.
         shape: Shape,
     },
-    /// An end of a conic is the centre of the ellipse, behind the vertex of the parabola, or not on the hyperbola's
+    /// An end of a conic is the centre of the ellipse, beyond the vertex of the parabola, or not on the hyperbola's
     /// branch.
     #[error(
         "the {end} point ({}, {}) lies {distance:.3} BLU off the {shape} and {}: correct the point or the {}",
@@ -159,7 +159,7 @@ pub enum GeometryError {
          (up to 1 BLU is allowed): move one of them onto the curve",
         .from[0], .from[1], .to[0], .to[1]
     )]
-    EndBesideStart {
+    EndsAcrossCurve {
         /// The start point in machine coordinates, in BLU.
         from: [i64; 2],
         /// The end point in machine coordinates, in BLU.
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn every_message_names_the_value_the_limit_and_the_way_out() {
+    fn every_message_names_the_value_the_limit_and_the_remedy() {
         let arc = |from, to, center| Arc::new(from, to, center, Direction::Clockwise);
         assert_eq!(
             message(Line::new(vec![0], vec![1])),

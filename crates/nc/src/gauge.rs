@@ -30,8 +30,8 @@ enum Plane {
     Circle { center: [i64; 2], radius_squared: u64, radius: f64 },
 }
 
-fn near(ways: [i64; 2]) -> bool {
-    ways.iter().all(|way| way.unsigned_abs() < NEAR.unsigned_abs())
+fn near(offsets: [i64; 2]) -> bool {
+    offsets.iter().all(|offset| offset.unsigned_abs() < NEAR.unsigned_abs())
 }
 
 fn line(line: &Line) -> Option<Plane> {
@@ -64,7 +64,7 @@ impl Gauge<'_> {
     #[must_use]
     pub fn deviation(&self, position: &[i64]) -> f64 {
         let from = |[x0, y0]: [i64; 2]| match *position {
-            [x, y, ..] => Some([x.checked_sub(x0)?, y.checked_sub(y0)?]).filter(|way| near(*way)),
+            [x, y, ..] => Some([x.checked_sub(x0)?, y.checked_sub(y0)?]).filter(|offset| near(*offset)),
             _ => None,
         };
         match self.plane {
@@ -85,7 +85,7 @@ impl Gauge<'_> {
     }
 }
 
-/// What a gauge tells of many positions at once.
+/// The greatest deviation of many positions at once.
 #[derive(Clone, Copy, Debug)]
 pub struct Screen(Plane);
 
@@ -102,7 +102,7 @@ impl Gauge<'_> {
 }
 
 impl Screen {
-    /// The greatest deviation of some positions, in BLU; 0 where there are none. Branchless, for hot loops: within the
+    /// The greatest deviation of some positions, in BLU; 0 without a position. Branchless, for hot loops: within the
     /// reach that the screen was made for no product and no sum leaves `i64`, so that none of them is checked.
     #[inline(always)]
     #[must_use]
@@ -137,8 +137,8 @@ mod tests {
 
     /// Positions around the origin and around a far point, near and far from it.
     fn positions(around: [i64; 2]) -> Vec<[i64; 2]> {
-        let ways = [0, 1, -1, 2, 5, -7, 100, (1 << 31) - 1, -(1 << 31) + 1, 1 << 31, 1 << 33, i64::MAX, i64::MIN];
-        let each = ways.iter().flat_map(|x| ways.iter().map(move |y| [*x, *y]));
+        let offsets = [0, 1, -1, 2, 5, -7, 100, (1 << 31) - 1, -(1 << 31) + 1, 1 << 31, 1 << 33, i64::MAX, i64::MIN];
+        let each = offsets.iter().flat_map(|x| offsets.iter().map(move |y| [*x, *y]));
         each.map(|[x, y]| [around[0].saturating_add(x), around[1].saturating_add(y)]).collect()
     }
 
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_screen_tells_the_greatest_deviation_and_refuses_what_it_cannot() -> Result<(), GeometryError> {
+    fn a_screen_gives_the_greatest_deviation_and_refuses_what_it_cannot() -> Result<(), GeometryError> {
         let line: Curve = Line::new(vec![3, -2], vec![90, 71])?.into();
         let circle: Curve = Arc::new([30, 40], [30, 40], [-5, 6], Direction::Clockwise)?.into();
         let far: Curve = Line::new(vec![1 << 30, 0], vec![(1 << 30) + 9, 5])?.into();
@@ -163,7 +163,7 @@ mod tests {
             let some = || (0..500_i64).map(|step| [step * 37 % 200 - 99, step * 53 % 150 - 80]);
             // Divided, they lie inside the circle, where the nearest to its centre is the worst.
             for (count, divided) in [0, 1, 2, 17, 500].into_iter().flat_map(|count| [(count, 1), (count, 9)]) {
-                let positions = || some().take(count).map(|position| position.map(|way| way / divided));
+                let positions = || some().take(count).map(|position| position.map(|offset| offset / divided));
                 let each = positions().map(|position| gauge.deviation(&position));
                 assert_eq!(screen.greatest(positions()), each.fold(0.0, f64::max), "{curve:?}");
             }

@@ -1,4 +1,4 @@
-//! Helices: an arc in x and y with a way in z.
+//! Helices: an arc in x and y with a travel in z.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -8,8 +8,8 @@ use crate::{Arc, Crossing, Direction, GeometryError, Sector};
 
 /// A helix: an [`Arc`] in x and y during which z moves evenly from start to end.
 ///
-/// The arc's rules hold: its end may lie up to one BLU off the circle, and one that ends where it starts is a full turn.
-/// The way in z may be 0.
+/// The arc's rules hold: its end may lie up to one BLU off the circle, and one that ends where it starts is a full
+/// turn. The travel in z may be 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Helix {
     arc: Arc,
@@ -38,7 +38,7 @@ impl Helix {
     /// use stepwave_nc::{Direction, Helix};
     ///
     /// let helix = Helix::new([5, 0, 0], [0, 5, -3], [0, 0], Direction::CounterClockwise)?;
-    /// assert_eq!((helix.arc().to(), helix.z_way()), ([0, 5], -3));
+    /// assert_eq!((helix.arc().to(), helix.z_travel()), ([0, 5], -3));
     /// # Ok::<(), stepwave_nc::GeometryError>(())
     /// ```
     pub fn new(from: [i64; 3], to: [i64; 3], center: [i64; 2], direction: Direction) -> Result<Helix, GeometryError> {
@@ -48,7 +48,7 @@ impl Helix {
         Ok(Helix { arc, from, to })
     }
 
-    /// As [`new`](Helix::new), where the radii of the arc may differ by so many BLU more: see [`Arc::within`].
+    /// As [`new`](Helix::new), where the radii of the arc may differ by this many BLU more: see [`Arc::within`].
     ///
     /// # Errors
     /// As [`new`](Helix::new), and as [`Arc::within`].
@@ -81,9 +81,9 @@ impl Helix {
         self.to
     }
 
-    /// The signed way in z from start to end, in BLU.
+    /// The signed travel in z from start to end, in BLU.
     #[must_use]
-    pub fn z_way(&self) -> i64 {
+    pub fn z_travel(&self) -> i64 {
         self.to[2] - self.from[2]
     }
 
@@ -96,11 +96,11 @@ impl Helix {
     /// The length of the ideal helix, in BLU.
     #[must_use]
     pub fn length(&self) -> f64 {
-        self.arc.length().hypot(self.z_way() as f64)
+        self.arc.length().hypot(self.z_travel() as f64)
     }
 
-    /// The pieces of the helix inside one quadrant each, in the order of the motion: those of its arc, and how far z has
-    /// gone at the end of each.
+    /// The pieces of the helix inside one quadrant each, in the order of the motion: those of its arc, and how far z
+    /// has gone at the end of each.
     ///
     /// At the angle θᵢ of the whole angle θ that is round(|Z|·θᵢ/θ), and at the end of the helix |Z|.
     ///
@@ -114,12 +114,12 @@ impl Helix {
     /// ```
     #[must_use]
     pub fn sectors(&self) -> Vec<HelixSector> {
-        let (turn, angle, way) = (self.arc.turn(), self.angle(), self.z_way().abs());
+        let (turn, angle, travel) = (self.arc.turn(), self.angle(), self.z_travel().abs());
         let planes = self.arc.sectors(Crossing::RoundedRadius);
         let last = planes.len().saturating_sub(1);
         let sector = |(place, plane): (usize, Sector)| {
             let reached = Turn { end: plane.end, ..turn }.angle();
-            let z_steps = if place == last { way } else { share(way, reached / angle) };
+            let z_steps = if place == last { travel } else { share(travel, reached / angle) };
             HelixSector { plane, z_steps }
         };
         planes.into_iter().enumerate().map(sector).collect()
@@ -127,9 +127,9 @@ impl Helix {
 
     /// The distance of a position from the ideal helix, in BLU: √(r² + (dz·cos β)²).
     ///
-    /// r is the distance from the whole circle and dz that of z from where the helix stands at the position's own angle;
+    /// r is the distance from the whole circle and dz that of z from the helix at the position's own angle;
     /// tan β = |Z|/(Rθ) is the slope of the helix, so that dz·cos β is the distance from it on the unrolled cylinder. A
-    /// position beyond an end of the helix is measured against that end: as far as half the way round to the other end,
+    /// position beyond an end of the helix is measured against that end: as far as halfway round to the other end,
     /// but 2 BLU at least, and of two ends and the turn between, whichever is nearest in z.
     ///
     /// The position is in machine coordinates; coordinates after z are ignored, and with fewer there is no distance
@@ -169,24 +169,24 @@ impl Helix {
     /// What measures positions against this helix.
     pub(crate) fn ruler(&self) -> Ruler {
         let (angle, radius) = (self.angle(), self.arc.radius());
-        let way = self.z_way() as f64;
+        let travel = self.z_travel() as f64;
         Ruler {
             arc: self.arc,
             z: self.from[2],
-            way,
+            travel,
             angle,
             overhang: ((TAU - angle) / 2.0).max((2.0 / radius).min(FRAC_PI_2)),
-            cosine: 1.0 / 1.0_f64.hypot(way / (radius * angle)),
+            cosine: 1.0 / 1.0_f64.hypot(travel / (radius * angle)),
         }
     }
 }
 
 /// A part of a whole number of steps, to the nearest.
-fn share(way: i64, part: f64) -> i64 {
+fn share(travel: i64, part: f64) -> i64 {
     // At most 2^53, which f64 holds exactly; a cast saturates.
-    #[expect(clippy::cast_possible_truncation, reason = "rounded, and no more than `way`")]
-    let steps = (way as f64 * part).round() as i64;
-    steps.clamp(0, way)
+    #[expect(clippy::cast_possible_truncation, reason = "rounded, and no more than `travel`")]
+    let steps = (travel as f64 * part).round() as i64;
+    steps.clamp(0, travel)
 }
 
 /// A helix with all that its deviations share worked out.
@@ -195,7 +195,7 @@ pub(crate) struct Ruler {
     arc: Arc,
     /// z at the start.
     z: i64,
-    way: f64,
+    travel: f64,
     angle: f64,
     /// How far beyond an end, in radians, a position still counts as there.
     overhang: f64,
@@ -212,13 +212,13 @@ impl Ruler {
         let risen = (i128::from(z) - i128::from(self.z)) as f64;
         let [cx, cy] = self.arc.center();
         let off = if [x, y] == [cx, cy] {
-            let [low, high] = [self.way.min(0.0), self.way.max(0.0)];
+            let [low, high] = [self.travel.min(0.0), self.travel.max(0.0)];
             risen - risen.clamp(low, high) // the axis is next to every turn
         } else {
             let here = self.arc.turn_to([x, y]);
             let turns = [here, here - TAU, here + TAU].into_iter();
             let near = turns.filter(|turn| (-self.overhang..=self.angle + self.overhang).contains(turn));
-            let height = |turn: f64| self.way * turn.clamp(0.0, self.angle) / self.angle;
+            let height = |turn: f64| self.travel * turn.clamp(0.0, self.angle) / self.angle;
             near.map(|turn| (risen - height(turn)).abs()).fold(f64::INFINITY, f64::min)
         };
         self.arc.deviation(position).hypot(off * self.cosine)

@@ -1,12 +1,12 @@
 //! The geometry of numerical control, in integers: blocks and their ideal curves.
 //!
 //! Every length is in BLU (basic length units, the pulse equivalent δ): one pulse moves an axis by one BLU, and a
-//! programmed point has integer coordinates. This crate holds what a block *is* (a [`Line`], an [`Arc`], a [`Conic`] or a
-//! [`Helix`], all a [`Curve`]), into which quadrants it falls ([`Arc::sectors`], [`Conic::sectors`],
+//! programmed point has integer coordinates. This crate holds what a block *is* (a [`Line`], an [`Arc`], a [`Conic`] or
+//! a [`Helix`], all a [`Curve`]), into which quadrants it falls ([`Arc::sectors`], [`Conic::sectors`],
 //! [`Helix::sectors`]), and how far a point that hardware has reached lies off the ideal curve ([`Curve::deviation`]).
 //! It knows no register, no clock and no interpolation method.
 //!
-//! Decisions (which quadrant, on the circle or not, behind or ahead) are made in exact integers; `f64` appears only
+//! Decisions (which quadrant, on the circle or not, before or after) are made in exact integers; `f64` appears only
 //! where a length, an angle or an error is reported. No input panics: what cannot be built is a [`GeometryError`].
 //!
 //! ```
@@ -40,7 +40,7 @@ mod turn;
 pub use arc::Arc;
 pub use compensation::{CompensationError, CompensationErrorKind, Compensator, Corner, Scheme, WAITING_LIMIT};
 pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
-pub use contour::{Cause, Feed, Move, Place, Plane, Point, Segment, Side, ToolMove, Way};
+pub use contour::{Cause, Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove};
 pub use curve::{Curve, OUTLINE_LIMIT};
 pub use error::{End, GeometryError};
 pub use gauge::{Gauge, Screen};

@@ -53,7 +53,7 @@ impl Line {
         &self.to
     }
 
-    /// The signed way of each axis from start to end, in BLU.
+    /// The signed travel of each axis from start to end, in BLU.
     #[must_use]
     pub fn delta(&self) -> Vec<i64> {
         self.to.iter().zip(&self.from).map(|(to, from)| to - from).collect()
@@ -68,7 +68,7 @@ impl Line {
     /// The length, in BLU.
     #[must_use]
     pub fn length(&self) -> f64 {
-        let squared: u128 = self.delta().iter().map(|way| u128::from(way.unsigned_abs()).pow(2)).sum();
+        let squared: u128 = self.delta().iter().map(|offset| u128::from(offset.unsigned_abs()).pow(2)).sum();
         (squared as f64).sqrt()
     }
 
@@ -91,7 +91,7 @@ impl Line {
         if position.len() < self.axes() {
             return f64::NAN;
         }
-        let axes: Vec<_> = self.ways(position).collect();
+        let axes: Vec<_> = self.offsets(position).collect();
         let mut norm = 0.0_f64;
         for (place, &(di, pi)) in axes.iter().enumerate() {
             for &(dj, pj) in axes.iter().skip(place + 1) {
@@ -108,8 +108,8 @@ impl Line {
     #[must_use]
     pub fn signed_deviation(&self, position: &[i64]) -> f64 {
         let distance = self.deviation(position);
-        let mut ways = self.ways(position);
-        match (ways.next(), ways.next(), ways.next()) {
+        let mut offsets = self.offsets(position);
+        match (offsets.next(), offsets.next(), offsets.next()) {
             (Some((dx, px)), Some((dy, py)), None) if cross([dx, dy], [px, py]) < 0 => -distance,
             _ => distance,
         }
@@ -125,8 +125,8 @@ impl Line {
         [&self.from, &self.to].into_iter().filter_map(|point| plane(point)).collect()
     }
 
-    /// Per axis: the way of the line, and the way of a position from the line's start.
-    fn ways(&self, position: &[i64]) -> impl Iterator<Item = (i128, i128)> {
+    /// Per axis: the travel of the line, and the offset of a position from the line's start.
+    fn offsets(&self, position: &[i64]) -> impl Iterator<Item = (i128, i128)> {
         let ends = self.from.iter().zip(&self.to).zip(position);
         ends.map(|((&from, &to), &at)| (i128::from(to) - i128::from(from), i128::from(at) - i128::from(from)))
     }

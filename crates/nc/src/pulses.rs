@@ -1,4 +1,4 @@
-//! From real numbers to pulses: what a machine is told of a move, in whole BLU.
+//! From real numbers to pulses: the blocks that a machine gets for a move, in whole BLU.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,11 +6,13 @@ use bow::Bow;
 use nearest::{Nearest, nearest};
 
 use crate::{
-    Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, Place, Plane, Point, Segment, ToolMove, Way,
+    Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, Place, Plane, Point, Segment, SegmentShape,
+    ToolMove,
 };
 
-/// How far the curve that a machine is told is off the move in real numbers at most, in BLU, both ways: of a tiny circle,
-/// whose start and centre both round. The radii of an arc may differ by more, and it is off by as much more.
+/// The largest distance between the curve that a machine gets and the move in real numbers, in BLU, in both directions:
+/// of a tiny circle, whose start and centre both round. The radii of an arc may differ by more, and it is off by as
+/// much more.
 pub const ROUNDING_LIMIT: f64 = 1.5;
 
 /// A block as a machine gets it: one curve in whole BLU.
@@ -29,7 +31,7 @@ pub struct PulseBlock {
 }
 
 impl PulseBlock {
-    /// Where the block stands in its program.
+    /// The place of the block in its program.
     #[must_use]
     pub fn place(&self) -> Place {
         self.of.place
@@ -47,7 +49,7 @@ impl PulseBlock {
         self.of.cause
     }
 
-    /// The distance of a position in x, y and z from the curve that is told to the machine, in BLU.
+    /// The distance of a position in x, y and z from the curve commanded to the machine, in BLU.
     #[must_use]
     pub fn deviation(&self, position: [i64; 3]) -> f64 {
         self.curve.deviation(&self.plane.axes().map(|axis| position[axis]))
@@ -74,28 +76,28 @@ impl PulseBlock {
     }
 }
 
-/// Rounds moves to pulses, one behind the other: each starts where the one before it ends, so that no rounding adds up.
+/// Rounds moves to pulses, one after the other: each starts where the one before it ends, so that no rounding adds up.
 #[derive(Debug, Clone)]
 pub struct Rounder {
     at: [i64; 3],
-    /// Arcs become chords that are at most so many BLU off them.
+    /// Arcs become chords that are at most this many BLU off them.
     chords: Option<f64>,
 }
 
 impl Rounder {
-    /// From the origin; with `chords` arcs become lines that are so many BLU off them at most.
+    /// From the origin; with `chords` arcs become lines that are at most this many BLU off them.
     #[must_use]
     pub fn new(chords: Option<f64>) -> Rounder {
         Rounder { at: [0; 3], chords }
     }
 
     /// The blocks of a move, none where no pulse is nearest to it; and how far they and the move are apart, in BLU: the
-    /// two-sided distance, of which a chord's own distance from its arc is no part.
+    /// two-sided distance, not including a chord's own distance from its arc.
     ///
     /// # Errors
     /// A coordinate is beyond [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT).
     pub fn blocks(&mut self, of: &ToolMove, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
-        let Way::Arc { plane, center, direction } = of.segment.way else {
+        let SegmentShape::Arc { plane, center, direction } = of.segment.shape else {
             return self.line(of, of.segment.to, out);
         };
         if let Some(tolerance) = self.chords {
@@ -107,7 +109,7 @@ impl Rounder {
         let (mut from, mut apart) = (of.segment.from, 0.0_f64);
         for part in 1..=parts {
             let to = on_arc(&of.segment, plane, center, direction, [part, parts]);
-            let segment = Segment { from, to, way: of.segment.way };
+            let segment = Segment { from, to, shape: of.segment.shape };
             let ends = [self.at, rounded(to)?];
             let (curve, off) = arc(&segment, plane, center, direction, ends);
             apart = apart.max(off);
@@ -123,12 +125,13 @@ impl Rounder {
         Ok(apart)
     }
 
-    /// The blocks of a move whose arc becomes chords that are at most so many BLU off it, as [`blocks`](Self::blocks).
+    /// The blocks of a move whose arc becomes chords that are at most this many BLU off it, as
+    /// [`blocks`](Self::blocks).
     ///
     /// # Errors
     /// As [`blocks`](Self::blocks).
     pub fn chords(&mut self, of: &ToolMove, tolerance: f64, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
-        let Way::Arc { plane, center, direction } = of.segment.way else {
+        let SegmentShape::Arc { plane, center, direction } = of.segment.shape else {
             return self.line(of, of.segment.to, out);
         };
         let mut apart = 0.0_f64;
@@ -138,17 +141,17 @@ impl Rounder {
         Ok(apart)
     }
 
-    /// A straight way; tells how far its end is off the one wanted.
+    /// A straight block; also returns how far its end is off the wanted one.
     fn line(&mut self, of: &ToolMove, end: Point, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
         let (from, to) = (self.at, rounded(end)?);
         let off = [0, 1, 2].map(|axis| (end[axis] - to[axis] as f64).powi(2)).iter().sum::<f64>().sqrt();
         if from == to {
             return Ok(off);
         }
-        // The plane of the two longest ways: the third axis follows them.
-        let way = |axis: usize| from[axis].abs_diff(to[axis]);
+        // The plane of the two longest travels: the third axis follows them.
+        let travel = |axis: usize| from[axis].abs_diff(to[axis]);
         let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
-        let plane = planes.into_iter().min_by_key(|plane| way(plane.axes()[2])).unwrap_or_default();
+        let plane = planes.into_iter().min_by_key(|plane| travel(plane.axes()[2])).unwrap_or_default();
         let along = |point: [i64; 3]| plane.axes().map(|axis| point[axis]).to_vec();
         let curve = Curve::Line(Line::new(along(from), along(to))?);
         out.push(PulseBlock { of: *of, plane, curve, from, to });
@@ -167,7 +170,7 @@ fn rounded(point: Point) -> Result<[i64; 3], GeometryError> {
 }
 
 /// The arc or helix in whole BLU that is nearest to a segment, and the two-sided distance between them in the plane, in
-/// BLU; no curve where the straight way between the ends is nearer.
+/// BLU; no curve where the straight line between the ends is nearer.
 fn arc(
     segment: &Segment,
     plane: Plane,
@@ -193,13 +196,14 @@ fn arc(
     (curve, apart)
 }
 
-/// The arc between two whole points that is nearest to one about a centre with another radius at its end than at its start.
+/// The arc between two whole points that is nearest to one about a centre with another radius at its end than at its
+/// start.
 pub(crate) fn arc_between(from: [i64; 2], to: [i64; 2], center: [i64; 2], direction: Direction) -> Option<Arc> {
     // Within 2^53, as every coordinate is.
     let real = |[x, y]: [i64; 2]| [x as f64, y as f64, 0.0];
     let [x, y, _] = real(center);
-    let way = Way::Arc { plane: Plane::Xy, center: [x, y], direction };
-    let segment = Segment { from: real(from), to: real(to), way };
+    let shape = SegmentShape::Arc { plane: Plane::Xy, center: [x, y], direction };
+    let segment = Segment { from: real(from), to: real(to), shape };
     let ends = [from, to].map(|[x, y]| [x, y, 0]);
     match arc(&segment, Plane::Xy, [x, y], direction, ends) {
         (Some(Curve::Arc(arc)), _) => Some(arc),
@@ -207,8 +211,8 @@ pub(crate) fn arc_between(from: [i64; 2], to: [i64; 2], center: [i64; 2], direct
     }
 }
 
-/// The centre of an arc of the programmed radius through both rounded ends: on the perpendicular bisector of their chord,
-/// on the side where the programmed one is.
+/// The centre of an arc of the programmed radius through both rounded ends: on the perpendicular bisector of their
+/// chord, on the side where the programmed one is.
 fn through(
     segment: &Segment,
     plane: Plane,
@@ -247,8 +251,9 @@ pub fn swept(segment: &Segment, plane: Plane, center: [f64; 2], direction: Direc
     if turn <= 0.0 { turn + TAU } else { turn }
 }
 
-/// Into how many pieces an arc goes, so that its third axis may follow the pulses of the plane: they come up to 41 % more
-/// often between the axes than along them. A piece of an angle a strays by less than a/8 of its climb, here half a BLU.
+/// Into how many pieces an arc goes, so that its third axis may follow the pulses of the plane: they come up to 41 %
+/// more often between the axes than along them. A piece of an angle a strays by less than a/8 of its climb, here half a
+/// BLU.
 fn pieces(angle: f64, climb: f64) -> usize {
     if climb == 0.0 {
         return 1;
@@ -269,8 +274,8 @@ fn chords(segment: &Segment, plane: Plane, center: [f64; 2], direction: Directio
     (1..=parts).map(|part| on_arc(segment, plane, center, direction, [part, parts])).collect()
 }
 
-/// The point behind so many of equal parts of an arc; the last is its end. The radius goes evenly from that of the start
-/// to that of the end.
+/// The point after this many of the equal parts of an arc; the last is its end. The radius goes evenly from that of the
+/// start to that of the end.
 fn on_arc(segment: &Segment, plane: Plane, center: [f64; 2], direction: Direction, [part, parts]: [usize; 2]) -> Point {
     if part == parts {
         return segment.to;

@@ -3,20 +3,20 @@
 use crate::exact::{ceil_sqrt, length, norm_squared, round_sqrt, vector};
 use crate::{Arc, Quadrant};
 
-/// Where an arc that goes on into the next quadrant crosses the axis.
+/// Where an arc that continues into the next quadrant crosses the axis.
 ///
 /// Under either rule the last crossing of an arc is moved out to the end point's coordinate on the same axis, |c|,
 /// where that is greater. In the last sector this coordinate can only shrink, so an end point up to 1 BLU off the
 /// circle is always reached. An end point on the circle never moves a crossing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Crossing {
-    /// Where the path of point-by-point comparison crosses: the growing coordinate stands at max(|c0|, ⌈√(R² - 1)⌉, 1),
+    /// Where the path of point-by-point comparison crosses: the growing coordinate is at max(|c0|, ⌈√(R² - 1)⌉, 1),
     /// with c0 its value at the start of the sector.
     ///
     /// Next to the axis the shrinking coordinate is 1, and the path steps over as soon as it is not inside the circle,
     /// c² + 1 ≥ R². R = 1 steps to the centre first and from there to ±1.
     PathExtreme,
-    /// At the radius rounded to the nearest integer, but never behind the point already reached, |c0|.
+    /// At the radius rounded to the nearest integer, but never short of the point already reached, |c0|.
     RoundedRadius,
 }
 
@@ -44,8 +44,8 @@ impl Sector {
     /// ```
     #[must_use]
     pub fn steps(&self) -> [i64; 2] {
-        let way = |axis: usize| length(self.end[axis].abs_diff(self.start[axis]).into());
-        [way(0), way(1)]
+        let span = |axis: usize| length(self.end[axis].abs_diff(self.start[axis]).into());
+        [span(0), span(1)]
     }
 }
 
@@ -54,8 +54,8 @@ impl Sector {
 /// In each of them the end is reached with the motion of its quadrant: one coordinate grows, the other shrinks. Every
 /// crossing and the last sector after a crossing have that from [`Turn::sectors`]. It leaves an arc with no crossing,
 /// from (g, s) to (g', s') in growing and shrinking magnitudes, whose end is ahead: g' s > g s'. With s' > s also g' >
-/// g; with g' < g also s' < s. Either way one end is farther out by 1 BLU or more on both axes, so its radius is
-/// greater by more than 1 BLU (with (g, s) the inner one, R² + 2(g + s) + 2 > (R + 1)², as g + s ≥ R), and that is no
+/// g; with g' < g also s' < s. In both cases one end is farther out by 1 BLU or more on both axes, so its radius is
+/// greater by more than 1 BLU (with (g, s) the inner one, R² + 2(g + s) + 2 > (R + 1)², as g + s ≥ R), which is not an
 /// [`Arc`].
 ///
 /// [`Turn::sectors`]: crate::turn::Turn::sectors

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::exact::{cross, dot, vector};
 use crate::{Direction, Quadrant, Sector};
 
-/// The way from one point to another about the origin; neither point is the origin. Equal points mean one whole turn.
+/// The turn from one point to another about the origin; neither point is the origin. Equal points mean one whole turn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Turn {
     /// The start point relative to the centre, in BLU.
@@ -31,7 +31,7 @@ impl Turn {
     pub(crate) fn crossings(self) -> usize {
         let (mut quadrant, last) = (self.start_quadrant(), self.end_quadrant());
         if quadrant == last && self.ahead() <= 0 {
-            return 4; // the end point lies behind the start point: all the way round
+            return 4; // the end point is the start point or before it: a full turn, or nearly
         }
         let mut count = 0;
         while quadrant != last {
@@ -50,7 +50,7 @@ impl Turn {
     /// The pieces inside one quadrant each, in the order of the motion, where the curve meets the x axis at `±radii[0]`
     /// and the y axis at `±radii[1]`.
     ///
-    /// No crossing lies behind the start of its sector, nor the last one behind the end point.
+    /// No crossing lies before the start of its sector, nor the last one beyond the end point.
     pub(crate) fn sectors(self, radii: [i64; 2]) -> Vec<Sector> {
         let crossings = self.crossings();
         let mut sectors = Vec::with_capacity(crossings + 1);

@@ -86,7 +86,7 @@ pub(super) fn blocks(family: &Family, block: &PulseBlock, own: impl Fn(&Start) -
         Curve::Arc(arc) => sectors(family, block, arc, |_, _| 0, &own),
         Curve::Helix(helix) => {
             let all = helix.sectors();
-            let sign = helix.z_way().signum();
+            let sign = helix.z_travel().signum();
             let third = |index: usize, _: &Sector| {
                 let behind = all.get(index).map_or(0, |sector| sector.z_steps);
                 let before = index.checked_sub(1).and_then(|index| all.get(index)).map_or(0, |sector| sector.z_steps);

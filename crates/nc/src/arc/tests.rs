@@ -25,7 +25,7 @@ fn an_end_point_up_to_one_blu_off_the_circle_is_taken() -> Outcome {
 }
 
 #[test]
-fn one_blu_off_a_circle_at_the_limit_is_told_apart_from_a_hair_more() {
+fn one_blu_off_a_circle_at_the_limit_differs_from_a_hair_more() {
     let [from, center] = [[-L, 0], [L, 0]]; // R = 2^53
     assert!(Arc::new(from, [-L + 1, 0], center, Clockwise).is_ok());
     // R - 1 inwards and 1 BLU aside is nearer to the circle by 2^-54 BLU; the same outwards is too
@@ -58,12 +58,12 @@ fn quadrants_of_axis_points_follow_the_motion() -> Outcome {
 }
 
 #[test]
-fn an_end_behind_the_start_in_its_quadrant_goes_all_the_way_round() -> Outcome {
+fn an_end_short_of_the_start_in_its_quadrant_makes_nearly_a_full_turn() -> Outcome {
     let ahead = Arc::new([4, 3], [3, 4], ORIGIN, CounterClockwise)?;
     assert_eq!(ahead.crossings(), 0);
-    let behind = Arc::new([4, 3], [3, 4], ORIGIN, Clockwise)?;
-    assert_eq!(behind.crossings(), 4);
-    assert!((ahead.sweep() + behind.sweep() - TAU).abs() < 1e-15);
+    let after = Arc::new([4, 3], [3, 4], ORIGIN, Clockwise)?;
+    assert_eq!(after.crossings(), 4);
+    assert!((ahead.sweep() + after.sweep() - TAU).abs() < 1e-15);
     Ok(())
 }
 

@@ -50,7 +50,7 @@ pub(super) struct Joint {
 /// What is inserted at a corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Between {
-    /// Straight moves by way of two points to the second block; those of no length are left out.
+    /// Straight moves through two points to the second block; those of no length are left out.
     Lines([Vector; 2]),
     /// An arc about the corner: 1 counter-clockwise, -1 clockwise.
     Arc { turn: f64 },
@@ -91,8 +91,8 @@ pub(super) fn joint(
     }
 }
 
-/// The corner after the tool has stopped at the end normal of the first block: on an outside corner it goes round, on an
-/// inside corner straight to the second block.
+/// The corner after the tool has stopped at the end normal of the first block: on an outside corner it goes round, on
+/// an inside corner straight to the second block.
 pub(super) fn joint_after_stop(leaving: &Tip, entering: &Tip, side: f64, radius: f64, corner: Corner) -> Joint {
     let [leave, enter] = [leaving, entering].map(|tip| tip.foot(side, radius));
     match class(leaving.tangent, entering.tangent, side) {
@@ -112,7 +112,7 @@ fn insertion(leaving: &Tip, entering: &Tip, side: f64, radius: f64, corner: Corn
     Joint { leave, between, enter }
 }
 
-/// The way round an outside corner, from foot to foot.
+/// The path round an outside corner, from foot to foot.
 fn round(leaving: &Tip, entering: &Tip, side: f64, radius: f64, corner: Corner) -> Between {
     if corner == Corner::Circular {
         return Between::Arc { turn: -side };
@@ -128,7 +128,7 @@ fn round(leaving: &Tip, entering: &Tip, side: f64, radius: f64, corner: Corner) 
 fn shoulders(leaving: &Tip, entering: &Tip, side: f64, radius: f64) -> [Vector; 2] {
     let first = add(leaving.normal(side), leaving.tangent);
     let second = sub(entering.normal(side), entering.tangent);
-    [first, second].map(|way| add(leaving.point, scale(radius, way)))
+    [first, second].map(|direction| add(leaving.point, scale(radius, direction)))
 }
 
 /// The curvature, positive to the left.

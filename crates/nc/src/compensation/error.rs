@@ -6,7 +6,7 @@ use super::WAITING_LIMIT;
 use crate::{COORDINATE_LIMIT, Place};
 
 /// Why a block cannot be compensated; the message is one sentence that names the blocks, the radius, the limit and the
-/// way out.
+/// remedy.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{}{}: {kind}", Named(.place), Second(.second))]
 pub struct CompensationError {
@@ -97,7 +97,7 @@ pub enum CompensationErrorKind {
     Reversed {
         /// The radius of the tool, in BLU.
         radius: f64,
-        /// The length of the path beside the block, corners left aside, in BLU.
+        /// The length of the block's offset path without corners, in BLU.
         length: f64,
         /// What the corners take from it, in BLU.
         taken: f64,
@@ -120,7 +120,7 @@ pub enum CompensationErrorKind {
     /// The side changes at an arc.
     #[error("the side changes from or to an arc, but may only between straight moves: put G40 between them")]
     SideChangeOnArc,
-    /// Too many blocks without motion in the plane stand between two compensated blocks.
+    /// Too many blocks without motion in the plane between two compensated blocks.
     #[error(
         "more than {WAITING_LIMIT} moves without motion in the plane stand between two blocks of the contour: \
          put them together, or end compensation before them"

@@ -3,9 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use crate::{Direction, Plane, Segment, Way, swept};
+use crate::{Direction, Plane, Segment, SegmentShape, swept};
 
-/// A length that is none, in BLU: a millionth of a pulse.
+/// Below this a length counts as 0, in BLU: a millionth of a pulse.
 pub(super) const LEAST: f64 = 1e-6;
 
 /// A point or a vector in the plane, in BLU.
@@ -54,7 +54,7 @@ pub(super) struct Edge {
     pub(super) bend: Bend,
 }
 
-/// What lies between the ends of an [`Edge`].
+/// The shape of an [`Edge`] between its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Bend {
     Straight,
@@ -85,9 +85,9 @@ impl Edge {
             let [u, v, _] = plane.of(point);
             [u, v]
         });
-        let bend = match segment.way {
-            Way::Line => Bend::Straight,
-            Way::Arc { center, direction, .. } => Bend::Round {
+        let bend = match segment.shape {
+            SegmentShape::Line => Bend::Straight,
+            SegmentShape::Arc { center, direction, .. } => Bend::Round {
                 center,
                 turn: if direction == Direction::Clockwise { -1.0 } else { 1.0 },
                 sweep: if length(sub(to, from)) < LEAST { TAU } else { swept(segment, plane, center, direction) },
@@ -127,9 +127,9 @@ impl Edge {
         }
     }
 
-    /// The length of the way from `enter` to `leave`, both on the path that is offset from this block, in BLU: negative
-    /// where the way would run against the block's direction. `foot` are the ends of the offset path where neither
-    /// corner changes it.
+    /// The length of the path from `enter` to `leave`, both on the path that is offset from this block, in BLU:
+    /// negative where the path would run against the block's direction. `foot` are the ends of the offset path where
+    /// neither corner changes it.
     pub(super) fn along(&self, foot: [Vector; 2], enter: Vector, leave: Vector) -> f64 {
         match self.bend {
             Bend::Straight => dot(sub(leave, enter), self.start().tangent),
@@ -150,8 +150,8 @@ impl Tip {
         scale(side, left(self.tangent))
     }
 
-    /// The point at a distance from the corner along the normal: where the offset path begins or ends if the corner does
-    /// not change it.
+    /// The point at a distance from the corner along the normal: where the offset path begins or ends if the corner
+    /// does not change it.
     pub(super) fn foot(&self, side: f64, radius: f64) -> Vector {
         add(self.point, scale(radius, self.normal(side)))
     }
@@ -180,8 +180,8 @@ pub(super) fn miter(leaving: &Tip, entering: &Tip, side: f64, radius: f64) -> Op
 /// meet.
 ///
 /// All roots are sought relative to a foot F = P + r·n, not relative to the centres, so that a corner that is almost
-/// tangent loses no digits. A point F + z is on the circle R' = |ρ| about an arc's centre where z² + 2ρ(n·z) = 0, with ρ
-/// the signed radius of the offset circle and n the normal at F.
+/// tangent loses no digits. A point F + z is on the circle R' = |ρ| about an arc's centre where z² + 2ρ(n·z) = 0, with
+/// ρ the signed radius of the offset circle and n the normal at F.
 pub(super) fn meeting(leaving: &Tip, entering: &Tip, side: f64, radius: f64) -> Option<Vector> {
     let (n1, n2) = (leaving.normal(side), entering.normal(side));
     // |n1 - n2|² / 2 = 1 - n1·n2, without the cancellation.

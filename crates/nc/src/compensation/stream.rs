@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::corner::{Between, Joint, joint, joint_after_stop};
 use super::geometry::{Bend, Edge, LEAST, Vector, length, sub};
 use super::{CompensationError, CompensationErrorKind as Kind, Corner, Scheme, WAITING_LIMIT};
-use crate::{COORDINATE_LIMIT, Cause, Direction, Move, Place, Point, Segment, Side, ToolMove, Way};
+use crate::{COORDINATE_LIMIT, Cause, Direction, Move, Place, Point, Segment, SegmentShape, Side, ToolMove};
 
 /// A move shorter than this along every axis is left out, in BLU.
 const NOTHING: f64 = 1e-9;
@@ -14,16 +14,16 @@ const NOTHING: f64 = 1e-9;
 const GAP: f64 = 1e-3;
 
 /// Tool radius compensation of a program, block by block; it holds back one block of the contour at most, with the
-/// moves without motion in the plane behind it.
+/// moves without motion in the plane after it.
 ///
 /// A call that returns an error has put out nothing and changed nothing.
 ///
 /// ```
-/// use stepwave_nc::{Compensator, Corner, Feed, Move, Place, Plane, Scheme, Segment, Side, Way};
+/// use stepwave_nc::{Compensator, Corner, Feed, Move, Place, Plane, Scheme, Segment, Side, SegmentShape};
 ///
 /// let line = |line, from, to, side| Move {
 ///     place: Place { line, number: None },
-///     segment: Segment { from, to, way: Way::Line },
+///     segment: Segment { from, to, way: SegmentShape::Line },
 ///     feed: Feed::PerMinute(100.0),
 ///     plane: Plane::Xy,
 ///     side,
@@ -43,9 +43,9 @@ pub struct Compensator {
     scheme: Scheme,
     corner: Corner,
     tail: Tail,
-    /// Moves without motion in the plane, behind the block that is held back.
+    /// Moves without motion in the plane, after the block that is held back.
     waiting: Vec<Move>,
-    /// The tool's centre behind all that was put out; of use while compensation is on.
+    /// The tool's centre after the last move put out; of use while compensation is on.
     position: Point,
 }
 
@@ -74,17 +74,17 @@ struct Block {
 struct Held {
     block: Block,
     start_up: bool,
-    /// Where the tool's path beside the block begins.
+    /// Where the block's offset path begins.
     enter: Vector,
     /// The block before it.
     before: Option<Place>,
 }
 
-/// The way of the tool's centre beside a block, from where the tool is.
+/// The path of the tool's centre along a block, from where the tool is.
 #[derive(Debug, Clone, Copy)]
 struct Path {
     to: Vector,
-    way: Way,
+    shape: SegmentShape,
     cause: Cause,
 }
 
@@ -99,7 +99,7 @@ impl Compensator {
     ///
     /// # Errors
     ///
-    /// The block cannot be compensated, or the one held back cannot be with this one behind it; nothing is put out then.
+    /// The block cannot be compensated, or the one held back cannot be before this one; nothing is put out then.
     pub fn push(&mut self, block: Move, out: &mut Vec<ToolMove>) -> Result<(), CompensationError> {
         let alone = |kind| CompensationError { place: block.place, second: None, kind };
         check(&block).map_err(alone)?;
@@ -112,7 +112,7 @@ impl Compensator {
         if block.plane != before.source.plane {
             return Err(both(Kind::PlaneChange));
         }
-        if matches!(block.segment.way, Way::Arc { plane, .. } if plane != block.plane) {
+        if matches!(block.segment.shape, SegmentShape::Arc { plane, .. } if plane != block.plane) {
             return Err(alone(Kind::ArcInOtherPlane));
         }
         let gap = length(sub(edge.from, before.edge.to));
@@ -139,8 +139,8 @@ impl Compensator {
         }
     }
 
-    /// Puts out what is held back, up to the normal of its end: before a stop of the program and at its end. Compensation
-    /// stays on.
+    /// Puts out what is held back, up to the normal of its end: before a stop of the program and at its end.
+    /// Compensation stays on.
     ///
     /// # Errors
     ///
@@ -203,12 +203,12 @@ impl Compensator {
         }
         self.flush(out)?;
         let cancel = Block { source: block, edge, side: before.side, radius };
-        self.put(&cancel, Path { to: edge.to, way: Way::Line, cause: Cause::Cancel }, out);
+        self.put(&cancel, Path { to: edge.to, shape: SegmentShape::Line, cause: Cause::Cancel }, out);
         self.tail = Tail::Off;
         Ok(())
     }
 
-    /// A compensated block behind another.
+    /// A compensated block after another.
     fn follow(&mut self, next: Block, out: &mut Vec<ToolMove>) -> Result<(), CompensationError> {
         let (before, held) = match self.tail {
             Tail::Off => return Ok(()),
@@ -268,7 +268,7 @@ impl Compensator {
             let [u, v, _] = source.plane.of(self.position);
             let [_, _, third] = source.plane.of(source.segment.to);
             let to = source.plane.point([u, v, third]);
-            let segment = Segment { from: self.position, to, way: Way::Line };
+            let segment = Segment { from: self.position, to, shape: SegmentShape::Line };
             let Move { place, feed, segment: programmed, .. } = source;
             self.send(
                 ToolMove { place, segment, feed, cause: Cause::Programmed, programmed, side: before.source.side },
@@ -277,45 +277,45 @@ impl Compensator {
         }
     }
 
-    /// Puts out what a corner inserts behind a block.
+    /// Puts out what a corner inserts after a block.
     fn insert(&mut self, before: &Block, joint: &Joint, out: &mut Vec<ToolMove>) {
         let plane = before.source.plane;
         let [u, v, third] = plane.of(self.position);
         let [x, y] = before.edge.to;
         let corner = plane.point([x, y, third]);
-        let ways = match joint.between {
+        let shapes = match joint.between {
             Between::Arc { turn } if length(sub(joint.enter, [u, v])) >= LEAST => {
                 let direction = if turn < 0.0 { Direction::Clockwise } else { Direction::CounterClockwise };
-                [None, None, Some((joint.enter, Way::Arc { plane, center: before.edge.to, direction }))]
+                [None, None, Some((joint.enter, SegmentShape::Arc { plane, center: before.edge.to, direction }))]
             }
-            Between::Arc { .. } => [None, None, Some((joint.enter, Way::Line))],
-            Between::Lines([first, second]) => [first, second, joint.enter].map(|to| Some((to, Way::Line))),
+            Between::Arc { .. } => [None, None, Some((joint.enter, SegmentShape::Line))],
+            Between::Lines([first, second]) => [first, second, joint.enter].map(|to| Some((to, SegmentShape::Line))),
         };
-        for ([u, v], way) in ways.into_iter().flatten() {
-            let segment = Segment { from: self.position, to: plane.point([u, v, third]), way };
-            let programmed = Segment { from: corner, to: corner, way: Way::Line };
+        for ([u, v], shape) in shapes.into_iter().flatten() {
+            let segment = Segment { from: self.position, to: plane.point([u, v, third]), shape };
+            let programmed = Segment { from: corner, to: corner, shape: SegmentShape::Line };
             let Move { place, feed, side, .. } = before.source;
             self.send(ToolMove { place, segment, feed, cause: Cause::Inserted, programmed, side }, out);
         }
     }
 
-    /// Puts out the tool's way beside a block.
+    /// Puts out the tool's path along a block.
     fn put(&mut self, block: &Block, path: Path, out: &mut Vec<ToolMove>) {
         let plane = block.source.plane;
         let [_, _, third] = plane.of(block.source.segment.to);
         let [u, v, _] = plane.of(self.position);
         // A full circle ends exactly where it starts.
-        let closed = matches!(path.way, Way::Arc { .. }) && length(sub(path.to, [u, v])) < LEAST;
+        let closed = matches!(path.shape, SegmentShape::Arc { .. }) && length(sub(path.to, [u, v])) < LEAST;
         let [u, v] = if closed { [u, v] } else { path.to };
-        let segment = Segment { from: self.position, to: plane.point([u, v, third]), way: path.way };
+        let segment = Segment { from: self.position, to: plane.point([u, v, third]), shape: path.shape };
         let Move { place, feed, side, segment: programmed, .. } = block.source;
         self.send(ToolMove { place, segment, feed, cause: path.cause, programmed, side }, out);
     }
 
     fn send(&mut self, tool: ToolMove, out: &mut Vec<ToolMove>) {
-        let Segment { from, to, way } = tool.segment;
+        let Segment { from, to, shape } = tool.segment;
         let still = from.iter().zip(to).all(|(from, to)| (from - to).abs() <= NOTHING);
-        if !still || way != Way::Line {
+        if !still || shape != SegmentShape::Line {
             self.position = to;
             out.push(tool);
         }
@@ -329,10 +329,10 @@ impl Block {
 }
 
 impl Held {
-    /// The tool's way beside the block, to where it is left; `other` is the block to blame if that is not possible.
+    /// The tool's path along the block, to where it is left; `other` is the block to blame if that is not possible.
     fn path(&self, leave: Vector, other: Option<Place>) -> Result<Path, CompensationError> {
         let Block { source, edge, side, radius } = self.block;
-        let line = |cause| Path { to: leave, way: Way::Line, cause };
+        let line = |cause| Path { to: leave, shape: SegmentShape::Line, cause };
         if self.start_up {
             return Ok(line(Cause::StartUp));
         }
@@ -354,7 +354,7 @@ impl Held {
         if along < 2.0 * LEAST {
             return Ok(line(Cause::Programmed));
         }
-        Ok(Path { way: source.segment.way, ..line(Cause::Programmed) })
+        Ok(Path { shape: source.segment.shape, ..line(Cause::Programmed) })
     }
 }
 
@@ -370,9 +370,9 @@ fn sided(side: Side) -> Result<Option<(f64, f64)>, Kind> {
 
 /// Every coordinate is a number within the limit.
 fn check(block: &Move) -> Result<(), Kind> {
-    let center = match block.segment.way {
-        Way::Line => [0.0; 2],
-        Way::Arc { center, .. } => center,
+    let center = match block.segment.shape {
+        SegmentShape::Line => [0.0; 2],
+        SegmentShape::Arc { center, .. } => center,
     };
     let Segment { from, to, .. } = block.segment;
     match from.into_iter().chain(to).chain(center).find(|value| !(-limit()..=limit()).contains(value)) {

@@ -1,7 +1,7 @@
 use std::f64::consts::{SQRT_2, TAU};
 
 use super::*;
-use crate::{Cause, Direction, Feed, Move, Place, Plane, Point, Segment, Side, ToolMove, Way};
+use crate::{Cause, Direction, Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove};
 
 mod corners;
 mod errors;
@@ -28,22 +28,22 @@ fn assert_near(found: Vector, expected: Vector, tolerance: f64) {
     assert!(distance(found, expected) <= tolerance, "{found:?} is not {expected:?}");
 }
 
-fn block(line: u64, from: Vector, to: Vector, way: Way, side: Side) -> Move {
-    let segment = Segment { from: [from[0], from[1], 0.0], to: [to[0], to[1], 0.0], way };
+fn block(line: u64, from: Vector, to: Vector, shape: SegmentShape, side: Side) -> Move {
+    let segment = Segment { from: [from[0], from[1], 0.0], to: [to[0], to[1], 0.0], shape };
     let place = Place { line, number: Some(10 * line) };
     Move { place, segment, feed: Feed::PerMinute(100.0), plane: Plane::Xy, side }
 }
 
-fn arc(center: Vector, direction: Direction) -> Way {
-    Way::Arc { plane: Plane::Xy, center, direction }
+fn arc(center: Vector, direction: Direction) -> SegmentShape {
+    SegmentShape::Arc { plane: Plane::Xy, center, direction }
 }
 
 /// The blocks one after another from a point, the first as start-up.
-fn contour(start: Vector, steps: &[(Vector, Way)], side: Side) -> Vec<Move> {
+fn contour(start: Vector, steps: &[(Vector, SegmentShape)], side: Side) -> Vec<Move> {
     let mut from = start;
     let mut moves = Vec::new();
-    for (line, &(to, way)) in (1..).zip(steps) {
-        moves.push(block(line, from, to, way, side));
+    for (line, &(to, shape)) in (1..).zip(steps) {
+        moves.push(block(line, from, to, shape, side));
         from = to;
     }
     moves
@@ -65,14 +65,14 @@ fn ends(moves: &[ToolMove]) -> Vec<Vector> {
 fn samples(segment: &Segment) -> Vec<Vector> {
     let (from, to) = (flat(segment.from), flat(segment.to));
     let part = |index: i32| f64::from(index) / 100.0;
-    match segment.way {
-        Way::Line => (0..=100)
+    match segment.shape {
+        SegmentShape::Line => (0..=100)
             .map(|index| {
                 let part = part(index);
                 [from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])]
             })
             .collect(),
-        Way::Arc { center, direction, .. } => {
+        SegmentShape::Arc { center, direction, .. } => {
             let angle = |point: Vector| f64::atan2(point[1] - center[1], point[0] - center[0]);
             let (start, end) = (angle(from), angle(to));
             let sweep = match direction {
@@ -95,23 +95,23 @@ fn samples(segment: &Segment) -> Vec<Vector> {
 fn clearance(point: Vector, segment: &Segment) -> f64 {
     let (from, to) = (flat(segment.from), flat(segment.to));
     let at_ends = distance(point, from).min(distance(point, to));
-    match segment.way {
-        Way::Line => {
-            let way = [to[0] - from[0], to[1] - from[1]];
-            let square = way[0] * way[0] + way[1] * way[1];
-            let part = ((point[0] - from[0]) * way[0] + (point[1] - from[1]) * way[1]) / square;
+    match segment.shape {
+        SegmentShape::Line => {
+            let chord = [to[0] - from[0], to[1] - from[1]];
+            let square = chord[0] * chord[0] + chord[1] * chord[1];
+            let part = ((point[0] - from[0]) * chord[0] + (point[1] - from[1]) * chord[1]) / square;
             let part = part.clamp(0.0, 1.0);
-            distance(point, [from[0] + part * way[0], from[1] + part * way[1]])
+            distance(point, [from[0] + part * chord[0], from[1] + part * chord[1]])
         }
-        Way::Arc { center, direction, .. } => {
+        SegmentShape::Arc { center, direction, .. } => {
             let angle = |of: Vector| f64::atan2(of[1] - center[1], of[0] - center[0]);
             let (first, last) = match direction {
                 Direction::CounterClockwise => (angle(from), angle(to)),
                 Direction::Clockwise => (angle(to), angle(from)),
             };
-            let beside = from == to || (angle(point) - first).rem_euclid(TAU) <= (last - first).rem_euclid(TAU);
+            let within = from == to || (angle(point) - first).rem_euclid(TAU) <= (last - first).rem_euclid(TAU);
             let radial = (distance(point, center) - distance(from, center)).abs();
-            if beside { radial } else { at_ends }
+            if within { radial } else { at_ends }
         }
     }
 }
@@ -122,7 +122,7 @@ fn assert_joined(moves: &[ToolMove]) {
         assert_eq!(pair[0].segment.to, pair[1].segment.from);
     }
     for tool in moves {
-        if let Way::Arc { center, .. } = tool.segment.way {
+        if let SegmentShape::Arc { center, .. } = tool.segment.shape {
             let [start, end] = [tool.segment.from, tool.segment.to].map(|point| distance(flat(point), center));
             assert!((start - end).abs() < 1e-6, "an arc from radius {start} to {end}");
         }
@@ -132,7 +132,7 @@ fn assert_joined(moves: &[ToolMove]) {
 /// The contour of section 7: along x to (10, 0), then 20 BLU at an angle.
 fn turned(degrees: f64, side: Side) -> Vec<Move> {
     let (sin, cos) = degrees.to_radians().sin_cos();
-    let steps = [[-10.0, 0.0], [10.0, 0.0], [10.0 + 20.0 * cos, 20.0 * sin]].map(|to| (to, Way::Line));
+    let steps = [[-10.0, 0.0], [10.0, 0.0], [10.0 + 20.0 * cos, 20.0 * sin]].map(|to| (to, SegmentShape::Line));
     contour([-20.0, 0.0], &steps, side)
 }
 
@@ -158,7 +158,7 @@ fn a_turn_by_150_degrees_gets_a_straight_move_inserted() -> Outcome {
     assert_eq!(moves[2].cause, Cause::Inserted);
     assert_eq!((moves[2].place, moves[2].side), (Place { line: 2, number: Some(20) }, Side::Right(2.0)));
     let corner = [10.0, 0.0, 0.0];
-    assert_eq!(moves[2].programmed, Segment { from: corner, to: corner, way: Way::Line });
+    assert_eq!(moves[2].programmed, Segment { from: corner, to: corner, shape: SegmentShape::Line });
     Ok(())
 }
 
@@ -169,9 +169,9 @@ fn a_turn_by_150_degrees_gets_an_arc_about_the_corner_inserted() -> Outcome {
     assert_near(ends(&moves)[1], [10.0, -2.0], 1e-9);
     // The normal of 150° on the right is 60°: 2 cos 60° = 1, 2 sin 60° = 1.7321.
     assert_near(ends(&moves)[2], [11.0, 1.7321], 1e-4);
-    assert_eq!(moves[2].segment.way, arc([10.0, 0.0], Direction::CounterClockwise));
+    assert_eq!(moves[2].segment.shape, arc([10.0, 0.0], Direction::CounterClockwise));
     let left = run(Scheme::C, Corner::Circular, &turned(-150.0, Side::Left(2.0)))?;
-    assert_eq!(left[2].segment.way, arc([10.0, 0.0], Direction::Clockwise));
+    assert_eq!(left[2].segment.shape, arc([10.0, 0.0], Direction::Clockwise));
     Ok(())
 }
 
@@ -185,12 +185,12 @@ fn an_arc_gets_a_larger_or_smaller_radius_by_its_turn_and_the_side() -> Outcome 
         (Clockwise, Side::Right(2.0), 8.0),
     ] {
         let far = if direction == Clockwise { [0.0, -10.0] } else { [0.0, 10.0] };
-        let steps = [([10.0, 0.0], Way::Line), (far, arc([0.0, 0.0], direction))];
+        let steps = [([10.0, 0.0], SegmentShape::Line), (far, arc([0.0, 0.0], direction))];
         for scheme in [Scheme::B, Scheme::C] {
             let moves = run(scheme, Corner::Straight, &contour([20.0, 0.0], &steps, side))?;
             assert_near(ends(&moves)[0], [radius, 0.0], 1e-9);
             assert_near(ends(&moves)[1], [0.0, far[1].signum() * radius], 1e-9);
-            assert_eq!(moves[1].segment.way, arc([0.0, 0.0], direction));
+            assert_eq!(moves[1].segment.shape, arc([0.0, 0.0], direction));
         }
     }
     Ok(())

@@ -97,7 +97,7 @@ fn ellipse_foot(semi_axes: [i64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
     let k = p - q;
     let (ax, by) = (a * x, b * y);
     if y == 0.0 {
-        // Up to k/a from the centre the foot stands off the long axis.
+        // Up to k/a from the centre the foot is off the long axis.
         return if ax > k || x > 0.0 && ax == k {
             [1.0, 0.0]
         } else if k == 0.0 {

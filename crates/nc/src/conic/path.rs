@@ -1,4 +1,4 @@
-//! The way along a conic from start to end: its length and points of it.
+//! The path along a conic from start to end: its length and points of it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -34,11 +34,11 @@ fn around(conic: &Conic, first: f64, last: f64) -> [f64; 2] {
         if quadrant.growing_axis(turn.direction) == 1 { inside } else { FRAC_PI_2 - inside }
     };
     let quarters = u8::try_from(turn.crossings()).map_or(0.0, f64::from); // at most 4
-    let way = quarters * FRAC_PI_2 + gone(turn.end_quadrant(), last) - gone(turn.start_quadrant(), first);
+    let angle = quarters * FRAC_PI_2 + gone(turn.end_quadrant(), last) - gone(turn.start_quadrant(), first);
     let start = base(turn.start_quadrant(), first);
     match turn.direction {
-        Direction::Clockwise => [start, start - way],
-        Direction::CounterClockwise => [start, start + way],
+        Direction::Clockwise => [start, start - angle],
+        Direction::CounterClockwise => [start, start + angle],
     }
 }
 

@@ -16,7 +16,7 @@ pub struct ConicSector {
     pub motion: [i64; 2],
     /// Whether |x| and whether |y| grows along the motion.
     pub grows: [bool; 2],
-    /// Whether a step in x lowers [`Conic::implicit`]; a step in y then raises it, and the other way round.
+    /// Whether a step in x lowers [`Conic::implicit`]; a step in y then raises it, and vice versa.
     pub x_lowers: bool,
 }
 

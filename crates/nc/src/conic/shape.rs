@@ -133,8 +133,8 @@ impl Shape {
         }
     }
 
-    /// Whether a point near the curve is on the side of it where the curve is: not the centre of an ellipse, not behind
-    /// the vertex of a parabola, not level with the centre of a hyperbola or behind it.
+    /// Whether a point near the curve is on the side of it where the curve is: not the centre of an ellipse, not beyond
+    /// the vertex of a parabola, not level with the centre of a hyperbola or beyond it.
     pub(crate) fn on_branch(self, point: [i64; 2]) -> bool {
         match self {
             Shape::Ellipse { .. } => point != [0, 0],

@@ -109,7 +109,7 @@ fn coordinates_are_relative_to_the_centre_wherever_it_is() -> Outcome {
 }
 
 #[test]
-fn only_an_ellipse_has_a_direction_and_only_an_open_curve_a_way_to_open() -> Outcome {
+fn only_an_ellipse_has_a_direction_and_only_an_open_curve_a_side_to_open_to() -> Outcome {
     let ellipse = Conic::ellipse([5, 3], [5, 0], [0, 3], ORIGIN, Clockwise)?;
     assert_eq!((ellipse.direction(), ellipse.opens()), (Some(Clockwise), None));
     let hyperbola = Conic::hyperbola([5, 3], None, [-5, 0], [-7, 3], ORIGIN)?;

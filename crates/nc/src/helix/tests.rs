@@ -14,7 +14,7 @@ fn at(helix: &Helix, part: f64) -> [f64; 3] {
     let [sx, sy] = helix.arc().start().map(|c| c as f64);
     let turn = if helix.arc().direction() == Clockwise { -part } else { part } * helix.angle();
     let (sin, cos) = turn.sin_cos();
-    [sx * cos - sy * sin, sx * sin + sy * cos, helix.from()[2] as f64 + helix.z_way() as f64 * part]
+    [sx * cos - sy * sin, sx * sin + sy * cos, helix.from()[2] as f64 + helix.z_travel() as f64 * part]
 }
 
 #[test]
@@ -29,11 +29,11 @@ fn shares_of_z_are_rounded_and_the_last_is_exact() -> Outcome {
     assert_eq!(shares([3, -4, 102], CounterClockwise)?, [29, 59, 88, 100]); // θ = 306.87°
     assert_eq!(shares([0, 5, L], CounterClockwise)?, [L - 2]);
     for from in [[3, 4, 0], [-4, 3, 0], [0, -5, 0]] {
-        for way in -40..=40 {
-            let helix = Helix::new(from, [from[0], from[1], way], ORIGIN, Clockwise)?;
+        for travel in -40..=40 {
+            let helix = Helix::new(from, [from[0], from[1], travel], ORIGIN, Clockwise)?;
             let sectors = helix.sectors();
             assert!(sectors.is_sorted_by_key(|sector| sector.z_steps));
-            assert_eq!(sectors.last().map(|sector| sector.z_steps), Some(way.abs()));
+            assert_eq!(sectors.last().map(|sector| sector.z_steps), Some(travel.abs()));
             let planes: Vec<Sector> = sectors.iter().map(|sector| sector.plane).collect();
             assert_eq!(planes, helix.arc().sectors(Crossing::RoundedRadius));
         }
@@ -42,9 +42,9 @@ fn shares_of_z_are_rounded_and_the_last_is_exact() -> Outcome {
 }
 
 #[test]
-fn a_helix_has_an_angle_a_way_in_z_and_a_length() -> Outcome {
+fn a_helix_has_an_angle_a_travel_in_z_and_a_length() -> Outcome {
     let helix = Helix::new([13, 20, 5], [13, 20, -7], [10, 20], Clockwise)?;
-    assert_eq!((helix.angle(), helix.z_way(), helix.from(), helix.to()), (TAU, -12, [13, 20, 5], [13, 20, -7]));
+    assert_eq!((helix.angle(), helix.z_travel(), helix.from(), helix.to()), (TAU, -12, [13, 20, 5], [13, 20, -7]));
     assert!((helix.length() - (6.0 * PI).hypot(12.0)).abs() < 1e-12);
     let curve: Curve = helix.into();
     assert_eq!((curve.from(), curve.to(), curve.axes()), (&[13, 20, 5][..], &[13, 20, -7][..], 3));
@@ -66,11 +66,11 @@ fn what_the_arc_refuses_the_helix_does_and_z_has_its_limit() {
 
 #[test]
 fn deviations_are_radial_and_along_z_at_the_own_angle() -> Outcome {
-    let (r, way) = (1_000_000, 2_000_000);
+    let (r, travel) = (1_000_000, 2_000_000);
     for (to, direction) in [([0, r], CounterClockwise), ([0, r], Clockwise), ([r, 0], Clockwise), ([-r, 0], Clockwise)]
     {
-        let helix = Helix::new([r, 0, 7], [to[0], to[1], 7 + way], ORIGIN, direction)?;
-        let cosine = 1.0 / 1.0_f64.hypot(way as f64 / (r as f64 * helix.angle()));
+        let helix = Helix::new([r, 0, 7], [to[0], to[1], 7 + travel], ORIGIN, direction)?;
+        let cosine = 1.0 / 1.0_f64.hypot(travel as f64 / (r as f64 * helix.angle()));
         for part in (1..40).map(|step| f64::from(step) / 40.0) {
             let [x, y, z] = at(&helix, part);
             for (farther, higher) in [(1.0, 0.0), (0.999, 0.0), (1.001, 30_000.0), (0.5, -2_000.0)] {
@@ -91,7 +91,7 @@ fn deviations_are_radial_and_along_z_at_the_own_angle() -> Outcome {
 #[test]
 fn beyond_an_end_the_end_counts() -> Outcome {
     let quarter = Helix::new([50, 0, 0], [0, 50, 90], ORIGIN, CounterClockwise)?;
-    // The middle of the rest is at 225°: before it the end counts, behind it the start.
+    // The middle of the rest is at 225°: before it the end counts, after it the start.
     for (position, z) in [([-50, 0], 90), ([-50, -48], 90), ([-48, -50], 0), ([0, -50], 0), ([50, -1], 0)] {
         let radial = quarter.arc().deviation(&position);
         let off = quarter.deviation(&[position[0], position[1], z]);

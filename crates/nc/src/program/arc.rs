@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::Reading;
 use super::error::ProgramErrorKind;
-use crate::{Direction, Segment, Way, swept};
+use crate::{Direction, Segment, SegmentShape, swept};
 
 /// How far two radii of an arc may lie apart, in BLU: the largest of 2 BLU, 0.005 mm (programs are written to 0.001 mm
 /// or 0.0001 inch, however fine the BLU is) and 0.1 % of the radius, the last at most 0.5 mm; and what `--tolerance`
@@ -60,12 +60,12 @@ pub(super) fn center(
 /// What P may belong to.
 pub(super) const TURNS_OWNER: &str = "G02, G03, G04 or G64";
 
-/// The turns of an arc as segments, each with its share of the whole way: full circles, and the arc itself after them.
+/// The turns of an arc as segments, each with its share of the whole path: full circles, and the arc itself after them.
 /// The third axis moves evenly over all. A line is one segment.
 pub(super) fn turns(segment: Segment, turns: u64) -> impl Iterator<Item = (Segment, f64)> {
-    let (angle, plane) = match segment.way {
-        Way::Arc { plane, center, direction } => (swept(&segment, plane, center, direction), plane),
-        Way::Line => (TAU, crate::Plane::Xy),
+    let (angle, plane) = match segment.shape {
+        SegmentShape::Arc { plane, center, direction } => (swept(&segment, plane, center, direction), plane),
+        SegmentShape::Line => (TAU, crate::Plane::Xy),
     };
     let [u, v, low] = plane.of(segment.from);
     let high = plane.of(segment.to)[2];
@@ -73,7 +73,8 @@ pub(super) fn turns(segment: Segment, turns: u64) -> impl Iterator<Item = (Segme
     let full = turns.saturating_sub(1);
     let whole = full as f64 * TAU + angle;
     let after = move |turn: u64| plane.point([u, v, low + (high - low) * (turn as f64 * TAU / whole)]);
-    let circle = move |turn: u64| (Segment { from: after(turn), to: after(turn + 1), way: segment.way }, TAU / whole);
+    let circle =
+        move |turn: u64| (Segment { from: after(turn), to: after(turn + 1), shape: segment.shape }, TAU / whole);
     let last = Segment { from: if full == 0 { segment.from } else { after(full) }, ..segment };
     (0..full).map(circle).chain([(last, angle / whole)])
 }

@@ -79,7 +79,7 @@ pub(super) struct Block<'l> {
     pub(super) distance: Slot<'l, Distance>,
     pub(super) centers: Slot<'l, Distance>,
     pub(super) return_level: Slot<'l, ()>,
-    /// G80, which may stand beside a word of motion.
+    /// G80, which may come with a word of motion.
     pub(super) cycles_off: Slot<'l, ()>,
     pub(super) motion: Slot<'l, Motion>,
     pub(super) halt: Slot<'l, Halt>,

@@ -18,7 +18,7 @@ pub struct ProgramError {
     pub kind: ProgramErrorKind,
 }
 
-/// What is wrong with a program; every message names the word, the limit and the way out.
+/// What is wrong with a program; every message names the word, the limit and the remedy.
 ///
 /// `word` is always as it was written, without blanks.
 #[derive(Debug, thiserror::Error)]
@@ -35,7 +35,7 @@ pub enum ProgramErrorKind {
         /// The byte.
         byte: u8,
     },
-    /// A character has no meaning where it stands.
+    /// A character has no meaning in its place.
     #[error("'{}' does not belong here, only words such as X12.5 and comments do: remove it", .character.escape_debug())]
     UnexpectedCharacter {
         /// The character.
@@ -121,7 +121,7 @@ pub enum ProgramErrorKind {
         /// The word in front of it.
         first: String,
     },
-    /// Two G or M words of one modal group stand in one block.
+    /// Two G or M words of one modal group are in one block.
     #[error("{word} is of the same modal group as {first}, and one block takes one of them: break the block in two")]
     SameGroup {
         /// The word.
@@ -338,7 +338,7 @@ pub(super) struct Fault {
     pub(super) kind: ProgramErrorKind,
 }
 
-/// The tolerance that would accept an arc whose radii differ by so much too much, where one may.
+/// The tolerance that would accept an arc whose radii differ by this much too much, where one may.
 fn accepted(excess: f64, [given, most]: [f64; 2]) -> String {
     let wanted = ((given + excess) * 1000.0).ceil() / 1000.0;
     if wanted > most { String::new() } else { format!(", or accept it with --tolerance {wanted}") }

@@ -7,7 +7,7 @@ use super::error::{Fault, ProgramErrorKind};
 use super::modal::{AXES, Modal, within};
 use super::words::Word;
 use super::{Event, Reading};
-use crate::{Feed, Move, Place, Segment, Side, Way};
+use crate::{Feed, Move, Place, Segment, SegmentShape, Side};
 
 impl Modal {
     /// What a coordinate counts from, in BLU.
@@ -69,7 +69,7 @@ impl Modal {
         }
         for to in [over, home] {
             if to != self.position {
-                let segment = Segment { from: self.position, to, way: Way::Line };
+                let segment = Segment { from: self.position, to, shape: SegmentShape::Line };
                 events.push_back(Event::Move(Move {
                     place,
                     segment,

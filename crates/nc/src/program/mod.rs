@@ -25,7 +25,7 @@
 //! | M02, M30 | end; what follows in the file is not read |
 //! | M03 to M09 | spindle with the clock, against it, off; tool change; mist, flood, coolant off |
 //! | `(…)`, `;…` | comments, the second to the end of the line |
-//! | `%` | alone in its line: in front of the first block it is passed, behind it ends the program |
+//! | `%` | alone in its line: before the first block it is skipped, after it, it ends the program |
 //! | `/` | first in a line: the block could be switched off; here it is run |
 //! | `O1234` | number of the program, alone in front of the first block; passed |
 //!
@@ -40,12 +40,12 @@
 //! | G80 | there are no canned cycles to be ended; no motion mode is in force after it, unless G00 to G03 stand next to it |
 //! | G98, G99 | where canned cycles retract to |
 //!
-//! Words of a block are executed in the order of RS-274: feed mode, F, S, T, tool change, spindle, coolant, dwell, plane,
-//! units, compensation, distance modes, motion, stop. So an F word in a block with G20 or G21 is still in the units
-//! that were in force in front of the block. A coordinate without G word continues the motion that is in force, and
-//! a motion word without coordinate, centre or radius only changes what is in force. A line
-//! that ends where it starts is no move, but its words stay in force, and an arc that does so (and has I J K) is a full
-//! circle; ends within 0.001 BLU along every axis are the same point. A program may end without M02 or M30.
+//! Words of a block are executed in the order of RS-274: feed mode, F, S, T, tool change, spindle, coolant, dwell,
+//! plane, units, compensation, distance modes, motion, stop. So an F word in a block with G20 or G21 is still in the
+//! units that were in force in front of the block. A coordinate without G word continues the motion that is in force,
+//! and a motion word without coordinate, centre or radius only changes what is in force. A line that ends where it
+//! starts is not a move, but its words stay in force, and an arc that does so (and has I J K) is a full circle; ends
+//! within 0.001 BLU along every axis are the same point. A program may end without M02 or M30.
 //!
 //! An arc whose end is not on its circle, or whose R is less than half of its chord, is allowed within 2 BLU, 0.005 mm
 //! (what rounding to 0.001 mm or 0.0001 inch makes) or 0.1 % of its radius, whichever is most, the last at most 0.5 mm;
@@ -82,7 +82,7 @@ pub const PROGRAM_LIMIT: i64 = 1 << 40;
 /// The most turns of an arc: each is a move of its own.
 const TURNS_LIMIT: u64 = 10_000;
 
-/// How the tolerance of radii is told to people.
+/// The tolerance of radii in words, for messages.
 const CENTER_TOLERANCE: &str = "the largest of 2 BLU, 0.005 mm and 0.1 % of the radius, the last at most 0.5 mm";
 
 /// What a coordinate without decimal point means.
@@ -133,7 +133,7 @@ pub enum Coolant {
     Off,
 }
 
-/// What a block switches beside the motion.
+/// What a block switches in addition to its motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Auxiliary {
     /// S: the speed of the spindle, in turns per minute.
@@ -160,7 +160,7 @@ pub enum Event {
         /// For how long.
         seconds: f64,
     },
-    /// Something beside the motion is switched.
+    /// Something other than the motion is switched.
     Auxiliary {
         /// The block.
         place: Place,
@@ -176,7 +176,7 @@ pub enum Event {
     },
     /// The program ends; always the last event, and there is always one.
     End {
-        /// The block with M02 or M30; where there is none, the last line.
+        /// The block with M02 or M30, or else the last line.
         place: Place,
     },
 }
@@ -188,12 +188,10 @@ pub enum Event {
 /// ```
 /// use stepwave_nc::{Event, Integers, Program, Reading};
 ///
-/// let reading = Reading { blu: 0.001, integers: Integers::Units, tools: Default::default(), tolerance: 0.0, home: None };
-/// let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?;
-/// let Some(Ok(Event::Move(first))) = program.next() else { panic!() };
-/// assert_eq!(first.segment.to, [1500.0, 0.0, 0.0]);
-/// let Some(Err(error)) = program.next() else { panic!() };
-/// assert_eq!(
+/// let reading = Reading { blu: 0.001, integers: Integers::Units, tools: Default::default(), tolerance: 0.0, home: None
+/// }; let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?; let
+/// Some(Ok(Event::Move(first))) = program.next() else { panic!() }; assert_eq!(first.segment.to, [1500.0, 0.0, 0.0]);
+/// let Some(Err(error)) = program.next() else { panic!() }; assert_eq!(
 ///     error.to_string(),
 ///     "line 2, column 5: expressions ([ ]) are not supported: write the number itself"
 /// );
@@ -220,7 +218,7 @@ impl<R: BufRead> Program<R> {
     ///
     /// # Errors
     ///
-    /// If the BLU, the tolerance or the radius of a tool is no length, or the home is beyond all coordinates.
+    /// If the BLU, the tolerance or the radius of a tool is not a length, or the home is beyond all coordinates.
     pub fn new(text: R, reading: Reading) -> Result<Program<R>, ReadingError> {
         let blu = reading.blu;
         if !(blu.is_finite() && blu > 0.0) {

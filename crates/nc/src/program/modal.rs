@@ -7,7 +7,7 @@ use super::block::{Block, Compensation, Distance, FeedMode, Halt, Hand, Motion};
 use super::error::{Fault, ProgramErrorKind};
 use super::words::Word;
 use super::{Auxiliary, Event, Integers, PROGRAM_LIMIT, Reading};
-use crate::{Direction, Feed, Move, Place, Plane, Point, Segment, Side, Way};
+use crate::{Direction, Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side};
 
 /// The words that stay in force, and where the tool is.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ impl Default for Modal {
 pub(super) const AXES: [char; 3] = ['X', 'Y', 'Z'];
 const CENTERS: [char; 3] = ['I', 'J', 'K'];
 
-/// Ends of a way that lie no further apart along the axes are one point: rounding of increments and inches has parted
+/// Ends that are no further apart along the axes are one point: rounding of increments and inches has parted
 /// them. In BLU.
 const SAME_POINT: f64 = 1e-3;
 
@@ -68,7 +68,7 @@ pub(super) fn within(value: f64, column: u64, name: impl FnOnce() -> String) -> 
 }
 
 impl Modal {
-    /// Runs a block in the order of RS-274, and tells whether the program ends with it.
+    /// Runs a block in the order of RS-274, and returns whether the program ends with it.
     pub(super) fn run(
         &mut self,
         block: &Block<'_>,
@@ -137,7 +137,7 @@ impl Modal {
 
     /// The moves of a segment: one, but of an arc of several turns each turn is one.
     fn moves(&self, segment: Segment, turns: u64, feed: Feed, place: Place, events: &mut VecDeque<Event>) {
-        if segment.from == segment.to && segment.way == Way::Line {
+        if segment.from == segment.to && segment.shape == SegmentShape::Line {
             return;
         }
         let of = |(segment, share): (Segment, f64)| {
@@ -217,7 +217,7 @@ impl Modal {
         within(value, word.column, || word.letter.to_string())
     }
 
-    /// The way of the block, of whatever length; nothing where it has no word that moves.
+    /// The segment of the block, of any length; nothing where it has no word that moves.
     fn segment(&self, block: &Block<'_>, reading: &Reading) -> Result<Option<Segment>, Fault> {
         let Some(first) = block.any("XYZIJKR") else {
             return Ok(None);
@@ -250,12 +250,12 @@ impl Modal {
                 to[axis] = from[axis];
             }
         }
-        let way = match (motion, block.any("IJKR")) {
+        let shape = match (motion, block.any("IJKR")) {
             (Motion::Arc(direction), _) => self.arc(block, from, to, direction, reading)?,
-            (_, None) => Way::Line,
+            (_, None) => SegmentShape::Line,
             (_, Some(word)) => return Err(word.fault(|word| ProgramErrorKind::Unused { word, owner: "G02 or G03" })),
         };
-        Ok(Some(Segment { from, to, way }))
+        Ok(Some(Segment { from, to, shape }))
     }
 
     fn arc(
@@ -265,7 +265,7 @@ impl Modal {
         to: Point,
         direction: Direction,
         reading: &Reading,
-    ) -> Result<Way, Fault> {
+    ) -> Result<SegmentShape, Fault> {
         let plane = self.plane;
         let (name, words) = center_words(plane);
         let [first, second, third] = plane.axes();
@@ -310,7 +310,7 @@ impl Modal {
         for (value, axis) in center.into_iter().zip([first, second]) {
             within(value, column, || format!("the centre in {}", AXES[axis]))?;
         }
-        Ok(Way::Arc { plane, center, direction })
+        Ok(SegmentShape::Arc { plane, center, direction })
     }
 }
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Direction, Feed, Place, Plane, Point, Side, Way};
+use crate::{Direction, Feed, Place, Plane, Point, SegmentShape, Side};
 
 mod arcs;
 mod blocks;

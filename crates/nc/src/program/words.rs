@@ -1,7 +1,7 @@
 //! A line of an NC program, taken apart into words.
 //!
 //! Written here and not taken from the crate `gcode` (0.7.0), because that keeps every number as `f32`, which cannot
-//! tell 16,777,217 pulses from 16,777,216.
+//! represent 16,777,217 pulses exactly.
 
 use std::borrow::Cow;
 
@@ -22,7 +22,7 @@ pub(super) struct Word<'l> {
     pub(super) value: f64,
     /// Whether the number is written without a decimal point.
     pub(super) integer: bool,
-    /// Where the letter stands, from 1, in characters.
+    /// The column of the letter, from 1, in characters.
     pub(super) column: u64,
     text: &'l str,
 }
@@ -178,13 +178,13 @@ impl<'l> Words<'l> {
         self.step_if(|character| character == sign).is_some()
     }
 
-    /// The column of what is left of the line, behind blanks and comments; nothing where nothing is left.
+    /// The column of what is left of the line, after blanks and comments; nothing where nothing is left.
     pub(super) fn left(&mut self) -> Result<Option<u64>, Fault> {
         self.space()?;
         Ok(self.peek().map(|_| self.column))
     }
 
-    /// The next word; nothing behind the last.
+    /// The next word; nothing after the last.
     pub(super) fn next(&mut self) -> Result<Option<Word<'l>>, Fault> {
         self.space()?;
         let (start, column) = (self.rest, self.column);
@@ -225,9 +225,9 @@ impl<'l> Words<'l> {
         let power = self.rest.strip_prefix(['e', 'E'])?;
         let unsigned = power.strip_prefix(['+', '-']).unwrap_or(power);
         let digits = unsigned.len() - unsigned.trim_start_matches(|digit: char| digit.is_ascii_digit()).len();
-        let behind = unsigned[digits..].trim_start_matches([' ', '\t']);
+        let after = unsigned[digits..].trim_start_matches([' ', '\t']);
         // What has a fraction itself, or is beyond all floating-point numbers, is a word with the letter E.
-        if !(1..=3).contains(&digits) || behind.starts_with(['.', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9']) {
+        if !(1..=3).contains(&digits) || after.starts_with(['.', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9']) {
             return None;
         }
         if word.ends_with([' ', '\t']) {

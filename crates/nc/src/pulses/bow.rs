@@ -8,14 +8,14 @@ use crate::Direction;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bow {
     center: [f64; 2],
-    /// Radius at the start, and behind the whole turn.
+    /// Radius at the start, and after the whole turn.
     radii: [f64; 2],
     /// Angle of the start in radians, and the turn from there: more than 0, up to 2π.
     first: f64,
     turn: f64,
     /// -1 clockwise.
     sign: f64,
-    /// The end; of a told arc up to one BLU off the circle.
+    /// The end; of a commanded arc up to one BLU off the circle.
     end: [f64; 2],
 }
 
@@ -118,22 +118,22 @@ impl Bow {
         self.beyond(other).max(other.beyond(self))
     }
 
-    /// The two-sided distance from the straight way between two points.
+    /// The two-sided distance from the straight line between two points.
     pub(super) fn apart_from_line(&self, [start, end]: [[f64; 2]; 2]) -> f64 {
-        let way = between(start, end);
-        let square = way[0].powi(2) + way[1].powi(2);
-        let on_way = |part: f64| [0, 1].map(|axis| start[axis] + way[axis] * part);
-        let off_way = |point: [f64; 2]| {
+        let chord = between(start, end);
+        let square = chord[0].powi(2) + chord[1].powi(2);
+        let on_chord = |part: f64| [0, 1].map(|axis| start[axis] + chord[axis] * part);
+        let off_chord = |point: [f64; 2]| {
             let arm = between(start, point);
-            let part = (arm[0] * way[0] + arm[1] * way[1]) / square;
-            length(between(on_way(if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 }), point))
+            let part = (arm[0] * chord[0] + arm[1] * chord[1]) / square;
+            length(between(on_chord(if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 }), point))
         };
-        let across = self.cut(self.center, [-way[1], way[0]]);
+        let across = self.cut(self.center, [-chord[1], chord[0]]);
         let to_ends = [start, end].map(|point| self.cut(self.center, between(self.center, point)));
         let even = (0..=EVEN).map(|part| self.turn * f64::from(part) / f64::from(EVEN));
         let turns = across.chain(to_ends.into_iter().flatten()).chain(even).filter(|turn| *turn <= self.turn);
-        let there = turns.map(|turn| off_way(self.after(turn))).fold(0.0, f64::max);
-        (0..=8).map(|part| self.distance(on_way(f64::from(part) / 8.0))).fold(there, f64::max)
+        let there = turns.map(|turn| off_chord(self.after(turn))).fold(0.0, f64::max);
+        (0..=8).map(|part| self.distance(on_chord(f64::from(part) / 8.0))).fold(there, f64::max)
     }
 }
 

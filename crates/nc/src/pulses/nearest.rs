@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use super::bow::{Bow, between, length};
 use crate::{Arc, Direction};
 
-/// An arc that a machine can be told, or the straight way between the same ends, which is none where they fall together.
+/// An arc that a machine can get, or the straight line between the same ends, which is empty where they are equal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearest {
-    /// The arc; `None` where the straight way is nearer.
+    /// The arc; `None` where the straight line is nearer.
     pub(super) arc: Option<Arc>,
     /// The two-sided distance from the ideal arc, in BLU.
     pub(super) apart: f64,
@@ -37,7 +37,7 @@ const EQUAL: f64 = 1e-9;
 /// Radius up to which every whole centre that can be the nearest is tried, in BLU.
 const SMALL: f64 = 4.0;
 
-/// The nearest arc between two whole points, or the straight way between them.
+/// The nearest arc between two whole points, or the straight line between them.
 pub(super) fn nearest(ideal: &Bow, seeds: [[f64; 2]; 2], [start, end]: [[i64; 2]; 2], direction: Direction) -> Nearest {
     let straight = ideal.apart_from_line([start, end].map(real));
     let between = [1.0, 2.0, 3.0].map(|part| ideal.after(ideal.turn() * part / 4.0));
@@ -98,14 +98,15 @@ impl Search<'_> {
         let (at, to, radius) = (real(center), real(end), arc.radius());
         let off = |point: [f64; 2]| (length(between(at, point)) - radius).abs();
         let offs = self.between.map(off);
-        // No point of the ideal arc is nearer to the told one than to its circle or its end.
+        // No point of the ideal arc is nearer to the commanded one than to its circle or its end.
         let least = self.between.iter().zip(offs).map(|(point, off)| off.min(length(between(*point, to))));
         let least = least.fold(0.0, f64::max);
         if self.best.is_some_and(|best| least > best.apart + EQUAL) {
             return;
         }
-        let told = Bow::circle([start, end].map(real), at, arc.sweep(), self.direction);
-        let found = Found { arc, apart: self.ideal.apart(&told), fit: off(to) + offs.into_iter().fold(0.0, f64::max) };
+        let commanded = Bow::circle([start, end].map(real), at, arc.sweep(), self.direction);
+        let found =
+            Found { arc, apart: self.ideal.apart(&commanded), fit: off(to) + offs.into_iter().fold(0.0, f64::max) };
         let nearer = self.best.is_none_or(|best| {
             let gain = best.apart - found.apart;
             gain > EQUAL || (gain > -EQUAL && found.fit < best.fit)

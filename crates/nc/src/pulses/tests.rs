@@ -3,8 +3,8 @@ use crate::Side;
 
 mod tiny;
 
-fn moved(from: Point, to: Point, way: Way) -> ToolMove {
-    let segment = Segment { from, to, way };
+fn moved(from: Point, to: Point, shape: SegmentShape) -> ToolMove {
+    let segment = Segment { from, to, shape };
     let place = Place { line: 1, number: None };
     ToolMove { place, segment, feed: Feed::Rapid, cause: Cause::Programmed, programmed: segment, side: Side::On }
 }
@@ -17,14 +17,15 @@ fn blocks(moves: &[ToolMove], chords: Option<f64>) -> Vec<PulseBlock> {
     out
 }
 
-fn circle(center: [f64; 2], direction: Direction) -> Way {
-    Way::Arc { plane: Plane::Xy, center, direction }
+fn circle(center: [f64; 2], direction: Direction) -> SegmentShape {
+    SegmentShape::Arc { plane: Plane::Xy, center, direction }
 }
 
 #[test]
 fn roundings_do_not_add_up() {
-    let moves: Vec<ToolMove> =
-        (0..10).map(|i| moved([f64::from(i) * 0.4, 0.0, 0.0], [f64::from(i + 1) * 0.4, 0.0, 0.0], Way::Line)).collect();
+    let moves: Vec<ToolMove> = (0..10)
+        .map(|i| moved([f64::from(i) * 0.4, 0.0, 0.0], [f64::from(i + 1) * 0.4, 0.0, 0.0], SegmentShape::Line))
+        .collect();
     let blocks = blocks(&moves, None);
     assert_eq!(blocks.last().map(|block| block.to), Some([4, 0, 0]));
     assert!(blocks.windows(2).all(|pair| pair[0].to == pair[1].from));
@@ -32,8 +33,8 @@ fn roundings_do_not_add_up() {
 }
 
 #[test]
-fn a_line_lies_in_the_plane_of_its_two_longest_ways() {
-    let plane = |to: Point| blocks(&[moved([0.0; 3], to, Way::Line)], None)[0].plane;
+fn a_line_lies_in_the_plane_of_its_two_longest_travels() {
+    let plane = |to: Point| blocks(&[moved([0.0; 3], to, SegmentShape::Line)], None)[0].plane;
     assert_eq!(plane([9.0, 5.0, 1.0]), Plane::Xy);
     assert_eq!(plane([9.0, 1.0, 5.0]), Plane::Zx);
     assert_eq!(plane([1.0, 9.0, 5.0]), Plane::Yz);
@@ -45,7 +46,8 @@ fn an_arc_of_rounded_ends_gets_a_centre_about_which_they_are_on_one_circle_withi
     for degrees in (5..360).step_by(7) {
         let at = |angle: f64| [center[0] + radius * angle.cos(), center[1] + radius * angle.sin(), 0.0];
         let (from, to) = (at(0.3), at(0.3 + f64::from(degrees).to_radians()));
-        let moves = [moved([0.0; 3], from, Way::Line), moved(from, to, circle(center, Direction::CounterClockwise))];
+        let moves =
+            [moved([0.0; 3], from, SegmentShape::Line), moved(from, to, circle(center, Direction::CounterClockwise))];
         let blocks = blocks(&moves, None);
         let Curve::Arc(arc) = &blocks[1].curve else { panic!("no arc at {degrees}") };
         let difference = f64::hypot(arc.end()[0] as f64, arc.end()[1] as f64) - arc.radius();
@@ -71,8 +73,8 @@ fn rounding_moves_no_point_of_an_arc_by_two_pulses() {
             let (sin, cos) = angle.sin_cos();
             [center[0] + dx * cos - dy * sin, center[1] + dx * sin + dy * cos, 0.0]
         };
-        let way = circle(center, Direction::CounterClockwise);
-        let blocks = blocks(&[moved([0.0; 3], at(0.0), Way::Line), moved(at(0.0), at(angle), way)], None);
+        let shape = circle(center, Direction::CounterClockwise);
+        let blocks = blocks(&[moved([0.0; 3], at(0.0), SegmentShape::Line), moved(at(0.0), at(angle), shape)], None);
         let Some(Curve::Arc(arc)) = blocks.get(1).map(|block| &block.curve) else { continue };
         for part in 0..=16 {
             let [x, y, _] = at(angle * f64::from(part) / 16.0);
@@ -87,7 +89,7 @@ fn rounding_moves_no_point_of_an_arc_by_two_pulses() {
 fn an_arc_shorter_than_a_pulse_is_no_full_circle() {
     let to = [1000.0, 0.3, 0.0];
     let moves = [
-        moved([0.0; 3], [1000.0, 0.0, 0.0], Way::Line),
+        moved([0.0; 3], [1000.0, 0.0, 0.0], SegmentShape::Line),
         moved([1000.0, 0.0, 0.0], to, circle([0.0, 0.0], Direction::CounterClockwise)),
     ];
     assert_eq!(blocks(&moves, None).len(), 1);
@@ -96,7 +98,7 @@ fn an_arc_shorter_than_a_pulse_is_no_full_circle() {
 #[test]
 fn an_arc_that_ends_where_it_starts_is_a_full_circle() {
     let at = [50.0, 0.0, 0.0];
-    let moves = [moved([0.0; 3], at, Way::Line), moved(at, at, circle([0.0, 0.0], Direction::Clockwise))];
+    let moves = [moved([0.0; 3], at, SegmentShape::Line), moved(at, at, circle([0.0, 0.0], Direction::Clockwise))];
     let blocks = blocks(&moves, None);
     assert!(matches!(&blocks[1].curve, Curve::Arc(arc) if arc.is_full_circle()));
     assert_eq!(blocks[1].reach()[0], [-51, 51]);
@@ -105,7 +107,8 @@ fn an_arc_that_ends_where_it_starts_is_a_full_circle() {
 #[test]
 fn chords_stay_within_their_tolerance() {
     let (from, to) = ([1000.0, 0.0, 0.0], [-1000.0, 0.0, 0.0]);
-    let moves = [moved([0.0; 3], from, Way::Line), moved(from, to, circle([0.0, 0.0], Direction::CounterClockwise))];
+    let moves =
+        [moved([0.0; 3], from, SegmentShape::Line), moved(from, to, circle([0.0, 0.0], Direction::CounterClockwise))];
     for tolerance in [0.5, 5.0, 50.0] {
         let blocks = blocks(&moves, Some(tolerance));
         for block in &blocks[1..] {
@@ -122,8 +125,8 @@ fn chords_stay_within_their_tolerance() {
 fn a_helix_keeps_its_third_axis_in_every_plane() {
     for plane in [Plane::Xy, Plane::Zx, Plane::Yz] {
         let [from, to] = [plane.point([100.0, 0.0, 0.0]), plane.point([0.0, 100.0, 30.0])];
-        let way = Way::Arc { plane, center: [0.0, 0.0], direction: Direction::CounterClockwise };
-        let blocks = blocks(&[moved([0.0; 3], from, Way::Line), moved(from, to, way)], None);
+        let shape = SegmentShape::Arc { plane, center: [0.0, 0.0], direction: Direction::CounterClockwise };
+        let blocks = blocks(&[moved([0.0; 3], from, SegmentShape::Line), moved(from, to, shape)], None);
         let climb: i64 = blocks[1..].iter().map(|block| block.to[plane.axes()[2]] - block.from[plane.axes()[2]]).sum();
         assert_eq!((climb, blocks.last().map(|block| block.to.map(|c| c as f64))), (30, Some(to)));
         assert!(blocks[1..].iter().all(|block| matches!(&block.curve, Curve::Helix(_))));
@@ -134,7 +137,7 @@ fn a_helix_keeps_its_third_axis_in_every_plane() {
 fn what_is_beyond_all_measure_is_refused() {
     for to in [f64::NAN, f64::INFINITY, 1e300] {
         let mut out = Vec::new();
-        assert!(Rounder::new(None).blocks(&moved([0.0; 3], [to, 0.0, 0.0], Way::Line), &mut out).is_err());
+        assert!(Rounder::new(None).blocks(&moved([0.0; 3], [to, 0.0, 0.0], SegmentShape::Line), &mut out).is_err());
         assert!(out.is_empty());
     }
 }

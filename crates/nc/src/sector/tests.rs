@@ -124,7 +124,7 @@ fn sectors_are_relative_to_the_centre() -> Outcome {
 }
 
 #[test]
-fn sectors_join_and_move_one_way_on_every_arc_with_both_crossings() -> Outcome {
+fn sectors_join_and_move_in_one_direction_on_every_arc_with_both_crossings() -> Outcome {
     // Every end point within 1 BLU of a circle below radius 10 is below radius 11.
     for start in lattice(100) {
         for end in lattice(121) {
@@ -164,7 +164,7 @@ fn sectors_join_and_move_one_way_on_every_arc_with_both_crossings() -> Outcome {
 }
 
 #[test]
-fn the_rounded_radius_is_exact_and_never_behind_the_start() -> Outcome {
+fn the_rounded_radius_is_exact_and_never_short_of_the_start() -> Outcome {
     let crossing = |start, direction| -> Result<Point, GeometryError> {
         let circle = Arc::new(start, start, [0, 0], direction)?;
         Ok(circle.sectors(Crossing::RoundedRadius)[0].end)
@@ -172,7 +172,7 @@ fn the_rounded_radius_is_exact_and_never_behind_the_start() -> Outcome {
     assert_eq!(crossing([-5, -3], Clockwise)?, [-6, 0]); // √34 = 5.83
     assert_eq!(crossing([2, 5], CounterClockwise)?, [0, 5]); // √29 = 5.39
     assert_eq!(crossing([-1, 5], CounterClockwise)?, [-5, 0]);
-    // R² = r² + r rounds down and R² + 1 up, where f64 no longer tells the two roots apart.
+    // R² = r² + r rounds down and R² + 1 up, where f64 no longer separates the two roots.
     let r = L;
     let half = 1 << 26; // (r, half) has R² = r² + r
     assert_eq!(crossing([half, r], CounterClockwise)?, [0, r]);

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// A block that ends (or starts) in the origin with a tangent of an angle: straight, or an arc with its centre on the left
-/// (1) or on the right (-1).
+/// A block that ends (or starts) in the origin with a tangent of an angle: straight, or an arc with its centre on the
+/// left (1) or on the right (-1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Piece {
     pub(super) bend: f64,
@@ -17,10 +17,10 @@ const LEFT: Piece = Piece { bend: 1.0, radius: 20.0, sweep: 0.6 };
 const RIGHT: Piece = Piece { bend: -1.0, radius: 20.0, sweep: 0.6 };
 
 impl Piece {
-    /// The far end, the tangent there and the way, of the block that leaves the origin at an angle.
-    fn leave_origin(self, angle: f64) -> (Vector, f64, Way) {
+    /// The far end, the tangent there and the shape, of the block that leaves the origin at an angle.
+    fn leave_origin(self, angle: f64) -> (Vector, f64, SegmentShape) {
         if self.bend == 0.0 {
-            return ([LONG * angle.cos(), LONG * angle.sin()], angle, Way::Line);
+            return ([LONG * angle.cos(), LONG * angle.sin()], angle, SegmentShape::Line);
         }
         let normal = angle + self.bend * TAU / 4.0;
         let center = [self.radius * normal.cos(), self.radius * normal.sin()];
@@ -30,18 +30,20 @@ impl Piece {
         (far, angle + self.bend * self.sweep, arc(center, direction))
     }
 
-    /// The far end, the tangent there and the way, of the block that comes to the origin along x.
-    fn reach_origin(self) -> (Vector, f64, Way) {
+    /// The far end, the tangent there and the shape, of the block that comes to the origin along x.
+    fn reach_origin(self) -> (Vector, f64, SegmentShape) {
         let back = Piece { bend: -self.bend, ..self };
-        let (far, tangent, way) = back.leave_origin(TAU / 2.0);
-        (far, tangent + TAU / 2.0, reversed(way))
+        let (far, tangent, shape) = back.leave_origin(TAU / 2.0);
+        (far, tangent + TAU / 2.0, reversed(shape))
     }
 }
 
-fn reversed(way: Way) -> Way {
-    match way {
-        Way::Line => Way::Line,
-        Way::Arc { plane, center, direction } => Way::Arc { plane, center, direction: direction.reversed() },
+fn reversed(shape: SegmentShape) -> SegmentShape {
+    match shape {
+        SegmentShape::Line => SegmentShape::Line,
+        SegmentShape::Arc { plane, center, direction } => {
+            SegmentShape::Arc { plane, center, direction: direction.reversed() }
+        }
     }
 }
 
@@ -50,7 +52,7 @@ pub(super) fn corner(leaving: Piece, entering: Piece, turn: f64, side: Side) -> 
     let (start, tangent, first) = leaving.reach_origin();
     let (end, _, second) = entering.leave_origin(turn);
     let before = [start[0] - 10.0 * tangent.cos(), start[1] - 10.0 * tangent.sin()];
-    contour(before, &[(start, Way::Line), ([0.0, 0.0], first), (end, second)], side)
+    contour(before, &[(start, SegmentShape::Line), ([0.0, 0.0], first), (end, second)], side)
 }
 
 fn every_corner() -> impl Iterator<Item = (Piece, Piece, f64, bool)> {
@@ -125,9 +127,9 @@ fn classes_show_in_what_is_inserted_and_how_far_it_goes() -> Outcome {
             // One point, at the radius from both paths, taken as an endless line and a whole circle.
             let point = flat(tool_corner(&straight));
             for (block, tip) in moves[1..].iter().zip([0.0, turn.to_radians()]) {
-                let off = match block.segment.way {
-                    Way::Line => (point[1] * tip.cos() - point[0] * tip.sin()).abs(),
-                    Way::Arc { center, .. } => (distance(point, center) - 20.0).abs(),
+                let off = match block.segment.shape {
+                    SegmentShape::Line => (point[1] * tip.cos() - point[0] * tip.sin()).abs(),
+                    SegmentShape::Arc { center, .. } => (distance(point, center) - 20.0).abs(),
                 };
                 assert!((off - RADIUS).abs() < 1e-9, "{case}: {off}");
             }
@@ -139,8 +141,8 @@ fn classes_show_in_what_is_inserted_and_how_far_it_goes() -> Outcome {
             }
         } else {
             assert_eq!(inserted.len(), 1, "{case}");
-            let way = if left { Direction::Clockwise } else { Direction::CounterClockwise };
-            assert_eq!(inserted[0].segment.way, arc([0.0, 0.0], way));
+            let turn = if left { Direction::Clockwise } else { Direction::CounterClockwise };
+            assert_eq!(inserted[0].segment.shape, arc([0.0, 0.0], turn));
             for point in samples(&inserted[0].segment) {
                 assert!((distance(point, [0.0, 0.0]) - RADIUS).abs() < 1e-9, "{case}");
             }
@@ -157,7 +159,7 @@ fn classes_show_in_what_is_inserted_and_how_far_it_goes() -> Outcome {
     Ok(())
 }
 
-/// Where the first block behind the start-up ends.
+/// Where the first block after the start-up ends.
 fn tool_corner(tool: &[ToolMove]) -> Point {
     tool[1].segment.to
 }
@@ -167,10 +169,10 @@ fn a_mirrored_program_gives_the_mirrored_path() -> Outcome {
     let mirror = |segment: Segment| Segment {
         from: [segment.from[0], -segment.from[1], 0.0],
         to: [segment.to[0], -segment.to[1], 0.0],
-        way: match segment.way {
-            Way::Line => Way::Line,
-            Way::Arc { plane, center, direction } => {
-                Way::Arc { plane, center: [center[0], -center[1]], direction: direction.reversed() }
+        shape: match segment.shape {
+            SegmentShape::Line => SegmentShape::Line,
+            SegmentShape::Arc { plane, center, direction } => {
+                SegmentShape::Arc { plane, center: [center[0], -center[1]], direction: direction.reversed() }
             }
         },
     };
@@ -195,25 +197,25 @@ fn a_mirrored_program_gives_the_mirrored_path() -> Outcome {
 fn assert_same(a: Segment, b: Segment) {
     assert_near(flat(a.from), flat(b.from), 1e-7);
     assert_near(flat(a.to), flat(b.to), 1e-7);
-    match (a.way, b.way) {
-        (Way::Arc { center: a, direction: c, .. }, Way::Arc { center: b, direction: d, .. }) => {
+    match (a.shape, b.shape) {
+        (SegmentShape::Arc { center: a, direction: c, .. }, SegmentShape::Arc { center: b, direction: d, .. }) => {
             assert_near(a, b, 1e-9);
             assert_eq!(c, d);
         }
-        ways => assert_eq!(ways.0, ways.1),
+        shapes => assert_eq!(shapes.0, shapes.1),
     }
 }
 
 #[test]
 fn a_program_run_backwards_on_the_other_side_gives_the_path_backwards() -> Outcome {
-    let back = |segment: Segment| Segment { from: segment.to, to: segment.from, way: reversed(segment.way) };
+    let back = |segment: Segment| Segment { from: segment.to, to: segment.from, shape: reversed(segment.shape) };
     for (leaving, entering, turn, left) in every_corner() {
         for (scheme, round) in
             [(Scheme::B, Corner::Straight), (Scheme::C, Corner::Straight), (Scheme::C, Corner::Circular)]
         {
             let moves = corner(leaving, entering, turn.to_radians(), on(left));
             let end = flat(moves[2].segment.to);
-            let mut backwards = vec![block(1, [end[0], end[1] + 10.0], end, Way::Line, on(!left))];
+            let mut backwards = vec![block(1, [end[0], end[1] + 10.0], end, SegmentShape::Line, on(!left))];
             backwards.extend([moves[2], moves[1]].map(|of| Move { segment: back(of.segment), side: on(!left), ..of }));
             let (plain, backwards) = (run(scheme, round, &moves)?, run(scheme, round, &backwards)?);
             assert_eq!(plain.len(), backwards.len());
@@ -232,7 +234,7 @@ fn scheme_b_joins_the_normals_by_a_straight_move() -> Outcome {
         let tool = run(Scheme::B, Corner::Circular, &moves)?;
         assert_joined(&tool);
         assert_eq!(tool.len(), 4);
-        assert_eq!((tool[2].cause, tool[2].segment.way), (Cause::Inserted, Way::Line));
+        assert_eq!((tool[2].cause, tool[2].segment.shape), (Cause::Inserted, SegmentShape::Line));
         let side = if left { 1.0 } else { -1.0 };
         let (sin, cos) = turn.to_radians().sin_cos();
         assert_near(flat(tool[2].segment.from), [0.0, side * RADIUS], 1e-9);
@@ -249,7 +251,7 @@ fn a_path_back_on_itself_is_rounded_at_its_end() -> Outcome {
     assert_near(ends(&straight)[1], [12.0, 2.0], 1e-9);
     assert_near(ends(&straight)[2], [12.0, -2.0], 1e-9);
     let circular = run(Scheme::C, Corner::Circular, &moves)?;
-    assert_eq!(circular[2].segment.way, arc([10.0, 0.0], Direction::Clockwise));
+    assert_eq!(circular[2].segment.shape, arc([10.0, 0.0], Direction::Clockwise));
     assert_near(ends(&circular)[2], [10.0, -2.0], 1e-9);
     Ok(())
 }
@@ -258,8 +260,11 @@ fn a_path_back_on_itself_is_rounded_at_its_end() -> Outcome {
 fn an_outside_corner_whose_offset_paths_do_not_meet_gets_an_insertion() -> Outcome {
     // Right of an arc that bends to the right, of radius 3: the offset circle has radius 1 and cannot reach back to the
     // line 2 below.
-    let steps =
-        [([-10.0, 0.0], Way::Line), ([0.0, 0.0], Way::Line), ([3.0, 3.0], arc([3.0, 0.0], Direction::Clockwise))];
+    let steps = [
+        ([-10.0, 0.0], SegmentShape::Line),
+        ([0.0, 0.0], SegmentShape::Line),
+        ([3.0, 3.0], arc([3.0, 0.0], Direction::Clockwise)),
+    ];
     let moves = contour([-20.0, 0.0], &steps, Side::Right(2.0));
     for (round, inserted) in [(Corner::Straight, 1), (Corner::Circular, 1)] {
         let tool = run(Scheme::C, round, &moves)?;

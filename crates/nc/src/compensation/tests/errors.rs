@@ -4,7 +4,7 @@ use super::CompensationErrorKind as Kind;
 use super::*;
 
 const LEFT: Side = Side::Left(2.0);
-const LINE: Way = Way::Line;
+const LINE: SegmentShape = SegmentShape::Line;
 const CCW: Direction = Direction::CounterClockwise;
 
 /// The error of the last of these blocks, and that it put out nothing.
@@ -121,7 +121,7 @@ fn a_cusp_that_closes_on_the_tool_is_refused_and_one_that_opens_is_rounded() {
          two blocks do not meet: take a smaller tool or open the corner"
     );
     let open = run(Scheme::C, Corner::Circular, &cusp([0.0, -10.0], CCW, [-10.0, -10.0])).expect("open");
-    assert_eq!(open[2].segment.way, arc([0.0, 0.0], Direction::Clockwise));
+    assert_eq!(open[2].segment.shape, arc([0.0, 0.0], Direction::Clockwise));
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn what_a_contour_cannot_be_is_refused() {
     assert_eq!(with(Move { plane: Plane::Zx, ..line }), Kind::PlaneChange);
     assert_eq!(with(block(3, [0.0, 0.5], [10.0, 0.0], LINE, LEFT)), Kind::Apart { gap: 0.5 });
     assert_eq!(with(block(3, [0.0; 2], [10.0, 0.0], arc([0.0; 2], CCW), LEFT)), Kind::ArcOfNoRadius);
-    let other = Way::Arc { plane: Plane::Yz, center: [0.0, 5.0], direction: CCW };
+    let other = SegmentShape::Arc { plane: Plane::Yz, center: [0.0, 5.0], direction: CCW };
     assert_eq!(with(block(3, [0.0; 2], [0.0, 0.0], other, LEFT)), Kind::ArcInOtherPlane);
     let bent = block(3, [0.0; 2], [0.0, 10.0], arc([0.0, 5.0], CCW), Side::Right(2.0));
     assert_eq!(with(bent), Kind::SideChangeOnArc);

@@ -1,8 +1,9 @@
-//! Whole contours: start-up, cancel, stops, moves along the third axis, changes of side and radius, full circles, planes.
+//! Whole contours: start-up, cancel, stops, moves along the third axis, changes of side and radius, full circles,
+//! planes.
 
 use super::*;
 
-const LINE: Way = Way::Line;
+const LINE: SegmentShape = SegmentShape::Line;
 const LEFT: Side = Side::Left(2.0);
 
 fn lines(start: Vector, ends: &[Vector], side: Side) -> Vec<Move> {
@@ -153,7 +154,7 @@ fn after_a_stop_the_tool_goes_round_outside_corners_and_straight_at_inside_corne
     let square = stopped(90.0, right, Corner::Straight)?;
     assert_ends(&square, &[[-10.0, -2.0], [10.0, -2.0], [12.0, -2.0], [12.0, 0.0], [12.0, 20.0]]);
     let round = stopped(90.0, right, Corner::Circular)?;
-    assert_eq!(round[2].segment.way, arc([10.0, 0.0], Direction::CounterClockwise));
+    assert_eq!(round[2].segment.shape, arc([10.0, 0.0], Direction::CounterClockwise));
     let back = stopped(180.0, right, Corner::Straight)?;
     let reach = [[-10.0, -2.0], [10.0, -2.0], [12.0, -2.0], [12.0, 2.0], [10.0, 2.0], [-10.0, 2.0]];
     assert_ends(&back, &reach);
@@ -190,7 +191,7 @@ fn a_full_circle_with_tangent_ends_stays_a_full_circle() -> Outcome {
             let steps = [(at(-20.0), LINE), (start, LINE), (start, circle), (at(20.0), LINE)];
             let tool = run(scheme, Corner::Straight, &contour(at(-30.0), &steps, side))?;
             assert_joined(&tool);
-            let round = tool.iter().find(|tool| tool.segment.way == circle).map(|tool| tool.segment);
+            let round = tool.iter().find(|tool| tool.segment.shape == circle).map(|tool| tool.segment);
             let round = round.unwrap_or_else(|| panic!("no circle"));
             assert_eq!(round.from, round.to);
             let radius = if side == LEFT { 8.3 } else { 12.3 };
@@ -207,10 +208,11 @@ fn a_full_circle_between_walls_is_cut_short_at_both_ends() -> Outcome {
     let moves = contour([-8.0, 12.0], &steps, LEFT);
     let tool = run(Scheme::C, Corner::Circular, &moves)?;
     assert_joined(&tool);
-    let round = tool.iter().find(|tool| tool.segment.way == circle).map(|tool| tool.segment);
+    let round = tool.iter().find(|tool| tool.segment.shape == circle).map(|tool| tool.segment);
     let round = round.unwrap_or_else(|| panic!("no circle"));
     let (from, to) = (flat(round.from), flat(round.to));
-    // Lines at 45° through the corner, moved by 2 towards the middle: y = 2·√2 - x before the circle, y = 2·√2 + x behind.
+    // Lines at 45° through the corner, moved by 2 towards the middle: y = 2·√2 - x before the circle, y = 2·√2 + x
+    // after it.
     for ([x, y], sign) in [(from, -1.0), (to, 1.0)] {
         assert!((distance([x, y], [0.0, 10.0]) - 8.0).abs() < 1e-9);
         assert!((y - (sign * x + 2.0 * SQRT_2)).abs() < 1e-9, "{x} {y}");
@@ -220,7 +222,7 @@ fn a_full_circle_between_walls_is_cut_short_at_both_ends() -> Outcome {
 
 #[test]
 fn every_plane_is_compensated_seen_from_its_third_axis() -> Outcome {
-    let circle = |plane| Way::Arc { plane, center: [10.0, 10.0], direction: Direction::CounterClockwise };
+    let circle = |plane| SegmentShape::Arc { plane, center: [10.0, 10.0], direction: Direction::CounterClockwise };
     let flat_path = {
         let steps = [([0.0, 0.0], LINE), ([10.0, 0.0], LINE), ([20.0, 10.0], circle(Plane::Xy)), ([0.0, 10.0], LINE)];
         run(Scheme::C, Corner::Circular, &contour([-9.0, 0.0], &steps, LEFT))?
@@ -234,7 +236,7 @@ fn every_plane_is_compensated_seen_from_its_third_axis() -> Outcome {
             .map(|(of, index)| {
                 let (from, to) =
                     (point(flat(of.segment.from), f64::from(index)), point(flat(of.segment.to), f64::from(index + 1)));
-                Move { segment: Segment { from, to, way: of.segment.way }, plane, ..of }
+                Move { segment: Segment { from, to, shape: of.segment.shape }, plane, ..of }
             })
             .collect();
         let tool = run(Scheme::C, Corner::Circular, &moves)?;
@@ -243,7 +245,7 @@ fn every_plane_is_compensated_seen_from_its_third_axis() -> Outcome {
         let expected: Vec<[f64; 3]> =
             ends(&flat_path).into_iter().zip([1.0, 2.0, 3.0, 4.0]).map(|([u, v], third)| [u, v, third]).collect();
         assert_eq!(seen, expected);
-        assert!(tool.iter().any(|tool| tool.segment.way == circle(plane)));
+        assert!(tool.iter().any(|tool| tool.segment.shape == circle(plane)));
     }
     Ok(())
 }
@@ -276,7 +278,7 @@ fn an_arc_whose_corners_leave_nothing_of_it_does_not_become_a_full_circle() -> O
         let steps = [(at(5.0, -1.0), LINE), (at(10.0, -1.0), LINE), (at(10.0, 1.0), circle), (at(5.0, 1.0), LINE)];
         let tool = run(Scheme::C, Corner::Straight, &contour(at(1.0, -1.0), &steps, LEFT))?;
         assert_joined(&tool);
-        assert!(tool.iter().all(|tool| tool.segment.way == LINE));
+        assert!(tool.iter().all(|tool| tool.segment.shape == LINE));
         assert_near(ends(&tool)[1], [8.0, 0.0], 1e-7);
     }
     Ok(())

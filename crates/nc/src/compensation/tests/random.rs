@@ -64,10 +64,10 @@ proptest! {
         let mut compensator = Compensator::new(if c { Scheme::C } else { Scheme::B }, round);
         let (mut out, mut from) = (Vec::new(), [0.0, 0.0, 0.0]);
         for (to, third, direction, side, bend) in blocks {
-            let way = direction.map_or(Way::Line, |direction| arc([from[0] + bend, from[1] + 1.0], direction));
+            let shape = direction.map_or(SegmentShape::Line, |direction| arc([from[0] + bend, from[1] + 1.0], direction));
             let to = [to[0], to[1], third];
-            let mut of = block(1, [0.0; 2], [0.0; 2], way, side);
-            of.segment = Segment { from, to, way };
+            let mut of = block(1, [0.0; 2], [0.0; 2], shape, side);
+            of.segment = Segment { from, to, shape };
             let count = out.len();
             if compensator.push(of, &mut out).is_ok() {
                 from = to;

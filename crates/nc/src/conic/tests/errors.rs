@@ -7,7 +7,7 @@ fn message(result: Result<Conic, GeometryError>) -> String {
 }
 
 #[test]
-fn every_message_names_the_value_the_limit_and_the_way_out() {
+fn every_message_names_the_value_the_limit_and_the_remedy() {
     let ellipse = |axes, from, to| message(Conic::ellipse(axes, from, to, [10, 20], Clockwise));
     let parabola = |c, opens, from, to| message(Conic::parabola(c, opens, from, to, [10, 20]));
     let hyperbola = |axes, opens, from, to| message(Conic::hyperbola(axes, opens, from, to, [10, 20]));
@@ -108,7 +108,7 @@ fn any_points_are_taken_or_refused() {
 
 #[test]
 fn one_blu_off_is_taken_in_every_direction() {
-    // On a circle as an ellipse these points lie exactly 1 BLU off, which f64 need not tell.
+    // On a circle as an ellipse these points lie exactly 1 BLU off, which f64 need not show.
     for (point, radius) in [([6, 8], 9), ([6, 8], 11), ([5, 12], 12), ([5, 12], 14), ([8, 15], 18), ([20, 21], 28)] {
         assert!(Conic::ellipse([radius; 2], point, point, ORIGIN, Clockwise).is_ok());
     }

@@ -20,7 +20,7 @@ fn lengths_of_ellipses_are_those_of_tables() -> Outcome {
     assert_near(part([9, 0], [0, 4], Clockwise)?, turn(9, 4)? * 0.75);
     assert_near(part([9, 0], [0, 4], CounterClockwise)?, turn(9, 4)? * 0.25);
     assert_near(part([8, 2], [-8, -2], Clockwise)?, turn(9, 4)? / 2.0);
-    // Both ends next to one place: hardly any way, or nearly all the way round.
+    // Both ends next to one place: hardly any angle, or nearly a full turn.
     let (short, long) = (part([8, 2], [7, 2], CounterClockwise)?, part([8, 2], [7, 2], Clockwise)?);
     assert_near(short + long, turn(9, 4)?);
     assert!(short < 1.5);
@@ -99,8 +99,8 @@ fn outlines_run_along_the_curve_from_end_to_end() -> Outcome {
         let along: f64 = chords.sum();
         assert!((along - curve.length()).abs() < 2.0, "{curve:?}: {along} {}", curve.length());
         let motion = curve.sectors()[0].motion;
-        let way = [0, 1].map(|axis: usize| (relative[9][axis] - relative[1][axis]) * motion[axis] as f64);
-        assert!(way[0] > 0.0 && way[1] > 0.0, "{curve:?}");
+        let gain = [0, 1].map(|axis: usize| (relative[9][axis] - relative[1][axis]) * motion[axis] as f64);
+        assert!(gain[0] > 0.0 && gain[1] > 0.0, "{curve:?}");
     }
     Ok(())
 }

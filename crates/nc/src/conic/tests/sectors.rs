@@ -75,7 +75,7 @@ fn every_small_ellipse_splits_at_the_axes_between_all_points_near_it() {
                         taken += 1;
                     }
                     Err(error) => {
-                        assert!(matches!(error, GeometryError::EndBesideStart { .. }), "{error}");
+                        assert!(matches!(error, GeometryError::EndsAcrossCurve { .. }), "{error}");
                         let exact = [start, end].map(|end| whole(end, direction).map(|whole| whole.ends_on_curve()));
                         assert_eq!(axes_between(start, end, direction), 0);
                         assert!(exact == [Ok(false); 2], "{a} {b} {start:?} {end:?}");
@@ -103,7 +103,7 @@ fn every_small_open_curve_splits_at_its_vertex_between_all_points_near_it() {
             let curve = match build(Opens::PlusX, from, to) {
                 Ok(curve) => curve,
                 Err(error) => {
-                    refused += i32::from(matches!(error, GeometryError::EndBesideStart { .. }));
+                    refused += i32::from(matches!(error, GeometryError::EndsAcrossCurve { .. }));
                     continue;
                 }
             };
@@ -127,7 +127,7 @@ fn every_small_open_curve_splits_at_its_vertex_between_all_points_near_it() {
                 });
                 assert_eq!(other, Ok(expected.collect()), "{curve:?}");
             }
-            // And the way back has them the other way round.
+            // And the reversed motion has them in the reverse order.
             let back = build(Opens::PlusX, to, from).map(|curve| curve.sectors()).unwrap_or_default();
             assert_eq!(back.len(), sectors.len());
             for (there, back) in sectors.iter().zip(back.iter().rev()) {

@@ -3,34 +3,36 @@
 use super::*;
 use Direction::{Clockwise, CounterClockwise};
 
-/// The ways of the moves of a program that is run at a feed, with centres rounded to a millionth of a BLU.
-fn ways(text: &str) -> Vec<Way> {
-    let ways = moves(&format!("F100\n{text}")).into_iter().map(|one| match one.segment.way {
-        Way::Line => Way::Line,
-        Way::Arc { plane, center, direction } => Way::Arc { plane, center: center.map(rounded), direction },
+/// The shapes of the moves of a program that is run at a feed, with centres rounded to a millionth of a BLU.
+fn shapes(text: &str) -> Vec<SegmentShape> {
+    let shapes = moves(&format!("F100\n{text}")).into_iter().map(|one| match one.segment.shape {
+        SegmentShape::Line => SegmentShape::Line,
+        SegmentShape::Arc { plane, center, direction } => {
+            SegmentShape::Arc { plane, center: center.map(rounded), direction }
+        }
     });
-    ways.collect()
+    shapes.collect()
 }
 
-fn arc(plane: Plane, center: [f64; 2], direction: Direction) -> Way {
-    Way::Arc { plane, center, direction }
+fn arc(plane: Plane, center: [f64; 2], direction: Direction) -> SegmentShape {
+    SegmentShape::Arc { plane, center, direction }
 }
 
 #[test]
 fn centres_are_relative_to_the_start_of_the_arc_and_absolute_under_g90_1() {
     let center = arc(Plane::Xy, [300.0, 200.0], CounterClockwise);
-    assert_eq!(ways("G0 X2 Y2\nG3 X3 Y3 I1 J0")[1], center);
-    assert_eq!(ways("G0 X2 Y2\nG3 X3 Y3 I1")[1], center, "J is 0");
-    assert_eq!(ways("G0 X2 Y2\nG91 G3 X1 Y1 I1")[1], center, "the same under G91");
-    assert_eq!(ways("G0 X2 Y2\nG90.1 G3 X3 Y3 I3 J2")[1], center);
-    assert_eq!(ways("G0 X2 Y2 G90.1\nG91.1 G3 X3 Y3 I1 J0")[1], center);
+    assert_eq!(shapes("G0 X2 Y2\nG3 X3 Y3 I1 J0")[1], center);
+    assert_eq!(shapes("G0 X2 Y2\nG3 X3 Y3 I1")[1], center, "J is 0");
+    assert_eq!(shapes("G0 X2 Y2\nG91 G3 X1 Y1 I1")[1], center, "the same under G91");
+    assert_eq!(shapes("G0 X2 Y2\nG90.1 G3 X3 Y3 I3 J2")[1], center);
+    assert_eq!(shapes("G0 X2 Y2 G90.1\nG91.1 G3 X3 Y3 I1 J0")[1], center);
 }
 
 #[test]
 fn the_third_word_of_a_centre_may_be_0() {
-    assert_eq!(ways("G17 G2 X1 Y1 I1 K0.000")[0], arc(Plane::Xy, [100.0, 0.0], Clockwise));
-    assert_eq!(ways("G18 G2 Z1 X1 K1 J0")[0], arc(Plane::Zx, [100.0, 0.0], Clockwise));
-    assert_eq!(ways("G19 G2 Y1 Z1 J1 I-0.0")[0], arc(Plane::Yz, [100.0, 0.0], Clockwise));
+    assert_eq!(shapes("G17 G2 X1 Y1 I1 K0.000")[0], arc(Plane::Xy, [100.0, 0.0], Clockwise));
+    assert_eq!(shapes("G18 G2 Z1 X1 K1 J0")[0], arc(Plane::Zx, [100.0, 0.0], Clockwise));
+    assert_eq!(shapes("G19 G2 Y1 Z1 J1 I-0.0")[0], arc(Plane::Yz, [100.0, 0.0], Clockwise));
     assert!(fault("F1 G17 G2 X1 Y1 I1 K0.001").2.starts_with("K0.001 is no centre word of the plane G17"));
     assert!(fault("F1 G17 G2 X1 Y1 K0").2.starts_with("the arc has no centre"));
 }
@@ -47,7 +49,7 @@ fn p_counts_the_turns_of_an_arc_and_its_third_axis_goes_evenly_over_all() {
         of("G0 Y8\nG2 Z-6 I0 J-8 P2")[1..],
         [(at(0.0, 800.0, 0.0), at(0.0, 800.0, -300.0)), (at(0.0, 800.0, -300.0), at(0.0, 800.0, -600.0))]
     );
-    // A quarter, and one and two whole turns before it: Z goes 1/5 and 1/9 of its way in the quarter.
+    // A quarter, and one and two whole turns before it: Z goes 1/5 and 1/9 of its travel in the quarter.
     assert_eq!(
         of("G3 X1 Y1 Z5 I0 J1 P2"),
         [(at(0.0, 0.0, 0.0), at(0.0, 0.0, 400.0)), (at(0.0, 0.0, 400.0), at(100.0, 100.0, 500.0))]
@@ -60,7 +62,7 @@ fn p_counts_the_turns_of_an_arc_and_its_third_axis_goes_evenly_over_all() {
             format!("{word} is the number of turns of the arc, of which the last may be a part: give a whole number");
         assert!(message.starts_with(&wanted), "{message}");
     }
-    // The time of the block is shared out by the way of its turns, of a quarter and one turn 4 : 1.
+    // The time of the block is divided by the length of its turns, of a quarter and one turn 4 : 1.
     let feeds = moves("G93 G3 X1 Y1 I0 J1 P2 F6").iter().map(|one| one.feed).collect::<Vec<_>>();
     let [Feed::Inverse(whole), Feed::Inverse(quarter)] = feeds[..] else { panic!("{feeds:?}") };
     assert!((whole - 7.5).abs() < 1e-9 && (quarter - 30.0).abs() < 1e-9, "{feeds:?}");
@@ -89,11 +91,11 @@ fn radii_may_differ_by_the_tolerance_beyond_what_rounding_makes() {
 #[test]
 fn arcs_turn_in_the_plane_that_is_chosen() {
     // In xy, zx and yz, counted along the first and second axis of the plane.
-    assert_eq!(ways("G17 G2 X1 Y1 I1")[0], arc(Plane::Xy, [100.0, 0.0], Clockwise));
-    assert_eq!(ways("G18 G2 Z1 X1 K1")[0], arc(Plane::Zx, [100.0, 0.0], Clockwise));
-    assert_eq!(ways("G18 G3 Z1 X1 I1")[0], arc(Plane::Zx, [0.0, 100.0], CounterClockwise));
-    assert_eq!(ways("G19 G2 Y1 Z1 J1")[0], arc(Plane::Yz, [100.0, 0.0], Clockwise));
-    assert_eq!(ways("G19 G2 Y1 Z1 K1")[0], arc(Plane::Yz, [0.0, 100.0], Clockwise));
+    assert_eq!(shapes("G17 G2 X1 Y1 I1")[0], arc(Plane::Xy, [100.0, 0.0], Clockwise));
+    assert_eq!(shapes("G18 G2 Z1 X1 K1")[0], arc(Plane::Zx, [100.0, 0.0], Clockwise));
+    assert_eq!(shapes("G18 G3 Z1 X1 I1")[0], arc(Plane::Zx, [0.0, 100.0], CounterClockwise));
+    assert_eq!(shapes("G19 G2 Y1 Z1 J1")[0], arc(Plane::Yz, [100.0, 0.0], Clockwise));
+    assert_eq!(shapes("G19 G2 Y1 Z1 K1")[0], arc(Plane::Yz, [0.0, 100.0], Clockwise));
 }
 
 #[test]
@@ -110,16 +112,16 @@ fn a_radius_gives_the_short_arc_and_a_negative_one_the_long_arc() {
         ("G3 Y-6 R-5", [-400.0, -300.0], CounterClockwise),
         ("G2 X6 R3", [300.0, 0.0], Clockwise),
     ] {
-        assert_eq!(ways(text), [arc(Plane::Xy, center, direction)], "{text}");
+        assert_eq!(shapes(text), [arc(Plane::Xy, center, direction)], "{text}");
     }
-    assert_eq!(ways("G18 G2 Z1 X1 R1"), [arc(Plane::Zx, [100.0, 0.0], Clockwise)]);
+    assert_eq!(shapes("G18 G2 Z1 X1 R1"), [arc(Plane::Zx, [100.0, 0.0], Clockwise)]);
 }
 
 #[test]
 fn a_radius_a_little_too_small_is_half_a_turn() {
     let half_turn = [arc(Plane::Xy, [1000.0, 0.0], Clockwise)];
     // Half of the chord is 1000 BLU; 2 BLU may be missing.
-    assert_eq!(ways("G2 X20 R9.98"), half_turn);
+    assert_eq!(shapes("G2 X20 R9.98"), half_turn);
     let (line, column, message) = fault("F1\nG2 X20 R9.97");
     assert_eq!((line, column), (2, 8));
     assert_eq!(
@@ -128,14 +130,14 @@ fn a_radius_a_little_too_small_is_half_a_turn() {
          give a larger R or a nearer end point, or accept it with --tolerance 1"
     );
     // 0.1 % of a radius of 10,000 BLU.
-    assert_eq!(ways("G2 X200 R99.91"), [arc(Plane::Xy, [10_000.0, 0.0], Clockwise)]);
+    assert_eq!(shapes("G2 X200 R99.91"), [arc(Plane::Xy, [10_000.0, 0.0], Clockwise)]);
 }
 
 #[test]
 fn an_arc_that_ends_where_it_starts_is_a_full_circle() {
     for text in ["G2 I3 J4", "G2 X0 Y0 I3 J4", "G91 G2 X0 I3 J4", "G2 X0.000001 I3 J4"] {
         let one = moves(&format!("F1\n{text}"))[0];
-        assert_eq!(one.segment.way, arc(Plane::Xy, [300.0, 400.0], Clockwise), "{text}");
+        assert_eq!(one.segment.shape, arc(Plane::Xy, [300.0, 400.0], Clockwise), "{text}");
         assert_eq!(one.segment.from, one.segment.to, "{text}");
     }
     assert_eq!(moves("F1 G2 I3\nI4\n").len(), 2, "the motion stays in force");
@@ -144,7 +146,7 @@ fn an_arc_that_ends_where_it_starts_is_a_full_circle() {
 #[test]
 fn the_third_axis_makes_a_helix() {
     let one = moves("G0 Z1\nG3 X2 Y0 Z-1 I1 F10")[1];
-    assert_eq!(one.segment.way, arc(Plane::Xy, [100.0, 0.0], CounterClockwise));
+    assert_eq!(one.segment.shape, arc(Plane::Xy, [100.0, 0.0], CounterClockwise));
     assert_eq!((one.segment.from, one.segment.to), ([0.0, 0.0, 100.0], [200.0, 0.0, -100.0]));
     let turn = moves("G18 G3 Y5 K1 F10")[0];
     assert_eq!(turn.segment.to, [0.0, 500.0, 0.0]);

@@ -21,14 +21,14 @@ fn a_textbook_program_counts_pulses_in_coordinates_without_a_point_and_feeds_in_
 fn centres_and_radii_count_pulses_too() {
     let pulses = Reading { integers: Integers::Pulses, ..reading() };
     let moves = moves_of(&run_with("G17 F10 G02 X100 Y100 I100 J0\nG03 X0 Y0 R-100.", pulses).unwrap());
-    assert_eq!(moves[0].segment.way, arc_about([100.0, 0.0], Direction::Clockwise));
-    let Way::Arc { center: [x, y], .. } = moves[1].segment.way else { panic!("no arc") };
+    assert_eq!(moves[0].segment.shape, arc_about([100.0, 0.0], Direction::Clockwise));
+    let SegmentShape::Arc { center: [x, y], .. } = moves[1].segment.shape else { panic!("no arc") };
     // is 10,000 BLU, so that the centre is that far from both ends.
     assert!((f64::hypot(x, y) - 10_000.0).abs() < 1e-6 && (f64::hypot(x - 100.0, y - 100.0) - 10_000.0).abs() < 1e-6);
 }
 
-fn arc_about(center: [f64; 2], direction: Direction) -> Way {
-    Way::Arc { plane: Plane::Xy, center, direction }
+fn arc_about(center: [f64; 2], direction: Direction) -> SegmentShape {
+    SegmentShape::Arc { plane: Plane::Xy, center, direction }
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use super::*;
 
-/// The word, the limit and the way out of every message; the errors of arcs are judged beside the arcs.
+/// The word, the limit and the remedy of every message; the errors of arcs are judged with the arcs.
 #[test]
-fn every_message_tells_what_is_wrong_and_the_way_out() {
+fn every_message_says_what_is_wrong_and_names_the_remedy() {
     let unsupported = "is not supported: rewrite the block with G00 to G03 in X, Y and Z, or remove the word if it does not matter here";
     for (text, line, column, message) in [
         ("G0 X1 G43.1 Z1", 1, 7, format!("G43.1 {unsupported}")),
@@ -172,14 +172,14 @@ fn an_error_displays_its_line_and_column_in_front() {
 }
 
 #[test]
-fn bytes_that_are_not_text_are_told_by_place_and_value() {
+fn bytes_that_are_not_text_are_reported_by_place_and_value() {
     let message = "the byte \\xff is not UTF-8 text: save the program as UTF-8 or ASCII";
     assert_eq!(fault(b"G0 X1\n(\xc3\xa4)\xff".as_slice()), (2, 4, message.into()));
     assert_eq!(fault(b"G0 \xff(\xff)".as_slice()), (1, 4, message.into()));
 }
 
 #[test]
-fn a_column_behind_a_comment_counts_its_characters() {
+fn a_column_after_a_comment_counts_its_characters() {
     assert_eq!(fault("(größe)X#1").1, 8);
     // Latin-1: a character is a byte.
     assert_eq!(fault(b"(gr\xf6\xdfe)X#1".as_slice()).1, 8);
@@ -198,7 +198,7 @@ fn an_exponent_is_named_as_such_with_the_number_written_out() {
     ] {
         let message = format!("exponents are not part of RS-274: write {plain}");
         let (at_line, at_column, found) = fault(text);
-        // Half a unit of the last of six decimals may go either way.
+        // Half a unit of the last of six decimals may round up or down.
         assert!(found == message || text.contains("0000005"), "{text}: {found}");
         assert_eq!((at_line, at_column), (line, column), "{text}");
     }
@@ -224,14 +224,14 @@ fn a_program_that_cannot_be_read_is_an_error_at_the_line_that_was_to_come() {
 }
 
 #[test]
-fn a_second_per_cent_sign_ends_a_program_even_if_nothing_stands_between() {
+fn a_second_per_cent_sign_ends_a_program_even_if_nothing_is_between() {
     let (line, column, message) = fault("%\n%\nG0 X1");
     assert_eq!((line, column), (2, 1));
     assert!(message.starts_with("the program ends and no block of it moved"), "{message}");
 }
 
 #[test]
-fn an_o_word_behind_the_head_and_a_plane_that_stays_are_told_apart() {
+fn an_o_word_after_the_head_and_a_plane_that_stays_are_different_errors() {
     assert_eq!(fault("G0 X1\nO1234").1, 1);
     assert_eq!(fault("O1\nO2").0, 2);
     assert_eq!(fault("O1 G0 X1").0, 1);

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A word with its number in thousandths, and how many blanks stand around and in it.
+/// A word with its number in thousandths, and how many blanks are around and in it.
 #[derive(Debug, Clone)]
 struct Written {
     letter: char,

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::{blocks, circle, moved};
-use crate::{Arc, Curve, Direction, Way};
+use crate::{Arc, Curve, Direction, SegmentShape};
 
 type Cloud = Vec<[f64; 2]>;
 
@@ -27,8 +27,8 @@ fn apart(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
     off(one, other).max(off(other, one))
 }
 
-/// The arc that is told, as a cloud: on the circle through its start, and then to its end.
-fn told(arc: &Arc, points: usize) -> Cloud {
+/// The commanded arc, as a cloud: on the circle through its start, and then to its end.
+fn commanded(arc: &Arc, points: usize) -> Cloud {
     let start = arc.start().map(|c| c as f64);
     let sign = if arc.direction() == Direction::Clockwise { -1.0 } else { 1.0 };
     let center = arc.center().map(|c| c as f64);
@@ -44,11 +44,11 @@ fn chosen_and_best(center: [f64; 2], radius: f64, first: f64, turn: f64, reach: 
     let at = |point: [f64; 2]| [point[0], point[1], 0.0];
     let full = turn.abs() == TAU;
     let (from, to) = (at(ideal[0]), at(if full { ideal[0] } else { ideal[points] }));
-    let moves = [moved([0.0; 3], from, Way::Line), moved(from, to, circle(center, direction))];
+    let moves = [moved([0.0; 3], from, SegmentShape::Line), moved(from, to, circle(center, direction))];
     let before = usize::from(from.map(f64::round) != [0.0; 3]);
     let blocks = blocks(&moves, None);
     let chosen = match blocks.get(before).map(|block| &block.curve) {
-        Some(Curve::Arc(arc)) => apart(&ideal, &told(arc, points)),
+        Some(Curve::Arc(arc)) => apart(&ideal, &commanded(arc, points)),
         Some(Curve::Line(line)) => {
             let ends = [line.from(), line.to()].map(|end| [end[0] as f64, end[1] as f64]);
             let part =
@@ -66,7 +66,7 @@ fn chosen_and_best(center: [f64; 2], radius: f64, first: f64, turn: f64, reach: 
     }
     for (dx, dy) in (-reach..=reach).flat_map(|dx| (-reach..=reach).map(move |dy| (dx, dy))) {
         if let Ok(arc) = Arc::new(start, end, [middle[0] + dx, middle[1] + dy], direction) {
-            best = best.min(apart(&ideal, &told(&arc, points)));
+            best = best.min(apart(&ideal, &commanded(&arc, points)));
         }
     }
     (chosen, best)
@@ -116,7 +116,7 @@ fn no_whole_centre_near_is_nearer_to_an_arc_of_some_ten_pulses() {
 fn a_circle_of_radius_0_6_becomes_one_of_radius_1_and_a_smaller_one_nothing() {
     let at = [100.0, 100.0, 0.0];
     let of = |center: [f64; 2]| {
-        let moves = [moved([0.0; 3], at, Way::Line), moved(at, at, circle(center, Direction::Clockwise))];
+        let moves = [moved([0.0; 3], at, SegmentShape::Line), moved(at, at, circle(center, Direction::Clockwise))];
         blocks(&moves, None).split_off(1)
     };
     let Some(Curve::Arc(arc)) = of([99.4, 100.0]).first().map(|block| block.curve.clone()) else { panic!("no arc") };

@@ -40,7 +40,7 @@ impl Walk {
             self.f += 2 * self.position[growing].abs() + 1;
             self.position[growing] += outward[growing];
         }
-        // The magnitude counter stands at 0: the next quadrant. At the centre the old one is held.
+        // The magnitude counter is at 0: the next quadrant. At the centre the old one is held.
         if self.position[shrinking] == 0 && self.position[growing] != 0 {
             self.quadrant = self.next[self.quadrant];
             self.crossed_at.push(self.position);
