@@ -66,7 +66,7 @@ impl Outputs {
     /// Opens an output that is not written from the beginning to the end.
     ///
     /// # Errors
-    /// The file cannot be created, it is no file, the command reads it, or another output goes there already.
+    /// The file cannot be created, it is not a file, the command reads it, or another output goes there already.
     pub(crate) fn open_seekable(&mut self, path: &Path) -> Result<SeekSink, Error> {
         if is_stream(path) {
             return Err(Error::Invalid(format!(
@@ -77,8 +77,8 @@ impl Outputs {
         Ok(BufWriter::with_capacity(1 << 16, self.file(path)?))
     }
 
-    /// Tries whether an output can be written, which is opened later, and keeps its name for it: gives the file that the
-    /// path means. Nothing is written yet.
+    /// Tries whether an output can be written, which is opened later, and keeps its name for it: gives the file that
+    /// the path means. Nothing is written yet.
     ///
     /// # Errors
     /// The file cannot be created, or another output goes there already.
@@ -204,7 +204,7 @@ impl Outputs {
         self.commit_all()
     }
 
-    /// As [`commit`](Self::commit), and goes on to tell what [`uses_stdout`](Self::uses_stdout).
+    /// As [`commit`](Self::commit), and keeps what [`uses_stdout`](Self::uses_stdout) says.
     ///
     /// # Errors
     /// A file cannot be renamed.

@@ -188,18 +188,18 @@ impl<'a> Waves<'a> {
         if let Some(Wave { path, writer }) = vcd {
             let (written, background) = finish(writer, clocks)?;
             background.finish()?;
-            self.beside(path, path.file_stem(), written, overflows, outputs)?;
+            self.viewer_files(path, path.file_stem(), written, overflows, outputs)?;
         }
         if let Some(Wave { path, writer }) = fst {
             let (written, _) = finish(writer, clocks)?;
             let stem = if twins { path.file_name() } else { path.file_stem() };
-            self.beside(path, stem, written, overflows, outputs)?;
+            self.viewer_files(path, stem, written, overflows, outputs)?;
         }
         Ok(())
     }
 
     /// Stages the files next to a wave.
-    fn beside(
+    fn viewer_files(
         &self,
         path: &Path,
         stem: Option<&OsStr>,
@@ -219,8 +219,8 @@ impl<'a> Waves<'a> {
             .collect();
         // At reset a position counter is not yet where the machine is.
         let jumps = taken.iter().any(|taken| taken.reset.zip(taken.first).is_some_and(|(reset, first)| reset != first));
-        let behind = |taken: &Taken| taken.range.map(|range| (taken.column, range));
-        let ranges: Vec<(usize, [i64; 2])> = taken.iter().filter_map(behind).collect();
+        let column_range = |taken: &Taken| taken.range.map(|range| (taken.column, range));
+        let ranges: Vec<(usize, [i64; 2])> = taken.iter().filter_map(column_range).collect();
         let view = View {
             dump_name: &text(path.file_name()),
             stem: &text(stem),
@@ -250,7 +250,7 @@ struct Written {
     taken: Vec<Taken>,
 }
 
-/// Ends a wave; tells what it holds.
+/// Ends a wave; returns what it holds.
 fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Error> {
     let Some(written) = writer.written else {
         return Err(Error::Invalid(format!(

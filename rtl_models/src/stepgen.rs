@@ -224,7 +224,7 @@ pub(crate) fn interpolator<'m>(m: Scope<'m>, hardware: &Hardware, block: Block<'
         acc.close(&block, accumulate);
         resting = resting & output.close(send);
     }
-    block.close_behind(block.load, accumulate, block.busy & resting);
+    block.close_after(block.load, accumulate, block.busy & resting);
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {

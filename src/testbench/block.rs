@@ -45,7 +45,7 @@ impl Part {
 pub struct BlockReport {
     /// The move.
     pub of: ToolMove,
-    /// Clock behind which it began.
+    /// Clock after which it began.
     pub begun: u64,
     /// Clocks from there to the end of its last step.
     pub clocks: u64,
@@ -57,7 +57,7 @@ pub struct BlockReport {
     pub wanted: [i64; 3],
     /// End point reached, in BLU.
     pub reached: [i64; 3],
-    /// Length of the way in whole BLU.
+    /// Length of the path in whole BLU.
     pub length: f64,
     /// Commanded feed in BLU per second; `None` where the machine runs as fast as it can.
     pub commanded: Option<f64>,

@@ -31,7 +31,7 @@ pub(super) fn recalled<T: DeserializeOwned>(memory: &Memory, name: &str) -> Opti
     memory.get(name).and_then(|value| serde_json::from_value(value.clone()).ok())
 }
 
-/// What a machine and its observers are behind some clock.
+/// The state of a machine and its observers after some clock.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct State {
     /// Clock of the sample.
@@ -114,7 +114,7 @@ impl Checkpoints {
     /// Reads what [`write`](Self::write) gave for the same machine and geometry.
     ///
     /// # Errors
-    /// The text is none, or of another run.
+    /// The text is not a checkpoint, or of another run.
     pub fn read(text: &str, bench: &Testbench) -> Result<Checkpoints, CheckpointError> {
         let unreadable = |error: serde_json::Error| CheckpointError::Unreadable(error.to_string());
         let (subject, states): (Subject, Vec<State>) = serde_json::from_str(text).map_err(unreadable)?;

@@ -1,4 +1,4 @@
-//! What every sample of a run holds: the named nets, and what overflow reports need beside them.
+//! What every sample of a run holds: the named nets, and what overflow reports need in addition.
 
 use std::collections::HashMap;
 
@@ -64,7 +64,7 @@ impl Columns {
     /// Column of a net.
     ///
     /// # Panics
-    /// If the net is none of them.
+    /// If the net is not one of them.
     #[must_use]
     pub fn index(&self, net: Net) -> usize {
         self.index[&net]

@@ -1,4 +1,4 @@
-//! How far a place of the tool lies off a contour in real numbers.
+//! The distance of a place of the tool from a contour in real numbers.
 
 use stepwave_nc::{Cause, Point, Segment, SegmentShape, Side, ToolMove, swept};
 
@@ -46,8 +46,8 @@ fn off_line(from: Point, to: Point, at: Point) -> f64 {
     [0, 1, 2].map(|axis| gone[axis] - along * delta[axis]).iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// How far the edge of the tool is off the programmed contour while its centre is at a place, in BLU; `None` on the ways
-/// onto the contour and off it. Round a corner only what it would cut into it counts.
+/// How far the edge of the tool is off the programmed contour while its centre is at a place, in BLU; `None` on the
+/// paths onto the contour and off it. Round a corner only what it would cut into it counts.
 #[must_use]
 pub(super) fn off_programmed(of: &ToolMove, at: Point) -> Option<f64> {
     let radius = match of.side {

@@ -1,11 +1,12 @@
-//! Instruments: cells beside a machine that follow its path while it runs in lanes, so that the path error of every
+//! Instruments: cells added to a machine that follow its path while it runs in lanes, so that the path error of every
 //! step is known without a position leaving the lane.
 //!
-//! They stand in a copy of the machine's netlist, in the scope `gauge`, and take its signed pulses:
+//! They are in a copy of the machine's netlist, in the scope `gauge`, and take its signed pulses:
 //!
 //! ```text
 //! line     d ± gain_x on an X pulse, ± gain_y on a Y pulse;  gain_x = -dy, gain_y = dx, d = dx·y - dy·x from the start
-//! circle   d ± t + 1 on a pulse of an axis, whose t = 2·x or 2·y about the centre then changes by ±2;  d = x² + y² - R²
+//! circle   d ± t + 1 on a pulse of an axis, whose t = 2·x or 2·y about the centre then changes by ±2;  d = x² + y² -
+//! R²
 //! ```
 //!
 //! The distance from a line is |d| over its length, that from a circle a function of d that only grows, so that the
@@ -21,7 +22,7 @@ use stepwave_netlist::{Design, Net, OnOverflow, Width, elaborate};
 use super::measure::Measured;
 use super::{Ending, LaneOutcome, Testbench};
 
-/// What the instruments measure against, and the inputs that tell them.
+/// What the instruments measure against, and the inputs that hold it.
 #[derive(Clone, Debug)]
 enum Ideal {
     /// Gain of each axis.
@@ -35,9 +36,9 @@ enum Ideal {
 pub(super) struct Instruments {
     design: Design,
     ideal: Ideal,
-    /// Behind each step, else 0: |d| of a line, d of a circle.
+    /// After each step, else 0: |d| of a line, d of a circle.
     seen: Net,
-    /// Behind all that is judged: the same, or behind every clock where a step has many pulses.
+    /// After all that is judged: the same, or after every clock where a step has many pulses.
     judged: Net,
     /// d in this sample.
     deviation: Net,
@@ -67,12 +68,12 @@ impl Instruments {
         }
         let module = Module::continuing(bench.design().netlist().clone());
         let m = module.top().scope("gauge");
-        let ways = [x, y].map(|pulse| Way::of(m.net(pulse, true)));
+        let pulses = [x, y].map(|pulse| PulseNets::of(m.net(pulse, true)));
         let stepped = m.net(machine.stepped.net, false);
         let loads = m.net(machine.load.net, false) & m.net(machine.preset_position.net, false);
         let (ideal, deviation, seen) = match kind {
-            CurveKind::Line { .. } => line(m, bits, ways),
-            CurveKind::Arc => circle(m, bits, ways, loads),
+            CurveKind::Line { .. } => line(m, bits, axes),
+            CurveKind::Arc => circle(m, bits, pulses, loads),
             CurveKind::Conic | CurveKind::Helix => return None,
         };
         let every = bench.hardware().sampling.is_some().then(|| seen.net());
@@ -121,7 +122,7 @@ impl Instruments {
     pub(super) fn words(&self, curve: &Curve) -> Option<Vec<(Net, u64)>> {
         let numbers = match (&self.ideal, curve) {
             (Ideal::Line(gain), Curve::Line(line)) => {
-                let [dx, dy] = <[i64; 2]>::try_from(line.delta()).ok()?.map(|way| self.reached(way));
+                let [dx, dy] = <[i64; 2]>::try_from(line.delta()).ok()?.map(|travel| self.reached(travel));
                 vec![(gain[0], -dy?), (gain[1], dx?)]
             }
             (Ideal::Circle { start, square }, Curve::Arc(arc)) => {
@@ -130,7 +131,7 @@ impl Instruments {
                 if arc.center().iter().any(far) {
                     return None;
                 }
-                let [x, y] = arc.start().map(|way| self.reached(way));
+                let [x, y] = arc.start().map(|travel| self.reached(travel));
                 vec![(start[0], 2 * x?), (start[1], 2 * y?), (*square, i64::try_from(arc.radius_squared()).ok()?)]
             }
             _ => return None,
@@ -139,8 +140,8 @@ impl Instruments {
     }
 
     /// A coordinate, if it is within reach.
-    fn reached(&self, way: i64) -> Option<i64> {
-        (way.unsigned_abs() < 1 << self.reach).then_some(way)
+    fn reached(&self, travel: i64) -> Option<i64> {
+        (travel.unsigned_abs() < 1 << self.reach).then_some(travel)
     }
 
     /// What was measured of a run; `None` where the instruments cannot have followed it.
@@ -199,17 +200,17 @@ impl Instruments {
 
 /// The sign of the pulse of an axis; 1 bit each.
 #[derive(Clone, Copy)]
-struct Way<'m> {
+struct PulseNets<'m> {
     any: Signal<'m>,
     up: Signal<'m>,
     down: Signal<'m>,
 }
 
-impl<'m> Way<'m> {
+impl<'m> PulseNets<'m> {
     /// Of a pulse of two bits: 0, 1 or -1.
-    fn of(pulse: Signal<'m>) -> Way<'m> {
+    fn of(pulse: Signal<'m>) -> PulseNets<'m> {
         let (any, down) = (pulse.bit(0), pulse.bit(1));
-        Way { any, up: any & !down, down }
+        PulseNets { any, up: any & !down, down }
     }
 
     /// `value` plus `gain` upwards, minus `gain` downwards.
@@ -220,25 +221,30 @@ impl<'m> Way<'m> {
 }
 
 /// d of a line and its magnitude.
-fn line<'m>(m: Scope<'m>, bits: u32, ways: [Way<'m>; 2]) -> (Ideal, Signal<'m>, Signal<'m>) {
+fn line<'m>(m: Scope<'m>, bits: u32, pulses: [PulseNets<'m>; 2]) -> (Ideal, Signal<'m>, Signal<'m>) {
     let d = m.reg_signed("d", bits);
     let gain = ["gain_x", "gain_y"].map(|name| m.input_signed(name, bits));
-    let now = ways.iter().zip(gain).fold(d.q, |d, (way, gain)| way.moved(d, gain));
+    let now = pulses.iter().zip(gain).fold(d.q, |d, (pulse, gain)| pulse.moved(d, gain));
     d.set(now);
     let magnitude = now.msb().mux(m.lit_signed(bits, 0).wrapping_sub(now), now).as_unsigned();
     (Ideal::Line(gain.map(Signal::net)), now, magnitude)
 }
 
 /// d of a circle, twice.
-fn circle<'m>(m: Scope<'m>, bits: u32, ways: [Way<'m>; 2], loads: Signal<'m>) -> (Ideal, Signal<'m>, Signal<'m>) {
+fn circle<'m>(
+    m: Scope<'m>,
+    bits: u32,
+    pulses: [PulseNets<'m>; 2],
+    loads: Signal<'m>,
+) -> (Ideal, Signal<'m>, Signal<'m>) {
     let d = m.reg_signed("d", bits);
     let start = ["start_x", "start_y"].map(|name| m.input_signed(name, bits));
     let mut now = d.q;
-    for ((way, start), name) in ways.into_iter().zip(start).zip(["twice_x", "twice_y"]) {
+    for ((pulse, start), name) in pulses.into_iter().zip(start).zip(["twice_x", "twice_y"]) {
         let twice = m.reg_signed(name, bits);
-        now = way.moved(now, twice.q);
-        now = way.any.mux(now.wrapping_add(m.lit_signed(bits, 1)), now);
-        twice.when(loads, start).otherwise(way.moved(twice.q, m.lit_signed(bits, 2)));
+        now = pulse.moved(now, twice.q);
+        now = pulse.any.mux(now.wrapping_add(m.lit_signed(bits, 1)), now);
+        twice.when(loads, start).otherwise(pulse.moved(twice.q, m.lit_signed(bits, 2)));
     }
     d.set(now);
     let ideal = Ideal::Circle { start: start.map(Signal::net), square: m.input("square", bits).net() };
@@ -258,13 +264,13 @@ fn reached(curve: &Curve, position: &[i64]) -> Option<i128> {
 /// dx·y - dy·x of a position about the start of a line of two axes, in BLU².
 pub(super) fn cross(line: &Line, position: [i64; 2]) -> Option<i128> {
     let [dx, dy] = <[i64; 2]>::try_from(line.delta()).ok()?.map(i128::from);
-    let way = |axis: usize| i128::from(position[axis]) - i128::from(line.from()[axis]);
-    Some(dx * way(1) - dy * way(0))
+    let offset = |axis: usize| i128::from(position[axis]) - i128::from(line.from()[axis]);
+    Some(dx * offset(1) - dy * offset(0))
 }
 
 /// x² + y² - R² of a position about the centre of an arc, in BLU²; none where it is beyond all measure.
 pub(super) fn offset(arc: &Arc, position: [i64; 2]) -> Option<i128> {
-    let way = |axis: usize| i128::from(position[axis]) - i128::from(arc.center()[axis]);
-    let [x, y] = [way(0).checked_pow(2)?, way(1).checked_pow(2)?];
+    let offset = |axis: usize| i128::from(position[axis]) - i128::from(arc.center()[axis]);
+    let [x, y] = [offset(0).checked_pow(2)?, offset(1).checked_pow(2)?];
     x.checked_add(y)?.checked_sub(arc.radius_squared())
 }

@@ -34,7 +34,7 @@ pub struct Lanes {
     bench: Testbench,
     model: &'static Model,
     program: LaneProgram,
-    /// Numbers of which an outcome is made; behind them stand those of the instruments.
+    /// Numbers of which an outcome is made; after them come those of the instruments.
     own: usize,
     /// An overflow ends a run, so that the position counters can be believed.
     trusted: bool,
@@ -71,7 +71,7 @@ impl Testbench {
         observe.extend(pulses.iter().map(|&net| Observe::Count(vec![net])));
         let trusted = !traps.is_empty() || never.is_empty();
         if !trusted {
-            // +1 counts as 1 and -1 as 3: with the number of pulses this tells where they led.
+            // +1 counts as 1 and -1 as 3: with the number of pulses this gives their sum.
             observe.extend(pulses.iter().map(|&net| Observe::Sum { net, bits: 64 }));
         }
         observe.push(Observe::Count(vec![machine.stepped.net]));
@@ -191,8 +191,8 @@ impl Lanes {
         let (pulse_counts, rest) = counts.split_at(pulses.len());
         let (sums, rest) = rest.split_at(if self.trusted { 0 } else { pulses.len() });
         let led = |(axis, sum): (usize, &u64)| {
-            let way = pulse_counts[axis].wrapping_mul(2).wrapping_sub(*sum).cast_signed();
-            start.get(axis).copied().unwrap_or(0).saturating_add(way)
+            let travel = pulse_counts[axis].wrapping_mul(2).wrapping_sub(*sum).cast_signed();
+            start.get(axis).copied().unwrap_or(0).saturating_add(travel)
         };
         let shown = || positions.iter().zip(last).map(|(port, &bits)| to_signed(port.width, bits)).collect();
         let ending = match end.stop {

@@ -5,7 +5,7 @@ use stepwave_nc::Curve;
 
 use super::Testbench;
 
-/// Clocks after which a run with a load word that was cut is given up: such a block need not come to an end.
+/// Clocks after which a run with a load word that was cut is aborted: such a block need not end.
 pub(super) const CUT_CLOCKS: u64 = 1 << 27;
 
 impl Testbench {
@@ -27,7 +27,8 @@ impl Testbench {
 
     /// The same machine, which takes load words that do not fit as its registers take results that do not fit: with
     /// `--on-overflow wrap` cut, with `saturate` at an end of the range. [`cut_words`](Self::cut_words) lists them. Without
-    /// this such words are refused whatever the hardware, so that no statement about all geometries rests on another one.
+    /// this such words are refused whatever the hardware, so that no statement about all geometries rests on another
+    /// one.
     #[must_use]
     pub fn as_hardware_loads(self) -> Testbench {
         Testbench { cuts: true, ..self }
@@ -53,8 +54,8 @@ impl Testbench {
         Ok(Loaded { blocks: self.machine.encode(&self.hardware, words)?, cut: Vec::new() })
     }
 
-    /// The same bench, whose runs are given up after so many clocks; where none are given and a load word was cut, after
-    /// 2^27 clocks.
+    /// The same bench, whose runs are aborted after this many clocks; without a number, and if a load word was cut,
+    /// after 2^27 clocks.
     #[must_use]
     pub fn limited_to(self, clocks: Option<u64>) -> Testbench {
         let most = if self.cut.is_empty() { u64::MAX } else { CUT_CLOCKS };

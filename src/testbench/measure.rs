@@ -14,7 +14,7 @@ use super::{Ending, LaneOutcome, Observer, ObserverError, Outcome, OverflowWatch
 /// What one geometry came to, and how well its path kept to the ideal curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// How it ended; `None` where the limit of clocks was reached: then nothing else of it is told.
+    /// How it ended; `None` where the limit of clocks was reached: then nothing else of it is reported.
     pub ending: Option<Ending>,
     /// Clocks since reset: the clock of the last sample.
     pub clocks: u64,
@@ -24,9 +24,9 @@ pub struct Measured {
     pub pulses: Vec<u64>,
     /// Where the pulses led, in BLU.
     pub reached: Vec<i64>,
-    /// Greatest path error behind a step, in BLU: that of [`WorstError`](super::WorstError).
+    /// Greatest path error after a step, in BLU: that of [`WorstError`](super::WorstError).
     pub greatest: Option<f64>,
-    /// Mean of the path errors behind all steps, in BLU; of an arc each to 2^-17 BLU. None without a step.
+    /// Mean of the path errors after all steps, in BLU; of an arc each to 2^-17 BLU. None without a step.
     pub mean: Option<f64>,
     /// Violations of properties, as [`OverflowWatch`] counts them.
     pub overflows: u64,
@@ -58,7 +58,7 @@ impl Measured {
         }
     }
 
-    /// A run of so many axes that was not done after `clocks` clocks.
+    /// A run of this many axes that was not done after `clocks` clocks.
     pub(super) fn given_up(axes: usize, clocks: u64) -> Measured {
         let (pulses, reached) = (vec![0; axes], vec![0; axes]);
         Measured::unfinished(LaneOutcome { ending: None, clocks, steps: 0, pulses, reached, overflows: 0 })
@@ -77,7 +77,7 @@ impl Testbench {
         let outcome = match run {
             Err(error) if error.is::<Reached>() => None,
             Err(error) => return Err(error),
-            // Lanes go on to the limit where a single run knows that it is endless.
+            // Lanes continue to the limit where a single run detects that it is endless.
             Ok(Outcome { ending: Ending::Endless { .. } | Ending::Limit, .. }) => None,
             Ok(outcome) => Some(outcome).filter(|outcome| {
                 outcome.clocks < limit || outcome.clocks == limit && !matches!(outcome.ending, Ending::Stalled { .. })
@@ -115,7 +115,7 @@ impl fmt::Display for Reached {
 
 impl std::error::Error for Reached {}
 
-/// Ends a run a little behind this clock.
+/// Ends a run a little after this clock.
 struct Limit(u64);
 
 impl Observer for Limit {
@@ -128,7 +128,7 @@ impl Observer for Limit {
     }
 }
 
-/// Sums the path errors behind all steps.
+/// Sums the path errors after all steps.
 struct Mean<'a> {
     curve: &'a Curve,
     columns: StepColumns,

@@ -65,7 +65,7 @@ pub trait Observer {
     }
 
     /// Writes down what this observer has gathered, under a name of its own, for [`recall`](Self::recall) of a run that
-    /// goes on from here.
+    /// continues from here.
     fn remember(&self, memory: &mut Memory) {
         let _ = memory;
     }
@@ -118,7 +118,7 @@ pub enum Ending {
     Done,
     /// A property was violated and the run stopped there.
     Trapped,
-    /// No pulse came for so many clocks that none will.
+    /// No pulse came for this many clocks, so none will.
     Stalled {
         /// Clocks without a pulse.
         clocks: u64,
@@ -205,7 +205,7 @@ impl Testbench {
         Testbench { columns: Columns::without_wave(&self.machine), every_sample: false, ..self }
     }
 
-    /// The same bench, whose runs are given up after so many clocks.
+    /// The same bench, whose runs are aborted after this many clocks.
     #[must_use]
     pub fn limited(self, clocks: u64) -> Testbench {
         Testbench { limit: clocks, ..self }
@@ -269,8 +269,8 @@ impl Testbench {
         Run::new(self, engine, &mut self.geometry(0), observers).keeping(states).whole()
     }
 
-    /// Goes on from a state of a run of this bench to its end. Samples up to the state are not seen again; the outcome
-    /// and what observers have gathered is that of the whole run.
+    /// Continues from a state of a run of this bench to its end. Samples up to the state are not seen again; the
+    /// outcome and what observers have gathered is that of the whole run.
     ///
     /// # Errors
     /// An observer fails.
@@ -283,8 +283,8 @@ impl Testbench {
         Run::new(self, engine, &mut self.geometry(state.block + 1), observers).from(state).whole()
     }
 
-    /// Shows a machine over some clocks from any state, whether a run comes to it or not. The state is sample 0; nothing is
-    /// loaded, and nothing ends it before.
+    /// Shows a machine over some clocks from any state, whether a run comes to it or not. The state is sample 0;
+    /// nothing is loaded, and nothing ends it before.
     ///
     /// # Errors
     /// An observer fails.

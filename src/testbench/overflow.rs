@@ -34,7 +34,7 @@ pub enum OverflowEvent {
         left: i128,
         /// What was added or subtracted.
         right: i128,
-        /// Clock of the sample in which the operands stand; the register would take the result at the next edge.
+        /// Clock of the sample with the operands; the register would take the result at the next edge.
         clock: u64,
     },
     /// An invariant of the model that did not hold: a defect of the model.

@@ -1,4 +1,4 @@
-//! Path error: how far each position lies off the ideal curve.
+//! Path error: the distance of each position from the ideal curve.
 
 use fearless_simd::{Level, dispatch};
 use serde_json::json;
@@ -22,14 +22,14 @@ pub struct WorstError {
     pub position: Vec<i64>,
 }
 
-/// Finds the greatest path error behind all steps, and behind all pulses where a step has many.
+/// Finds the greatest path error after all steps, and after all pulses where a step has many.
 pub struct PathWatch<'a> {
     gauge: Gauge<'a>,
     columns: StepColumns,
     ports: Vec<Port>,
     /// Rows of the step table so far.
     rows: u64,
-    /// The tool behind the last sample.
+    /// The tool after the last sample.
     tool: Tool,
     /// It moved since the last place that was judged.
     moved: bool,

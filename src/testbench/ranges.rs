@@ -32,8 +32,8 @@ pub struct RegisterRange {
     pub stuck: u64,
     /// It takes a word where a block is loaded and keeps it up to the next: an operand.
     pub held: bool,
-    /// Ends of its range at which it stood and beyond which a strict cell may carry it, one unit from an overflow. The 0
-    /// of an unsigned register is none, for counters are meant to come to it.
+    /// Ends of its range that it reached and beyond which a strict cell may carry it, one unit from an overflow. The 0
+    /// of an unsigned register does not count, as counters are meant to reach it.
     pub limits: Vec<i128>,
 }
 
@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stuck_bits_are_told_one_by_one_and_in_runs_of_the_same_value() {
+    fn stuck_bits_are_reported_one_by_one_and_in_runs_of_the_same_value() {
         let range = RegisterRange {
             name: "r".to_owned(),
             path: "m.r".to_owned(),

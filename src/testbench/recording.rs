@@ -1,4 +1,4 @@
-//! The samples of a run by name, for whoever asks about a short run: a test, a notebook.
+//! The samples of a run by name, for questions about a short run: in a test, in a notebook.
 
 use crate::Error;
 use crate::engine::Rows;
@@ -92,7 +92,8 @@ impl Trace {
         Ok(self.find(signal)?.1)
     }
 
-    /// Every sample of a signal as the number that it is declared to hold: unsigned, in two's complement, or in decimal digits.
+    /// Every sample of a signal as the number that it is declared to hold: unsigned, in two's complement, or in decimal
+    /// digits.
     ///
     /// # Errors
     /// No signal or several have this name, or a value exceeds 64 bits.

@@ -1,4 +1,5 @@
-//! The one run loop: loads the blocks of a feeder, runs the clock, and shows samples, steps and blocks to the observers.
+//! The one run loop: loads the blocks of a feeder, runs the clock, and shows samples, steps and blocks to the
+//! observers.
 
 use stepwave_engine::{self as engine, Engine, EngineKind, Idle, Rows, Stop, Watch};
 use stepwave_models::options::ON_OVERFLOW;
@@ -105,7 +106,8 @@ impl<'a, 'o> Run<'a, 'o> {
         let ending = self.blocks()?;
         self.drain()?;
         self.account.end(self.observers)?;
-        // One clock from reset to the first block, and two for each block after another; a buffer loads while blocks run.
+        // One clock from reset to the first block, and two for each block after another; a buffer loads while blocks
+        // run.
         let load_clocks = if self.is_buffered() { 0 } else { (2 * self.loaded as u64).saturating_sub(1) };
         Ok(self.steps.outcome(ending, self.engine.clock(), load_clocks))
     }
@@ -149,8 +151,8 @@ impl<'a, 'o> Run<'a, 'o> {
         }
     }
 
-    /// What the feeder gives next; a buffer is told whether that is a block. A block with a word that was cut need not
-    /// come to an end: where no limit was given it has [`CUT_CLOCKS`].
+    /// What the feeder gives next; a buffer learns whether that is a block. A block with a word that was cut need not
+    /// end: where no limit was given it has [`CUT_CLOCKS`].
     fn ask(&mut self) -> Result<Next, ObserverError> {
         let next = self.feeder.next()?;
         if let Some(ports) = self.bench.machine().buffer {
@@ -209,7 +211,7 @@ impl<'a, 'o> Run<'a, 'o> {
             }
             match self.engine.run(self.left(), &mut self.rows) {
                 Stop::Net(net) if net > usize::from(buffered) => return Ok(Some(Ending::Trapped)),
-                // The first of several that are 1 is told: a trap may hide behind another.
+                // The first of several that are 1 is reported: a trap may hide another.
                 Stop::Net(_) if buffered && self.trapped() => return Ok(Some(Ending::Trapped)),
                 Stop::Net(net) if net == wanted => return Ok(None),
                 Stop::Net(_) if !self.rows.is_full() => continue,
@@ -233,8 +235,8 @@ impl<'a, 'o> Run<'a, 'o> {
         self.came_back().map(|since| Ending::Endless { since })
     }
 
-    /// The clock of the anchor, if the machine is in the state that it had there and has pulsed since: inputs stay, so it
-    /// will do the same again. The anchor moves on whenever the clocks have doubled, so that no loop escapes it.
+    /// The clock of the anchor, if the machine is in the state that it had there and has pulsed since: inputs stay, so
+    /// it will do the same again. The anchor moves on whenever the clocks have doubled, so that no loop escapes it.
     fn came_back(&mut self) -> Option<u64> {
         let (engine, registers) = (&self.engine, self.bench.design().registers());
         let clock = engine.clock();

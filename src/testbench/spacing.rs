@@ -16,25 +16,26 @@ const SPAN: usize = 64;
 pub struct PulseTrain {
     /// Least and greatest distance of a pulse from the one before it, in clocks; `None` with less than two pulses.
     pub spacing: Option<[u64; 2]>,
-    /// The distance in clocks, were the pulses evenly spread over the clocks of the run: of lines whose steps are known.
+    /// The distance in clocks, were the pulses evenly spread over the clocks of the run: of lines whose steps are
+    /// known.
     pub ideal_spacing: Option<f64>,
     /// How far the axis was off a uniform rate: of lines whose steps are known.
     pub deviation: Option<RateDeviation>,
 }
 
-/// The greatest distance of an axis from where a uniform rate would have brought it behind the same step.
+/// The greatest distance of an axis from where a uniform rate would have brought it after the same step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateDeviation {
     /// abs(p - t·M/T) in pulses, where p of the M pulses of a line were made in t of its T steps.
     pub pulses: f64,
-    /// The first step t behind which it was so great.
+    /// The first step t after which it was so great.
     pub step: u64,
 }
 
 /// What is known of an axis so far.
 #[derive(Clone, Debug)]
 struct Train {
-    /// Steps of the line and way of the axis, which is not longer; `None` where the axis has no constant rate.
+    /// Steps of the line and travel of the axis, which is not longer; `None` where the axis has no constant rate.
     rate: Option<(i64, i64)>,
     /// Pulses so far.
     pulses: u64,
@@ -48,13 +49,13 @@ struct Train {
 }
 
 impl Train {
-    /// How far off the uniform rate the axis is with so many pulses in so many steps, times the steps of the line.
+    /// How far off the uniform rate the axis is after these pulses and steps, times the steps of the line.
     fn off(&self, pulses: u64, steps: u64) -> i128 {
-        let (all, way) = self.rate.unwrap_or_default();
-        i128::from(pulses) * i128::from(all) - i128::from(way) * i128::from(steps)
+        let (all, travel) = self.rate.unwrap_or_default();
+        i128::from(pulses) * i128::from(all) - i128::from(travel) * i128::from(steps)
     }
 
-    fn stands(&mut self, pulses: u64, steps: u64) {
+    fn compare_at(&mut self, pulses: u64, steps: u64) {
         let off = self.off(pulses, steps).unsigned_abs();
         if off > self.greatest {
             (self.greatest, self.worst) = (off, (pulses, steps));
@@ -69,12 +70,12 @@ impl Train {
             self.apart(at(pulses.trailing_zeros()).saturating_sub(last));
         }
         self.last = Some(at(pulses.ilog2()));
-        let behind = pulses & (pulses - 1);
+        let later = pulses & (pulses - 1);
         let [least, greatest] = self.spacing;
-        let closer = behind != 0 && (1..least.min(64)).any(|gap| behind & (pulses << gap) != 0);
+        let closer = later != 0 && (1..least.min(64)).any(|gap| later & (pulses << gap) != 0);
         // Most samples hold no distance that is new.
-        if closer || behind & !reached(pulses, greatest) != 0 {
-            let (mut before, mut rest) = (pulses.trailing_zeros(), behind);
+        if closer || later & !reached(pulses, greatest) != 0 {
+            let (mut before, mut rest) = (pulses.trailing_zeros(), later);
             while rest != 0 {
                 let index = rest.trailing_zeros();
                 self.apart(u64::from(index - before));
@@ -87,27 +88,27 @@ impl Train {
         self.spacing = [self.spacing[0].min(clocks), self.spacing[1].max(clocks)];
     }
 
-    /// Where the axis stands right before each of these pulses, a bit each, and right behind it: only there can it be
+    /// Measures the axis right before each of these pulses, a bit each, and right after it: only there can it be
     /// farther off than ever. `stepped` has a bit for each sample that completes a step, `steps` are those before.
     #[inline(always)]
     fn measure(&mut self, pulses: u64, stepped: u64, steps: u64) {
-        let Some((all, way)) = self.rate else { return };
+        let Some((all, travel)) = self.rate else { return };
         let done = |index: u32| u64::from((stepped & !(u64::MAX << index)).count_ones());
         let before = self.off(self.pulses, steps);
         // Both are far below 2^63: all of a line, at most 2^56, in each of 64 samples.
         let (mut least, mut greatest, mut made, mut rest) = (i64::MAX, i64::MIN, 0, pulses);
         while rest != 0 {
-            let off = made - way * done(rest.trailing_zeros()).cast_signed();
+            let off = made - travel * done(rest.trailing_zeros()).cast_signed();
             (least, greatest, made) = (least.min(off), greatest.max(off), made + all);
             rest &= rest - 1;
         }
-        let (least, greatest) = (before + i128::from(least), before + i128::from(greatest + all - way));
+        let (least, greatest) = (before + i128::from(least), before + i128::from(greatest + all - travel));
         if least.unsigned_abs().max(greatest.unsigned_abs()) > self.greatest {
             let (mut count, mut rest) = (self.pulses, pulses);
             while rest != 0 {
                 let steps = steps + done(rest.trailing_zeros());
-                self.stands(count, steps);
-                self.stands(count + 1, steps + 1);
+                self.compare_at(count, steps);
+                self.compare_at(count + 1, steps + 1);
                 (count, rest) = (count + 1, rest & (rest - 1));
             }
         }
@@ -116,11 +117,11 @@ impl Train {
     // Counts of clocks and pulses are far below 2^53.
     #[allow(clippy::cast_precision_loss)]
     fn finish(&self, steps: u64, clocks: u64) -> PulseTrain {
-        let rate = self.rate.map(|(all, way)| (all as f64, way as f64));
-        let even = rate.filter(|&(_, way)| way > 0.0 && steps > 0);
+        let rate = self.rate.map(|(all, travel)| (all as f64, travel as f64));
+        let even = rate.filter(|&(_, travel)| travel > 0.0 && steps > 0);
         PulseTrain {
             spacing: (self.spacing[0] <= self.spacing[1]).then_some(self.spacing),
-            ideal_spacing: even.map(|(all, way)| clocks as f64 * all / (steps as f64 * way)),
+            ideal_spacing: even.map(|(all, travel)| clocks as f64 * all / (steps as f64 * travel)),
             deviation: rate.map(|(all, _)| RateDeviation { pulses: self.greatest as f64 / all, step: self.worst.1 }),
         }
     }
@@ -132,7 +133,7 @@ pub struct SpacingWatch {
     trains: Vec<Train>,
     /// Steps completed.
     steps: u64,
-    /// Clocks behind which the first block stood loaded and the last step was completed.
+    /// Clocks after which the first block was loaded and the last step completed.
     loaded: Option<u64>,
     stepped: u64,
     level: Level,
@@ -143,12 +144,12 @@ impl SpacingWatch {
     #[must_use]
     pub fn new(bench: &Testbench, curve: &Curve) -> SpacingWatch {
         let ends = curve.from().iter().zip(curve.to());
-        let ways: Vec<u64> = ends.map(|(from, to)| to.abs_diff(*from)).collect();
+        let travels: Vec<u64> = ends.map(|(from, to)| to.abs_diff(*from)).collect();
         // A line of more steps comes to no end.
-        let steps = bench.hardware().steps(&ways).and_then(|steps| i64::try_from(steps).ok());
+        let steps = bench.hardware().steps(&travels).and_then(|steps| i64::try_from(steps).ok());
         let steps = steps.filter(|steps| (1..=1 << 56).contains(steps));
-        let train = |&way: &u64| Train {
-            rate: steps.zip(i64::try_from(way).ok()).filter(|(steps, way)| way <= steps),
+        let train = |&travel: &u64| Train {
+            rate: steps.zip(i64::try_from(travel).ok()).filter(|(steps, travel)| travel <= steps),
             pulses: 0,
             last: None,
             spacing: [u64::MAX, 0],
@@ -157,7 +158,7 @@ impl SpacingWatch {
         };
         SpacingWatch {
             columns: StepColumns::of(bench),
-            trains: ways.iter().map(train).collect(),
+            trains: travels.iter().map(train).collect(),
             steps: 0,
             loaded: None,
             stepped: 0,
@@ -169,7 +170,7 @@ impl SpacingWatch {
     #[must_use]
     pub fn finish(mut self) -> Vec<PulseTrain> {
         let (steps, clocks) = (self.steps, self.stepped.saturating_sub(self.loaded.unwrap_or(0)));
-        self.trains.iter_mut().for_each(|train| train.stands(train.pulses, steps));
+        self.trains.iter_mut().for_each(|train| train.compare_at(train.pulses, steps));
         self.trains.iter().map(|train| train.finish(steps, clocks)).collect()
     }
 }

@@ -22,9 +22,9 @@ pub struct Step {
     pub used: Vec<i128>,
     /// Pulses of the step: -1, 0 or +1 of each axis.
     pub pulses: Vec<i64>,
-    /// Where the pulses led behind the step, in BLU.
+    /// Where the pulses led after the step, in BLU.
     pub position: Vec<i64>,
-    /// What the position counters show behind the step, in BLU.
+    /// What the position counters show after the step, in BLU.
     pub counters: Vec<i64>,
 }
 
@@ -154,8 +154,8 @@ impl<'a> StepReader<'a> {
         rows.value(self.columns.loaded, row) == 1
     }
 
-    /// A bit for each of 64 samples from `first` on, the first the lowest: 1 where the machine is loaded, pulses, or has
-    /// completed a step.
+    /// A bit for each of 64 samples from `first` on, the first the lowest: 1 where the machine is loaded, pulses, or
+    /// has completed a step.
     pub(super) fn eventful(&self, rows: &Rows, first: usize) -> u64 {
         let strobes = [self.columns.loaded, self.columns.stepped];
         strobes.iter().chain(&self.columns.pulses).fold(0, |seen, &column| seen | rows.nonzero(column, first))
@@ -177,8 +177,9 @@ impl<'a> StepReader<'a> {
         self.rows += u64::from(complete);
     }
 
-    /// Takes a sample; true if it completes a row of the table, which then stands in `step`, with its `registers` if they
-    /// are wanted. In the place of [`count`](Self::count), for every [eventful](Self::eventful) sample from the first on.
+    /// Takes a sample; true if it completes a row of the table, which is then in `step`, with its `registers` if they
+    /// are wanted. In the place of [`count`](Self::count), for every [eventful](Self::eventful) sample from the first
+    /// on.
     pub(super) fn sample(&mut self, rows: &Rows, row: usize, registers: bool) -> bool {
         if std::mem::take(&mut self.row_complete) || self.rows == 0 {
             self.step.pulses.fill(0);

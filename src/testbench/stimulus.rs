@@ -86,17 +86,17 @@ impl Testbench {
         Ok(driven(self.design(), stimulus, &[])?.design)
     }
 
-    /// The machine with a loader next to it that loads one block in the first clock, with any words for these registers: the
-    /// words are its inputs, and given next to it. All other words are those of the first block.
+    /// The machine with a loader next to it that loads one block in the first clock, with any words for these
+    /// registers: the words are its inputs, and given next to it. All other words are those of the first block.
     ///
     /// # Errors
-    /// No load word bears such a name.
+    /// No load word has this name.
     pub fn driven_by_any(&self, registers: &[String]) -> Result<(Design, Vec<Net>), ModelError> {
         let (driven, words) = self.driven_open(registers)?;
         Ok((driven.design, words))
     }
 
-    /// As [`driven_by_any`](Self::driven_by_any), and tells where the nets of the machine went.
+    /// As [`driven_by_any`](Self::driven_by_any), and returns where the nets of the machine went.
     pub(crate) fn driven_open(&self, registers: &[String]) -> Result<(Driven, Vec<Net>), ModelError> {
         let port = |register: &String| match self.machine.inputs.get(register) {
             Some(port) => Ok(port.net),
@@ -115,7 +115,7 @@ impl Testbench {
         self.machine.inputs.keys().map(String::as_str)
     }
 
-    /// Clock of the last sample of a run, or `None` where a run goes on beyond `most`.
+    /// Clock of the last sample of a run, or `None` where a run continues beyond `most`.
     #[must_use]
     pub fn clocks_within(&self, most: u64) -> Option<u64> {
         self.clocks_within_fed(most, &mut self.geometry(0))
@@ -128,7 +128,8 @@ impl Testbench {
         (outcome.clocks <= most).then_some(outcome.clocks)
     }
 
-    /// The nets that a user of the machine connects: its strobes, pulses and positions, and the flags of its properties.
+    /// The nets that a user of the machine connects: its strobes, pulses and positions, and the flags of its
+    /// properties.
     #[must_use]
     pub fn outputs(&self) -> Vec<Net> {
         let machine = &self.machine;

@@ -24,7 +24,7 @@ pub(super) struct Tool {
     counters: Vec<(usize, Port)>,
     /// An overflow ends the run, so that the counters can be believed, which is faster.
     trusted: bool,
-    /// The place behind the last sample, in BLU.
+    /// The place after the last sample, in BLU.
     pub(super) place: Vec<i64>,
 }
 

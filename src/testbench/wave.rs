@@ -30,14 +30,15 @@ pub struct Window {
     pub to: Option<u64>,
     /// What opens it.
     pub trigger: Trigger,
-    /// Columns of which one is 1 in a sample that is written; `None` for every sample. The first of all is always written.
+    /// Columns of which one is 1 in a sample that is written; `None` for every sample. The first of all is always
+    /// written.
     pub steps: Option<[usize; 2]>,
 }
 
 impl Window {
     /// The rows of a block that fall between its first and last clock.
     fn rows(&self, rows: &Rows) -> Range<usize> {
-        // A clock beyond the block lies behind its last row, whatever the size of a usize.
+        // A clock beyond the block is after its last row, whatever the size of a usize.
         let index = |clock: u64| {
             let index = usize::try_from(clock.saturating_sub(rows.first_clock()));
             index.map_or(rows.len(), |index| index.min(rows.len()))
@@ -97,9 +98,9 @@ pub struct Taken {
     width: Width,
     /// Its value at reset, where that was written.
     pub reset: Option<i64>,
-    /// Its value in the first sample behind the reset.
+    /// Its value in the first sample after the reset.
     pub first: Option<i64>,
-    /// Least and greatest value in the samples behind the reset.
+    /// Least and greatest value in the samples after the reset.
     pub range: Option<[i64; 2]>,
 }
 

@@ -1,8 +1,8 @@
-//! Proofs about netlists: that registers are wide enough and that what is wanted comes about, for every geometry of a box.
+//! Proofs about netlists: that registers are wide enough and that the goals hold, for every geometry of a box.
 //!
 //! There are two kinds. [`polynomial`] reads every register as a whole number and proves *every width at once*, with a
-//! certificate that is checked without a search; it is the one to try first. [`bitwise`] follows the bits of *one width*,
-//! clock by clock, for machines whose counters run by themselves.
+//! certificate that is checked without a search; it is the one to try first. [`bitwise`] follows the bits of *one
+//! width*, clock by clock, for machines whose counters run by themselves.
 //!
 //! A down-counter of two bits, from netlist to certificate: whatever is loaded, it never counts below 0 and it ends.
 //!
@@ -45,7 +45,7 @@
 //! let (proof, certificate) = prove(&family, strobes, &case, &rows).unwrap();
 //! assert!(proof.holds(), "{proof:#?}");
 //!
-//! // The certificate is text; whoever reads it multiplies out its sums and searches for nothing.
+//! // The certificate is text; checking it multiplies out its sums and needs no search.
 //! let certificate: Certificate = certificate.to_string().parse().unwrap();
 //! assert!(check(&family, strobes, &case, &certificate).unwrap().holds());
 //! ```

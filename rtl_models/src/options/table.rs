@@ -1,6 +1,7 @@
 //! The table of hardware options: the types of their values, and one declaration of each.
 //!
-//! An option that is added here is on every command line, in sweeps, titles, reports and the command that repeats a run.
+//! An option that is added here is on every command line, in sweeps, titles, reports and the command that repeats a
+//! run.
 
 use stepwave_netlist::bits::Reading;
 use stepwave_netlist::{OnOverflow, Width};
@@ -146,7 +147,7 @@ impl Named for OnOverflow {
         &[("trap", OnOverflow::Trap), ("saturate", OnOverflow::Saturate), ("wrap", OnOverflow::Wrap)];
 }
 
-/// How the coarse stage of data sampling calculates the way of a period.
+/// How the coarse stage of data sampling calculates the travel of a period.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum System {
     /// By the direction in the middle of the period: tangent, cosine, square root.

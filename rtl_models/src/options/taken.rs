@@ -48,7 +48,7 @@ impl<T> OptionDef<T> {
         Taken { option: self, default, words, about: "", why_not }
     }
 
-    /// All values, of which `about` tells what they are here, and the default.
+    /// All values, with what they are here in `about`, and the default.
     #[must_use]
     pub const fn about(&'static self, about: &'static str) -> Taken<T> {
         Taken { option: self, default: None, words: &[], about, why_not: "" }

@@ -142,14 +142,14 @@ impl StepTiming {
 
     /// The times of `length=2,space=2,setup=4,hold=4`, or of some of them.
     pub(super) fn parse(text: &str) -> Result<StepTiming, String> {
-        let way_out = "give clocks such as length=2,space=2,setup=4,hold=4";
+        let remedy = "give clocks such as length=2,space=2,setup=4,hold=4";
         let (mut timing, mut named) = (StepTiming::default(), Vec::new());
         for part in text.split(',') {
-            let (name, clocks) = part.split_once('=').ok_or_else(|| format!("invalid time '{part}': {way_out}"))?;
+            let (name, clocks) = part.split_once('=').ok_or_else(|| format!("invalid time '{part}': {remedy}"))?;
             let least = u64::from(matches!(name.trim(), "length" | "space"));
             let number = clocks.trim().parse().ok().filter(|clocks| (least..=1 << 20).contains(clocks));
             let number = number
-                .ok_or_else(|| format!("invalid time '{clocks}': it must be from {least} to {}: {way_out}", 1 << 20))?;
+                .ok_or_else(|| format!("invalid time '{clocks}': it must be from {least} to {}: {remedy}", 1 << 20))?;
             if named.contains(&name.trim()) {
                 return Err(format!("'{}' is given two times: leave one of them out", name.trim()));
             }
@@ -159,7 +159,7 @@ impl StepTiming {
                 "space" => timing.space = number,
                 "setup" => timing.setup = number,
                 "hold" => timing.hold = number,
-                name => return Err(format!("there is no time '{name}': {way_out}")),
+                name => return Err(format!("there is no time '{name}': {remedy}")),
             }
         }
         Ok(timing)

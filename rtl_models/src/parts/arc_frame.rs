@@ -19,7 +19,7 @@ pub const XI_YI: Reg<2> = Reg::each(["xi", "yi"], N, "|x|, |y| relative to the c
 /// - `quad`, 2 bits: the quadrant, Q1 = 0; `ccw`, 1 bit: counter-clockwise.
 /// - `e`, or `ex` and `ey`: the end point.
 ///
-/// With one counter the hardware crosses the axes: where the shrinking coordinate stands at 0 the judge beat turns to
+/// With one counter the hardware crosses the axes: where the shrinking coordinate is 0 the judge beat turns to
 /// the next quadrant (but not in the centre, which R = 1 passes through). With a counter for each axis the loader
 /// splits the arc there.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +50,7 @@ impl<'m> ArcFrame<'m> {
             cross.mux(next_quadrant(q, quad.q, ccw), quad.q)
         };
         quad.when(block.load, hardware.word(block, QUAD)).when(judge, entered).else_hold();
-        // Behind the judge beat `entered` is `quad` itself, until the coordinates change.
+        // After the judge beat `entered` is `quad` itself, until the coordinates change.
         ArcFrame { m, block: *block, xi, yi, end, kind: Kind::decode(q, entered, ccw) }
     }
 
@@ -99,16 +99,16 @@ impl<'m> ArcFrame<'m> {
         self.end.count(compare, taken)
     }
 
-    /// Closes coordinates, end counters, beats and block: the coordinates taken (1 bit each) change in the compute beat,
-    /// and the compare beat counts their pulses.
+    /// Closes coordinates, end counters, beats and block: the coordinates taken (1 bit each) change in the compute
+    /// beat, and the compare beat counts their pulses.
     pub fn close(self, beat: BeatRing<'m>, taken: [Signal<'m>; 2]) {
         self.compute(beat.compute, taken);
         beat.close(self.block, self.compare(beat.compare, taken));
     }
 }
 
-/// Closes the registers of both coordinates, loaded with their words: where `counts` says of the axis taken (1 bit) that
-/// it counts at this edge, the coordinate changes by 1.
+/// Closes the registers of both coordinates, loaded with their words: where `counts` says of the axis taken (1 bit)
+/// that it counts at this edge, the coordinate changes by 1.
 pub fn count_coordinates<'m>(
     m: Scope<'m>,
     block: &Block<'m>,
@@ -138,6 +138,6 @@ pub fn square_gains<'m>(m: Scope<'m>, [x, y]: [Signal<'m>; 2], grows: [Signal<'m
 /// 2c - 1; one bit wider than c.
 #[must_use]
 pub(super) fn square_gain<'m>(m: Scope<'m>, c: Signal<'m>, grows: Signal<'m>) -> Signal<'m> {
-    // c, or c - 1, with a 1 behind it.
+    // c, or c - 1, with a 1 after it.
     grows.mux(c, c.wrapping_sub(m.lit(c.bits(), 1))).concat(m.lit(1, 1))
 }

@@ -38,7 +38,7 @@ impl<'m> BeatRing<'m> {
         }
     }
 
-    /// What the judge beat decided, valid in the beats behind it: a register in the four-beat form, a net in the other.
+    /// What the judge beat decided, valid in the beats after it: a register in the four-beat form, a net in the other.
     #[must_use]
     pub fn decided(&self, name: &str, decision: Signal<'m>) -> Signal<'m> {
         if self.ring.is_none() {
@@ -49,8 +49,8 @@ impl<'m> BeatRing<'m> {
         register.q
     }
 
-    /// Closes the ring and the block, which starts with the judge beat; the compare beat is its step, and `last` (1 bit)
-    /// there ends it.
+    /// Closes the ring and the block, which starts with the judge beat; the compare beat is its step, and `last` (1
+    /// bit) there ends it.
     pub fn close(self, block: Block<'m>, last: Signal<'m>) {
         if let Some(ring) = self.ring {
             let rotated = ring.q.slice(0, 3).concat(ring.q.msb());

@@ -99,15 +99,15 @@ impl<'m> Block<'m> {
         held.q
     }
 
-    /// Closes the sequencer. Each is 1 bit: `ready`, the registers stand loaded behind this edge; `step`, a step is
+    /// Closes the sequencer. Each is 1 bit: `ready`, the registers are loaded after this edge; `step`, a step is
     /// completed at this edge; `last`, it is the last one.
     pub fn close(self, ready: Signal<'m>, step: Signal<'m>, last: Signal<'m>) {
-        self.close_behind(ready, step, step & last);
+        self.close_after(ready, step, step & last);
     }
 
-    /// As [`close`](Block::close), but what ends the block is an edge with `finish` = 1 (1 bit), at the last step or some
-    /// clocks behind it.
-    pub fn close_behind(self, ready: Signal<'m>, step: Signal<'m>, finish: Signal<'m>) {
+    /// As [`close`](Block::close), but what ends the block is an edge with `finish` = 1 (1 bit), at the last step or
+    /// some clocks after it.
+    pub fn close_after(self, ready: Signal<'m>, step: Signal<'m>, finish: Signal<'m>) {
         let [busy, done, loaded, stepped] = self.registers;
         let [yes, no] = [self.words.lit(1, 1), self.words.lit(1, 0)];
         busy.when(self.load, yes).when(finish, no).else_hold();
@@ -117,8 +117,8 @@ impl<'m> Block<'m> {
     }
 }
 
-/// The buffer in front of a block loader: the host writes the words of the next block into it while the present one
-/// runs, and they go on into the registers at the edge behind the last step.
+/// The buffer that feeds a block loader: the host writes the words of the next block into it while the present one
+/// runs, and they are loaded into the registers at the edge after the last step.
 ///
 /// - `load` = 1 at an edge takes the words on the inputs into the buffer, which must be free: `full` rises.
 /// - `more`, an input: the host has a further block. `call`: it may write it. `at_end`: all is done.
@@ -157,7 +157,7 @@ impl<'m> Buffer<'m> {
         self.m.input(&input_name(register), bits)
     }
 
-    /// The block loader behind the buffer. While `wait` (1 bit) is 1 the buffer is not ready yet.
+    /// The block loader that the buffer feeds. While `wait` (1 bit) is 1 the buffer is not ready yet.
     #[must_use]
     pub fn block(self, wait: Signal<'m>) -> Block<'m> {
         let Buffer { m, write, preset, full, registers, more } = self;

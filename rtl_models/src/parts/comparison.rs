@@ -103,22 +103,21 @@ impl<'m> Weighing<'m> {
         let Weighing { m, f, weights: [a, b], base } = self;
         let base_x = !base.q;
         let bits = |register: Register<'m>| register.q.bits();
-        // The weights behind the pulses, and F with the weight that the rule says.
+        // The weights after the pulses, and F with the weight that the rule selects.
         let wide = bits(a).max(bits(b)) + 3;
         let [word_a, word_b] = [(0, a), (1, b)].map(|(axis, register)| block.word(A_B.of(axis).name(), bits(register)));
         let intervals = [(a, word_a, taken[0], changes[0]), (b, word_b, taken[1], changes[1])];
-        let [(a_behind, a_weight), (b_behind, b_weight)] = intervals.map(|(register, word, taken, change)| {
-            let behind = moved(block, compute, register, taken, change);
-            register.when(block.load, word).when(compute, behind).else_hold();
+        let [(a_after, a_weight), (b_after, b_weight)] = intervals.map(|(register, word, taken, change)| {
+            let after = moved(block, compute, register, taken, change);
+            register.when(block.load, word).when(compute, after).else_hold();
             let zero = m.lit(wide, 0);
-            let weight =
-                if change.is_some() { weight(rule, register.q, behind, wide) } else { register.q.extend(wide) };
-            (behind, taken.mux(weight, zero).as_signed())
+            let weight = if change.is_some() { weight(rule, register.q, after, wide) } else { register.q.extend(wide) };
+            (after, taken.mux(weight, zero).as_signed())
         });
         let change = m.name("change", base_x.mux(a_weight.wrapping_sub(b_weight), b_weight.wrapping_sub(a_weight)));
         let wide = bits(a).max(bits(b));
-        let [a_behind, b_behind] = [a_behind.extend(wide), b_behind.extend(wide)];
-        let turn = m.name("turn", base_x.mux(b_behind.less_than(a_behind), a_behind.less_than(b_behind)));
+        let [a_after, b_after] = [a_after.extend(wide), b_after.extend(wide)];
+        let turn = m.name("turn", base_x.mux(b_after.less_than(a_after), a_after.less_than(b_after)));
         // F + (-2F - change) is -(F + change).
         let wide = change.bits().max(f.value().bits() + 1) + 1;
         let [change, twice] = [change.extend(wide), f.value().concat(m.lit(1, 0)).extend(wide)];
@@ -130,7 +129,7 @@ impl<'m> Weighing<'m> {
     }
 }
 
-/// An interval weight behind a step.
+/// An interval weight after a step.
 fn moved<'m>(
     block: &Block<'m>,
     compute: Signal<'m>,
@@ -145,12 +144,12 @@ fn moved<'m>(
     taken.mux(grows.mux(sum, difference), weight.q)
 }
 
-/// What a pulse counts, of the interval weights before and behind it.
-fn weight<'m>(rule: Weights, before: Signal<'m>, behind: Signal<'m>, bits: u32) -> Signal<'m> {
-    let [before, behind] = [before.extend(bits), behind.extend(bits)];
+/// The weight of a pulse, from the interval weights before and after it.
+fn weight<'m>(rule: Weights, before: Signal<'m>, after: Signal<'m>, bits: u32) -> Signal<'m> {
+    let [before, after] = [before.extend(bits), after.extend(bits)];
     match rule {
-        Weights::Mid => before.wrapping_add(behind),
+        Weights::Mid => before.wrapping_add(after),
         Weights::Pre => before,
-        Weights::Post => behind,
+        Weights::Post => after,
     }
 }

@@ -21,7 +21,7 @@ impl<'m> DeviationAccumulator<'m> {
         DeviationAccumulator { f: m.reg_signed(F.name(), bits) }
     }
 
-    /// 1 bit: F >= 0, the tool stands outside the curve or on it.
+    /// 1 bit: F >= 0, the tool is outside the curve or on it.
     #[must_use]
     pub fn not_negative(&self) -> Signal<'m> {
         !self.f.q.msb()
@@ -33,8 +33,8 @@ impl<'m> DeviationAccumulator<'m> {
         self.f.q
     }
 
-    /// Closes the accumulator: loaded with its word; at an edge with `compute` = 1 the operand is added. A load wins; the
-    /// exact result must fit where it does not. The operand may have any width and either reading.
+    /// Closes the accumulator: loaded with its word; at an edge with `compute` = 1 the operand is added. A load wins;
+    /// the exact result must fit where it does not. The operand may have any width and either reading.
     pub fn close_adding(self, block: &Block<'m>, compute: Signal<'m>, operand: Signal<'m>) {
         let sum = self.f.q.strict_add(operand, compute & !block.load);
         let word = block.word_signed(F.name(), self.f.q.bits());

@@ -4,8 +4,8 @@ use stepwave_netlist::dsl::{Scope, Signal};
 
 use crate::options::Radix;
 
-/// Adds two digits and a carry of 1 bit; returns the carry to the next digit (1 bit) and the digit of the sum. A digit is
-/// 1 bit wide in radix 2, 4 bits (BCD) in radix 10.
+/// Adds two digits and a carry of 1 bit; returns the carry to the next digit (1 bit) and the digit of the sum. A digit
+/// is 1 bit wide in radix 2, 4 bits (BCD) in radix 10.
 #[must_use]
 pub fn digit_adder<'m>(
     m: Scope<'m>,
@@ -32,7 +32,7 @@ pub fn digit_adder<'m>(
 }
 
 /// Adds two equally wide BCD numbers, a whole number of digits of 4 bits; returns the carry (1 bit) and the sum. The
-/// adder of each digit stands in a scope `digit_` and its number, 0 for the lowest.
+/// adder of each digit is in a scope `digit_` and its number, 0 for the lowest.
 #[must_use]
 pub fn decimal_adder<'m>(m: Scope<'m>, a: Signal<'m>, b: Signal<'m>) -> (Signal<'m>, Signal<'m>) {
     let add = |digit: u32, carry: Signal<'m>| {

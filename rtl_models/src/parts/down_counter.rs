@@ -4,8 +4,8 @@ use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Block, shifted_right};
 
-/// A register that is loaded with a number of steps and counts them down. At an edge that loads nothing is counted, so
-/// that neither an overflow nor a 0 is told there.
+/// A register that is loaded with a number of steps and counts them down. At an edge that loads, nothing is counted, so
+/// that neither an overflow nor a 0 is reported there.
 #[derive(Clone, Copy, Debug)]
 pub struct DownCounter<'m> {
     m: Scope<'m>,
@@ -29,7 +29,7 @@ impl<'m> DownCounter<'m> {
     }
 
     /// Closes the counter: at an edge with `count` = 1 it goes down by one, which must not take it below 0. Returns 1
-    /// bit: it is counted or held at this edge and stands at 0 behind it.
+    /// bit: it is counted or held at this edge and is 0 after it.
     #[must_use]
     pub fn count(self, count: Signal<'m>) -> Signal<'m> {
         let less = self.less(count);

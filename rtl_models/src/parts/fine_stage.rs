@@ -1,4 +1,5 @@
-//! The fine stage of data sampling: DDA integrators that draw the way of a period while the next one is calculated.
+//! The fine stage of data sampling: DDA integrators that follow the travel of a period while the next one is
+//! calculated.
 
 use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
@@ -26,8 +27,8 @@ pub const BURST: (PerAxis, PerAxis) = (
 
 /// Two integrators whose integrands are double buffered. The coarse stage hands over a point of the curve, with
 /// a fraction, relative to the start or centre of the block; what whole pulses of it are still to be made goes into the
-/// buffer. When the period before is over, the buffer is taken, and a burst of 2^n additions, spread over the clocks of a
-/// period, makes just those pulses: J_R is the preset again after it.
+/// buffer. When the period before is over, the buffer is taken, and a burst of 2^n additions, spread over the clocks of
+/// a period, makes just those pulses: J_R is the preset again after it.
 ///
 /// - `next_full`, `next_last`, 1 bit each: the buffer holds a period; it is the last one. `last`: of the burst.
 /// - `e`, n+1 bits: additions of the burst left.
@@ -59,9 +60,9 @@ impl<'m> FineStage<'m> {
         !self.full.q
     }
 
-    /// Closes it and the block. At an edge with `hand` = 1 (1 bit), which must find it free, it takes the points of both
-    /// axes, two's complement with `fraction` bits of fraction, or, with `last` = 1, the `ends`, whole. Behind the burst
-    /// of the last point the block is done.
+    /// Closes it and the block. At an edge with `hand` = 1 (1 bit), which must find it free, it takes the points of
+    /// both axes, two's complement with `fraction` bits of fraction, or, with `last` = 1, the `ends`, whole. After the
+    /// burst of the last point the block is done.
     pub fn close(
         self,
         block: Block<'m>,
@@ -100,12 +101,12 @@ impl<'m> FineStage<'m> {
             let fine = |whole: Signal<'m>| whole.concat(m.lit(fraction, 0)).as_signed();
             let start = block.word_signed(TARGET.of(axis).name(), whole_bits);
             target.when(block.load, start).when(hand, goal).else_hold();
-            let way = goal.wrapping_sub(target.q);
+            let travel = goal.wrapping_sub(target.q);
 
             let bits = hardware.bits(JV.of(axis));
             let next = scope.reg(&format!("{}_next", JV.of(axis).name()), bits);
             // An emptied buffer is 0.
-            let ahead = next.q.strict_add(magnitude(m, way), hand & !block.load);
+            let ahead = next.q.strict_add(magnitude(m, travel), hand & !block.load);
             next.when(block.load, m.lit(bits, 0)).when(hand, ahead).when(take, m.lit(bits, 0)).else_hold();
             let jv = scope.reg(JV.of(axis).name(), bits);
             jv.when(block.load, m.lit(bits, 0)).when(take, next.q).else_hold();
@@ -114,7 +115,7 @@ impl<'m> FineStage<'m> {
                 buffer.when(hand, value).else_hold();
                 buffer.q
             };
-            let next_sign = buffered(&format!("{}_next", SIGN.of(axis).name()), way.msb());
+            let next_sign = buffered(&format!("{}_next", SIGN.of(axis).name()), travel.msb());
             let sign = scope.reg(SIGN.of(axis).name(), 1);
             sign.when(take, next_sign).else_hold();
             let next_point = scope.reg_signed(&format!("{}_next", POINT.of(axis).name()), point.bits());
@@ -128,8 +129,8 @@ impl<'m> FineStage<'m> {
         block.close(block.load, over, self.last.q);
     }
 
-    /// The divider of the clock, which begins with the first period that is taken (`take` = 1, 1 bit). Returns 1 bit: one of
-    /// the 2^n additions of a period is due at this edge. Two are never next to each other.
+    /// The divider of the clock, which begins with the first period that is taken (`take` = 1, 1 bit). Returns 1 bit:
+    /// one of the 2^n additions of a period is due at this edge. Two are never next to each other.
     fn ticks(&self, block: &Block<'m>, hardware: &Hardware, take: Signal<'m>) -> Signal<'m> {
         let m = self.m;
         let [clocks, of] = hardware.sampling.map_or([1, 1], |sampling| sampling.clocks);

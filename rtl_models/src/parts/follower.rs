@@ -19,8 +19,8 @@ pub const REST: Reg = Reg::new("rest", AS_WHOLE, "what is left over of a pulse o
 ///   of them. `rest`, `bits` bits: loaded with half of `whole`.
 ///
 /// At an edge with `step` = 1 every pulse of the plane (`taken`, 1 bit each) adds `share` to `rest`; where `whole` is
-/// reached it is taken off, and the third axis has a pulse, 1 bit, which is returned. Behind all pulses of the block the
-/// third axis has had its share exactly, and never stood more than a pulse off it.
+/// reached it is taken off, and the third axis has a pulse, 1 bit, which is returned. After all pulses of the block the
+/// third axis has had its share exactly, and was never more than a pulse off it.
 #[must_use]
 pub fn follower<'m>(
     m: Scope<'m>,

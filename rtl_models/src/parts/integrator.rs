@@ -14,12 +14,13 @@ pub const JV: PerAxis = Reg::each(per_axis!("jv"), N, "integrand J_V of each axi
 /// Remainders.
 pub const JR: PerAxis = Reg::each(per_axis!("jr"), N, "remainder J_R of each axis, from the preset").preset();
 
-/// One DDA integrator: in every iteration it adds the integrand J_V into the remainder register J_R of its axis (at least
-/// as wide as the integrand); returns the carry (1 bit), which is the axis's pulse.
+/// One DDA integrator: in every iteration it adds the integrand J_V into the remainder register J_R of its axis (at
+/// least as wide as the integrand); returns the carry (1 bit), which is the axis's pulse.
 ///
-/// Added in parallel, the carry comes with the sum, in radix 10 from BCD digit adders. A serial integrator adds the lowest
-/// digits of J_V and J_R and the carry that it kept (`carry`, 1 bit); J_R shifts right and takes in the digit of the sum.
-/// J_V, as wide as J_R, must [go round](rotated) meanwhile. Behind the last digit J_R is the sum, and the carry the pulse.
+/// Added in parallel, the carry comes with the sum, in radix 10 from BCD digit adders. A serial integrator adds the
+/// lowest digits of J_V and J_R and the carry that it kept (`carry`, 1 bit); J_R shifts right and takes in the digit of
+/// the sum. J_V, as wide as J_R, must [go round](rotated) meanwhile. After the last digit J_R is the sum, and the carry
+/// the pulse.
 pub fn integrator<'m>(
     m: Scope<'m>,
     block: &Block<'m>,

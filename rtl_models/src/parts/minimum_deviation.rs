@@ -18,8 +18,8 @@ pub struct LeastDeviation<'m> {
 }
 
 impl<'m> LeastDeviation<'m> {
-    /// Compares what follows `f` where a step of x and one of y add these gains, two's complement and equally wide, 2 bits
-    /// wider than `f` at least.
+    /// Compares what follows `f` where a step of x and one of y add these gains, two's complement and equally wide, 2
+    /// bits wider than `f` at least.
     #[must_use]
     pub fn new(m: Scope<'m>, f: Signal<'m>, gains: [Signal<'m>; 2]) -> LeastDeviation<'m> {
         let [gain_x, gain_y] = gains;
@@ -52,9 +52,9 @@ impl<'m> LeastDeviation<'m> {
 }
 
 /// What a step of a line adds to D = 2S - L: twice S, or twice S - L where it is diagonal (1 bit). Two's complement of
-/// `bits` bits, 2 more than the long and the short way have at least.
+/// `bits` bits, at least 2 more than the long and the short travel have.
 #[must_use]
-pub fn line_change<'m>(m: Scope<'m>, ways: [Signal<'m>; 2], bits: u32, diagonal: Signal<'m>) -> Signal<'m> {
-    let [long, short] = ways.map(|way| way.extend(bits - 1).as_signed());
+pub fn line_change<'m>(m: Scope<'m>, travels: [Signal<'m>; 2], bits: u32, diagonal: Signal<'m>) -> Signal<'m> {
+    let [long, short] = travels.map(|travel| travel.extend(bits - 1).as_signed());
     diagonal.mux(short.wrapping_sub(long), short).concat(m.lit(1, 0))
 }

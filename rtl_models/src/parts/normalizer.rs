@@ -14,12 +14,12 @@ pub struct Normalizer<'m> {
     none: Signal<'m>,
 }
 
-/// What the normaliser tells the other parts; 1 bit each.
+/// What the normaliser gives to the other parts; 1 bit each.
 #[derive(Clone, Copy, Debug)]
 pub struct Normalized<'m> {
     /// The integrands shift left at this edge.
     pub shift: Signal<'m>,
-    /// The block is loaded and normalised behind this edge.
+    /// The block is loaded and normalised after this edge.
     pub ready: Signal<'m>,
     /// The integrators may add.
     pub run: Signal<'m>,
@@ -34,7 +34,7 @@ impl<'m> Normalizer<'m> {
     }
 
     /// Closes it: shifts until the or of all integrands, which are equally wide, has a 1 among its `top` highest bits.
-    /// More bits than they have, or none, are a mistake that [`finish`](stepwave_netlist::dsl::Module::finish) tells.
+    /// More bits than they have, or none, are a mistake that [`finish`](stepwave_netlist::dsl::Module::finish) reports.
     #[track_caller]
     #[must_use]
     pub fn close(self, integrands: &[Signal<'m>], top: u32) -> Normalized<'m> {

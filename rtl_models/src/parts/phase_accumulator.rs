@@ -19,7 +19,7 @@ pub const ACC: PerAxis =
 /// - `rate` + axis, two's complement: held for the whole block.
 /// - `acc` + axis, two's complement. What it takes must fit.
 ///
-/// The sum stands one clock before it is taken, so that an accumulation whose step may not be sent yet can wait.
+/// The sum is ready one clock before it is taken, so that an accumulation whose step may not be sent yet can wait.
 #[derive(Clone, Copy, Debug)]
 pub struct PhaseAccumulator<'m> {
     acc: Register<'m>,
@@ -29,8 +29,8 @@ pub struct PhaseAccumulator<'m> {
 }
 
 impl<'m> PhaseAccumulator<'m> {
-    /// The registers, of so many bits. Where the accumulator has no bit `pick_off`, its sign is picked off. The sum that
-    /// is looked at ahead leaves its range as strict cells do, `on_overflow`.
+    /// The registers, of this many bits. Where the accumulator has no bit `pick_off`, its sign is picked off. The sum
+    /// that is looked at ahead leaves its range as strict cells do, `on_overflow`.
     #[must_use]
     pub fn new(
         m: Scope<'m>,

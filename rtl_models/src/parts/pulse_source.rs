@@ -13,17 +13,17 @@ pub const PULSE_RATE: Reg = Reg::new("rate", Rule::Bits(RATE_BITS + 1), "pulses 
 /// The pulse source f_g, a DDA on the clock: at every edge `rate` is added to `phase`, and the carry is its pulse.
 ///
 /// - `rate`, 33 bits: held for the whole block; at most 2^31, which is a pulse every second clock.
-/// - `phase`, 32 bits: goes on from block to block, so that pulses keep their distance across the blocks.
+/// - `phase`, 32 bits: continues from block to block, so that pulses keep their distance across the blocks.
 ///
-/// It stands still while no block runs and none waits, so that a pulse never meets a machine without a block: the
+/// It does not count while no block runs and none waits, so that a pulse never meets a machine without a block: the
 /// invariant `no_pulse_is_lost`. Returns the pulse, 1 bit.
 #[must_use]
 pub fn pulse_source<'m>(m: Scope<'m>, block: &Block<'m>, waiting: Signal<'m>) -> Signal<'m> {
     source(m, block, || block.busy | waiting)
 }
 
-/// The same pulse source for an interpolator that is not always ready for a pulse: it stands still while `ready` (1 bit) is
-/// 0, so that none is lost.
+/// The same pulse source for an interpolator that is not always ready for a pulse: it does not count while `ready` (1
+/// bit) is 0, so that none is lost.
 #[must_use]
 pub fn pulse_source_while<'m>(m: Scope<'m>, block: &Block<'m>, ready: Signal<'m>) -> Signal<'m> {
     source(m, block, || ready)

@@ -14,7 +14,7 @@ pub const CCW: Reg = Reg::new("ccw", Rule::Bits(1), "direction of the arc, 1 is 
 /// The kind of an arc (SR1 … NR4), decoded. 1 bit each.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind<'m> {
-    /// |x| grows and |y| shrinks; else the other way round.
+    /// |x| grows and |y| shrinks; else vice versa.
     pub x_grows: Signal<'m>,
     /// The motion in x is negative.
     pub x_negative: Signal<'m>,
@@ -49,8 +49,8 @@ impl<'m> Kind<'m> {
         Kind::of(m, quadrant, counter_clockwise)
     }
 
-    /// As [`decode`](Kind::decode), of a machine of arcs and lines: on an arc the first of `modes` (1 bit each) is 1, on a line
-    /// the second, before the first block none. The wave says which.
+    /// As [`decode`](Kind::decode), of a machine of arcs and lines: on an arc the first of `modes` (1 bit each) is 1,
+    /// on a line the second, before the first block none. The wave says which.
     #[must_use]
     pub fn decode_in_modes(
         m: Scope<'m>,
@@ -94,7 +94,7 @@ pub fn x_grows<'m>(quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Signa
     !(quadrant.bit(0) ^ counter_clockwise)
 }
 
-/// The quadrant that the motion enters behind this one (2 bits).
+/// The quadrant that the motion enters after this one (2 bits).
 #[must_use]
 pub fn next_quadrant<'m>(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Signal<'m> {
     let one = m.lit(2, 1);

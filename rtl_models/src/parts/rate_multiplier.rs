@@ -14,7 +14,7 @@ pub const COEFFICIENT: PerAxis = Reg::each(per_axis!("m"), N, "coefficient M of 
 /// The counter that all axes share.
 pub const Q: Reg = Reg::new("q", N, "counter that all axes share");
 
-/// The units that a counter is made of, each cascaded behind the one before it.
+/// The units that a counter is made of, each cascaded after the one before it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Units {
     /// Binary units, or decades.
@@ -60,7 +60,7 @@ struct Unit<'m> {
 
 impl<'m> RateMultiplier<'m> {
     /// The counter `name` with its stages; several units have a scope each, `unit_1` the first, and their counters a
-    /// number behind the name. `step` is 1 bit.
+    /// number after the name. `step` is 1 bit.
     #[must_use]
     pub fn new(m: Scope<'m>, block: &Block<'m>, name: &str, units: Units, step: Signal<'m>) -> RateMultiplier<'m> {
         let Units { radix, bits, count } = units;

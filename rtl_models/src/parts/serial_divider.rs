@@ -27,7 +27,7 @@ impl<'m> SerialDivider<'m> {
         SerialDivider { m, quotient: m.reg("quotient", n), remainder, divisor, left: Timer::new(m, "left", n.into()) }
     }
 
-    /// 1 bit: it works; once it no longer does, quotient and remainder stand.
+    /// 1 bit: it works; when it is 0 again, quotient and remainder are valid.
     #[must_use]
     pub fn running(&self) -> Signal<'m> {
         self.left.running()

@@ -26,7 +26,7 @@ impl<'m> SerialMultiplier<'m> {
         SerialMultiplier { m, multiplicand, product, left: Timer::new(m, "left", b.into()) }
     }
 
-    /// 1 bit: it works; once it no longer does, the product stands.
+    /// 1 bit: it works; when it is 0 again, the product is valid.
     #[must_use]
     pub fn running(&self) -> Signal<'m> {
         self.left.running()

@@ -26,7 +26,7 @@ impl<'m> SerialRoot<'m> {
         SerialRoot { m, radicand, remainder, root: m.reg("root", k), left: Timer::new(m, "left", k.into()) }
     }
 
-    /// 1 bit: it works; once it no longer does, the root stands.
+    /// 1 bit: it works; when it is 0 again, the root is valid.
     #[must_use]
     pub fn running(&self) -> Signal<'m> {
         self.left.running()

@@ -5,7 +5,7 @@ use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use crate::options::StepTiming;
 
-/// A one-shot timer: started at an edge it runs for so many clocks behind it.
+/// A one-shot timer: started at an edge it runs for this many clocks after it.
 #[derive(Clone, Copy, Debug)]
 pub struct Timer<'m> {
     m: Scope<'m>,
@@ -27,7 +27,7 @@ impl<'m> Timer<'m> {
         self.register.q.is_nonzero()
     }
 
-    /// 1 bit: it runs, and so many clocks of its time are left.
+    /// 1 bit: it runs, and this many clocks of its time are left.
     #[must_use]
     pub fn left(&self, clocks: u64) -> Signal<'m> {
         self.register.q.equals(self.literal(clocks))
@@ -48,8 +48,8 @@ impl<'m> Timer<'m> {
 /// Step and direction of an axis.
 ///
 /// - `step` + axis, 1 bit: 1 for `length` clocks from the edge that sends a step, then 0 for `space` clocks at least.
-/// - `dir` + axis, 1 bit: 1 is negative. It changes `hold` clocks behind the end of the last step or later, and the next
-///   step follows `setup` clocks behind the change or later (the next clock where that is 0).
+/// - `dir` + axis, 1 bit: 1 is negative. It changes `hold` clocks after the end of the last step or later, and the next
+///   step follows `setup` clocks after the change or later (the next clock where that is 0).
 /// - `pulse_timer`, `hold_timer`, `setup_timer`: run on between blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct StepOutput<'m> {
@@ -85,8 +85,8 @@ impl<'m> StepOutput<'m> {
         self.turned & !self.setup.running() & !self.pulse.running()
     }
 
-    /// Closes it: at an edge with `send` = 1 a step is sent, which must be ready. Returns 1 bit: no step is sent at this
-    /// edge, and the last one and its space are over.
+    /// Closes it: at an edge with `send` = 1 a step is sent, which must be ready. Returns 1 bit: no step is sent at
+    /// this edge, and the last one and its space are over.
     #[must_use]
     pub fn close(self, send: Signal<'m>) -> Signal<'m> {
         let one = self.m.lit(1, 1);

@@ -1,7 +1,7 @@
 //! Every part alone on a bench, on every engine.
 //!
 //! A wave in these tests is a string with one character a sample: hexadecimal digits, `-` for -1, and `_` between
-//! groups of four. Sample k stands at the same place in every wave of a test, inputs included.
+//! groups of four. Sample k is at the same place in every wave of a test, inputs included.
 
 mod axis;
 mod beats;

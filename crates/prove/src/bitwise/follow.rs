@@ -1,9 +1,9 @@
-//! One block followed clock by clock, with the bits of some load words unknown: a proof at one width for a machine whose
-//! counters run by themselves.
+//! One block followed clock by clock, with the bits of some load words unknown: a proof at one width for a machine
+//! whose counters run by themselves.
 //!
 //! Registers hold anything when the block is loaded. From then on every net is known, an unknown bit, or a sum of
-//! unknown bits with whole factors; what is none of these counts as anything. So what is found of a net holds whatever
-//! the unknown bits are, and nothing is asked of the netlist but that its clocks do not depend on them.
+//! unknown bits with whole factors; any other value counts as unknown. So what is found of a net holds whatever
+//! the unknown bits are, and the only condition on the netlist is that its clocks do not depend on them.
 
 use std::rc::Rc;
 
@@ -13,7 +13,7 @@ use stepwave_netlist::bits::{self, Width};
 use stepwave_netlist::cells::{Net, Netlist, Op};
 use stepwave_netlist::passes::constant;
 
-/// What stands on an input while the block is loaded.
+/// The value of an input while the block is loaded.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Word {
     /// These bits.
@@ -22,7 +22,7 @@ pub enum Word {
     Unknown,
 }
 
-/// A whole number: a constant, and so much more for each unknown bit that is 1.
+/// A whole number: a constant, plus a factor for each unknown bit that is 1.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Sum {
     /// Where all unknown bits are 0.
@@ -36,7 +36,7 @@ pub struct Sum {
 pub struct Followed {
     /// Clocks from the load to the end.
     pub clocks: u64,
-    /// What the nets asked for hold in the end, in two's complement; `None` where that is no such sum.
+    /// The final values of the nets asked for, in two's complement; `None` where a value is not such a sum.
     pub ends: Vec<Option<Sum>>,
 }
 
@@ -57,7 +57,7 @@ pub enum Lost {
         /// Clocks since the load.
         clock: u64,
     },
-    /// The place of an axis behind the load is not known.
+    /// The place of an axis after the load is not known.
     #[error("the load does not preset the positions")]
     Start,
     /// No one bit says whether there is a pulse.
@@ -72,7 +72,7 @@ pub enum Lost {
         /// The register.
         position: String,
     },
-    /// It goes on.
+    /// It does not end within the limit.
     #[error("the block does not end within {clocks} clocks")]
     Endless {
         /// Clocks that were followed.
@@ -117,7 +117,7 @@ impl Sum {
         Sum { constant: self.constant + sign * other.constant, factors }
     }
 
-    /// The same where an unknown bit is what is told.
+    /// The same of an unknown bit.
     fn given(&self, unknown: usize, is: bool) -> Sum {
         let mut sum = self.clone();
         let factor = std::mem::take(&mut sum.factors[unknown]);
@@ -159,7 +159,7 @@ impl Sample<'_> {
 }
 
 /// Follows a block from its load, for at most `limit` clocks. Unknown bits are numbered word by word, from the lowest
-/// bit on. `seen` is shown every sample behind the load. `ends` are nets to tell of in the end.
+/// bit on. `seen` gets every sample after the load. `ends` are the nets whose final values are returned.
 ///
 /// # Errors
 /// See [`Lost`].
@@ -207,7 +207,7 @@ pub fn follow(
         }
         machine.edge(design, &mut values);
         if clock == 0 {
-            // Behind the load the words may be anything.
+            // After the load the words may be anything.
             design.inputs().iter().for_each(|input| values[input.index()] = Value::Any);
             for strobe in [strobes.load, strobes.preset_position] {
                 values[strobe.index()] = Value::Known(0);
@@ -302,7 +302,7 @@ impl Machine<'_> {
         Some(self.sum(values, a)?.plus(&self.sum(values, b)?, sign))
     }
 
-    /// It, where it lies in the range of the operands whatever the unknown bits are.
+    /// The sum, if it lies in the range of the operands whatever the unknown bits are.
     fn count(&self, a: Net, b: Net, sign: i128, values: &[Value]) -> Value {
         let (least, most) = self.netlist.width(a).range(true);
         let sum = self.exact(a, b, sign, values).filter(|sum| least <= sum.range().0 && sum.range().1 <= most);

@@ -1,5 +1,5 @@
-//! Proofs at one width, for what no polynomial says: one block is followed clock by clock with the bits of its load words
-//! unknown ([`follow()`]), and a second way that shares nothing with it but the question counts the pulses again
+//! Proofs at one width, for what no polynomial says: one block is followed clock by clock with the bits of its load
+//! words unknown ([`follow()`]), and a second method that shares only the question with it counts the pulses again
 //! ([`recount()`]).
 
 mod follow;

@@ -1,11 +1,12 @@
-//! The second opinion on a block whose coefficients are unknown: its pulses counted one by one, each by the one bit of a
-//! coefficient that lets it through.
+//! The second opinion on a block whose coefficients are unknown: its pulses counted one by one, each by the one bit of
+//! a coefficient that lets it through.
 //!
 //! It shares nothing with `follow` but the question. The netlist runs in three-valued logic (`three_valued`): with all
-//! coefficients unknown, which shows when the block ends and which pulses are sure to come or to stay away; and once more
-//! for each bit of a coefficient, with that bit 0 and with it 1, all others unknown. A pulse that stays away in the one
-//! case and comes in the other is that bit's, whatever the others are. Last, the counter of each axis is cut out behind
-//! its pulse: from every place that so many pulses lead to, it must count one pulse as one, and nothing may overflow.
+//! coefficients unknown, which shows when the block ends and which pulses are sure to come or to stay away; and once
+//! more for each bit of a coefficient, with that bit 0 and with it 1, all others unknown. A pulse that is absent in one
+//! case and present in the other is that bit's, whatever the others are. Last, the counter of each axis is cut out
+//! after its pulse: from every place that the pulses so far can lead to, it must count one pulse as one, and nothing
+//! may overflow.
 
 use super::follow::{Followed, Lost, Sum, Word};
 use super::three_valued::{Bit, ThreeValued};
@@ -23,7 +24,7 @@ pub struct AxisNets {
     pub position: Net,
 }
 
-/// Bits that are told apart in one run: two lanes each, and one in which nothing is.
+/// Bits that are examined in one run: two lanes each, and one in which nothing is.
 const AT_ONCE: usize = 31;
 /// The lane in which all are unknown.
 const NONE: u64 = 1 << 63;
@@ -44,14 +45,14 @@ enum Cause {
 /// One axis over a block.
 #[derive(Clone, Debug, Default)]
 struct Axis {
-    /// Its place behind the load.
+    /// Its place after the load.
     start: Option<i128>,
     /// By clock, from 2 on.
     pulses: Vec<Cause>,
 }
 
-/// Follows a block as [`follow`](super::follow) does, by counting the pulses of its axes. `ends` are their places in the
-/// end.
+/// Follows a block as [`follow`](super::follow) does, by counting the pulses of its axes. `ends` are their places in
+/// the end.
 ///
 /// # Errors
 /// See [`Lost`].
@@ -116,12 +117,12 @@ struct Block<'b> {
     nets: &'b [AxisNets],
     /// Claims that are not known to hold, whatever the places of the axes.
     open: Vec<bool>,
-    /// What registers may hold in any sample behind the load.
+    /// What registers may hold in any sample after the load.
     seen: Option<ThreeValued<'b>>,
 }
 
 impl<'b> Block<'b> {
-    /// One run, in which unknown bits from `first` on are told apart; gives its clocks.
+    /// One run that examines the unknown bits from `first` on; returns its clocks.
     fn run(&mut self, first: usize, limit: u64, axes: &mut [Axis]) -> Result<u64, Lost> {
         let netlist = self.design.netlist();
         let mut sample = ThreeValued::new(self.design);
@@ -131,7 +132,7 @@ impl<'b> Block<'b> {
                 Word::Known(word) => sample.set(*net, word),
                 Word::Unknown => {
                     for bit in sample.of_mut(*net) {
-                        if let Some(lane) = (first..first + AT_ONCE).position(|told| told == place) {
+                        if let Some(lane) = (first..first + AT_ONCE).position(|examined| examined == place) {
                             let [is_zero, is_one] = [1 << (2 * lane), 2 << (2 * lane)];
                             *bit = Bit { zero: !is_one, one: !is_zero };
                         }
@@ -163,7 +164,7 @@ impl<'b> Block<'b> {
             }
             sample.edge();
             if clock == 0 {
-                // Behind the load the words may be anything.
+                // After the load the words may be anything.
                 self.design.inputs().iter().for_each(|input| sample.of_mut(*input).fill(Bit::X));
                 self.strobes(&mut sample, 0);
             }
@@ -209,17 +210,17 @@ impl<'b> Block<'b> {
             }
             if axis.pulses.get(index) == Some(&Cause::Open) {
                 // Not with the bit 0, which is an even lane, and with it 1, the lane above.
-                let told =
+                let deciding_bit =
                     |lanes: u64| (lanes >> 1 & never & 0x5555_5555_5555_5555 & !NONE).trailing_zeros() as usize / 2;
-                if let Some((sign, lanes)) = signs.iter().find(|(_, lanes)| told(*lanes) < AT_ONCE) {
-                    axis.pulses[index] = Cause::Bit(first + told(*lanes), *sign);
+                if let Some((sign, lanes)) = signs.iter().find(|(_, lanes)| deciding_bit(*lanes) < AT_ONCE) {
+                    axis.pulses[index] = Cause::Bit(first + deciding_bit(*lanes), *sign);
                 }
             }
         }
     }
 
-    /// The counter of an axis, cut out behind its pulse, counts each as one from wherever it may stand, and no claim about
-    /// it is violated: these claims are open no more.
+    /// The counter of an axis, cut out after its pulse, counts each as one from any value it may have, and no claim
+    /// about it is violated: these claims are open no more.
     fn counts(&mut self, nets: &AxisNets, axis: &Axis) -> Result<(), Lost> {
         let netlist = self.design.netlist();
         let wrong = || Lost::Counter { position: netlist.describe(nets.position) };

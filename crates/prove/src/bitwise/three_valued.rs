@@ -1,7 +1,7 @@
 //! Three-valued simulation: every bit of a netlist is 0, 1 or X, which is either, gate by gate, in 64 lanes at once.
 //!
-//! Sums are chains of full adders, so it shares no arithmetic with what it is to check. A bit may be X that need not be,
-//! never the other way round: what is known here is so.
+//! Sums are chains of full adders, so it shares no arithmetic with what it is to check. A bit may be X that need not
+//! be, never the reverse: what is known here is certain.
 
 use stepwave_netlist::Design;
 use stepwave_netlist::cells::{Net, Op};

@@ -197,8 +197,8 @@ fn read_answer(text: &mut &str, depth: usize) -> Option<Refutation> {
     let mut each = Vec::new();
     loop {
         rest = rest.trim_start();
-        if let Some(behind) = rest.strip_prefix(']') {
-            *text = behind;
+        if let Some(rest) = rest.strip_prefix(']') {
+            *text = rest;
             return Some(Refutation::Cases { clause, each });
         }
         each.push(read_answer(&mut rest, depth + 1)?);

@@ -25,7 +25,7 @@ pub(crate) struct Number {
     fixed: i128,
 }
 
-/// Why netlists are no family.
+/// Why netlists are not a family.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyError {
     /// There are too few.
@@ -53,13 +53,13 @@ pub struct Family {
     numbers: Vec<Number>,
     /// Lowest bits of slices.
     lows: Vec<Bits>,
-    /// 2^(k + offset) is the variable that stands for the width; no width is smaller than k + offset.
+    /// 2^(k + offset) is the variable of the width; no width is smaller than k + offset.
     offset: i64,
     ks: Vec<u32>,
 }
 
 impl Family {
-    /// The variable that stands for 2^(k + offset).
+    /// The variable of 2^(k + offset).
     pub(crate) const SCALE: Var = Var(0);
 
     /// A netlist by itself, with all widths as they are.
@@ -208,7 +208,7 @@ impl Family {
         }
     }
 
-    /// The value of the number that stands for the width in the netlist of this k.
+    /// The value of the width's variable in the netlist of this k.
     #[must_use]
     pub fn scale_at(&self, k: u32) -> i128 {
         u32::try_from(i64::from(k) + self.offset).map_or(1, |bits| 1_i128 << bits)

@@ -32,7 +32,7 @@ pub(crate) enum Refutation {
     Cases {
         /// Place of the clause in the list.
         clause: usize,
-        /// One for each alternative, which stands behind all conditions so far.
+        /// One for each alternative, which comes after all conditions so far.
         each: Vec<Refutation>,
     },
 }

@@ -34,7 +34,7 @@ pub(crate) fn equalities(rows: &[Vec<i128>], defined: &[Var], free: &[Var], flag
         let columns = monomials(free, &left, degree);
         let mut new: Vec<Equality> = Vec::new();
         for relation in relations(rows, &columns) {
-            // In the relation, one variable that stands by itself with the coefficient ±1, and that no other does.
+            // In the relation, one variable that occurs by itself with the coefficient ±1, and in no other product.
             let relation = relation.replaced(|var| new.iter().find(|(other, _)| *other == var).map(|(_, poly)| poly));
             let Some(var) = left.iter().copied().find(|var| matches!(relation.linear_in(*var), Some(1 | -1))) else {
                 let is_multiple = |var: &Var| relation.linear_in(*var).is_some_and(|factor| factor != 0);
@@ -60,8 +60,8 @@ pub(crate) fn equalities(rows: &[Vec<i128>], defined: &[Var], free: &[Var], flag
     Found { equalities: found, zeros }
 }
 
-/// The formula, of degree 2 at most, that gives the last number of every row from those before it, which bear these
-/// names; `None` where there is none.
+/// The formula, of degree 2 at most, that gives the last number of every row from those before it, which have these
+/// names; `None` if no formula fits.
 #[must_use]
 pub fn fit(names: &[&str], rows: &[Vec<i128>]) -> Option<Formula> {
     let free: Vec<Var> = (0..names.len()).filter_map(|place| u16::try_from(place).ok()).map(Var).collect();
@@ -101,7 +101,7 @@ fn relations(rows: &[Vec<i128>], columns: &[Monomial]) -> Vec<Poly> {
     loop {
         let found = echelon.relations(columns);
         let holds = |relation: &Poly, row: &[i128]| relation.value(|var| row[var.index()]) == Some(0);
-        // A row that was left out and knows better may tell the relation that holds in all of them.
+        // A row that was left out may select the relation that holds in all rows.
         let better = found.iter().find_map(|relation| rows.iter().find(|row| !holds(relation, row)));
         if !better.is_some_and(|row| echelon.take_in(columns, row)) {
             return found.into_iter().filter(|relation| rows.iter().all(|row| holds(relation, row))).collect();

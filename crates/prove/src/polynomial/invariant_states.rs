@@ -1,5 +1,5 @@
-//! What stands in the way of a proof: states that the invariants allow, and what a step from one of them must not do.
-//! No run need come to such a state; but as long as the invariants allow it, nothing can be concluded from them.
+//! Obstacles of a proof: states that the invariants allow, and what a step from one of them must not do.
+//! No run need reach such a state; but as long as the invariants allow it, nothing can be concluded from them.
 
 use super::certificate::Certificate;
 use super::family::Family;
@@ -43,9 +43,9 @@ impl<'f> InvariantStates<'f> {
         Ok(InvariantStates { system, invariants, relevant })
     }
 
-    /// Shows states between two steps that the invariants allow, until `visit` says that it has seen enough. They are of
-    /// the geometry of `usual`, a row of a run, and registers on which nothing depends hold what they hold there. Of more
-    /// than `most` combinations of what is free, so many are tried, spread over all.
+    /// Shows states between two steps that the invariants allow, until `visit` says that it has seen enough. They are
+    /// of the geometry of `usual`, a row of a run, and registers on which nothing depends hold what they hold there. Of
+    /// more than `most` combinations of free values, that many are tried, spread over all.
     ///
     /// Gives how many states were shown.
     pub fn states(&self, usual: &Row, most: u64, mut visit: impl FnMut(&Row) -> bool) -> u64 {
@@ -87,8 +87,8 @@ impl<'f> InvariantStates<'f> {
         bitwise || self.system.registers.iter().any(|(net, var)| *net == register && self.relevant.contains(var))
     }
 
-    /// What is wrong with a step that begins and ends in these states and overflows nowhere, in words; `None` where it is
-    /// as it should be.
+    /// What is wrong with a step that begins and ends in these states and overflows nowhere, in words; `None` where it
+    /// is as it should be.
     #[must_use]
     pub fn judge(&self, before: &Row, after: &Row, done: bool) -> Option<String> {
         let (before, after) = (self.values(before), self.values(after));

@@ -12,8 +12,8 @@
 //! rows of recorded runs ──► infer ──► invariants ─┘
 //! ```
 //!
-//! Invariants come from the author of the netlist ([`Netlist::invariants`](stepwave_netlist::Netlist)) and from recorded runs. None
-//! is believed: each must hold when the block stands loaded, and behind every step.
+//! Invariants come from the author of the netlist ([`Netlist::invariants`](stepwave_netlist::Netlist)) and from
+//! recorded runs. None is believed: each must hold when the block is loaded, and after every step.
 
 mod certificate;
 mod decisions;

@@ -1,4 +1,4 @@
-//! The obligations of a proof: invariants hold when a block stands loaded, every step keeps them, no claim is violated
+//! The obligations of a proof: invariants hold when a block is loaded, every step keeps them, no claim is violated
 //! at any clock, and what ends the block is the goal.
 
 use super::decisions::{Decisions, Oracle, Stop};
@@ -12,7 +12,7 @@ use super::system::System;
 pub(crate) struct Invariants {
     /// Values of the mode registers.
     pub(crate) modes: Vec<i128>,
-    /// Variables and what they equal, as polynomials of variables that are none of these.
+    /// Variables and what they equal, as polynomials of other variables.
     pub(crate) equalities: Vec<(Var, Poly)>,
     /// At least one of each list is 0 or more.
     pub(crate) clauses: Vec<Vec<Poly>>,
@@ -47,7 +47,8 @@ impl Findings {
 /// Clocks of a step at most.
 const LONGEST_STEP: usize = 8;
 
-/// Goes through the load and one step from every combination of modes; if `strict`, to the first invariant that is broken.
+/// Goes through the load and one step from every combination of modes; if `strict`, to the first invariant that is
+/// broken.
 pub(crate) fn check(system: &System<'_>, all: &[Invariants], oracle: &mut dyn Oracle, strict: bool) -> Findings {
     let mut findings = Findings { strict, ..Findings::default() };
     load(system, all, oracle, &mut findings);
@@ -131,7 +132,7 @@ fn count(explored: Result<usize, Stop>, findings: &mut Findings) {
 }
 
 /// What registers and inputs hold at the first clock: every register an unknown, or what it equals by the invariants of
-/// a row; without invariants it is the clock that loads. The words stand on the inputs, and stay there.
+/// a row; without invariants it is the clock that loads. The words are on the inputs, and stay there.
 fn first_state(system: &System<'_>, invariants: Option<&Invariants>) -> Vec<Poly> {
     let equalities = invariants.map_or(&[][..], |invariants| &invariants.equalities);
     let known = |var: Var| equalities.iter().find(|(other, _)| *other == var).map(|(_, poly)| poly);
@@ -148,7 +149,7 @@ fn first_state(system: &System<'_>, invariants: Option<&Invariants>) -> Vec<Poly
         first[register.index()] = bits.fold(Poly::from(0), |sum, bit| sum.plus(&bit));
     }
     if invariants.is_some() {
-        // Behind the edge that loads, nothing loads.
+        // After the edge that loads, nothing loads.
         first[system.strobes.load.index()] = Poly::from(0);
         first[system.strobes.preset_position.index()] = Poly::from(0);
     }
@@ -166,8 +167,8 @@ fn claims(system: &System<'_>, path: &mut Path<'_, '_>, clock: usize, findings: 
     for (number, property) in system.family.netlist().properties.iter().enumerate() {
         if path.truth(property.never, clock)? {
             if !contradicts(path, &[]) {
-                let told = findings.violated.iter().any(|(other, _)| *other == number);
-                if !told {
+                let reported = findings.violated.iter().any(|(other, _)| *other == number);
+                if !reported {
                     findings.violated.push((number, story(path)));
                 }
             }
@@ -177,7 +178,7 @@ fn claims(system: &System<'_>, path: &mut Path<'_, '_>, clock: usize, findings: 
     Ok(())
 }
 
-/// The invariants hold in the row at this clock, so many steps behind the first: 1, or 0 where the block was loaded.
+/// The invariants hold in the row at this clock, that many steps after the first: 1, or 0 where the block was loaded.
 fn row(
     system: &System<'_>,
     all: &[Invariants],
@@ -233,15 +234,15 @@ fn goals(system: &System<'_>, path: &mut Path<'_, '_>, clock: usize, findings: &
     let next = next_values(system, path, clock, |var| needed.contains(&var))?;
     let value = |var: Var| next.get(var.index()).and_then(Option::as_ref);
     for (number, (_, any)) in system.goals.iter().enumerate() {
-        let told = findings.missed.iter().any(|(other, _)| *other == number);
-        if !told && !follows(path, &any.iter().map(|poly| poly.replaced(value)).collect::<Vec<_>>()) {
+        let reported = findings.missed.iter().any(|(other, _)| *other == number);
+        if !reported && !follows(path, &any.iter().map(|poly| poly.replaced(value)).collect::<Vec<_>>()) {
             findings.missed.push((number, story(path)));
         }
     }
     Ok(())
 }
 
-/// The rank was 0 or more, and is less behind the step.
+/// The rank was 0 or more, and is less after the step.
 fn falls(
     system: &System<'_>,
     before: Option<&Poly>,
@@ -263,7 +264,7 @@ fn falls(
     Ok(())
 }
 
-/// What the wanted variables of registers stand for behind some clocks that are a step, by variable.
+/// The values of the wanted variables of registers after the clocks of a step, by variable.
 fn next_values(
     system: &System<'_>,
     path: &mut Path<'_, '_>,

@@ -19,7 +19,7 @@ pub(crate) struct Path<'p, 'o> {
     pub(crate) variables: Variables,
     /// What registers and inputs hold at the first clock, by net.
     first: &'p [Poly],
-    /// What inputs hold behind the first clock, where it is something else.
+    /// What inputs hold after the first clock, where it is something else.
     later: &'p [(Net, u64)],
     decisions: &'p mut Decisions<'o>,
     /// What each net holds modulo 2^width, by clock.

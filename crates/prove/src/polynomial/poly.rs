@@ -56,8 +56,8 @@ impl Monomial {
 
 /// A sum of products of variables with whole coefficients.
 ///
-/// Whatever leads beyond 128 bits or four factors gives a polynomial that is [`lost`](Poly::is_lost): nothing is known of
-/// its value, nothing may be concluded from it.
+/// Whatever leads beyond 128 bits or four factors gives a polynomial that is [`lost`](Poly::is_lost): nothing is known
+/// of its value, nothing may be concluded from it.
 #[derive(Clone, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Poly {
     /// In the order of the products, none with coefficient 0.
@@ -154,7 +154,7 @@ impl Poly {
         self.plus(&Poly::from(number))
     }
 
-    /// So many times it.
+    /// The polynomial times a number.
     #[must_use]
     pub fn times_number(&self, number: i128) -> Poly {
         let terms: Option<Vec<_>> = self
@@ -227,7 +227,7 @@ impl Poly {
         vars
     }
 
-    /// Coefficient of a variable by itself, if the variable is no factor of another product.
+    /// Coefficient of a variable by itself, if the variable is not a factor of another product.
     pub(crate) fn linear_in(&self, var: Var) -> Option<i128> {
         let mut with = self.terms.iter().filter(|(monomial, _)| monomial.vars().any(|other| other == var));
         match (with.next(), with.next()) {

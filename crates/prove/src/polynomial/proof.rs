@@ -20,7 +20,8 @@ pub struct Row {
     pub k: u32,
     /// The symbols of the case, in its order.
     pub symbols: Vec<i128>,
-    /// What every register holds as it is read, in the order of [`Design::registers`](stepwave_netlist::Design::registers).
+    /// What every register holds as it is read, in the order of
+    /// [`Design::registers`](stepwave_netlist::Design::registers).
     pub registers: Vec<i128>,
     /// Steps that the block has taken.
     pub steps: i128,
@@ -88,7 +89,7 @@ struct Playback<'c> {
     effort: usize,
     /// Answers that may still leave a question open.
     open: usize,
-    /// An answer did not show what it should, or there was none: nothing counts any more.
+    /// An answer was wrong or missing: the certificate is invalid.
     wrong: bool,
 }
 

@@ -80,7 +80,7 @@ fn cases(
             alive += usize::from(sum(rows, &singles(rows)).is_none());
             rows.pop();
         }
-        // A clause that changes nothing is none to take apart: an alternative that holds already.
+        // A clause with an alternative that holds already changes nothing and need not be split.
         let idle = clauses[clause].iter().any(|alternative| rows.contains(alternative));
         if !idle {
             ranked.push((alive, clause));
@@ -275,8 +275,8 @@ mod tests {
 
     #[test]
     fn a_sum_of_many_products_is_found_where_nearly_every_step_towards_it_gains_nothing() {
-        // An arc from (xs, ys) to (xt, yt) has come to (x, y), x to its end, so that 2f is x*x - x + y*y + y less the same
-        // of the start; f - y is below the range of four times 2h.
+        // An arc from (xs, ys) to (xt, yt) has come to (x, y), x to its end, so that 2f is x*x - x + y*y + y less the
+        // same of the start; f - y is below the range of four times 2h.
         let [h, xs, ys, xt, yt, f, x, y] = [0, 1, 2, 3, 4, 5, 6, 7].map(var);
         let square = |a: &Poly| a.times(a);
         let circle = square(&xs).plus(&square(&ys)).minus(&square(&xt)).minus(&square(&yt));

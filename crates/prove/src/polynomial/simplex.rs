@@ -8,15 +8,15 @@ pub(crate) type Columns = [Vec<(usize, f64)>];
 const TINY: f64 = 1e-9;
 
 /// Which columns to take so that a sum of them with factors of 0 or more has 1 in row 0 and 0 in all others; at most
-/// `height` many. `None` where there are none, or where the arithmetic was not good enough to find them.
+/// `height` many. `None` if there are none, or if the arithmetic was not good enough to find them.
 ///
 /// The simplex algorithm, phase one: every row begins with a column of its own, which must go. Only row 0 wants
-/// something, so that nearly every step would gain nothing and could go round forever: so each row wants a little of
-/// its own beside, infinitely less than anything in the columns, by which every step gains.
+/// something, so that nearly every step would gain nothing and could go round forever: so each row demands a little of
+/// its own in addition, infinitely less than anything in the columns, by which every step gains.
 pub(crate) fn support(columns: &Columns, height: usize) -> Option<Vec<usize>> {
     let width = columns.len() + 2;
     let (wanted, little) = (columns.len(), columns.len() + 1);
-    // Row by row, the wanted column and the little ones last. The cost row stands below: what is still missing.
+    // Row by row, the wanted column and the little ones last. The cost row is below: what is still missing.
     let mut table = vec![0.0; (height + 1) * width];
     for (column, entries) in columns.iter().enumerate() {
         for &(row, value) in entries {

@@ -11,12 +11,12 @@ use super::poly::{Poly, Var};
 use super::variables::Variables;
 use crate::Strobes;
 
-/// Geometries of one kind, the words that the loader gives the netlist for them, and what is to come of it. Formulas may
-/// use the symbols, `2^k` (one more than the greatest coordinate) and `2^(k-1)`, and, but for premises and words, registers by their
-/// names.
+/// Geometries of one kind, the words that the loader gives the netlist for them, and what is to come of it. Formulas
+/// may use the symbols, `2^k` (one more than the greatest coordinate) and `2^(k-1)`, and, but for premises and words,
+/// registers by their names.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Case {
-    /// What tells it from the others.
+    /// What distinguishes it from the others.
     pub name: String,
     /// The numbers that describe a geometry.
     pub symbols: Vec<Symbol>,
@@ -30,7 +30,8 @@ pub struct Case {
     pub goals: Vec<Clause>,
     /// Never below 0 while the block runs, and less after every step.
     pub rank: Option<Formula>,
-    /// Registers of one bit that change what the others mean: each combination of their values has invariants of its own.
+    /// Registers of one bit that change what the others mean: each combination of their values has invariants of its
+    /// own.
     pub modes: Vec<String>,
     /// Registers of fixed width that are held bit by bit.
     pub bitwise: Vec<String>,
@@ -43,7 +44,7 @@ pub struct Case {
 /// What cannot be stated of a netlist.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CaseError {
-    /// A formula uses a name that stands for nothing.
+    /// A formula uses an unknown name.
     #[error("the case '{case}': nothing bears the name '{name}'")]
     UnknownName {
         /// The case.
@@ -85,7 +86,7 @@ pub(crate) struct System<'f> {
     pub(crate) modes: Vec<(Net, Var)>,
     /// The number of steps that the block has taken.
     pub(crate) steps: Option<Var>,
-    /// What may be an invariant beside.
+    /// What else may be an invariant.
     pub(crate) guesses: Vec<Vec<Poly>>,
     /// Invariants of the netlist's author.
     pub(crate) authored: Vec<(String, Vec<Poly>)>,
@@ -125,7 +126,7 @@ impl<'f> System<'f> {
             let named = netlist.name_of(register);
             let name = named.map_or_else(|| format!("%{}", register.index()), |named| named.name.clone());
             let is_bitwise = case.bitwise.contains(&name);
-            // A name that stands twice is told from its like by its path.
+            // A name that occurs twice is replaced by its path.
             let name = match (variables.find(&name), named) {
                 (Some(_), Some(named)) => netlist.path(named),
                 _ => name,
@@ -205,8 +206,8 @@ impl<'f> System<'f> {
         is_signed(self.family, register)
     }
 
-    /// Every variable that a row of a run has a value for, in order: the scale, the symbols, the registers, their bits, the
-    /// steps taken.
+    /// Every variable that a row of a run has a value for, in order: the scale, the symbols, the registers, their bits,
+    /// the steps taken.
     pub(crate) fn row(&self, scale: i128, symbols: &[i128], registers: &[i128], steps: i128) -> Vec<i128> {
         let mut row = vec![0; self.variables.len()];
         row[Family::SCALE.index()] = scale;

@@ -25,7 +25,7 @@ pub(super) fn on_every_engine(describe: impl FnOnce(Scope<'_>), check: impl Fn(&
     on_every_engine_with(OnOverflow::Trap, describe, check);
 }
 
-/// As [`on_every_engine`], with strict cells that do as told.
+/// As [`on_every_engine`], with strict cells that do as `on_overflow` says.
 pub(super) fn on_every_engine_with(
     on_overflow: OnOverflow,
     describe: impl FnOnce(Scope<'_>),
@@ -35,7 +35,7 @@ pub(super) fn on_every_engine_with(
     describe(module.top());
     let design = elaborate(module.finish().unwrap()).unwrap();
     for kind in EngineKind::ALL {
-        // Seen only beside a failure.
+        // Seen only with a failure.
         println!("on the engine '{}':", kind.name());
         check(&mut Bench::new(&design, kind));
     }
@@ -94,7 +94,7 @@ impl Bench {
         self.engine.set_input(net, bits.value());
     }
 
-    /// One clock; behind its edge the inputs given have these values.
+    /// One clock; after its edge the inputs given have these values.
     pub(super) fn clock(&mut self, inputs: &[(&str, i128)]) {
         for (name, number) in inputs {
             self.set(name, *number);

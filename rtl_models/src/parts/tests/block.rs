@@ -66,11 +66,11 @@ fn loaded_rises_with_ready_which_may_come_long_after_the_load() {
 }
 
 #[test]
-fn a_block_that_ends_behind_its_last_step_is_busy_until_then() {
+fn a_block_that_ends_after_its_last_step_is_busy_until_then() {
     on_every_engine(
         |m| {
             let block = Block::new(m);
-            block.close_behind(block.load, m.input("step", 1), m.input("finish", 1));
+            block.close_after(block.load, m.input("step", 1), m.input("finish", 1));
         },
         |bench| {
             bench.play(&[("load", "1000_0001_0000"), ("step", "0101_0000_0000"), ("finish", "0000_0100_0000")]);

@@ -12,19 +12,19 @@ fn counter(m: Scope<'_>, bits: u32, close: impl for<'m> FnOnce(Scope<'m>, DownCo
     m.name("zero", close(m, counter));
 }
 
-/// Loads `from`, lets one edge pass with these inputs, and compares what stands behind it.
-fn check(bench: &mut Bench, from: i128, inputs: &[(&str, i128)], behind: i128) {
+/// Loads `from`, lets one edge pass with these inputs, and compares the value after it.
+fn check(bench: &mut Bench, from: i128, inputs: &[(&str, i128)], after: i128) {
     let idle: Vec<(&str, i128)> = inputs.iter().map(|(name, _)| (*name, 0)).collect();
     bench.clock(&[&[("load", 1), ("e_in", from)], &idle[..]].concat());
     bench.clock(&[&[("load", 0)], inputs].concat());
     assert_eq!(bench.value("running"), i128::from(from != 0), "{from} {inputs:?}");
-    assert_eq!(bench.value("zero"), i128::from(behind == 0), "{from} {inputs:?}");
+    assert_eq!(bench.value("zero"), i128::from(after == 0), "{from} {inputs:?}");
     bench.clock(&idle);
-    assert_eq!(bench.value("e"), behind, "{from} {inputs:?}");
+    assert_eq!(bench.value("e"), after, "{from} {inputs:?}");
 }
 
 #[test]
-fn a_counter_runs_from_its_word_to_zero_and_tells_the_last_count() {
+fn a_counter_runs_from_its_word_to_zero_and_marks_the_last_count() {
     on_every_engine(
         |m| counter(m, 2, |m, e| e.count(m.input("count", 1))),
         |bench| {

@@ -38,7 +38,7 @@ fn one_counter_takes_the_pulses_of_both_axes_and_redirects_none() {
             assert_eq!(bench.row("take_x"), "0110_1110");
             assert_eq!(bench.row("take_y"), "0011_1010");
             assert_eq!(bench.row("e"), "0542_1100");
-            // The pulse that takes it to 0, and whatever stands at 0.
+            // The pulse that takes it to 0, and all that are 0.
             assert_eq!(bench.row("last"), "0000_0111");
             assert_eq!(bench.row("e_sub_overflow"), "0000_0000");
             // Two pulses where one is left.

@@ -176,7 +176,7 @@ fn six_of_sixteen_pulses_where_the_textbook_table_has_them() {
                 ("step", "0_1111_1111_1111_1111"),
                 ("jv", "6_6666_6666_6666_6666"),
             ]);
-            // Steps 3, 6, 8, 11, 14 and 16; the remainder stands before each of them.
+            // Steps 3, 6, 8, 11, 14 and 16; the remainder is read before each of them.
             assert_eq!(bench.row("pulse"), "0001_0010_1001_0010_1");
             assert_eq!(bench.row("carry"), bench.row("pulse"));
             assert_eq!(bench.row("jrx"), "006c_28e4_a06c_28e4_a");

@@ -6,7 +6,7 @@ use stepwave_netlist::dsl::{Module, Scope};
 use super::super::{Block, Normalizer, shifted_left, shifted_right};
 use super::bench::{Bench, numbers, on_every_engine};
 
-/// Two integrands `a` and `b` that are normalised behind their load.
+/// Two integrands `a` and `b` that are normalised after their load.
 fn normalized(m: Scope<'_>, bits: u32, top: u32, normalize: bool) {
     let block = Block::new(m);
     let normalizer = Normalizer::new(m, &block, normalize);

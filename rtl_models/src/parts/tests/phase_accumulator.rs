@@ -6,7 +6,7 @@ use stepwave_netlist::dsl::Scope;
 use super::super::PhaseAccumulator;
 use super::bench::{loader, numbers, on_every_engine, on_every_engine_with, wrapped};
 
-/// Registers `accx` and `ratex` of so many bits; the bit `pick_off` is watched.
+/// Registers `accx` and `ratex` of this many bits; the bit `pick_off` is watched.
 fn accumulator(m: Scope<'_>, bits: [u32; 2], pick_off: u64, on_overflow: OnOverflow) {
     let block = loader(m);
     let acc = PhaseAccumulator::new(m, &block, 0, bits, pick_off, on_overflow);
@@ -51,14 +51,14 @@ fn every_sum_is_exact_or_flagged_and_a_change_of_its_pick_off_bit_is_a_step() {
 }
 
 #[test]
-fn a_rate_of_three_quarters_steps_three_times_in_four_accumulations_both_ways() {
+fn a_rate_of_three_quarters_steps_three_times_in_four_accumulations_in_both_directions() {
     on_every_engine(
         |m| accumulator(m, [6, 4], 2, OnOverflow::Trap),
         |bench| {
             let waves = [("load", "1000_0000_00"), ("accumulate", "0111_1111_10")];
             bench.play(&[&waves[..], &[("ratex_in", "3333_3333_33"), ("accx_in", "0000_0000_00")]].concat());
             assert_eq!(bench.numbers("accx"), [0, 0, 3, 6, 9, 12, 15, 18, 21, 24]);
-            // The step is told with the accumulation that makes it.
+            // The step comes with the accumulation that makes it.
             assert_eq!(bench.row("steps"), "0011_1011_10");
             bench.play(&[&waves[..], &[("ratex_in", "----_----_--"), ("accx_in", "1111_1111_11")]].concat());
             assert_eq!(bench.numbers("accx"), [0, 1, 0, -1, -2, -3, -4, -5, -6, -7]);

@@ -1,4 +1,4 @@
-//! Quadrant logic against the sign tables of the textbooks, typed in as they stand there.
+//! Quadrant logic against the sign tables of the textbooks, typed in as printed.
 
 use stepwave_netlist::cells::Format;
 
@@ -106,6 +106,6 @@ fn a_clockwise_arc_goes_back_through_the_quadrants_and_the_other_forwards() {
             "NR3" | "SR1" => 4,
             _ => 1,
         };
-        assert_eq!(bench.value("next") + 1, next, "behind {kind}");
+        assert_eq!(bench.value("next") + 1, next, "after {kind}");
     });
 }

@@ -16,7 +16,7 @@ fn decades(count: u32) -> Units {
     Units { radix: Radix::Decimal, bits: 4, count }
 }
 
-/// The counter `q` and the pulses of one coefficient, `m`, the digits of which stand in 4 bits each if it is decimal.
+/// The counter `q` and the pulses of one coefficient, `m`, the digits of which have 4 bits each if it is decimal.
 fn multiplier(m: Scope<'_>, units: Units) {
     let counter = RateMultiplier::new(m, &loader(m), "q", units, m.input("step", 1));
     let pulse = counter.gated(m, m.input("m", units.bits * units.count));

@@ -30,7 +30,7 @@ fn every_two_numbers_of_up_to_four_bits_are_multiplied_in_as_many_clocks_as_the_
                         wait(bench, &[("a", a), ("b", b)], b_bits);
                         assert_eq!(bench.value("product"), a * b, "{a} · {b}");
                         bench.clock(&[("a", 0), ("b", 1)]);
-                        assert_eq!(bench.value("product"), a * b, "it stands");
+                        assert_eq!(bench.value("product"), a * b, "it is valid");
                     }
                 }
             },

@@ -22,7 +22,7 @@ fn a_timer_runs_for_its_clocks_and_begins_anew_when_it_is_started() {
                         bench.clock(&[("start", i128::from(t + 1 == again))]);
                         let since = if t >= again { t - again } else { t };
                         let left = i128::from(clocks) - since;
-                        assert_eq!(bench.value("timer"), left.max(0), "{clocks}, {t} clocks behind");
+                        assert_eq!(bench.value("timer"), left.max(0), "{clocks}, {t} clocks after");
                         assert_eq!(bench.value("running"), i128::from(left > 0));
                     }
                 }

@@ -1,5 +1,5 @@
-//! The walk against an engine: random netlists of every operator, whose registers hold random numbers that the walk does
-//! not know. A judge who knows them lets it take only decisions that hold for them.
+//! The walk against an engine: random netlists of every operator, whose registers hold random numbers that the walk
+//! does not know. A judge who knows them lets it take only decisions that hold for them.
 
 use std::collections::HashMap;
 
@@ -84,18 +84,19 @@ fn what_the_walk_says_of_every_net_is_what_the_engine_has_a_clock_later_too() {
                 let what = netlist.describe(net);
                 assert!(explored.is_ok() || matches!(explored, Err(Stop::Unsupported(_))), "{what}: {explored:?}");
                 // A path on which an unknown is not settled may be one that is not taken.
-                let mut told = 0;
+                let mut compared_paths = 0;
                 for (poly, rows) in found.iter().zip(rows) {
                     let mut judge = Judge(known.clone());
                     judge.learn(&rows);
                     let settled = rows.iter().all(|row| judge.value(row).is_some_and(|value| value >= 0));
                     if let Some(value) = judge.value(poly).filter(|_| settled) {
                         assert_eq!(value, wanted, "clock {clock}: {what}\n{netlist}");
-                        told += 1;
+                        compared_paths += 1;
                     }
                 }
                 let op = format!("{:?}", netlist.cell(net).op);
-                *compared.entry(op.split(['(', ' ']).next().unwrap_or_default().to_owned()).or_default() += told;
+                *compared.entry(op.split(['(', ' ']).next().unwrap_or_default().to_owned()).or_default() +=
+                    compared_paths;
             }
             engine.run(1, &mut Rows::new(0, 1));
         }
