@@ -68,12 +68,12 @@ impl Instruments {
         }
         let module = Module::continuing(bench.design().netlist().clone());
         let m = module.top().scope("gauge");
-        let pulses = [x, y].map(|pulse| PulseNets::of(m.net(pulse, true)));
+        let steps = [x, y].map(|pulse| PulseNets::of(m.net(pulse, true)));
         let stepped = m.net(machine.stepped.net, false);
         let loads = m.net(machine.load.net, false) & m.net(machine.preset_position.net, false);
         let (ideal, deviation, seen) = match kind {
-            CurveKind::Line { .. } => line(m, bits, axes),
-            CurveKind::Arc => circle(m, bits, pulses, loads),
+            CurveKind::Line { .. } => line(m, bits, steps),
+            CurveKind::Arc => circle(m, bits, steps, loads),
             CurveKind::Conic | CurveKind::Helix => return None,
         };
         let every = bench.hardware().sampling.is_some().then(|| seen.net());
