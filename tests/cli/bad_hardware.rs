@@ -269,7 +269,7 @@ fn a_blu_that_is_no_length_is_refused() {
 }
 
 #[test]
-fn a_subcommand_or_option_that_does_not_exist_is_refused_with_the_way_to_the_help() {
+fn a_subcommand_or_option_that_does_not_exist_is_refused_and_the_help_named() {
     refused("frob", &["'frob'", "(see `stepwave --help`)"]);
     refused("--frob", &["'--frob'", "(see `stepwave --help`)"]);
     refused("run ppc-line --to 6,4 --frob", &["'--frob'", "(see `stepwave run --help`)"]);

@@ -1,4 +1,4 @@
-//! Outputs that cannot be written, and waves that would show nothing, are refused; nothing is left behind.
+//! Outputs that cannot be written, and waves that would show nothing, are refused; no file is left.
 
 use super::{Folder, refused, run_refused};
 
@@ -98,7 +98,7 @@ fn one_output_that_cannot_be_written_keeps_all_others_from_being_written() {
 }
 
 /// Wants a run refused in a folder with `sub/` and `file`, and both left as they were.
-fn refused_beside(words: &str, hint: &str) {
+fn refused_with(words: &str, hint: &str) {
     let folder = Folder::new();
     folder.make("sub");
     folder.write("file", "old\n");
@@ -114,7 +114,7 @@ fn a_folder_is_no_target() {
     for option in ["--vcd", "--steps", "--json", "--plot"] {
         for target in ["sub", "sub/", "./sub/../sub"] {
             let hint = format!("cannot write {target}: it is a folder");
-            refused_beside(&format!("run dda-line --to 8,6 {option} {target}"), &hint);
+            refused_with(&format!("run dda-line --to 8,6 {option} {target}"), &hint);
         }
     }
 }
@@ -122,9 +122,9 @@ fn a_folder_is_no_target() {
 #[test]
 fn a_path_through_a_file_is_no_target() {
     for target in ["file/w.vcd", "file/"] {
-        refused_beside(&format!("run dda-line --to 8,6 --vcd {target}"), &format!("cannot write {target}: "));
+        refused_with(&format!("run dda-line --to 8,6 --vcd {target}"), &format!("cannot write {target}: "));
     }
-    refused_beside("man file", "cannot write file/stepwave.1: ");
+    refused_with("man file", "cannot write file/stepwave.1: ");
 }
 
 #[test]
@@ -137,9 +137,9 @@ fn two_outputs_to_one_file_are_refused_however_it_is_written() {
         ("--vcd w.vcd", "--steps w.gtkw"),
         ("--vcd w.gtkw", ""),
     ] {
-        refused_beside(&format!("run dda-line --to 8,6 {first} {second}"), "two outputs would go to ");
+        refused_with(&format!("run dda-line --to 8,6 {first} {second}"), "two outputs would go to ");
     }
-    refused_beside("run ppc-line --to 6,4 --vcd w.vcd --plot w.beat.states", "two outputs would go to w.beat.states");
+    refused_with("run ppc-line --to 6,4 --vcd w.vcd --plot w.beat.states", "two outputs would go to w.beat.states");
 }
 
 #[test]

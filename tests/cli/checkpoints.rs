@@ -11,7 +11,7 @@ const LONG: [&str; 5] = [
     "dpm-line --to 120000,-43691 --override 70",
     // Loaded anew in every quadrant.
     "dda-arc --from 30000,0 --to 30000,0 --ccw --preset half --width 16",
-    // More overflows than are told in full.
+    // More overflows than are reported in full.
     "ppc-line --to 30000,20000 --width f=8 --on-overflow wrap",
 ];
 
@@ -95,7 +95,7 @@ fn states_of_another_run_and_what_is_none_are_refused() {
 }
 
 #[test]
-fn whatever_stands_in_a_file_of_states_nothing_panics() {
+fn no_content_of_a_file_of_states_panics() {
     let folder = Folder::new();
     folder.good(&format!("run {} --checkpoints states.json", LONG[0]));
     let (subject, states): (Value, Vec<Value>) = serde_json::from_str(&folder.read("states.json")).unwrap();
@@ -142,7 +142,8 @@ fn whatever_stands_in_a_file_of_states_nothing_panics() {
             *states[0].pointer_mut(pointer).unwrap() = value.clone();
             folder.write("changed.json", &json!([subject, states]).to_string());
             let ran = folder.run(&format!("run {} {window}", LONG[0]));
-            // Input that cannot be right is one sentence; a run whose counters and pulses differ has one for each of them.
+            // Input that cannot be right is one sentence; a run whose counters and pulses differ has one for each of
+            // them.
             let lines = ran.err.lines().count();
             let sentence = if ran.code == 1 { lines > 0 } else { lines == usize::from(ran.code != 0) };
             assert!(ran.code <= 2 && sentence && !ran.err.contains("panick"), "{pointer} {value}: {ran:?}");
@@ -153,7 +154,7 @@ fn whatever_stands_in_a_file_of_states_nothing_panics() {
 }
 
 #[test]
-fn a_file_of_states_that_cannot_be_written_is_told_before_the_run() {
+fn a_file_of_states_that_cannot_be_written_is_reported_before_the_run() {
     let folder = Folder::new();
     // Days of clocks.
     let ran = folder.run("run dda-line --to 8,6 --width 50 --checkpoints no/states.json");

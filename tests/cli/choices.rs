@@ -57,7 +57,7 @@ fn the_preset_is_what_the_remainders_start_from_and_return_to() {
 }
 
 #[test]
-fn decimal_registers_hold_decimal_digits_and_are_told_as_numbers() {
+fn decimal_registers_hold_decimal_digits_and_are_reported_as_numbers() {
     let words = "dda-line --to 58,6 --radix 10 --preset half";
     let table = Csv::of(words);
     assert_eq!((table.column("jvx")[0], table.column("jrx")[0], table.rows.len()), (58, 50, 1 + 100));
@@ -131,7 +131,7 @@ fn the_end_point_choice_is_the_counter_that_ends_the_block() {
 }
 
 #[test]
-fn an_arc_that_ends_beside_its_circle_is_counted_per_axis_by_default() {
+fn an_arc_that_ends_off_its_circle_is_counted_per_axis_by_default() {
     assert_eq!(report("ppc-arc --from 6,0 --to 1,5 --ccw")["choices"]["end_point"], "per-axis");
     assert_eq!(report("ppc-arc --from 6,0 --to 0,6 --ccw")["choices"]["end_point"], "total");
 }

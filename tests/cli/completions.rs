@@ -5,7 +5,7 @@ use std::process::Command;
 
 use super::{Folder, good};
 
-/// What bash offers behind these words, the last of which is being written.
+/// What bash offers after these words, the last of which is being written.
 fn offered(words: &[&str]) -> BTreeSet<String> {
     let folder = Folder::new();
     folder.write("completions.bash", &good("completions bash"));

@@ -55,10 +55,10 @@ fn a_killed_run_leaves_the_old_file_whole() {
     while written() < 100_000 && start.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(5));
     }
-    let half_way = written();
+    let midway = written();
     child.kill().unwrap();
     child.wait().unwrap();
-    assert!(half_way >= 100_000, "the run wrote {half_way} bytes only");
+    assert!(midway >= 100_000, "the run wrote {midway} bytes only");
     assert_eq!(folder.read("w.vcd"), "the old wave\n");
     assert!(
         folder.files().iter().all(|name| name == "w.vcd" || name.starts_with(".stepwave-")),
@@ -127,7 +127,7 @@ fn a_name_with_blanks_and_unusual_letters_is_a_name_like_any_other() {
 }
 
 #[test]
-fn the_null_device_stays_a_device_and_gets_no_files_beside_it() {
+fn the_null_device_stays_a_device_and_gets_no_files_next_to_it() {
     let folder = Folder::new();
     symlink("/dev/null", folder.path("null.vcd")).unwrap();
     for option in ["--vcd null.vcd", "--steps null.vcd", "--json null.vcd", "--plot null.vcd", "--vcd /dev/null"] {

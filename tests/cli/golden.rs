@@ -75,7 +75,7 @@ fn a_changed_table_and_a_wave_of_no_case_are_differences() {
 }
 
 #[test]
-fn every_case_with_another_exit_code_is_told_and_the_others_are_checked() {
+fn every_case_with_another_exit_code_is_reported_and_the_others_are_checked() {
     let trap = LINE.replace("\"line\"", "\"trap\"").replace("\"6,4\"", "\"6,4\", \"--width\", \"f=3\"");
     let folder = folder(&format!("{trap}{LINE}"));
     let ran = folder.run("golden record w");
@@ -123,7 +123,7 @@ fn cases_that_cannot_be_are_refused_in_one_line_and_nothing_is_written() {
 }
 
 #[test]
-fn a_case_may_be_a_program_that_lies_beside_it() {
+fn a_case_may_be_a_program_in_its_folder() {
     let folder = folder(
         "[[case]]\nname = \"two\"\nsource = \"by hand\"\nprogram = \"two.nc\"\nargs = [\"--method\", \"cim\"]\n",
     );

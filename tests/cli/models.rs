@@ -22,7 +22,7 @@ fn lines_of_point_by_point_comparison_reach_their_ends_in_every_quadrant() {
 }
 
 #[test]
-fn lines_along_an_axis_take_no_step_beside_it() {
+fn lines_along_an_axis_take_no_step_off_it() {
     for (to, shown, moves) in [
         ("4,0", "(4, 0)", "X X X X"),
         ("0,3", "(0, 3)", "Y Y Y"),

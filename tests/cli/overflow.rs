@@ -1,11 +1,11 @@
-//! Registers one bit too narrow: trapped at the very clock, or carried on with and told.
+//! Registers one bit too narrow: trapped at the very clock, or continued and reported.
 
 use serde_json::{Value, json};
 
 use super::{Csv, Folder, engines};
 
 /// The line to (6, 4) by hand: F = 0, -4, 2, -2, and step 4, in Y, makes -2 + 6 = 4, where three bits end at 3.
-/// Step 4 begins behind clock 13 = 1 + 3·4; it is judged, fed and computed, so the adder shows 4 at clock 15.
+/// Step 4 begins after clock 13 = 1 + 3·4; it is judged, fed and computed, so the adder shows 4 at clock 15.
 const SENTENCE: &str = "overflow of ppc_line.f at clock 15: -2 + 6 = 4 does not fit in its 3 bits (-4 to 3); 4 bits would \
                         hold it: give --width f=4, or go on with --on-overflow wrap or saturate";
 
@@ -50,7 +50,7 @@ fn the_wave_ends_at_the_trap_with_the_operands_and_the_flag_in_sight() {
 }
 
 #[test]
-fn in_one_beat_the_trap_stands_at_the_clock_before_the_step() {
+fn in_one_beat_the_trap_is_at_the_clock_before_the_step() {
     // Step 4 happens at the edge from clock 4 to clock 5.
     let ran = Folder::new().run("run ppc-line --to 6,4 --width f=3 --beats 1");
     assert_eq!(ran.code, 1);
@@ -122,9 +122,9 @@ fn saturated_the_run_goes_on_and_misses_its_end() {
 }
 
 #[test]
-fn without_an_overflow_all_three_ways_are_the_same_run() {
+fn without_an_overflow_all_three_choices_give_the_same_run() {
     let [trap, saturate, wrap] =
-        ["trap", "saturate", "wrap"].map(|way| Csv::of(&format!("ppc-line --to 6,4 --on-overflow {way}")));
+        ["trap", "saturate", "wrap"].map(|choice| Csv::of(&format!("ppc-line --to 6,4 --on-overflow {choice}")));
     assert!(trap == saturate && trap == wrap && trap == Csv::of("ppc-line --to 6,4"));
 }
 
@@ -138,7 +138,7 @@ const ENDLESS: [&str; 2] = [
 #[test]
 fn a_motion_that_never_ends_is_given_up_where_it_comes_back_to_an_earlier_state() {
     for words in ENDLESS {
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for engine in engines() {
             let folder = Folder::new();
             let ran = folder.run(&format!("{words} --engine {engine} --json r.json --vcd w.vcd"));
@@ -146,13 +146,13 @@ fn a_motion_that_never_ends_is_given_up_where_it_comes_back_to_an_earlier_state(
             assert!(ran.err.contains("--on-overflow trap") && ran.err.lines().count() == 1, "{words}: {ran:?}");
             let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
             assert_eq!(report["ending"], "endless");
-            told.push((ran.err, folder.read("w.vcd")));
+            reported.push((ran.err, folder.read("w.vcd")));
         }
-        assert!(told.windows(2).all(|pair| pair[0] == pair[1]), "{words}");
+        assert!(reported.windows(2).all(|pair| pair[0] == pair[1]), "{words}");
         // The two clocks that the sentence names show the same registers: so the wave says too.
         let folder = Folder::new();
         let numbers: Vec<u64> =
-            told[0].0.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse().ok()).collect();
+            reported[0].0.split(|c: char| !c.is_ascii_digit()).filter_map(|word| word.parse().ok()).collect();
         let (end, since) = (numbers[0], numbers[numbers.len() - 1]);
         folder.run(&format!("{words} --steps s.csv"));
         let table = Csv::parse(&folder.read("s.csv"));
@@ -175,7 +175,7 @@ fn a_run_beyond_its_clocks_is_given_up_there_and_one_within_them_is_not() {
     );
     let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
     assert_eq!((&report["ending"], &report["clocks"]), (&json!("limit"), &json!(100)));
-    // Ten steps of four clocks behind the load.
+    // Ten steps of four clocks after the load.
     for (clocks, code) in [(41, 0), (40, 1)] {
         let ran = folder.run(&format!("run ppc-line --to 6,4 --max-clocks {clocks}"));
         assert_eq!(ran.code, code, "{ran:?}");

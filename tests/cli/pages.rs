@@ -148,8 +148,8 @@ fn registers_and_options_of_the_list_stand_in_columns() {
                 });
                 let places: BTreeSet<usize> = shown
                     .map(|line| {
-                        let behind: String = line.chars().skip(6 + name.chars().count()).collect();
-                        line.chars().count() - behind.trim_start().chars().count()
+                        let help: String = line.chars().skip(6 + name.chars().count()).collect();
+                        line.chars().count() - help.trim_start().chars().count()
                     })
                     .collect();
                 assert!(!places.is_empty(), "{entry} is not in the list");
@@ -161,7 +161,7 @@ fn registers_and_options_of_the_list_stand_in_columns() {
 }
 
 #[test]
-fn the_list_tells_which_choices_a_model_takes() {
+fn the_list_says_which_choices_a_model_takes() {
     // A choice in the list is taken, one that is not there is refused.
     let values = [
         ("--width", "9"),

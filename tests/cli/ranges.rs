@@ -1,4 +1,5 @@
-//! What a run says of its registers: bits that never toggled, ends of ranges, and warnings from values that were reached.
+//! What a run says of its registers: bits that never toggled, ends of ranges, and warnings from values that were
+//! reached.
 
 use serde_json::{Value, json};
 
@@ -18,13 +19,13 @@ fn field(report: &Value, name: &str, field: &str) -> Value {
 }
 
 /// The lines of a summary that speak of registers.
-fn told(printed: &str) -> Vec<&str> {
+fn range_lines(printed: &str) -> Vec<&str> {
     let begins = ["bits needed", "needed bits", "one unit", "warning"];
     printed.lines().filter(|line| begins.iter().any(|begin| line.starts_with(begin))).collect()
 }
 
 #[test]
-fn every_bit_that_never_toggled_is_told_with_its_value() {
+fn every_bit_that_never_toggled_is_reported_with_its_value() {
     // All values are known from the step table in the README: J_RY is 0, 6, 12, 2, 8 and so on, always even.
     for engine in engines() {
         let report = report(&format!("dda-line --to 8,6 --width 4 --engine {engine}"));
@@ -46,9 +47,9 @@ fn every_bit_that_never_toggled_is_told_with_its_value() {
 }
 
 #[test]
-fn the_summary_tells_only_what_the_needed_bits_do_not_say() {
+fn the_summary_says_only_what_the_needed_bits_do_not_say() {
     assert_eq!(
-        told(&good("run dda-line --to 8,6 --width 4")),
+        range_lines(&good("run dda-line --to 8,6 --width 4")),
         [
             "bits needed/given: jvx 4/4, jvy 3/4, jrx 4/4, x 5/6, jry 4/4, y 4/5, e 5/5",
             "needed bits that never toggled: jrx[2:0] at 0, jry[0] at 0",
@@ -57,20 +58,20 @@ fn the_summary_tells_only_what_the_needed_bits_do_not_say() {
     // The integrands are no operands that are merely held where they are shifted: 5 = 101 and 2 = 010, then 100.
     let printed = good("run dda-line --to 5,2 --normalize");
     let stuck = "needed bits that never toggled: jvx[1] at 0, jvy[0] at 0, jry[0] at 0";
-    assert_eq!(told(&printed).last(), Some(&stuck), "{printed}");
+    assert_eq!(range_lines(&printed).last(), Some(&stuck), "{printed}");
     // F is 0 and -3 = 1…101 in turn; that it has six bits too many, and a bit 1 in none of them, is said once.
     let printed = good("run ppc-line --to 3,3 --width 8 --beats 1");
-    let [needed, stuck] = told(&printed)[..] else { panic!("{printed}") };
+    let [needed, stuck] = range_lines(&printed)[..] else { panic!("{printed}") };
     assert!(needed.contains("xe 2/8, ye 2/8, f 3/9,"), "{needed}");
     assert_eq!(stuck, "needed bits that never toggled: f[1] at 0");
 }
 
 #[test]
-fn a_register_that_stood_at_the_end_of_its_range_is_told_where_one_more_unit_would_overflow() {
+fn a_register_that_reached_the_end_of_its_range_is_reported_where_one_more_unit_would_overflow() {
     let arc = "ppc-arc --from 7,0 --to 0,7 --ccw";
     // X falls from 7 and Y rises to 7; E falls to 0, which is where it is to end.
     let printed = good(&format!("run {arc}"));
-    assert_eq!(told(&printed).last(), Some(&"one unit from an overflow: xi at 7, yi at 7"));
+    assert_eq!(range_lines(&printed).last(), Some(&"one unit from an overflow: xi at 7, yi at 7"));
     let limits = |words: &str| ["xi", "yi", "f", "e"].map(|name| field(&report(words), name, "limits"));
     assert_eq!(limits(arc), [json!([7]), json!([7]), json!([]), json!([])]);
     assert_eq!(limits(&format!("{arc} --width 4")), [json!([]), json!([]), json!([]), json!([])]);
@@ -104,12 +105,12 @@ fn a_register_that_wrapped_while_the_run_went_on_is_a_warning() {
     let ran = Folder::new().run(&format!("run {words} saturate"));
     let held =
         "ppc_line.f was held at an end of its range 4 times, first at clock 15; 4 bits would have held every result";
-    assert_eq!(told(&ran.out)[1..], [format!("warning: {held}"), format!("warning: {little}")]);
+    assert_eq!(range_lines(&ran.out)[1..], [format!("warning: {held}"), format!("warning: {little}")]);
     assert_eq!(field(&report(&format!("{words} wrap")), "f", "needed_width"), 4);
 }
 
 #[test]
-fn overflows_beyond_those_told_in_full_are_counted_by_component() {
+fn overflows_beyond_those_reported_in_full_are_counted_by_component() {
     let report = report("ppc-line --to 300,200 --width f=8 --on-overflow wrap");
     let overflow = &report["overflow"];
     let count = overflow["count"].as_u64().unwrap();

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::{good, report, run_refused};
 
 #[test]
-fn a_feed_gives_the_way_of_a_period_by_the_system_and_the_blu() {
+fn a_feed_gives_the_travel_of_a_period_by_the_system_and_the_blu() {
     // 600 mm/min · 8 ms = 0.08 mm; · 10.24 ms = 0.1024 mm.
     for (words, step) in [
         ("--feed 600", 80.0),
@@ -39,7 +39,7 @@ fn the_report_says_what_the_fraction_and_the_chords_cost_in_micrometres() {
 }
 
 #[test]
-fn what_data_sampling_does_not_take_is_refused_with_the_way_out() {
+fn what_data_sampling_does_not_take_is_refused_with_a_remedy() {
     let arc = "sampled-arc --from 10000,0 --to 0,10000 --ccw";
     run_refused(&format!("{arc} --step 500"), &["3.125 BLU off", "--tolerance is 1", "give --step 282.842 or less"]);
     run_refused(&format!("{arc} --feed 6000"), &["--step 800", "or a lower --feed"]);

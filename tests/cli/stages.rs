@@ -118,7 +118,7 @@ fn stopped(folder: &Folder, words: &str) -> [String; 2] {
 }
 
 #[test]
-fn a_changed_digit_in_a_stage_is_noticed_and_the_sweep_begins_anew_when_told() {
+fn a_changed_digit_in_a_stage_is_noticed_and_the_sweep_begins_anew_on_request() {
     for shard in ["", " --shard 1/2"] {
         let folder = Folder::new();
         let words = format!("sweep dda-line --to-grid 0..127x0..127 --width 11{shard}");

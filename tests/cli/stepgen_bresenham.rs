@@ -52,7 +52,7 @@ fn a_pick_off_bit_of_its_own_makes_the_same_path() {
 
 #[test]
 fn an_accumulator_too_narrow_for_its_pick_off_is_trapped_at_its_clock() {
-    // 2^5 accumulations of 6, one a clock from clock 2 on; behind 5 of them, at clock 6, acc is 30.
+    // 2^5 accumulations of 6, one a clock from clock 2 on; after 5 of them, at clock 6, acc is 30.
     let sentence = "overflow of stepgen.axis_x.accx at clock 6: 30 + 6 = 36 does not fit in its 6 bits (-32 to 31); 7 bits \
                     would hold it: give --width accx=7, or go on with --on-overflow wrap or saturate";
     assert_eq!(fails("stepgen --to 6,4 --width acc=6"), format!("stepwave: {sentence}\n"));
@@ -66,7 +66,7 @@ fn an_accumulator_without_its_pick_off_bit_makes_wrong_steps_when_it_goes_on() {
     let missed = "stepwave: the end point (6, 4) was missed: the machine is at";
     assert_eq!(fails(&format!("{words} wrap")), format!("{missed} (12, 8)\n"));
     assert_eq!(fails(&format!("{words} saturate")), format!("{missed} (0, 0)\n"));
-    // With its pick-off bit 5 it makes every step all the same, and the overflows are told.
+    // With its pick-off bit 5 it still makes every step, and the overflows are reported.
     let printed = good("run stepgen --to 6,4 --width acc=6 --on-overflow wrap");
     assert!(printed.contains("5 overflow(s), the first: overflow of stepgen.axis_x.accx at clock 6: 30 + 6 = 36"));
 }
@@ -123,7 +123,7 @@ fn a_block_of_one_step_moves_the_idle_axis_with_the_other_test_of_the_signed_for
 
 #[test]
 fn a_counter_one_bit_too_narrow_is_trapped_at_the_sum_that_it_cannot_hold() {
-    // Y: 2 + 4 = 6 to 1, 5 to 0, 4 (no step), and the fourth addition, behind clock 1 + 2·3, comes to 8.
+    // Y: 2 + 4 = 6 to 1, 5 to 0, 4 (no step), and the fourth addition, after clock 1 + 2·3, comes to 8.
     let sentence = "overflow of bresenham.axis_y.cnty at clock 7: 4 + 4 = 8 does not fit in its 3 bits (0 to 7); 4 bits \
                     would hold it: give --width cnty=4, or go on with --on-overflow wrap or saturate";
     assert_eq!(fails("bresenham --to 5,4 --width cnt=3"), format!("stepwave: {sentence}\n"));

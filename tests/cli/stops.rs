@@ -228,18 +228,18 @@ fn a_reader_that_leaves_ends_a_run_that_writes_nothing_else_and_no_other() {
 
 #[test]
 fn a_large_wave_is_reported_before_it_is_written_where_it_may_be() {
-    for (way, large, unit) in [("X100", " --large", " GB; "), ("X5", "", " MB; ")] {
+    for (option, large, unit) in [("X100", " --large", " GB; "), ("X5", "", " MB; ")] {
         let folder = Folder::new();
-        folder.write("p.ngc", &format!("G1 {way} F60\n"));
+        folder.write("p.ngc", &format!("G1 {option} F60\n"));
         let words = format!("program p.ngc --method ppc --vcd -{large}");
         let mut command = folder.command();
         let mut child = command.args(words.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut first = String::new();
         BufReader::with_capacity(64, child.stdout.take().unwrap()).read_line(&mut first).unwrap();
-        let told = errors(&child.wait_with_output().unwrap());
-        assert!(first.starts_with("$version") && told.lines().count() == 1, "{first}{told}");
-        assert!(told.starts_with("stepwave: the wave will have about ") && told.contains(unit), "{told}");
-        assert!(["--trace-steps", "--no-clk", "--fst"].iter().all(|hint| told.contains(hint)), "{told}");
+        let message = errors(&child.wait_with_output().unwrap());
+        assert!(first.starts_with("$version") && message.lines().count() == 1, "{first}{message}");
+        assert!(message.starts_with("stepwave: the wave will have about ") && message.contains(unit), "{message}");
+        assert!(["--trace-steps", "--no-clk", "--fst"].iter().all(|hint| message.contains(hint)), "{message}");
     }
 }
 

@@ -13,7 +13,7 @@ use super::{Folder, good, refused};
 /// A row by its columns.
 type Row = BTreeMap<String, String>;
 
-/// The fields of a line; of quoted ones there is nothing in these tests that a comma or a quote stands in.
+/// The fields of a line; quoted ones have no comma and no quote in these tests.
 fn rows(text: &str) -> Vec<Row> {
     let mut lines = text.lines();
     let heading: Vec<&str> = lines.next().expect("a heading").split(',').collect();
@@ -46,7 +46,7 @@ fn words(model: &str, row: &Row) -> String {
         words += &format!(" --{curve} {sizes}");
     }
     words += &get("opens").map_or_else(String::new, |opens| format!(" --opens {opens}"));
-    words += &get("direction").map_or_else(String::new, |way| format!(" --{way}"));
+    words += &get("direction").map_or_else(String::new, |value| format!(" --{value}"));
     if get("center_x").is_some() {
         words += &format!(" --center {}", point("center"));
     }
@@ -252,7 +252,7 @@ fn a_killed_sweep_goes_on_and_gives_the_same_file() {
     folder.good(&format!("{words} --csv whole.csv"));
     let done = killed(&folder, &format!("{words} --csv s.csv"), "s.csv");
     assert!((1..128 * 64).contains(&done), "{done}");
-    // What was written behind the last mark, or in the middle of a line, does not count.
+    // What was written after the last mark, or in the middle of a line, does not count.
     let part = folder.path(".s.csv.sweep.part");
     fs::write(&part, fs::read_to_string(&part).unwrap() + "999999,1").unwrap();
 

@@ -12,7 +12,7 @@ fn on_every_engine(words: &str) -> Csv {
 }
 
 /// The table of a run that judges every step, on every engine. Four beats and one give the same but for the clocks: row
-/// k stands at clock 4k+1 and k+1.
+/// k is at clock 4k+1 and k+1.
 fn judged(words: &str) -> Csv {
     let [four, one] = ["4", "1"].map(|beats| on_every_engine(&format!("{words} --beats {beats}")));
     let clocks = |table: &Csv, beats: i64| {
@@ -72,11 +72,11 @@ fn point_by_point_arc_across_the_negative_x_axis() {
     let table = judged("ppc-arc --from -5,-3 --to -3,5 --cw");
     assert_eq!(table.column("e")[0], 12);
     assert_eq!(table.column("f"), [0, -5, 6, 3, 2, -9, -8, -5, 0, -9, -2, 7, 0]);
-    let [to_axis, behind] = [
+    let [to_axis, after] = [
         [(-5, -3), (-5, -2), (-6, -2), (-6, -1), (-6, 0)].as_slice(),
         &[(-5, 0), (-5, 1), (-5, 2), (-5, 3), (-4, 3), (-4, 4), (-4, 5), (-3, 5)],
     ];
-    assert_eq!(table.path(), [to_axis, behind].concat());
+    assert_eq!(table.path(), [to_axis, after].concat());
 }
 
 #[test]
@@ -202,10 +202,10 @@ fn comparison_integral_ellipse_clockwise_in_quadrant_3() {
 }
 
 #[test]
-fn comparison_integral_arc_loads_the_deviation_of_an_axis_beside_the_circle() {
+fn comparison_integral_arc_loads_the_deviation_of_an_axis_off_the_circle() {
     let table = on_every_engine("cim-arc --from -5,-3 --to -3,5 --cw");
     let crossing = table.path().iter().position(|&point| point == (-6, 0)).unwrap();
-    // (-6, 0) is 2 off 34. Behind it Y is the base axis, whose weight is the smaller one, and |x| shrinks: 36 - 34 = 2
+    // (-6, 0) is 2 off 34. After it Y is the base axis, whose weight is the smaller one, and |x| shrinks: 36 - 34 = 2
     // keeps its sign, and the first step of Y alone or both adds 1, and takes 11 off for an X pulse.
     let [fx, fy] = ["dx", "dy"].map(|name| table.column(name)[crossing + 1]);
     assert_eq!((fx, fy, table.column("f")[crossing + 1]), (1, 1, 2 + 1 - 11));
@@ -238,7 +238,8 @@ fn pulse_multiplier_to_5_3_in_three_bits() {
 
 #[test]
 fn pulse_multiplier_of_one_decade() {
-    // 8 in the counts 0 to 3 and 5 to 8; 7 = 4 + 2 + 1 in 1, 3, 5, 7 and 2, 6 and 4. The clock is one more than the count.
+    // 8 in the counts 0 to 3 and 5 to 8; 7 = 4 + 2 + 1 in 1, 3, 5, 7 and 2, 6 and 4. The clock is one more than the
+    // count.
     let table = on_every_engine("dpm-line --to 8,-7 --radix 10");
     assert_eq!((table.pulses("x"), table.pulses("y")), (vec![1, 2, 3, 4, 6, 7, 8, 9], vec![2, 3, 4, 5, 6, 7, 8]));
     assert_eq!(table.column("q"), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0]);
@@ -283,7 +284,7 @@ fn textbooks_print_the_integrands_that_a_step_used() {
     let plain = good(&format!("run {words}"));
     assert_eq!(column(&text, "jrx"), column(&plain, "jrx"));
     assert_eq!(column(&text, "ex"), column(&plain, "ex"));
-    // Behind an axis the integrands are those that were loaded: (-5, 0) gives |y| = 0 and |x| = 5.
+    // After an axis the integrands are those that were loaded: (-5, 0) gives |y| = 0 and |x| = 5.
     let text = good("run dda-arc --from -3,-4 --to -4,3 --cw --preset zero --textbook");
     assert_eq!((&column(&text, "jvx")[9], &column(&text, "jvy")[9]), (&"0".to_owned(), &"5".to_owned()));
     run_refused("dda-line --to 8,6 --textbook", &["--textbook", "dda-arc, dda-conic, dda-helix"]);

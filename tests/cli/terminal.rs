@@ -47,6 +47,6 @@ fn a_first_word_that_is_not_unicode_is_a_usage_error() {
     }
     let words = ["run".as_bytes(), b"dda-line\xff"].map(OsStr::from_bytes);
     let ran = Ran::new(Folder::new().command().args(words).output().expect("the program starts"));
-    let told = "stepwave: 'dda-line\u{fffd}' is not Unicode: only names of files may be any bytes (see `stepwave run --help`)\n";
-    assert_eq!((ran.code, ran.err.as_str()), (2, told));
+    let message = "stepwave: 'dda-line\u{fffd}' is not Unicode: only names of files may be any bytes (see `stepwave run --help`)\n";
+    assert_eq!((ran.code, ran.err.as_str()), (2, message));
 }

@@ -50,7 +50,7 @@ fn extended_vcd_is_refused_with_its_line() {
 }
 
 #[test]
-fn nothing_stands_in_front_of_a_merged_wave() {
+fn nothing_precedes_a_merged_wave() {
     let vars = "$var wire 1 ! clk $end\n$attrbegin misc 02 STRING 1040 $end\n$var string 1 # s $end\n\
                 $attrbegin misc 02 UNSIGNED 2056 $end\n$var wire 4 % u [3:0] $end\n\
                 $attrbegin misc 02 CHARACTER 3087 $end\n$var wire 8 & c [7:0] $end";

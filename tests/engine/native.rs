@@ -17,7 +17,7 @@ fn machine() -> Design {
         ring.when(hold, ring.q).otherwise(ring.q.slice(0, 3).concat(ring.q.msb()));
         let count = m.reg("count", 8);
         count.when(load, word).when(ring.q.bit(1), count.q.wrapping_add(m.lit(8, 3))).else_hold();
-        // Changes in the last beat of the ring only, and stands still while the ring goes round elsewhere.
+        // Changes in the last beat of the ring only, and holds while the ring is in its other beats.
         let late = m.reg("late", 2);
         let full = count.q.slice(4, 4).equals(m.lit(4, 15));
         late.when(full & ring.q.bit(3), late.q.wrapping_add(m.lit(2, 1))).else_hold();

@@ -26,10 +26,10 @@ fn stepper() -> Stepper {
     count.when(step, count.q.wrapping_add(m.lit(5, 1))).else_hold();
     let copy = m.reg("copy", 5);
     copy.when(step & count.q.bit(0), count.q).else_hold();
-    // One that holds nothing: it changes with a step and behind it.
+    // One that holds nothing: it changes with a step and after it.
     let stepped = m.reg("stepped", 1);
     stepped.set(step);
-    // One that changes in clocks that the phase alone tells.
+    // One that changes in clocks that only the phase determines.
     let flag = m.name("flag", phase.q.slice(0, 9).is_zero());
     let stop = m.name("stop", count.q.is_zero() & stepped.q);
     let nets = [phase.q, count.q, copy.q, stepped.q, flag, stop].map(|signal| signal.net());
@@ -56,7 +56,7 @@ impl Seen {
     }
 }
 
-/// Runs with each of the rates for so many clocks, and tells the clocks at which it stopped.
+/// Runs with each of the rates for this many clocks, and returns the clocks at which it stopped.
 fn run(of: &Stepper, engine: &mut dyn Engine, mut rows: Rows, rates: &[(u64, u64)]) -> (Seen, Vec<u64>) {
     let (mut seen, mut stops) = (Seen::default(), Vec::new());
     engine.reset(&mut rows);

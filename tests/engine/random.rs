@@ -19,11 +19,11 @@ use recipe::{build, recipe, value};
 enum Action {
     /// Sets one of the inputs.
     Set(u16, u64),
-    /// Runs, and makes room behind it if told so.
+    /// Runs, and then makes room if asked to.
     Run { clocks: u64, clear: bool },
     /// Resets in the middle.
     Reset,
-    /// Goes back to the state behind an earlier action.
+    /// Goes back to the state after an earlier action.
     Restore(u16),
 }
 
@@ -136,7 +136,7 @@ fn assert_same(design: &Design, script: &Script, want: &[Seen], got: &[Seen], wh
     Ok(())
 }
 
-/// So many cases, or what the variable PROPTEST_CASES says.
+/// This many cases, or what the variable PROPTEST_CASES says.
 pub(crate) fn config(cases: u32) -> ProptestConfig {
     let asked = std::env::var("PROPTEST_CASES").ok().and_then(|cases| cases.parse().ok());
     let cases = asked.unwrap_or(cases);

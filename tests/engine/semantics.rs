@@ -13,7 +13,7 @@ struct Run {
 }
 
 impl Run {
-    /// Behind the reset; the rows hold sample 0.
+    /// After the reset; the rows hold sample 0.
     fn new(kind: EngineKind, design: &Design, columns: &[&str], stops: &[&str], room: usize) -> Run {
         let nets = |names: &[&str]| names.iter().map(|name| net(design, name)).collect();
         let watch = Watch { columns: nets(columns), stops: nets(stops) };
@@ -52,13 +52,13 @@ impl Run {
 
 fn on_every_engine(check: impl Fn(EngineKind)) {
     for kind in EngineKind::ALL {
-        // Seen only beside a failure.
+        // Seen only with a failure.
         println!("on the engine '{}':", kind.name());
         check(kind);
     }
 }
 
-/// A counter of `bits` bits that starts at `reset`, counts where `enable` is 1, and shows that it stands at 5.
+/// A counter of `bits` bits that starts at `reset`, counts where `enable` is 1, and shows that it is 5.
 fn counter(bits: u32, reset: u64) -> Design {
     design(|m| {
         let enable = m.input("enable", 1);
@@ -71,7 +71,7 @@ fn counter(bits: u32, reset: u64) -> Design {
 }
 
 #[test]
-fn sample_k_shows_every_net_settled_behind_edge_k() {
+fn sample_k_shows_every_net_settled_after_edge_k() {
     let design = counter(4, 0);
     on_every_engine(|kind| {
         let mut run = Run::new(kind, &design, &["count", "next", "at_5"], &[], 9);
@@ -79,7 +79,7 @@ fn sample_k_shows_every_net_settled_behind_edge_k() {
         run.reset();
         assert_eq!(run.run(8), Stop::Clocks);
         assert_eq!(run.clocks(), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
-        // In each sample the combinational nets belong to the register beside them, not to the one before.
+        // In each sample the combinational nets belong to the register's value of that sample, not to the one before.
         assert_eq!(run.column(0), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
         assert_eq!(run.column(1), [1, 2, 3, 4, 5, 6, 7, 8, 9]);
         assert_eq!(run.column(2), [0, 0, 0, 0, 0, 1, 0, 0, 0]);
@@ -129,7 +129,7 @@ fn of_the_conditions_of_a_register_the_first_that_is_1_wins_and_none_means_hold_
 }
 
 #[test]
-fn an_input_changes_right_behind_the_next_edge_which_still_sees_the_old_value() {
+fn an_input_changes_right_after_the_next_edge_which_still_sees_the_old_value() {
     let design = design(|m| {
         let a = m.input("a", 4);
         m.name("combinational", !a);
@@ -202,7 +202,7 @@ fn a_net_that_is_no_input_cannot_be_set() {
 }
 
 #[test]
-fn sample_0_is_the_state_behind_reset_with_the_inputs_set_before_it() {
+fn sample_0_is_the_state_after_reset_with_the_inputs_set_before_it() {
     let design = counter(4, 4);
     on_every_engine(|kind| {
         let mut run = Run::new(kind, &design, &["enable", "count", "next"], &[], 4);

@@ -6,7 +6,7 @@ use stepwave_netlist::{Design, Net};
 
 use crate::netlist::{design, net};
 
-/// A counter of 4 bits, and two nets that nothing depends on: its double, and that it stands at 5.
+/// A counter of 4 bits, and two nets that nothing depends on: its double, and that it is 5.
 fn counter() -> (Design, [Net; 2]) {
     let mut loose = None;
     let design = design(|m| {

@@ -19,13 +19,13 @@ fn reserved_words_are_escaped_and_keep_their_names() {
     assert!(text.contains("if (1) begin : \\begin\n"), "{text}");
     assert!(text.contains("reg [1:0] \\logic ;"), "{text}");
     assert!(text.contains("\\logic  <= \\wire ;"), "{text}");
-    // Not every tool takes an escaped name behind a dot.
+    // Not every tool takes an escaped name after a dot.
     assert!(text.contains("            wire [1:0] _n1 = \\logic ;\n"), "{text}");
     assert!(text.contains("wire \\bit  = \\begin ._n1[1];"), "{text}");
 }
 
 #[test]
-fn made_up_names_give_way_to_given_ones() {
+fn made_up_names_avoid_given_ones() {
     let text = text(&design("m", |m| {
         let [clk, rst, own] = ["clk", "rst", "_n4"].map(|name| m.input(name, 4));
         let block = m.scope("block");

@@ -1,4 +1,4 @@
-//! The README tells the truth, and the rules of the house hold.
+//! The README is true, and the rules of the house hold.
 
 mod examples;
 mod readme;

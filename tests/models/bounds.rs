@@ -82,18 +82,18 @@ fn lines_stay_within_the_bounds_of_their_methods() {
     assert!(lines("dpm-line") <= f64::sqrt(2.0) * (22.0 / 18.0 - 1.0 / 288.0));
 }
 
-/// Greatest deviation of any axis from its uniform rate behind any step, over all coefficients of `n` bits or of so many
-/// digits, in pulses times the steps of a block: six coefficients a run. What the report says must be the same.
+/// Greatest deviation of any axis from its uniform rate after any step, over all coefficients of `n` bits or of that
+/// many digits, in pulses times the steps of a block: six coefficients a run. What the report says must be the same.
 #[allow(clippy::cast_precision_loss)]
 fn worst_rate_deviation(choices: &Options, steps: i64) -> i64 {
     let worst = Mutex::new(0);
     let runs = (0..steps).step_by(6).collect::<Vec<_>>();
     runs.into_par_iter().for_each(|first| {
-        let ways: Vec<i64> = (0..6).map(|axis| (first + axis).min(steps - 1)).collect();
-        let curve = line(&[0; 6], &ways);
+        let travels: Vec<i64> = (0..6).map(|axis| (first + axis).min(steps - 1)).collect();
+        let curve = line(&[0; 6], &travels);
         let bench = bench("dpm-line", &curve, choices);
         let (mut rows, mut spacing) =
-            (Farthest { ways: &ways, steps, worst: vec![0; 6] }, SpacingWatch::new(&bench, &curve));
+            (Farthest { travels: &travels, steps, worst: vec![0; 6] }, SpacingWatch::new(&bench, &curve));
         let outcome = bench.run(EngineKind::Word, &mut [&mut rows, &mut spacing]).unwrap();
         assert_eq!((outcome.ending, i64::try_from(outcome.steps).unwrap()), (Ending::Done, steps));
         for (train, off) in spacing.finish().iter().zip(&rows.worst) {
@@ -107,9 +107,9 @@ fn worst_rate_deviation(choices: &Options, steps: i64) -> i64 {
     worst.into_inner().unwrap()
 }
 
-/// How far each axis is off behind any row of the step table.
+/// How far each axis is off after any row of the step table.
 struct Farthest<'a> {
-    ways: &'a [i64],
+    travels: &'a [i64],
     steps: i64,
     worst: Vec<i64>,
 }
@@ -117,8 +117,8 @@ struct Farthest<'a> {
 impl Observer for Farthest<'_> {
     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
         let t = i64::try_from(step.number)?;
-        for ((worst, way), position) in self.worst.iter_mut().zip(self.ways).zip(&step.position) {
-            *worst = (position * self.steps - way * t).abs().max(*worst);
+        for ((worst, travel), position) in self.worst.iter_mut().zip(self.travels).zip(&step.position) {
+            *worst = (position * self.steps - travel * t).abs().max(*worst);
         }
         Ok(())
     }

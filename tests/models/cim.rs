@@ -76,7 +76,7 @@ fn lines_arcs_and_conics_in_four_beats_on_every_engine_from_a_translated_start()
 }
 
 #[test]
-fn an_end_point_beside_the_circle_is_reached() {
+fn an_end_point_off_the_circle_is_reached() {
     for clockwise in [true, false] {
         for to in [[0, 6], [4, 4], [-3, 5], [-6, 0], [-4, -4], [2, -5], [6, 0], [5, 2]] {
             check_arc([5, 1], to, [0, 0], clockwise, Beats::One, EngineKind::Word);

@@ -94,14 +94,14 @@ pub(super) fn various() -> Vec<Case> {
                 }
             }
         }
-        // Beside the curve: (3, 4) and (-2, 4) are less than 1 BLU off.
+        // Off the curve: (3, 4) and (-2, 4) are less than 1 BLU off.
         cases.push(Case::new(Shape::Ellipse([8, 4]), [3, 4], [-8, 1], clockwise));
         cases.push(Case::new(Shape::Ellipse([8, 4]), [-8, 0], [7, 2], clockwise));
     }
     let parabola = |c| move |to_where| Shape::Parabola(c, to_where);
     let hyperbola = |semi_axes| move |to_where| Shape::Hyperbola(semi_axes, to_where);
     for (to_where, image) in images() {
-        let mut both_ways = |shape: Shape, from: [i64; 2], to: [i64; 2]| {
+        let mut in_both_directions = |shape: Shape, from: [i64; 2], to: [i64; 2]| {
             cases.push(Case::new(shape, image(from), image(to), false));
             cases.push(Case::new(shape, image(to), image(from), false));
         };
@@ -111,20 +111,20 @@ pub(super) fn various() -> Vec<Case> {
             let shape = parabola(c)(to_where);
             for (&first, &last) in on_curve.iter().zip(on_curve.iter().rev()).step_by(3) {
                 if first != last {
-                    both_ways(shape, point(first), point(last));
+                    in_both_directions(shape, point(first), point(last));
                 }
             }
-            both_ways(shape, [0, 0], point(*on_curve.last().unwrap()));
-            both_ways(shape, point(on_curve[0]), [0, 0]);
+            in_both_directions(shape, [0, 0], point(*on_curve.last().unwrap()));
+            in_both_directions(shape, point(on_curve[0]), [0, 0]);
         }
         // y² = 5x: rounded ends.
-        both_ways(parabola(5)(to_where), [1, 2], [7, 6]);
+        in_both_directions(parabola(5)(to_where), [1, 2], [7, 6]);
         // x² - y² = 9 and x²/9 - y²/16 = 1 at lattice points, and x²/16 - y²/4 = 1 at rounded ones.
-        both_ways(hyperbola([3, 3])(to_where), [3, 0], [5, 4]);
-        both_ways(hyperbola([3, 3])(to_where), [5, -4], [5, 4]);
-        both_ways(hyperbola([3, 4])(to_where), [3, 0], [5, 5]);
-        both_ways(hyperbola([4, 2])(to_where), [4, 0], [9, 4]);
-        both_ways(hyperbola([4, 2])(to_where), [9, -4], [12, 6]);
+        in_both_directions(hyperbola([3, 3])(to_where), [3, 0], [5, 4]);
+        in_both_directions(hyperbola([3, 3])(to_where), [5, -4], [5, 4]);
+        in_both_directions(hyperbola([3, 4])(to_where), [3, 0], [5, 5]);
+        in_both_directions(hyperbola([4, 2])(to_where), [4, 0], [9, 4]);
+        in_both_directions(hyperbola([4, 2])(to_where), [9, -4], [12, 6]);
     }
     cases
 }

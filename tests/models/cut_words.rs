@@ -39,7 +39,7 @@ fn a_word_that_does_not_fit_is_refused_cut_or_held_at_the_end_of_the_range() {
         let refused = Testbench::loading(model, &curve, &with(OnOverflow::Trap, narrow()));
         assert!(matches!(refused, Err(ModelError::DoesNotFit { .. })), "{}", model.name);
         for (mode, expected) in [(OnOverflow::Wrap, wrapped), (OnOverflow::Saturate, saturated)] {
-            // Whoever makes statements about all geometries gets no cut word.
+            // Statements about all geometries get no cut word.
             let strict = Testbench::new(model, &curve, &with(mode, narrow()));
             assert!(matches!(strict, Err(ModelError::DoesNotFit { .. })), "{}", model.name);
             let bench = Testbench::loading(model, &curve, &with(mode, narrow())).unwrap();

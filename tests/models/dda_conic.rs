@@ -9,7 +9,7 @@ use super::dda::{PRESETS, check_hang, choices, preset_value};
 use super::{assert_equal, check, run};
 use crate::reference::{self, Opens, Shape, Table, dda_conic};
 
-/// The least bits of an integrand, and so many more.
+/// The least bits of an integrand, and this many more.
 fn bits(case: &Case, spare: u32) -> u32 {
     find("dda-conic").unwrap().plan(&case.curve(), &Options::default()).unwrap().widths["jrx"].get() + spare
 }

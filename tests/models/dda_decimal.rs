@@ -21,7 +21,7 @@ fn preset_value(preset: Preset, digits: u32) -> i64 {
     }
 }
 
-/// Radix 10 with so many digits, 4 bits each.
+/// Radix 10 with this many digits, 4 bits each.
 fn decimal(digits: u32, preset: Preset, end_point: EndPoint, adder: Adder) -> Options {
     let radix = Some(Radix::Decimal);
     choices(4 * digits, preset, false, end_point).with(&RADIX, radix).with(&ADDER, adder)

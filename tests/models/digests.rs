@@ -1,5 +1,6 @@
 //! Every model with every value of every option on a small and an awkward curve: the netlist, the load words, the title
-//! and the command that repeats the run are those recorded in `digests.txt`. The golden waves see a few combinations only.
+//! and the command that repeats the run are those recorded in `digests.txt`. The golden waves see a few combinations
+//! only.
 //!
 //! `STEPWAVE_BLESS=1 cargo test --test main models::digests` records them anew.
 
@@ -50,7 +51,7 @@ fn curves(model: &Model) -> [Curve; 2] {
         CurveKind::Line { .. } => [line(&[0, 0], &[8, 6]), line(&[5, -3, 2], &[-95, -3, 77])],
         CurveKind::Arc => [
             Curve::Arc(arc([5, 0], [0, 5], [0, 0], ccw)),
-            // Beside its circle, through all quadrants, about a centre of its own.
+            // Off its circle, through all quadrants, about a centre of its own.
             Curve::Arc(arc([17, -4], [-14, 10], [1, 2], cw)),
         ],
         CurveKind::Helix => [

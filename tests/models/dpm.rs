@@ -112,7 +112,7 @@ fn every_feed_override_of_a_line() {
 }
 
 #[test]
-fn the_feed_override_stands_before_decades_and_cascades_as_before_one_unit() {
+fn the_feed_override_comes_before_decades_and_cascades_as_before_one_unit() {
     for (choices, to) in [
         (Options::default().with(&RADIX, Radix::Decimal), [74, -38]),
         (Options::default().with(&CASCADE, width(3)), [51, -8]),
@@ -151,7 +151,7 @@ fn a_line_takes_the_least_whole_units_that_hold_it() {
 }
 
 #[test]
-fn choices_that_do_not_go_together_are_refused_with_the_way_out() {
+fn choices_that_do_not_go_together_are_refused_with_a_remedy() {
     let refused = |choices: Options, hint: &str| {
         let error = find(NAME).unwrap().plan(&line(&[0, 0], &[37, 5]), &choices).unwrap_err();
         assert!(!matches!(error, ModelError::Netlist(_)) && error.to_string().contains(hint), "{error}");

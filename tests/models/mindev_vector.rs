@@ -59,7 +59,7 @@ fn lines_and_arcs_in_four_beats_on_every_engine_from_a_translated_start() {
 }
 
 #[test]
-fn an_end_point_beside_the_circle_is_reached_with_a_counter_for_each_axis() {
+fn an_end_point_off_the_circle_is_reached_with_a_counter_for_each_axis() {
     for (model, table) in ARCS {
         for clockwise in [true, false] {
             for to in [[0, 6], [4, 4], [-3, 5], [-6, 0], [-4, -4], [2, -5], [6, 0], [5, 2]] {

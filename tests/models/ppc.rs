@@ -78,7 +78,7 @@ fn arcs_in_four_beats_about_a_translated_centre_on_every_engine() {
 }
 
 #[test]
-fn an_end_point_beside_the_circle_is_reached_with_a_counter_for_each_axis() {
+fn an_end_point_off_the_circle_is_reached_with_a_counter_for_each_axis() {
     let mut off_circle = 0;
     for from in lattice(50) {
         for x in -8..=8i64 {

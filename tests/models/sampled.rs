@@ -36,7 +36,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// How far a point lies beside the radius to another.
+/// The distance of a point from the radius to another.
 fn side([x, y]: [f64; 2], end: [f64; 2]) -> f64 {
     (x * end[1] - y * end[0]).abs() / end[0].hypot(end[1])
 }
@@ -113,9 +113,9 @@ fn the_worked_numbers_of_both_systems_come_out_of_the_fixed_point() {
 
 #[test]
 fn lines_of_all_quadrants_are_those_of_the_formulas_at_every_period_and_end_exactly() {
-    let ways: Vec<i64> = vec![-97, -31, -3, -1, 0, 2, 16, 89];
-    ways.par_iter().for_each(|&x| {
-        for &y in ways.iter().filter(|&&y| [x, y] != [0, 0]) {
+    let travels: Vec<i64> = vec![-97, -31, -3, -1, 0, 2, 16, 89];
+    travels.par_iter().for_each(|&x| {
+        for &y in travels.iter().filter(|&&y| [x, y] != [0, 0]) {
             for (system, _) in SYSTEMS {
                 for (fraction, step) in [(8, 8_000), (12, 2_500), (10, 700)] {
                     check_line([4, -9], [x, y], &choices(system, fraction, step), EngineKind::Compiled);
@@ -126,7 +126,7 @@ fn lines_of_all_quadrants_are_those_of_the_formulas_at_every_period_and_end_exac
 }
 
 #[test]
-fn arcs_of_all_quadrants_both_ways_are_those_of_the_formulas_at_every_period_and_end_exactly() {
+fn arcs_of_all_quadrants_in_both_directions_are_those_of_the_formulas_at_every_period_and_end_exactly() {
     // 12 lattice points each: every quadrant, every octant, the axes; among them full circles.
     [25_i64, 625, 1250].par_iter().for_each(|&square| {
         let points = lattice(square);
@@ -146,7 +146,7 @@ fn arcs_of_all_quadrants_both_ways_are_those_of_the_formulas_at_every_period_and
 }
 
 #[test]
-fn arcs_whose_ends_lie_beside_their_circles_and_shorter_than_a_period_end_exactly() {
+fn arcs_whose_ends_lie_off_their_circles_and_shorter_than_a_period_end_exactly() {
     for (start, end) in
         [([50, 0], [0, 51]), ([50, 0], [51, 0]), ([51, 0], [50, 1]), ([30, 40], [31, 39]), ([0, -9], [1, -9])]
     {
@@ -235,7 +235,7 @@ fn curves() -> [(&'static str, Curve); 2] {
 fn a_period_takes_t_at_the_clock_given_and_exactly_so_in_the_mean() {
     for (model, curve) in curves() {
         for (system, hz, period, of) in [
-            // 8 ms of 1 MHz and of 250 kHz; 10.24 ms of 1 MHz; and clocks that a period is no whole number of.
+            // 8 ms of 1 MHz and of 250 kHz; 10.24 ms of 1 MHz; and clocks of which a period is not a whole number.
             (System::Direction, 1_000_000.0, 8000, 1),
             (System::Direction, 250_000.0, 2000, 1),
             (System::Direction, 100_090.0, 80_072, 100),

@@ -33,30 +33,30 @@ fn both(model: &str, curve: &Curve, choices: &Options, engine: EngineKind, steps
     let bench = bench(model, curve, choices);
     let (mut watch, mut samples) = (SpacingWatch::new(&bench, curve), Samples(&bench, Vec::new()));
     bench.run(engine, &mut [&mut watch, &mut samples]).unwrap();
-    let ways = curve.from().iter().zip(curve.to()).map(|(from, to)| from.abs_diff(*to));
-    let trains = ways.enumerate().map(|(axis, way)| plain(&samples.1, axis, way, steps)).collect();
+    let travels = curve.from().iter().zip(curve.to()).map(|(from, to)| from.abs_diff(*to));
+    let trains = travels.enumerate().map(|(axis, travel)| plain(&samples.1, axis, travel, steps)).collect();
     [watch.finish(), trains]
 }
 
 #[allow(clippy::cast_precision_loss)]
-fn plain(samples: &[(u64, bool, bool, Vec<bool>)], axis: usize, way: u64, steps: Option<u64>) -> PulseTrain {
+fn plain(samples: &[(u64, bool, bool, Vec<bool>)], axis: usize, travel: u64, steps: Option<u64>) -> PulseTrain {
     let clocks: Vec<u64> = samples.iter().filter(|sample| sample.3[axis]).map(|sample| sample.0).collect();
     let gaps: Vec<u64> = clocks.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let stepped: Vec<u64> = samples.iter().filter(|sample| sample.2).map(|sample| sample.0).collect();
     let loaded = samples.iter().find(|sample| sample.1).unwrap().0;
     let clocks_of_run = stepped.last().unwrap() - loaded;
-    // Behind step t, at this clock, so many pulses have been made.
+    // After step t, at this clock, this many pulses have been made.
     let made = |clock: &u64| clocks.iter().filter(|pulse| *pulse <= clock).count() as u64;
     let mut worst = (0, 0);
     for (t, clock) in (1..).zip(&stepped) {
-        let off = u64::abs_diff(made(clock) * steps.unwrap_or(0), t * way);
+        let off = u64::abs_diff(made(clock) * steps.unwrap_or(0), t * travel);
         worst = if off > worst.0 { (off, t) } else { worst };
     }
     PulseTrain {
         spacing: gaps.iter().min().map(|least| [*least, *gaps.iter().max().unwrap()]),
         ideal_spacing: steps
-            .filter(|_| way > 0)
-            .map(|steps| clocks_of_run as f64 * steps as f64 / (stepped.len() as f64 * way as f64)),
+            .filter(|_| travel > 0)
+            .map(|steps| clocks_of_run as f64 * steps as f64 / (stepped.len() as f64 * travel as f64)),
         deviation: steps.map(|steps| RateDeviation { pulses: worst.0 as f64 / steps as f64, step: worst.1 }),
     }
 }
@@ -70,7 +70,7 @@ fn check(model: &str, curve: &Curve, choices: &Options, engine: EngineKind, step
 fn the_worked_line_of_the_pulse_multiplier() {
     for engine in EngineKind::ALL {
         let [watch, _] = both("dpm-line", &line(&[0, 0], &[5, 3]), &Options::default(), engine, Some(8));
-        // X at 1, 3, 4, 5, 7: behind clock 5 there are four pulses, where 5·5/8 = 3.125 should be. Y at 2, 4, 6: behind
+        // X at 1, 3, 4, 5, 7: after clock 5 there are four pulses, where 5·5/8 = 3.125 should be. Y at 2, 4, 6: after
         // clock 6 there are three, where 6·3/8 = 2.25 should be.
         let x = PulseTrain {
             spacing: Some([1, 2]),
@@ -138,7 +138,7 @@ proptest! {
         percent in prop::option::of(1u64..100),
     ) {
         prop_assume!(to != [0, 0, 0]);
-        let longest = to.iter().map(|way| way.unsigned_abs()).max().unwrap();
+        let longest = to.iter().map(|travel| travel.unsigned_abs()).max().unwrap();
         let cycle = (longest + 1).next_power_of_two() << wider;
         let width = stepwave_netlist::Width::new(u64::from(cycle.ilog2())).unwrap();
         let choices = Options::default().with_all(&WIDTH, width);

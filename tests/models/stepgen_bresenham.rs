@@ -24,10 +24,10 @@ fn check_counters(from: &[i64], to: &[i64], engine: EngineKind) {
         for (compare, strictly_greater) in TESTS {
             let choices = Options::default().with(&FORM, form).with(&COMPARE, compare);
             let table = bresenham(from, to, form_reference, strictly_greater);
-            let way = |axis: usize| (to[axis] - from[axis]).abs();
+            let travel = |axis: usize| (to[axis] - from[axis]).abs();
             let right = strictly_greater == (form == Form::Signed);
-            let idle = (0..from.len()).any(|axis| way(axis) == 0);
-            let misses = (0..from.len()).all(|axis| way(axis) <= 1) && !right && (form == Form::Magnitude || idle);
+            let idle = (0..from.len()).any(|axis| travel(axis) == 0);
+            let misses = (0..from.len()).all(|axis| travel(axis) <= 1) && !right && (form == Form::Magnitude || idle);
             if misses {
                 let ran = run("bresenham", &line(from, to), &choices, engine);
                 assert_equal(&format!("{from:?} {to:?} {choices:?}"), &ran, &table);
@@ -67,11 +67,11 @@ fn a_form_has_its_right_test_by_default() {
     }
 }
 
-/// Greatest and least value that a column of the table would have held one clock earlier: behind the addition.
-fn sums(table: &Table, axis: &str, way: i64) -> (i64, i64) {
+/// Greatest and least value that a column of the table would have held one clock earlier: after the addition.
+fn sums(table: &Table, axis: &str, travel: i64) -> (i64, i64) {
     let counts = table.column(&format!("cnt{axis}"));
-    let behind = counts.iter().copied().chain(counts[..counts.len() - 1].iter().map(|count| count + way));
-    behind.fold((i64::MIN, i64::MAX), |(most, least), value| (most.max(value), least.min(value)))
+    let after = counts.iter().copied().chain(counts[..counts.len() - 1].iter().map(|count| count + travel));
+    after.fold((i64::MIN, i64::MAX), |(most, least), value| (most.max(value), least.min(value)))
 }
 
 fn gcd(a: i64, b: i64) -> i64 {
@@ -85,7 +85,7 @@ fn a_counter_traps_exactly_where_one_bit_less_cannot_hold_a_sum() {
             let choices = Options::default().with(&FORM, form);
             let table = bresenham(&[0, 0], &to, form_reference, form == Form::Signed);
             let usual = bench("bresenham", &line(&[0, 0], &to), &choices).hardware().widths["cntx"].get();
-            let ranges = [("x", to[0].abs()), ("y", to[1].abs())].map(|(axis, way)| sums(&table, axis, way));
+            let ranges = [("x", to[0].abs()), ("y", to[1].abs())].map(|(axis, travel)| sums(&table, axis, travel));
             let limit = if form == Form::Signed { 1 << (usual - 1) } else { 1 << usual };
             assert!(ranges.iter().all(|(most, _)| *most < limit), "n + 1 bits hold every sum");
             let narrow = widths(&[("cnt", usual - 1)]).with(&FORM, form);
@@ -146,7 +146,7 @@ fn generator(n: u32, form: (u32, u32, Preset, StepTiming)) -> (Options, (u32, u3
     (choices, (pick_off, k, value, Timing { length, space, setup, hold }))
 }
 
-/// The nets of these names in every sample from the one behind the load on.
+/// The nets of these names in every sample from the one after the load on.
 struct Clocks {
     columns: Vec<usize>,
     rows: Vec<Vec<u64>>,
@@ -254,7 +254,7 @@ fn an_accumulator_that_wraps_around_makes_every_step_as_long_as_it_has_its_pick_
             assert_eq!(ran.outcome.ending, Ending::Done);
             // Four bits have no bit 4: their sign changes twice as often.
             let factor = if bits >= 5 { 1 } else { 2 };
-            assert_eq!(ran.outcome.reached, to.map(|way| factor * way), "{to:?} in {bits} bits");
+            assert_eq!(ran.outcome.reached, to.map(|travel| factor * travel), "{to:?} in {bits} bits");
         }
     }
 }
@@ -269,7 +269,7 @@ fn an_accumulator_that_saturates_loses_the_steps_above_its_limit() {
 }
 
 #[test]
-fn rates_that_would_be_a_fraction_or_two_steps_are_refused_with_the_way_out() {
+fn rates_that_would_be_a_fraction_or_two_steps_are_refused_with_a_remedy() {
     let refusal = |choices: &Options| match find("stepgen").unwrap().plan(&line(&[0, 0], &[6, 4]), choices) {
         Err(ModelError::Widths(message)) => message,
         other => panic!("{other:?}"),

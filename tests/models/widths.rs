@@ -13,7 +13,7 @@ use stepwave_netlist::Width;
 
 use super::{arc, line};
 
-/// Every form of every model: geometry, and the choices beside the widths.
+/// Every form of every model: geometry, and the options other than widths.
 fn forms(model: &Model) -> Vec<(Curve, Options)> {
     let curves = match model.name {
         name if name.ends_with("helix") => {

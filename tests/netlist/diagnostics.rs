@@ -28,7 +28,7 @@ fn described(describe: impl FnOnce(Scope<'_>)) -> Diagnostics {
     module.finish().expect_err("a mistake is reported")
 }
 
-/// What is said of the lines behind `netlist m`.
+/// What is said of the lines after `netlist m`.
 fn parsed(lines: &str) -> Diagnostics {
     match text::parse(&format!("netlist m\n{lines}")) {
         Ok(netlist) => elaborate(netlist).expect_err("a mistake is reported"),
@@ -40,7 +40,7 @@ fn messages(diagnostics: &Diagnostics) -> Vec<&str> {
     diagnostics.0.iter().map(|diagnostic| diagnostic.message.as_str()).collect()
 }
 
-/// A line of this file, so many below `line`, as messages tell it.
+/// A line of this file, this many below `line`, as messages give it.
 fn below(line: u32, lines: u32) -> String {
     format!("{}:{}", file!(), line + lines)
 }
@@ -285,14 +285,14 @@ fn every_line_that_cannot_be_read_is_named_with_its_number() {
 }
 
 #[test]
-fn a_description_with_many_mistakes_is_told_all_of_them_at_once() {
+fn a_description_with_many_mistakes_reports_all_of_them_at_once() {
     let said = described(mistakes::describe).to_string().replace('\\', "/");
     let want = include_str!("mistakes.expect");
     assert!(said.lines().eq(want.lines()), "mistakes.expect no longer holds what is said:\n{said}\n");
 }
 
 #[test]
-fn one_mistake_does_not_hide_the_netlist_behind_it() {
+fn one_mistake_does_not_hide_the_netlist_after_it() {
     // The mistaken cell is replaced by a constant of the width asked for, so its users bring no further complaints.
     let diagnostics = described(|m| {
         let sum = m.input("a", 4).wrapping_add(m.input("b", 5));

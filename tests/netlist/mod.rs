@@ -64,7 +64,7 @@ impl Probe {
         Probe { engine: kind.build(design, &Watch::default()), rows: Rows::new(0, 0) }
     }
 
-    /// One clock, behind whose edge the inputs have these values.
+    /// One clock, after whose edge the inputs have these values.
     pub(crate) fn clock(&mut self, inputs: &[(Net, u64)]) {
         for &(input, value) in inputs {
             self.engine.set_input(input, value);

@@ -1,4 +1,4 @@
-//! One mistake, one diagnostic: what follows from a mistake is not told.
+//! One mistake, one diagnostic: what follows from a mistake is not reported.
 
 use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Module, Scope, Signal};
@@ -207,7 +207,7 @@ fn a_signal_of_another_module_drives_no_register_and_bears_no_name_here() {
 }
 
 #[test]
-fn a_part_that_is_given_signals_of_another_module_is_told_of_every_one() {
+fn a_part_that_is_given_signals_of_another_module_reports_every_one() {
     let other = Module::new("other");
     let (s, x) = (other.top().input("s", 1), other.top().input("x", 4));
     let module = Module::new("m");

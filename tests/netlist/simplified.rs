@@ -100,7 +100,7 @@ fn multiplexers_of_constants_of_each_other_and_of_counts() {
                 let mux = format!("{bits} mux {operands}");
                 assert_same(bits, &[&constants[..], &[mux]].concat());
             }
-            // One behind another, with the same select or its complement, on either side.
+            // One after another, with the same select or its complement, on either side.
             for (inner, outer) in [("%1", "%1"), ("%4", "%1"), ("%1", "%4"), ("%4", "%4")] {
                 for (first, second) in [("%2 %0", "%5 %3"), ("%2 %0", "%3 %5"), ("%0 %2", "%5 %3"), ("%0 %2", "%3 %5")]
                 {
@@ -151,7 +151,7 @@ fn cuts_and_extensions_of_each_other() {
         for extended in width..=8 {
             for op in ["zero-extend", "sign-extend"] {
                 assert_same(bits, &lines([format!("{width} {wide}"), format!("{extended} {op} %2")]));
-                // Beside one of another width, which must not be taken for it.
+                // Next to one of another width, which must not be taken for it.
                 let (first, second) = (format!("{} {op} %2", extended + 1), format!("{extended} {op} %2"));
                 let both = format!("{} concat %3 %4", 2 * extended + 1);
                 assert_same(bits, &lines([format!("{width} {wide}"), first, second, both]));

@@ -34,7 +34,7 @@ impl Shape {
     }
 }
 
-/// All shapes of up to so many bits.
+/// All shapes of up to this many bits.
 fn shapes(bits: u32) -> Vec<Shape> {
     (1..=bits).flat_map(|bits| [false, true].map(|signed| Shape { bits, signed })).collect()
 }

@@ -1,4 +1,4 @@
-//! The text form: what is refused, and that a line which cannot be read does not spoil those behind it.
+//! The text form: what is refused, and that a line which cannot be read does not spoil those after it.
 
 use stepwave_netlist::{elaborate, text};
 
@@ -74,7 +74,7 @@ fn a_line_that_is_missing_or_doubled_is_one_mistake() {
 fn the_first_line_names_the_netlist() {
     let expected = |line: &str| vec![format!("line 1: expected 'netlist NAME' first in '{line}'")];
     for line in ["%0:1 = input", "scope 1 in 0 \"x\"", "name %0 in 0 \"a\" unsigned", "nonsense", "netlists m"] {
-        // With the name behind it, and without one.
+        // With the name after it, and without one.
         assert_eq!(said(&format!("{line}\nnetlist m\n")), expected(line));
         assert_eq!(said(&format!("{line}\n")), expected(line));
     }

@@ -40,7 +40,7 @@ fn a_part_with_every_kind_of_corner_ends_every_block_at_its_end_point_by_every_f
         for kind in ["line", "arc", "rapid", "start-up", "cancel", "inserted line"] {
             assert!(blocks.iter().any(|block| block["kind"] == kind), "{family}: no {kind}");
         }
-        // The clock behind the last step of a block loads the next one, which waits in the buffer; the end of a block of
+        // The clock after the last step of a block loads the next one, which waits in the buffer; the end of a block of
         // step outputs is that of its last space.
         let clock = |block: &Value, name: &str| block[name].as_u64().unwrap();
         let idle = |pair: &[Value]| clock(&pair[1], "begun") - clock(&pair[0], "begun") - clock(&pair[0], "clocks");
@@ -196,7 +196,7 @@ fn a_width_whose_blocks_would_not_end_is_refused() {
         }
         assert_eq!(folder.files(), ["p.ngc"]);
     }
-    // At the limit the run ends where it is told to, and normalised integrands take few steps in any width.
+    // At the limit the run ends as requested, and normalised integrands take few steps in any width.
     assert_eq!(folder.run("program p.ngc --method dpm --width 52 --max-clocks 9").code, 1);
     folder.good("program p.ngc --method dda --normalize --width 60");
 }

@@ -59,14 +59,14 @@ fn an_arc_of_two_turns_takes_its_third_axis_to_the_end() {
     for family in ["ppc", "cim", "dpm"] {
         let report = report(&folder, text, &format!("--method {family} --blu 0.01mm --steps s.csv"));
         assert_eq!(report["reached"], serde_json::json!([0, 800, -600]), "{family}");
-        // Behind each turn it is again where it began, the first time at half of the depth.
+        // After each turn it is again where it began, the first time at half of the depth.
         let path = path(&folder);
         assert!(path.iter().any(|at| at[0] == 0 && at[1] == 800 && (at[2] + 300).abs() <= 1), "{family}");
         assert!(path.iter().all(|at| (f64::hypot(at[0] as f64, at[1] as f64) - 800.0).abs() < 2.5 || at[2] == 0));
     }
-    // With the tool beside the contour: the same turns about the same centre, 2 mm farther out.
-    let beside = "G21 G90 G17\nF200\nG0 X0 Y18\nG42 D1 G1 X0 Y8\nG2 Z-6 I0 J-8 P2\nG40 G1 Y18\n";
-    let report = report(&folder, beside, "--method cim --blu 0.01mm --tool 1=2mm --steps s.csv");
+    // With the tool off the contour: the same turns about the same centre, 2 mm farther out.
+    let offset = "G21 G90 G17\nF200\nG0 X0 Y18\nG42 D1 G1 X0 Y8\nG2 Z-6 I0 J-8 P2\nG40 G1 Y18\n";
+    let report = report(&folder, offset, "--method cim --blu 0.01mm --tool 1=2mm --steps s.csv");
     assert_eq!(report["missed_end_points"], 0);
     assert!(number(&report["programmed_contour_error"]["blu"]) < 2.5);
 }

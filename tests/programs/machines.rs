@@ -156,7 +156,7 @@ fn reference(family: &str, block: &PulseBlock, bits: u32, normalize: bool, steps
 fn moves() -> impl Strategy<Value = Vec<ToolMove>> {
     let line = (-40i64..40, -40i64..40).prop_map(|(dx, dy)| (dx, dy, None));
     let quarter = (1i64..30, 0usize..4, 1usize..5, any::<bool>());
-    // From a point on an axis through so many quadrants.
+    // From a point on an axis through this many quadrants.
     let arc = quarter.prop_map(|(radius, axis, quarters, clockwise)| (radius, 0, Some((axis, quarters, clockwise))));
     // About the centre of a right triangle with sides 3, 4, 5.
     prop::collection::vec(prop_oneof![line, arc], 1..7).prop_map(|list| {
@@ -241,7 +241,7 @@ proptest! {
             if ["stepgen", "bresenham"].contains(&family.name) {
                 continue;
             }
-            // Behind a block of one step the next may not be in the buffer yet.
+            // After a block of one step the next may not be in the buffer yet.
             if ran.paths.iter().all(|path| path.len() > 3) && ran.blocks.iter().all(|b| matches!(b.curve, Curve::Line(_))) {
                 prop_assert!(ran.clocks.windows(2).all(|pair| pair[1] - pair[0] == 2), "{}", family.name);
             }
@@ -314,7 +314,7 @@ proptest! {
 }
 
 #[test]
-fn an_integrator_that_would_stand_beside_an_axis_steps_at_once() {
+fn an_integrator_that_would_be_off_an_axis_steps_at_once() {
     // From (3, 14) to (15, 0) clockwise about the origin in 8 bits: with half presets the pair stalls there.
     let arc = Arc::new([3, 14], [15, 0], [0, 0], Direction::Clockwise).unwrap();
     let line = Line::new(vec![0, 0, 0], vec![3, 14, 0]).unwrap();
@@ -338,7 +338,7 @@ proptest! {
     #[test]
     fn a_report_is_the_same_where_idle_clocks_are_passed_over(moves in moves(), slow in 6u32..9, narrow: bool) {
         for family in FAMILIES {
-            // The position overflows on its way; the loops are compiled behind 16384 clocks.
+            // The position overflows during the run; the loops are compiled after 16384 clocks.
             let widths = [("x".to_owned(), stepwave_netlist::Width::new(4).unwrap())].into_iter().filter(|_| narrow);
             let choices = Options::default().with(&ON_OVERFLOW, OnOverflow::Wrap).with_single(&WIDTH, widths.collect());
             let moves: Vec<ToolMove> = moves.iter().cycle().take(if family.arcs { 12 } else { 3 }).copied().collect();

@@ -8,11 +8,14 @@ use crate::cli::{Folder, Ran};
 #[test]
 fn what_is_not_claimed_is_no_failure_and_what_is_proved_has_its_certificate() {
     let folder = Folder::new();
-    let told = folder.good("prove dda-arc --certificate arc.cert");
-    assert!(told.contains("PROVED for all k: no register overflows\n"), "{told}");
+    let printed = folder.good("prove dda-arc --certificate arc.cert");
+    assert!(printed.contains("PROVED for all k: no register overflows\n"), "{printed}");
     // Of blocks that never end nothing is proved.
-    assert!(told.contains("PROVED for all k: the end point is reached exactly by every block that ends\n"), "{told}");
-    assert!(told.contains("not claimed: every block ends\n"), "{told}");
+    assert!(
+        printed.contains("PROVED for all k: the end point is reached exactly by every block that ends\n"),
+        "{printed}"
+    );
+    assert!(printed.contains("not claimed: every block ends\n"), "{printed}");
     let checked = folder.good("prove check arc.cert");
     assert!(checked.contains("not claimed: every block ends\n"), "{checked}");
 }

@@ -3,16 +3,19 @@
 use crate::cli::Folder;
 
 #[test]
-fn a_proof_is_told_written_and_checked_again_alone() {
+fn a_proof_is_printed_written_and_checked_again_alone() {
     let folder = Folder::new();
-    let told = folder.good("prove ppc-line --certificate line.cert");
+    let printed = folder.good("prove ppc-line --certificate line.cert");
     for claim in ["no register overflows", "the end point is reached exactly", "every block ends"] {
-        assert!(told.contains(&format!("PROVED for all k: {claim}\n")), "{told}");
+        assert!(printed.contains(&format!("PROVED for all k: {claim}\n")), "{printed}");
     }
-    assert!(told.contains("for every k from 3 to 52\n") && told.contains("every geometry of 1 and 2 bits\n"), "{told}");
+    assert!(
+        printed.contains("for every k from 3 to 52\n") && printed.contains("every geometry of 1 and 2 bits\n"),
+        "{printed}"
+    );
     assert_eq!(folder.files(), ["line.cert"]);
     let checked = folder.good("prove check line.cert");
-    assert_eq!(checked, told.split_inclusive("simulated").next().unwrap().replace("simulated", ""));
+    assert_eq!(checked, printed.split_inclusive("simulated").next().unwrap().replace("simulated", ""));
 }
 
 #[test]
@@ -54,13 +57,16 @@ fn what_is_not_proved_is_said_with_exit_code_1_and_nothing_proved_has_no_certifi
 #[test]
 fn what_was_refused_is_not_claimed_to_be_simulated() {
     // 12 has four bits: of fewer there is no such preset.
-    let told = Folder::new().good("prove dda-line --preset 12");
-    assert!(told.contains("PROVED for k = 4 to 52: no register overflows\n") && !told.contains("for all k"), "{told}");
+    let printed = Folder::new().good("prove dda-line --preset 12");
+    assert!(
+        printed.contains("PROVED for k = 4 to 52: no register overflows\n") && !printed.contains("for all k"),
+        "{printed}"
+    );
     for (geometries, bits) in [(8, "1 bit"), (48, "2 bits"), (224, "3 bits")] {
         let line = format!("nothing claimed: every one of {geometries} geometries of {bits} is refused: ");
-        assert!(told.contains(&line), "{told}");
+        assert!(printed.contains(&line), "{printed}");
     }
-    assert!(!told.contains("simulated"), "{told}");
+    assert!(!printed.contains("simulated"), "{printed}");
 }
 
 #[test]
@@ -93,7 +99,7 @@ fn first(wave: &str, name: &str) -> String {
 }
 
 #[test]
-fn a_step_from_a_state_that_may_be_unreachable_is_told_with_its_wave() {
+fn a_step_from_a_state_that_may_be_unreachable_is_reported_with_its_wave() {
     let folder = Folder::new();
     let ran = folder.run("prove dda-line --normalize --vcd step.vcd");
     assert_eq!(ran.code, 1);
@@ -107,9 +113,9 @@ fn a_step_from_a_state_that_may_be_unreachable_is_told_with_its_wave() {
     let wave = folder.read("step.vcd");
     assert!(wave.contains(", from a state that may be unreachable $end\n"));
     for register in ["x", "y", "jvx", "jry"] {
-        let told = state.split(", ").find_map(|word| word.strip_prefix(&format!("{register} = "))).unwrap();
+        let printed = state.split(", ").find_map(|word| word.strip_prefix(&format!("{register} = "))).unwrap();
         let held = i64::from_str_radix(&first(&wave, register), 2).unwrap();
-        assert_eq!(told, held.to_string(), "{register}");
+        assert_eq!(printed, held.to_string(), "{register}");
     }
     assert!(folder.files().contains(&"step.gtkw".to_owned()));
 }
@@ -164,12 +170,12 @@ fn solver(folder: &Folder, says: &str) -> String {
 
 #[test]
 #[cfg(unix)]
-fn a_solver_that_contradicts_a_proof_or_talks_nonsense_is_told() {
+fn a_solver_that_contradicts_a_proof_or_talks_nonsense_is_reported() {
     let folder = Folder::new();
     let command = solver(&folder, "unsat");
-    let told = folder.good(&format!("prove ppc-line --solver {command}"));
-    assert!(told.contains("says unsat of 48 geometries of 2 bits"), "{told}");
-    assert!(told.contains("PROVED for all k"), "{told}");
+    let printed = folder.good(&format!("prove ppc-line --solver {command}"));
+    assert!(printed.contains("says unsat of 48 geometries of 2 bits"), "{printed}");
+    assert!(printed.contains("PROVED for all k"), "{printed}");
     let ran = folder.run(&format!("prove ppc-line --solver {}", solver(&folder, "sat")));
     assert_eq!(ran.code, 1);
     assert!(ran.err.contains("the solver says is wrong"), "{ran:?}");

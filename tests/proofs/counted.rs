@@ -10,7 +10,7 @@ use stepwave_prove::{AxisNets, Lost, Word, follow, recount};
 
 use crate::cli::Folder;
 
-/// A pulse multiplier of coefficients of so many bits.
+/// A pulse multiplier of coefficients of this many bits.
 fn machine(k: u32, choices: &Options) -> Machine {
     let model = find("dpm-line").unwrap();
     let choices = choices.clone().with_all(&WIDTH, Width::new(u64::from(k)).ok());
@@ -73,18 +73,18 @@ fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) 
         engine.set_input(strobe, 0);
     }
     engine.run(1 << 13, &mut rows);
-    let mut told = 0;
+    let mut asserted = 0;
     let judge = |clock: u64, sample: &stepwave_prove::Sample<'_>| {
         let row = rows.row(usize::try_from(clock).unwrap());
         for net in netlist.nets() {
             if let Some(value) = sample.value(net, unknowns) {
                 assert_eq!(value, row[net.index()], "{} at clock {clock}", netlist.describe(net));
-                told += 1;
+                asserted += 1;
             }
         }
     };
     follow(design, strobes(machine), &words, &[], 1 << 13, judge).unwrap();
-    told
+    asserted
 }
 
 #[test]
@@ -98,8 +98,8 @@ fn what_is_said_of_every_net_is_what_the_engine_has() {
                 (0..8).map(|bit| 0x9e37_79b9_u32.rotate_left(7 * u32::from(signs)) >> bit & 1 == 1).collect();
             let known =
                 [("x", 0), ("y", 0), ("sx", u64::from(signs & 1)), ("sy", u64::from(signs >> 1)), ("percent", 0x70)];
-            let told = assert_followed(&machine, &known, &unknowns);
-            assert!(told > 500, "{told}");
+            let asserted = assert_followed(&machine, &known, &unknowns);
+            assert!(asserted > 500, "{asserted}");
         }
     }
 }
@@ -115,7 +115,8 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
         let word = if way == Way::Follow { "dpm_line.axis_x.x may overflow at clock " } else { "dpm_line.axis_x.x" };
         assert!(lost.contains(word), "{lost}");
     }
-    // Loaded at clock 1, x of 5 bits can have come to 15 at clock 16, and to -16 at clock 17: a pulse more does not fit.
+    // Loaded at clock 1, x of 5 bits can have come to 15 at clock 16, and to -16 at clock 17: a pulse more does not
+    // fit.
     let largest = model.claims.unwrap().geometries.largest(5).unwrap();
     let widths = [("x".to_owned(), Width::new(5).unwrap())].into();
     let choices = Options::default().with_all(&WIDTH, Width::new(5).ok()).with_single(&WIDTH, widths);
@@ -130,7 +131,7 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
         let lost = follow(&machine.design, strobes(&machine), &words, &[], 100, |_, _| {}).unwrap_err().to_string();
         assert!(lost.contains(&format!("dpm_line.axis_x.x may overflow at clock {clock}")), "{lost}");
     }
-    // A comparison of coordinates is no sum of unknown bits.
+    // A comparison of coordinates is not a sum of unknown bits.
     let model = find("ppc-line").unwrap();
     let largest = model.claims.unwrap().geometries.largest(3).unwrap();
     let machine = model.machine(&model.plan(&largest, &Options::default()).unwrap()).unwrap();
@@ -142,11 +143,11 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
 #[test]
 fn the_command_proves_and_checks_at_one_width_and_refutes_one_bit_less() {
     let folder = Folder::new();
-    let told = folder.good("prove dpm-line --bits 7 --certificate seven.cert");
+    let printed = folder.good("prove dpm-line --bits 7 --certificate seven.cert");
     for claim in ["no register overflows", "the end point is reached exactly", "every block ends"] {
-        assert!(told.contains(&format!("PROVED at k = 7: {claim}\n")), "{told}");
+        assert!(printed.contains(&format!("PROVED at k = 7: {claim}\n")), "{printed}");
     }
-    assert_eq!(folder.good("prove check seven.cert"), told);
+    assert_eq!(folder.good("prove check seven.cert"), printed);
     let certificate = folder.read("seven.cert");
     assert!(certificate.contains("counted 7 Q1 clocks=129 x=0+1*mx.0+2*mx.1+4*mx.2"), "{certificate}");
     std::fs::write(folder.path("wrong.cert"), certificate.replacen("+2*mx.1", "+3*mx.1", 1)).unwrap();
@@ -172,7 +173,8 @@ fn the_command_proves_and_checks_at_one_width_and_refutes_one_bit_less() {
     assert!(folder.good("widths dpm-line --box 4").contains("proved at k"));
 }
 
-/// A block of this machine on the judge of engines: its clocks and the places of its axes, if it ends without an overflow.
+/// A block of this machine on the judge of engines: its clocks and the places of its axes, if it ends without an
+/// overflow.
 fn ran(machine: &Machine, words: &[(Net, u64)], limit: u64) -> Option<(u64, Vec<i128>)> {
     let mut engine = EngineKind::Gates.build(&machine.design, &Watch::default());
     words.iter().for_each(|(net, word)| engine.set_input(*net, *word));

@@ -64,10 +64,10 @@ fn a_register_of_a_fixed_width_alone_is_too_narrow_somewhere_and_never_proved() 
 #[test]
 fn what_is_proved_at_given_widths_has_a_certificate_of_these_widths() {
     let folder = Folder::new();
-    let told = folder.good("prove ppc-line --width 12,f=14 --travel 1000,600 --certificate line.cert");
-    assert_proved(&told, "");
-    assert_eq!(folder.good("prove check line.cert"), told);
-    assert!(told.starts_with("ppc-line --width 12,f=14 --box -1000..1000x-600..600: "), "{told}");
+    let printed = folder.good("prove ppc-line --width 12,f=14 --travel 1000,600 --certificate line.cert");
+    assert_proved(&printed, "");
+    assert_eq!(folder.good("prove check line.cert"), printed);
+    assert!(printed.starts_with("ppc-line --width 12,f=14 --box -1000..1000x-600..600: "), "{printed}");
     // A bit less, and the proof is none of that hardware.
     let text = folder.read("line.cert");
     for (from, to) in [("12,f=14", "12,f=12"), ("-1000..1000", "-5000..1000")] {
@@ -76,20 +76,20 @@ fn what_is_proved_at_given_widths_has_a_certificate_of_these_widths() {
         let ran = folder.run("prove check other.cert");
         assert!(ran.code == 1 && !ran.out.contains("PROVED"), "{ran:?}");
     }
-    let told = folder.good("prove ppc-line --width f=14 --box 10 --certificate ten.cert");
-    assert_eq!(folder.good("prove check ten.cert"), told);
-    // Simulation is no proof that could be checked again.
-    let told = folder.good("prove ppc-line --width 2 --certificate two.cert");
-    assert!(told.contains("no certificate: "), "{told}");
+    let printed = folder.good("prove ppc-line --width f=14 --box 10 --certificate ten.cert");
+    assert_eq!(folder.good("prove check ten.cert"), printed);
+    // Simulation is not a proof that could be checked again.
+    let printed = folder.good("prove ppc-line --width 2 --certificate two.cert");
+    assert!(printed.contains("no certificate: "), "{printed}");
     assert!(!folder.files().contains(&"two.cert".to_owned()));
 }
 
 #[test]
 fn blocks_that_are_followed_have_given_widths_too() {
     let folder = Folder::new();
-    let told = folder.good("prove dpm-line --width 5 --certificate five.cert");
-    assert_proved(&told, "");
-    assert_eq!(folder.good("prove check five.cert"), told);
+    let printed = folder.good("prove dpm-line --width 5 --certificate five.cert");
+    assert_proved(&printed, "");
+    assert_eq!(folder.good("prove check five.cert"), printed);
     let ran = folder.run("prove dpm-line --width 5,x=5");
     assert!(ran.code == 1 && ran.out.starts_with("COUNTEREXAMPLE at k = 5: "), "{ran:?}");
 }

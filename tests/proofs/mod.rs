@@ -128,7 +128,7 @@ fn lines_of_integrators_end_exactly_by_counters_of_pulses_too() {
     let apart = of(EndPoint::Longest, Preset::Zero).with_single(&PRESET, presets.into());
     let found = refuted("dda-line", &apart, &Narrower::new()).unwrap();
     assert_eq!((found.fault, found.curve.to()), (Fault::Missed, &[1, 1][..]));
-    // Of an arc the total of both axes tells no end.
+    // Of an arc the total of both axes determines no end.
     assert!(refuted("dda-arc", &of(EndPoint::Total, Preset::Half), &Narrower::new()).is_some());
 }
 
@@ -175,7 +175,7 @@ fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
 
 #[test]
 fn a_position_counter_without_its_sign_is_never_proved() {
-    // Its adder tells an overflow by its own flag, not by a wider sum.
+    // Its adder reports an overflow by its own flag, not by a wider sum.
     let two_less = BTreeMap::from([("x".to_owned(), 2)]);
     let subject = Subject::new(find("ppc-line").unwrap(), &Options::default(), &two_less).unwrap();
     for (kind, proof) in proofs(&subject) {
@@ -216,7 +216,7 @@ fn an_end_point_that_is_one_off_is_not_proved() {
 }
 
 /// What is not proved of a model's first kind of arcs whose ends need not be on one circle.
-fn beside_its_circle(model: &str, choices: &Options) -> Proof {
+fn off_its_circle(model: &str, choices: &Options) -> Proof {
     let subject = subject(model, choices);
     let mut kind = subject.kinds().remove(0);
     let before = kind.premises.len();
@@ -227,15 +227,15 @@ fn beside_its_circle(model: &str, choices: &Options) -> Proof {
 
 #[test]
 #[ignore = "exhaustive"]
-fn an_arc_that_ends_beside_its_circle_is_not_proved_with_one_counter() {
+fn an_arc_that_ends_off_its_circle_is_not_proved_with_one_counter() {
     let total = Options::default().with(&END_POINT, EndPoint::Total);
-    let proof = beside_its_circle("ppc-arc", &total);
+    let proof = off_its_circle("ppc-arc", &total);
     assert!(!proof.is_safe(), "{proof:#?}");
 }
 
 #[test]
-fn weights_on_one_side_of_a_pulse_are_not_bounded_beside_the_circle() {
-    let proof = beside_its_circle("cim-arc", &Options::default().with(&WEIGHTS, Weights::Pre));
+fn weights_on_one_side_of_a_pulse_are_not_bounded_off_the_circle() {
+    let proof = off_its_circle("cim-arc", &Options::default().with(&WEIGHTS, Weights::Pre));
     assert!(!proof.is_safe(), "{proof:#?}");
 }
 

@@ -282,7 +282,7 @@ fn conics_of_the_largest_box_lie_on_their_curves() {
 fn a_width_that_is_given_is_judged() {
     let folder = Folder::new();
     // F of 6-bit lines needs 7 bits, of 6-bit arcs 8.
-    for (words, code, told) in [
+    for (words, code, message) in [
         ("widths ppc-line --box 6 --width f=7", 0, ""),
         ("widths ppc-line --box 6 --width f=6", 1, "f of 6 bits is too narrow, it needs 7: stepwave run ppc-line"),
         ("widths ppc-line --box 20 --width f=20", 1, "f of 20 bits is too narrow, it needs 21: stepwave run ppc-line"),
@@ -295,7 +295,7 @@ fn a_width_that_is_given_is_judged() {
         ("widths ppc-line --box 6 --width g=7", 2, "has no register 'g'"),
     ] {
         let ran = folder.run(words);
-        assert!(ran.code == code && ran.err.contains(told) && ran.err.is_empty() == (code == 0), "{words}: {ran:?}");
+        assert!(ran.code == code && ran.err.contains(message) && ran.err.is_empty() == (code == 0), "{words}: {ran:?}");
     }
     let table = folder.run("widths ppc-line --box 6 --width f=6");
     let f = table.out.lines().find(|line| line.starts_with("f ")).unwrap();

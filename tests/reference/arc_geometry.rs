@@ -92,15 +92,15 @@ impl Sector {
 /// Splits an arc of a circle or of an ellipse at the axes; it crosses the axis X at the distance
 /// `crossing[0]` from the centre and the axis Y at `crossing[1]`.
 ///
-/// `from` and `to` are relative to the centre. An end point on the start point, or behind it in the
-/// same quadrant, means going all the way round. An end point on an axis belongs to the quadrant
+/// `from` and `to` are relative to the centre. An end point on the start point, or before it in the
+/// same quadrant, means a full turn, or nearly. An end point on an axis belongs to the quadrant
 /// that the motion comes from, so that no sector is empty.
 pub(crate) fn sectors(from: [i64; 2], to: [i64; 2], clockwise: bool, crossing: [i64; 2]) -> Vec<Sector> {
     let last = Kind::left_at(to, clockwise);
     let mut kind = Kind::entered_at(from, clockwise);
     let mut point = from;
     let mut list = Vec::new();
-    // Only in the first sector can the end point lie behind the point that was reached.
+    // Only in the first sector can the end point lie before the point that was reached.
     while kind != last || (list.is_empty() && !is_ahead(from, to, clockwise)) {
         // An axis is met no nearer to the centre than the point that was reached. The last one is met no nearer than
         // the end point, which may lie a little outside the curve: from there on this coordinate only shrinks.

@@ -1,5 +1,5 @@
 //! Comparison-integral method: the axis with the smaller interval, the base, steps every time; the
-//! sign of F tells whether the other axis steps too.
+//! sign of F says whether the other axis steps too.
 
 use super::arc_geometry::{nearest_radius, radius_squared, sectors};
 use super::conic_geometry::{Curve, Piece, Shape, Term, pieces};

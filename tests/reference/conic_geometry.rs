@@ -155,7 +155,7 @@ impl Piece {
 }
 
 /// Splits a conic where it meets an axis: an ellipse at its semi-axes, a parabola and a hyperbola at
-/// the vertex. `clockwise` tells the two ways round an ellipse apart; start = end is a full ellipse.
+/// the vertex. `clockwise` gives the direction round an ellipse; start = end is a full ellipse.
 ///
 /// # Panics
 /// When an end point lies so far from the curve that its piece cannot reach it.

@@ -17,7 +17,7 @@ use super::{Table, per_axis_columns};
 /// The columns are `jvx`, `jvy`, `jvz`, `jrx`, `jry`, `jrz`, `quad` (0 ..= 3), `ex`, `ey`, `ez`,
 /// `dx`, `dy`, `dz`, `x`, `y`, `z`.
 ///
-/// A table that is not `finished` ends with the row behind which nothing can change any more: every
+/// A table that is not `finished` ends with the row after which nothing can change any more: every
 /// axis that has pulses left has J_V = 0.
 ///
 /// Source: the method of digital integration (DDA), helix.

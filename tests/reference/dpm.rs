@@ -218,7 +218,7 @@ impl Line {
         Line { d, pulse: vec![0; axes], position: from.to_vec() }
     }
 
-    /// One step: `gives` tells for a coefficient whether there is a pulse.
+    /// One step: `gives` says for a coefficient whether there is a pulse.
     fn step(&mut self, gives: impl Fn(i64) -> bool) {
         for (axis, d) in self.d.iter().enumerate() {
             self.pulse[axis] = d.signum() * i64::from(gives(d.abs()));

@@ -7,7 +7,7 @@ use super::{EndPoint, Table, counter_columns, per_axis_columns};
 /// an end point equal to the start point is a full circle.
 ///
 /// F = x² + y² - R² relative to the centre. Of the three steps X, Y and XY of the quadrant the one
-/// with the smallest |F| behind it is taken; of equal ones XY first, then Y, which never comes to be.
+/// with the smallest |F| after it is taken; of equal ones XY first, then Y, which never happens.
 ///
 /// The columns are `f`, `xi`, `yi` (magnitudes relative to the centre), `quad` (0 ..= 3, the
 /// quadrant by whose kind the step was judged; in row 0 the one that the motion enters), then `e`
@@ -48,7 +48,7 @@ pub(crate) fn vector_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwi
 /// Which axes step: the judge of a method.
 type Judge = fn(&Arc, Kind) -> [bool; 2];
 
-/// An arc by either method; `crossing` tells from R² where the axes are met.
+/// An arc by either method; `crossing` gives from R² where the axes are met.
 fn run(
     from: [i64; 2],
     to: [i64; 2],
@@ -147,7 +147,7 @@ impl Arc {
         }
     }
 
-    /// F behind a step of these axes: each adds 2|c| + 1 where its magnitude grows, -2|c| + 1 where
+    /// F after a step of these axes: each adds 2|c| + 1 where its magnitude grows, -2|c| + 1 where
     /// it shrinks.
     fn deviation_after(&self, kind: Kind, steps: [bool; 2]) -> i64 {
         let mut f = self.f;

@@ -13,7 +13,7 @@
 //! - [`dpm_line`], [`dpm_line_cascade`], [`dpm_line_decade`], [`dpm_line_override`]: digital pulse multiplier, a counter
 //!   whose stages pass pulses as the bits of a coefficient say.
 //! - [`cim_line`], [`cim_arc`], [`cim_conic`]: comparison-integral method, one axis steps every time
-//!   and the sign of `f` tells whether the other does.
+//!   and the sign of `f` says whether the other does.
 //! - [`mindev_line`], [`mindev_arc`], [`vector_line`], [`vector_arc`]: eight-direction methods, a
 //!   step is X, Y or both.
 //! - [`sampled_line`], [`sampled_arc`]: data sampling, the points of the coarse stage in real numbers.

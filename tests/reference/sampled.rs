@@ -1,7 +1,7 @@
 //! Data sampling: the points that the coarse stage is to make, in real numbers.
 //!
 //! A point is relative to the start of a line or the centre of an arc, in BLU; the first is the start. The last period
-//! is the one whose point would lie at the end or behind it: it goes to the end itself.
+//! is the one whose point would lie at the end or beyond it: it goes to the end itself.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -16,7 +16,7 @@ pub(crate) enum System {
 
 /// The points of a line by `d` with a way of `f` a period; at the end where the long axis arrives.
 pub(crate) fn sampled_line(d: [i64; 2], f: f64, system: System) -> Vec<[f64; 2]> {
-    let [dx, dy] = d.map(|way| way as f64);
+    let [dx, dy] = d.map(|delta| delta as f64);
     let length = dx.hypot(dy);
     let x_is_long = dx.abs() >= dy.abs();
     let step = match system {
@@ -42,7 +42,7 @@ pub(crate) fn sampled_line(d: [i64; 2], f: f64, system: System) -> Vec<[f64; 2]>
     points
 }
 
-/// The point behind a period of way `f` from `[x, y]`, clockwise.
+/// The point after a period of travel `f` from `[x, y]`, clockwise.
 fn clockwise([x, y]: [f64; 2], f: f64, radius: f64, system: System) -> [f64; 2] {
     match system {
         System::StepFactor => {
@@ -89,9 +89,9 @@ pub(crate) fn sampled_arc(start: [i64; 2], end: [i64; 2], is_clockwise: bool, f:
     }
 }
 
-/// The points of an arc by the step factor in whole numbers, clockwise, `periods` of them behind the start, in 2^-`fraction`
-/// BLU: `word` is the way of a period in that unit, and `bits` are those of the fraction of λ. What is below the unit is
-/// kept for the next period.
+/// The points of an arc by the step factor in whole numbers, clockwise, `periods` of them after the start, in
+/// 2^-`fraction` BLU: `word` is the travel of a period in that unit, and `bits` are those of the fraction of λ. What is
+/// below the unit is kept for the next period.
 pub(crate) fn step_factor_points(
     start: [i64; 2],
     word: i128,

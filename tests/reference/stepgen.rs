@@ -61,8 +61,8 @@ pub(crate) fn stepgen(acc_bits: u32, pick_off: u32, k: u32, from: &[i64], to: &[
     table
 }
 
-/// Times of an output, in clocks: the step output is 1, it is 0 between two steps, from a change of the direction to the
-/// next step, from the end of a step to a change of the direction.
+/// Times of an output, in clocks: the step output is 1, it is 0 between two steps, from a change of the direction to
+/// the next step, from the end of a step to a change of the direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Timing {
     pub(crate) length: i64,
@@ -71,7 +71,7 @@ pub(crate) struct Timing {
     pub(crate) hold: i64,
 }
 
-/// The step and direction output of an axis, told by the clocks at which something happened last.
+/// The step and direction output of an axis, as the clocks at which something happened last.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepOutput {
     timing: Timing,
@@ -113,7 +113,7 @@ impl StepOutput {
         }
     }
 
-    /// The step output behind clock `t`.
+    /// The step output after clock `t`.
     pub(crate) fn step(&self, t: i64) -> bool {
         self.sent.is_some_and(|sent| t < sent + self.timing.length)
     }
@@ -121,9 +121,9 @@ impl StepOutput {
 
 /// The line of [`stepgen`] clock by clock, with the outputs of every axis.
 ///
-/// Row t is the state t clocks behind the load. In every clock all axes accumulate, unless an axis would make a step that
-/// its outputs do not allow yet: then all wait. The last row is the clock at which all accumulations are made and all
-/// steps and their spaces are over.
+/// Row t is the state t clocks after the load. In every clock all axes accumulate, unless an axis would make a step
+/// that its outputs do not allow yet: then all wait. The last row is the clock at which all accumulations are made and
+/// all steps and their spaces are over.
 ///
 /// The columns are `accx`, `accy`, …, then `e`, then `stepx`, …, then `dirx`, … (1 is negative), then `x`, `y`, ….
 pub(crate) fn stepgen_clocks(pick_off: u32, k: u32, from: &[i64], to: &[i64], preset: &[i64], timing: Timing) -> Table {

@@ -123,7 +123,7 @@ fn diff_finds_the_first_divergence_between_a_vcd_and_an_fst() {
 }
 
 #[test]
-fn the_files_beside_an_fst_name_it_and_never_replace_those_of_a_vcd() {
+fn the_files_next_to_an_fst_name_it_and_never_replace_those_of_a_vcd() {
     let folder = Folder::new();
     folder.good("run ppc-line --to 6,4 --fst w.fst");
     assert_eq!(folder.files(), ["w.beat.states", "w.fst", "w.gtkw"]);

@@ -64,7 +64,7 @@ fn scopes_open_and_close_below_one_top_and_names_are_unique_in_their_scope() {
                 }
                 "$upscope" => assert!(open.pop().is_some(), "{what}"),
                 "$var" => {
-                    // One blank before the range, none behind the name otherwise.
+                    // One blank before the range, none after the name otherwise.
                     assert!(is_name(words[4]) && [6, 7].contains(&words.len()), "{what}: {line}");
                     assert!(
                         !open.is_empty() && seen.insert(format!("{}.{}", open.join("."), words[4])),
@@ -101,7 +101,7 @@ fn ids_count_up_from_the_exclamation_mark_without_gaps() {
 }
 
 #[test]
-fn times_increase_and_the_last_one_stands_alone_behind_the_last_cycle() {
+fn times_increase_and_the_last_one_is_alone_after_the_last_cycle() {
     for case in cases() {
         let recording = record(&case, EngineKind::Word);
         let text = String::from_utf8(recording.vcd).unwrap();
@@ -119,7 +119,7 @@ fn times_increase_and_the_last_one_stands_alone_behind_the_last_cycle() {
 }
 
 #[test]
-fn the_first_edge_stands_one_period_behind_the_start_and_each_cycle_has_two() {
+fn the_first_edge_is_one_period_after_the_start_and_each_cycle_has_two() {
     for (what, text) in texts() {
         let (mut time, mut edges) = (0, Vec::new());
         for line in text.lines().skip_while(|line| !line.starts_with('#')) {

@@ -67,7 +67,7 @@ impl Truth {
         }
     }
 
-    /// The type that viewers show rightly without being told.
+    /// The type that viewers show rightly by default.
     fn variable_type(&self) -> &'static str {
         match self {
             Truth { constant: true, .. } => "parameter",
@@ -77,7 +77,7 @@ impl Truth {
         }
     }
 
-    /// The bit range that belongs behind the name.
+    /// The bit range that belongs after the name.
     fn range(&self) -> Option<(i64, i64)> {
         let ranged = self.width > 1 && ["reg", "wire"].contains(&self.variable_type());
         ranged.then(|| (i64::from(self.width) - 1, 0))
@@ -104,7 +104,7 @@ fn record(case: &Case, engine: EngineKind) -> Recording {
     recording(case.what, bench.design(), bench.columns().nets(), run)
 }
 
-/// Runs a design without inputs for so many clocks, in blocks of 100 samples.
+/// Runs a design without inputs for this many clocks, in blocks of 100 samples.
 fn record_design(design: &Design, clocks: u64, engine: EngineKind) -> Recording {
     let mut columns: Vec<Net> = design.netlist().names.iter().map(|named| named.net).collect();
     columns.sort();
@@ -171,8 +171,8 @@ struct Shown {
     last_time: u64,
 }
 
-/// Compares the samples from clock `first` on: every named signal of `truth` must be there with its type, width, range and
-/// value at every clock, and change at edges only.
+/// Compares the samples from clock `first` on: every named signal of `truth` must be there with its type, width, range
+/// and value at every clock, and change at edges only.
 fn compare<'a>(what: &str, shown: &Shown, truth: impl IntoIterator<Item = &'a Truth>, first: u64, last: u64) {
     let mut compared = 0;
     for signal in truth {

@@ -128,7 +128,7 @@ fn curves_of_all_axes_have_one_scale() {
 fn positions_begin_at_the_start_and_not_at_the_reset() {
     let (_, save) = opened("run ppc-arc --from 1000,0 --to 997,77 --ccw");
     assert_eq!(setting(&save, "timestart"), "1000");
-    // Scaled to what is in view, which begins behind the load.
+    // Scaled to what is in view, which begins after the load.
     assert!(traces(&save).iter().any(|(name, flags, _)| name == "ppc_arc.axis_x.x" && flags == "8420"), "{save}");
     let (_, save) = opened("run ppc-arc --from 0,0 --to 0,0 --center 5,0 --ccw");
     assert_eq!(setting(&save, "timestart"), "0");

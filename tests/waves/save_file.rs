@@ -26,7 +26,7 @@ struct Row {
     states: Option<String>,
 }
 
-/// What stands in a save file.
+/// The content of a save file.
 #[derive(Default)]
 struct SaveFile {
     settings: BTreeMap<String, String>,
@@ -135,7 +135,7 @@ fn positions_are_drawn_as_curves() {
 }
 
 #[test]
-fn state_names_lie_beside_the_wave_and_are_as_wide_as_their_register() {
+fn state_names_lie_next_to_the_wave_and_are_as_wide_as_their_register() {
     let mut translated = 0;
     for words in RUNS {
         let (folder, file) = saved(words);
@@ -145,7 +145,7 @@ fn state_names_lie_beside_the_wave_and_are_as_wide_as_their_register() {
             assert_eq!(row.states.is_some(), row.flags & TRANSLATED != 0, "{words}: {}", row.name);
             let Some(states) = &row.states else { continue };
             translated += 1;
-            // Written as if all files stood in `/`: GTKWave takes the way from the save file to the other.
+            // Written as if all files were in `/`: GTKWave takes the path from the save file to the other.
             let states = states.trim_start_matches('/');
             let width = usize::try_from(names[&row.name].size).unwrap();
             let mut known = BTreeSet::new();

@@ -6,7 +6,7 @@ use stepwave_models::Options;
 use super::written::read;
 use super::{Case, Folder, Recording, Shown, TICKS, Truth, compare, compare_clock, line, record};
 
-/// The line to (8, 6) in 17 clocks: Y pulses with steps 3, 6, 8, 11, 14, 16; its carry stands at the same clocks, before
+/// The line to (8, 6) in 17 clocks: Y pulses with steps 3, 6, 8, 11, 14, 16; its carry is at the same clocks, before
 /// the edge at which the axis steps.
 const WORDS: &str = "run dda-line --to 8,6 --vcd w.vcd";
 const LAST: u64 = 17;

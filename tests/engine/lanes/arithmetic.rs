@@ -96,7 +96,7 @@ fn the_widest_nets_of_either_word_hold_all_their_bits() {
         let words = [0, 1, mask, mask - 1, mask / 2, mask / 2 + 1];
         let jobs = words.iter().map(|&value| Job { blocks: vec![vec![(load, 1), (word, value)]] }).collect();
         let ends = LaneProgram::new(&design, &watch).run_all(jobs);
-        // Done in sample 1, behind the edge that loads.
+        // Done in sample 1, after the edge that loads.
         let last: Vec<u64> = ends.iter().map(|end| end.values[0]).collect();
         assert_eq!(last, words, "{bits} bits");
     }

@@ -79,7 +79,7 @@ proptest! {
         for model in models(|kind| matches!(kind, CurveKind::Line { .. })) {
             let alone = assert_measured_as_alone(model, &lines, &choices_of(model, seed, 7, 8), SHORT);
             prop_assert_eq!(alone, 0, "{}", model.name);
-            // Positions that leave their counters: what wraps or saturates must be run alone, and is told to be.
+            // Positions that leave their counters: what wraps or saturates must be run alone, and says so.
             assert_measured_as_alone(model, &lines, &choices_of(model, seed, 7, 6), SHORT);
         }
     }
@@ -120,8 +120,10 @@ fn wide_machines_are_measured_as_alone() {
         let direction = if clockwise { Direction::Clockwise } else { Direction::CounterClockwise };
         Arc::new([radius, 0], [radius, 0], [0, 0], direction).ok().map(Into::into)
     };
-    let circles: Vec<Curve> =
-        [(8_000, true), (30_000, false), (5, true)].into_iter().filter_map(|(r, way)| circle(r, way)).collect();
+    let circles: Vec<Curve> = [(8_000, true), (30_000, false), (5, true)]
+        .into_iter()
+        .filter_map(|(r, clockwise)| circle(r, clockwise))
+        .collect();
     for (name, curves) in [("dda-line", &lines), ("mindev-line", &lines), ("dda-arc", &circles), ("ppc-arc", &circles)]
     {
         assert_eq!(assert_measured_as_alone(find(name).unwrap(), curves, &widths(17, 19), LIMIT), 0, "{name}");
@@ -189,7 +191,7 @@ fn mean_error_and_spacing_are_those_of_the_step_table_and_the_pulses() {
 }
 
 #[test]
-fn a_run_that_takes_too_long_is_told_to_in_lanes_and_alone() {
+fn a_run_that_takes_too_long_is_reported_in_lanes_and_alone() {
     let curve = line([0, 0], [100, 77]).unwrap();
     let model = find("dda-line").unwrap();
     let hardware = model.plan(&curve, &Options::default()).unwrap();

@@ -12,7 +12,7 @@ use stepwave_netlist::bits::to_signed;
 use stepwave_netlist::cells::Op;
 use stepwave_netlist::{Design, Net};
 
-/// One job on an engine of its own, clock by clock, as the documentation of lanes tells it.
+/// One job on an engine of its own, clock by clock, as the documentation of lanes says.
 struct Alone<'d> {
     design: &'d Design,
     watch: &'d LaneWatch,

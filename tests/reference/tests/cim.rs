@@ -89,7 +89,7 @@ fn every_arc_ends_exactly_and_mid_is_the_exact_deviation_within_one_blu() {
     }
     assert!(worst[0] > 0.96 && worst[0] < 1.0, "{worst:?}");
     assert!(worst[1] > 1.45 && worst[2] > 1.45, "{worst:?}");
-    // |F| < 2R: n + 2 bits. Behind an axis that is crossed off the circle the others go beyond R.
+    // |F| < 2R: n + 2 bits. After an axis that is crossed off the circle the others go beyond R.
     assert!(shares[0][0] > -2.0 && shares[0][1] < 2.0);
     assert!(shares[1][1] > 1.25 && shares[1][1] < 1.4 && shares[2][0] < -1.25, "{shares:?}");
 }

@@ -355,7 +355,7 @@ fn one_counter_per_axis_reaches_rounded_points_and_the_total_counter_misses_some
 }
 
 #[test]
-fn an_ellipse_is_never_split_behind_the_point_that_was_reached() {
+fn an_ellipse_is_never_split_before_the_point_that_was_reached() {
     // (1,3) lies outside: Y is met at (0,3), not at (0,2).
     for method in &METHODS[..5] {
         let table = method(Shape::Ellipse([5, 2]), [1, 3], [-5, 0], [0, 0], false);
@@ -382,7 +382,7 @@ fn a_mid_comparison_value_starts_as_the_deviation_with_the_sign_of_the_base() {
 }
 
 #[test]
-fn an_integrand_that_outgrows_its_register_is_told() {
+fn an_integrand_that_outgrows_its_register_is_reported() {
     // y² = 4x up to (9,6): J_VX = 2y becomes 8 with the fourth Y pulse.
     let table =
         dda_conic(3, Shape::Parabola(4, Opens::PlusX), [0, 0], [9, 6], [0, 0], false, [0, 0], false, EndPoint::PerAxis);

@@ -20,7 +20,7 @@ fn arc_bits(radius_squared: i64) -> u32 {
 }
 
 /// True when the arc crosses an axis, at a coordinate that is not on its circle.
-fn crosses_beside_the_circle(table: &Table, radius_squared: i64) -> bool {
+fn crosses_off_the_circle(table: &Table, radius_squared: i64) -> bool {
     let quad = table.column("quad");
     let root = radius_squared.isqrt();
     root * root != radius_squared && quad.iter().any(|&q| q != quad[0])
@@ -314,19 +314,19 @@ fn quarter_circles_keep_the_error_that_each_preset_buys() {
 }
 
 #[test]
-fn arcs_that_cross_beside_their_circle_err_more_than_quarter_circles() {
+fn arcs_that_cross_off_their_circle_err_more_than_quarter_circles() {
     let mut worst = [0.0_f64; 2];
     for (r2, from, to, clockwise) in lattice_arcs(220) {
         let n = arc_bits(r2);
         let half = presets(n)[1];
         let end = EndPoint::PerAxis;
         let table = dda_arc(n, from, to, [0, 0], clockwise, [half; 2], false, end);
-        let which = usize::from(crosses_beside_the_circle(&table, r2));
+        let which = usize::from(crosses_off_the_circle(&table, r2));
         worst[which] = worst[which].max(radial_error(&table, r2));
     }
-    let [on, beside] = worst;
+    let [on, off] = worst;
     assert!(on < 1.25, "{on}");
-    assert!(beside > 1.25 && beside < 1.6, "{beside}");
+    assert!(off > 1.25 && off < 1.6, "{off}");
 }
 
 #[test]

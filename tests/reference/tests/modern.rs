@@ -30,7 +30,7 @@ fn a_step_generator_makes_every_step_of_its_line() {
 }
 
 #[test]
-fn an_accumulator_that_outgrows_its_register_is_told() {
+fn an_accumulator_that_outgrows_its_register_is_reported() {
     let table = stepgen(6, 4, 2, &[0, 0], &[3, 0], &[0, 0]);
     assert!(table.overflow && !table.finished);
     assert_eq!(table.column("accx"), [0, 12, 24]);
@@ -41,7 +41,7 @@ fn an_accumulator_that_outgrows_its_register_is_told() {
 
 #[test]
 fn outputs_keep_to_every_time_through_steps_and_turns() {
-    // Both outputs behind every clock, with a step wanted always, in directions that change at odd clocks.
+    // Both outputs after every clock, with a step wanted always, in directions that change at odd clocks.
     let wants = |t: i64| (t / 13 + t / 37) % 2 == 1;
     let run = |timing: Timing| {
         let mut output = StepOutput::new(timing);
@@ -111,16 +111,16 @@ fn a_turn_waits_for_the_hold_time_to_the_clock() {
 #[test]
 fn the_clocks_of_a_line_are_its_accumulations_and_what_they_wait() {
     let timing = Timing { length: 2, space: 2, setup: 4, hold: 4 };
-    // d = 3 in 8 accumulations, no step sooner than 2 behind another: two clocks of waiting for the one after.
+    // d = 3 in 8 accumulations, no step sooner than 2 after another: two clocks of waiting for the one after.
     let clocks = stepgen_clocks(3, 3, &[0, 0], &[3, 0], &[0, 0], timing);
     let steps = stepgen(6, 3, 3, &[0, 0], &[3, 0], &[0, 0]);
     assert_eq!(pulse_steps(&steps, "dx"), [3, 6, 8]);
-    // Steps at 3; 3 behind it, waiting 1; 2 behind that, waiting 2.
+    // Steps at 3; 3 after it, waiting 1; 2 after that, waiting 2.
     let x = clocks.column("x");
     assert_eq!(x, [0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3]);
     assert_eq!(clocks.column("stepx"), [0, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0]);
     assert_eq!(clocks.column("e"), [8, 7, 6, 5, 4, 3, 3, 2, 1, 1, 1, 0, 0, 0, 0, 0]);
-    // A negative axis turns first: its first step, in the first accumulation, comes 1 + 4 clocks behind the load.
+    // A negative axis turns first: its first step, in the first accumulation, comes 1 + 4 clocks after the load.
     let clocks = stepgen_clocks(3, 3, &[0, 0], &[-1, 0], &[0, 0], timing);
     assert_eq!(clocks.column("dirx")[..3], [0, 1, 1]);
     assert_eq!(clocks.column("x")[..7], [0, 0, 0, 0, 0, -1, -1]);

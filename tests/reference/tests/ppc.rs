@@ -233,7 +233,7 @@ fn the_path_meets_the_axes_at_the_root_of_r_squared_minus_1_rounded_up() {
 }
 
 #[test]
-fn an_end_point_behind_the_start_means_going_all_the_way_round() {
+fn an_end_point_before_the_start_means_nearly_a_full_turn() {
     let steps = |from, to, clockwise| {
         let table: Table = ppc_arc(from, to, [0, 0], clockwise, EndPoint::Total);
         table.column("e")[0]

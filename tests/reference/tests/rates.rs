@@ -51,7 +51,7 @@ fn each_clock_but_the_last_fires_one_stage() {
     assert!(fired.into_iter().all(|count| count == 1));
 }
 
-/// The greatest |pulses - c·t/T| behind a clock t = 0 ..= T, in units of 1/T, over all coefficients c below T, of which
+/// The greatest |pulses - c·t/T| after a clock t = 0 ..= T, in units of 1/T, over all coefficients c below T, of which
 /// `table` takes two at once.
 fn worst_deviation(clocks: i64, table: impl Fn(&[i64]) -> Table) -> i64 {
     let mut worst = 0;
@@ -228,7 +228,7 @@ fn a_helix_is_the_arc_with_z_shared_by_angle() {
             let ends = ([from[0], from[1], 6], [to[0], to[1], 6 + rise]);
             let words = helix_words(ends.0, ends.1, [0, 0], clockwise, fraction);
             assert_eq!(words.iter().map(|word| word.1).sum::<i64>(), rise.abs());
-            // J_VZ has to fit beside the coordinates: Z may be steeper than the circle.
+            // J_VZ has to fit as well as the coordinates: Z may be steeper than the circle.
             let n = (2..).find(|&n| 1_i64 << n > r2.isqrt() + 1 && 1_i64 << (n + fraction) > words[0].0);
             let n = n.expect("some n");
             let half = 1 << (n - 1);
@@ -264,7 +264,7 @@ fn the_words_of_a_helix_by_hand() {
 }
 
 #[test]
-fn the_integrator_of_z_runs_beside_the_arc() {
+fn the_integrator_of_z_runs_along_with_the_arc() {
     // J_VZ = 3.5 in three bits and one of fraction.
     let table = dda_helix(3, 1, [5, 0, 0], [0, 5, -6], [0, 0], false, &[(7, 6)], [0, 0, 0]);
     assert_eq!(pulse_steps(&table, "dz"), [3, 5, 7, 10, 12, 14]);
