@@ -1,5 +1,5 @@
-//! How fast each engine runs each model on one thread: `cargo bench --bench engines [NAME…]`, with parts of lines' names
-//! to run only those.
+//! How fast each engine runs each model on one thread: `cargo bench --bench engines [NAME…]`, with parts of lines'
+//! names to run only those.
 //!
 //! `bare` watches nothing but `done`, `rows` records every net that a run looks at, as the observers get them. The
 //! compiled engine has the clocks that it waits before it compiles, and compiling, in its figure.
@@ -28,7 +28,7 @@ fn clocks(kind: EngineKind) -> u64 {
     }
 }
 
-/// Runs a machine for so many clocks; the time that took.
+/// Runs a machine for this many clocks; returns the time taken.
 fn run(bench: &Testbench, kind: EngineKind, columns: bool) -> Outcome<Duration> {
     let machine = bench.machine();
     let columns = if columns { bench.columns().nets().to_vec() } else { Vec::new() };

@@ -1,5 +1,5 @@
 //! Prints, as geometries for `stepwave sweep --file`, every counter-clockwise arc inside the first quadrant between two
-//! lattice points of a circle about the origin with coordinates of so many bits: `lattice_arcs 10 > arcs.csv`.
+//! lattice points of a circle about the origin with coordinates of this many bits: `lattice_arcs 10 > arcs.csv`.
 
 use std::collections::BTreeMap;
 use std::io::{self, BufWriter, Write};

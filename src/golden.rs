@@ -38,7 +38,8 @@ pub fn check(folder: impl AsRef<Path>) -> Result<usize, Error> {
 /// Records every case of a folder; gives what has changed, a line for each.
 ///
 /// # Errors
-/// [`Error::Check`] where a case does not end as it says, or engines differ; a case cannot be read, or a file not written.
+/// [`Error::Check`] where a case does not end as it says, or engines differ; a case cannot be read, or a file not
+/// written.
 pub fn record(folder: impl AsRef<Path>) -> Result<String, Error> {
     let report = all_of(folder.as_ref(), &[], true, &mut |_, _| {})?;
     report.differences.is_empty().then_some(report.text).ok_or(Error::Check(report.differences))
@@ -55,7 +56,8 @@ pub(crate) struct Report {
     pub(crate) differences: Vec<String>,
 }
 
-/// Checks or records the cases of these names, or every case where none are given. `done` gets how many of how many are.
+/// Checks or records the cases of these names, or every case where none are given. `done` gets how many of how many
+/// are.
 pub(crate) fn all_of(
     dir: &Path,
     names: &[&String],
@@ -78,7 +80,7 @@ pub(crate) fn all_of(
 
 /// Checks or records a case.
 fn one(case: &Case, all: &[Case], dir: &Path, record: bool, report: &mut Report) -> Result<(), Error> {
-    let mut told = None;
+    let mut reported = None;
     for engine in EngineKind::ALL {
         let made = match simulate(case, dir, engine) {
             Ok(made) => made,
@@ -91,14 +93,14 @@ fn one(case: &Case, all: &[Case], dir: &Path, record: bool, report: &mut Report)
         let stale = stale(case, all, dir, &made)?;
         if record && engine == EngineKind::ALL[0] {
             report.text += &write(case, all, dir, &made, &stale)?;
-        } else if told.is_none() {
+        } else if reported.is_none() {
             let unmade = stale.iter().map(|name| format!("case {} no longer makes {name}: delete it", case.name));
             report.differences.extend(unmade);
         }
-        // What the engines agree on is told once.
-        if told.as_ref() != Some(&made) {
+        // What the engines agree on is reported once.
+        if reported.as_ref() != Some(&made) {
             compare(case, engine, dir, &made, &mut report.differences)?;
-            told = Some(made);
+            reported = Some(made);
         }
     }
     Ok(())
@@ -204,8 +206,8 @@ fn compare(
     for (name, content) in made {
         let path = cases::recorded(dir, name)?;
         let recorded = fs::read(&path).map_err(|error| {
-            let way_out = "`stepwave golden record` writes it";
-            Error::Invalid(format!("cannot read {}: {error}: {way_out}", path.display()))
+            let remedy = "`stepwave golden record` writes it";
+            Error::Invalid(format!("cannot read {}: {error}: {remedy}", path.display()))
         })?;
         if recorded != *content {
             let what = differences::first(name, &recorded, content);

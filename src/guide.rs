@@ -20,7 +20,7 @@ page!(
     own_model
 );
 page!(
-    /// A netlist that is no interpolator: an LFSR and a counter.
+    /// A netlist that is not an interpolator: an LFSR and a counter.
     own_netlist
 );
 page!(

@@ -2,7 +2,8 @@
 //!
 //! Registers, adders, integrators and end-point counters are clocked components of fixed width, wired into one netlist
 //! per interpolation method, simulated clock by clock and dumped as VCD. This crate is the bench on which geometry
-//! ([`nc`]), models ([`models`]), engines ([`engine`]) and waves ([`trace`]) meet; the program `stepwave` is its command line.
+//! ([`nc`]), models ([`models`]), engines ([`engine`]) and waves ([`trace`]) meet; the program `stepwave` is its
+//! command line.
 //!
 //! A DDA line to (8, 6) in four bits, with its wave and its report:
 //!
@@ -21,10 +22,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`guide`] has programs to read first: a first wave, a method of one's own with every command, a netlist that is no
-//! interpolator, golden waves in `cargo test`, a sweep. One crate a layer: [`netlist`] is hardware as data, [`engine`] runs
-//! it, [`trace`] shows it, [`export`] hands it on, [`prove`] proves things of it, [`nc`] is geometry and NC programs,
-//! [`models`] the interpolators.
+//! [`guide`] has programs to read first: a first wave, a method of one's own with every command, a netlist that is not
+//! an interpolator, golden waves in `cargo test`, a sweep. One crate a layer: [`netlist`] is hardware as data,
+//! [`engine`] runs it, [`trace`] shows it, [`export`] hands it on, [`prove`] proves things of it, [`nc`] is geometry
+//! and NC programs, [`models`] the interpolators.
 
 pub use stepwave_engine as engine;
 pub use stepwave_export as export;

@@ -1,12 +1,12 @@
-//! The end of the process that it does not choose: by a signal, or because nobody reads any more. Temporary files go, and
-//! one line says what came to be.
+//! The end of the process that it does not choose: by a signal, or because nobody reads any more. Temporary files go,
+//! and one line says what came to be.
 
 use std::io::{self, IsTerminal, Write};
 
 use crate::output::temporary;
 
-/// Takes up the signals that end a process, so that they leave no temporary files: SIGINT, SIGTERM, and SIGHUP unless it
-/// is ignored, as `nohup` does. A file that may not grow any more is an error like any other.
+/// Takes up the signals that end a process, so that they leave no temporary files: SIGINT, SIGTERM, and SIGHUP unless
+/// it is ignored, as `nohup` does. A file that may not grow any more is an error like any other.
 ///
 /// # Errors
 /// The system refuses.
@@ -63,7 +63,7 @@ pub(crate) fn reader_left() -> ! {
 }
 
 /// Ends the process as soon as the reader of a pipe on standard output leaves, for work of which nothing else comes: it
-/// would go on for a result that nobody reads.
+/// would continue for a result that nobody reads.
 #[cfg(unix)]
 pub(crate) fn watch_reader() {
     use rustix::event::{PollFd, PollFlags, poll};
@@ -78,7 +78,7 @@ pub(crate) fn watch_reader() {
     // Where no thread can be had, it is noticed at the next write.
     let _ = std::thread::Builder::new().spawn(move || {
         loop {
-            // What nothing is asked about is told all the same: an error, which is that nobody reads.
+            // An error is reported even if no event is asked for: here, that the reader has left.
             let mut asked = [PollFd::new(&out, PollFlags::empty())];
             match poll(&mut asked, None) {
                 Ok(_) if asked[0].revents().contains(PollFlags::ERR) => reader_left(),

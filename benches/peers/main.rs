@@ -4,9 +4,9 @@
 //! peers on Debian. Sections: `first-wave`, `no-trace`, `waves`, `lanes`, `growth`.
 //!
 //! All contenders load the same block, run it to its end, and must come to the same clock and the same place; the waves
-//! of short runs are compared signal by signal. They take turns, round by round, and medians are told. One core is left
-//! to each, another one every round, except where more are named; rates count processor time, which other programs on
-//! the machine hardly disturb, of the whole process.
+//! of short runs are compared signal by signal. They take turns, round by round, and medians are reported. One core is
+//! left to each, another one every round, except where more are named; rates count processor time, which other programs
+//! on the machine hardly disturb, of the whole process.
 // Like a test, it stops at whatever is not as it should be.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 

@@ -1,5 +1,5 @@
 //! One run of a program: what it took. A program is started by this one anew (`--measure`), which waits for it and
-//! tells the processor time and the peak memory of it and of all that it started.
+//! reports the processor time and the peak memory of it and of all that it started.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ pub(crate) struct Job {
     pub(crate) dir: PathBuf,
     /// Cores that it may use; `None`: all.
     pub(crate) cores: Option<usize>,
-    /// What it writes; its size is told, then it is deleted.
+    /// What it writes; its size is reported, then it is deleted.
     pub(crate) wave: Option<PathBuf>,
     /// How its standard output says what came of it.
     pub(crate) says: fn(&str) -> Fallible<String>,
@@ -107,10 +107,10 @@ fn measure(job: &Job, round: usize) -> Fallible<Run> {
     command.arg("--measure").arg(job.cores.unwrap_or(0).to_string()).arg(round.to_string());
     let output = command.args(&job.words).current_dir(&job.dir).stderr(Stdio::inherit()).output()?;
     let text = String::from_utf8(output.stdout)?;
-    let (said, told) =
+    let (said, report) =
         text.trim_end().rsplit_once("\n--\n").ok_or_else(|| format!("{:?} failed: {text}", job.words))?;
-    let told: Vec<f64> = told.split(' ').map(str::parse).collect::<Result<_, _>>()?;
-    let [failed, wall, computed, peak_mb] = told[..] else { return Err(format!("not told: {text}").into()) };
+    let report: Vec<f64> = report.split(' ').map(str::parse).collect::<Result<_, _>>()?;
+    let [failed, wall, computed, peak_mb] = report[..] else { return Err(format!("no report: {text}").into()) };
     if failed != 0.0 {
         return Err(format!("{:?} failed: {said}", job.words).into());
     }
@@ -122,7 +122,7 @@ fn measure(job: &Job, round: usize) -> Fallible<Run> {
     Ok(Run { wall, computed, peak_mb, wave_bytes, said: (job.says)(said.trim())? })
 }
 
-/// The other side: cores, round, program and words. Prints what the program prints, and in the last line, behind `--`,
+/// The other side: cores, round, program and words. Prints what the program prints, and in the last line, after `--`,
 /// what it took.
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn child(words: &[String]) -> Fallible<()> {
@@ -139,7 +139,7 @@ pub(crate) fn child(words: &[String]) -> Fallible<()> {
     Ok(writeln!(out, "\n--\n{failed} {wall} {computed} {}", usage.max_rss() as f64 / 1024.0)?)
 }
 
-/// Leaves so many cores to this process; which, changes from round to round.
+/// Leaves this many cores to this process; which ones changes from round to round.
 fn allow(cores: usize, round: usize) -> Fallible<()> {
     let all = sched_getaffinity(Pid::from_raw(0))?;
     let mine: Vec<usize> = (0..CpuSet::count()).filter(|&core| all.is_set(core).unwrap_or(false)).collect();

@@ -97,11 +97,11 @@ pub(crate) fn as_child(kind: &str, words: &[String]) -> Fallible<String> {
                 return pool.install(|| run_bare(&bench, &curves));
             }
             let outcomes = pool.install(|| bench.run_many(&curves, LIMIT))?;
-            let told = outcomes.into_iter().map(|outcome| {
+            let outcomes = outcomes.into_iter().map(|outcome| {
                 let LaneOutcome { clocks, reached, .. } = outcome?;
                 Ok(line(clocks, reached.into_iter()))
             });
-            told.collect()
+            outcomes.collect()
         }
     }
 }
@@ -119,11 +119,11 @@ fn run_bare(bench: &Testbench, curves: &[Curve]) -> Fallible<String> {
     let mut ends = Vec::with_capacity(curves.len());
     LaneProgram::new(bench.design(), &watch).run(curves.iter(), |curve| lanes.job(curve), |end| ends.push(end));
     let position = |(port, bits): (&Port, &u64)| to_signed(port.width, *bits);
-    let told = ends.into_iter().map(|end| {
+    let outcomes = ends.into_iter().map(|end| {
         let LaneEnd { clock, values, .. } = end?;
         Ok(line(clock, machine.positions.iter().zip(&values).map(position)))
     });
-    told.collect()
+    outcomes.collect()
 }
 
 fn line(clocks: u64, reached: impl Iterator<Item = i64>) -> String {

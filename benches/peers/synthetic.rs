@@ -8,7 +8,7 @@ use crate::unit::Unit;
 
 const BITS: u32 = 24;
 
-/// A netlist of about so many cells.
+/// A netlist of about this many cells.
 pub(crate) fn chain(cells: usize) -> Fallible<Unit> {
     let (one, two) = (integrators(1)?, integrators(2)?);
     let count = |unit: &Unit| unit.design.netlist().cells.len();
@@ -46,7 +46,7 @@ fn integrator<'m>(m: Scope<'m>, grow: Signal<'m>, index: u64) -> (Signal<'m>, Si
     (carry, remainder.q)
 }
 
-/// The block that runs so many clocks.
+/// The block that runs this many clocks.
 pub(crate) fn block(unit: &Unit, clocks: u64) -> Vec<(Net, u64)> {
     let inputs = unit.design.inputs().iter().filter(|net| !unit.strobes.contains(net));
     inputs.map(|&net| (net, clocks)).collect()

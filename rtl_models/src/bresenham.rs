@@ -6,26 +6,27 @@
 //!                                                                e ──► done
 //! ```
 //!
-//! A step event takes two clocks, as the firmware's interrupt takes two statements. ADD: every counter += abs(d). TEST: a
-//! counter that has come to N steps its axis, and counter -= N. The signed form keeps counters N lower and tests
+//! A step event takes two clocks, as the firmware's interrupt takes two statements. ADD: every counter += abs(d). TEST:
+//! a counter that has come to N steps its axis, and counter -= N. The signed form keeps counters N lower and tests
 //! their sign.
 //!
 //! **The test.** `--compare ge` steps at N, `gt` only above it. Counters then stay among N numbers: 0 … N-1 with `ge`,
 //! 1 … N with `gt`; signed, -N … -1 and -N+1 … 0. Where a counter starts among them the end point is exact: in a block
-//! it rises by N·abs(d) and falls by N a step, so it ends as many times N from its start as steps are wrong, and among N
-//! numbers that is none. Every start is one of them for N >= 2. A block of N = 1 starts at 0: unsigned that is right with
+//! it rises by N·abs(d) and falls by N a step, so it ends as many times N from its start as steps are wrong, and among
+//! N numbers that is none. Every start is one of them for N >= 2. A block of N = 1 starts at 0: unsigned that is right
+//! with
 //! `ge`, while `gt`, the test of early firmware, makes no step at all; signed it is right with `gt`, while with `ge` an
 //! axis steps that has no way to go.
 //!
-//! **Widths.** A counter must hold the sum of the ADD clock. It stood among its N numbers, at most at N-1 (`gt` at N), and
-//! abs(d) <= N: at most 2N - 1 or 2N. As N < 2^n, n+1 bits hold both. Signed, the sum is at most N, and what TEST leaves at
-//! least -N: n+1 bits again. With n bits (`ge`) the longest axis overflows where N + floor(N/2) >= 2^n, and an axis whose
-//! abs(d) < N has no common divisor with N where N - 1 + abs(d) >= 2^n, for it does come to N-1. Firmware whose counters
-//! were as wide as its step counts lost steps on the longest moves only.
+//! **Widths.** A counter must hold the sum of the ADD clock. It was one of its N numbers, at most N-1 (`gt` at N), and
+//! abs(d) <= N: at most 2N - 1 or 2N. As N < 2^n, n+1 bits hold both. Signed, the sum is at most N, and what TEST
+//! leaves at least -N: n+1 bits again. With n bits (`ge`) the longest axis overflows where N + floor(N/2) >= 2^n, and
+//! an axis whose abs(d) < N has no common divisor with N where N - 1 + abs(d) >= 2^n, for it does come to N-1. Firmware
+//! whose counters were as wide as its step counts lost steps on the longest moves only.
 //!
 //! A path of the right test stays within half a BLU along each axis; the other test may add 1/(2N).
 //!
-//! The line (5, 3), from the golden file `waves/bresenham-5-3.csv`; the wave stands next to it:
+//! The line (5, 3), from the golden file `waves/bresenham-5-3.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/bresenham-5-3.csv")]
@@ -109,8 +110,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     interpolator(m, hardware, Block::new(m), None);
 }
 
-/// The wiring after a block loader. Each `tick` (1 bit) of a pulse source begins a step event; without one, events follow
-/// each other.
+/// The wiring after a block loader. Each `tick` (1 bit) of a pulse source begins a step event; without one, events
+/// follow each other.
 pub(crate) fn interpolator<'m>(m: Scope<'m>, hardware: &Hardware, block: Block<'m>, tick: Option<Signal<'m>>) {
     let names = [(0, "IDLE"), (1, "ADD"), (2, "TEST")].map(|(value, name)| (value, name.to_owned()));
     let beat = m.reg("beat", 2).shown(Format::States(names.to_vec()));
@@ -137,8 +138,8 @@ pub(crate) fn interpolator<'m>(m: Scope<'m>, hardware: &Hardware, block: Block<'
     block.close(block.load, test, last);
 }
 
-/// The counter of an axis: adds the steps at an edge with `add` = 1; at one with `test` = 1 it loses the events where it
-/// has come to them. Returns 1 bit: it does so at this edge, and the axis steps.
+/// The counter of an axis: adds the steps at an edge with `add` = 1; at one with `test` = 1 it loses the events where
+/// it has come to them. Returns 1 bit: it does so at this edge, and the axis steps.
 fn counter<'m>(
     m: Scope<'m>,
     block: &Block<'m>,
@@ -170,8 +171,8 @@ fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     vec![words(&line.delta(), line.from(), hardware)]
 }
 
-/// The words of a block with these displacements of the axes, in BLU, and of the first block with the place that it starts
-/// from.
+/// The words of a block with these displacements of the axes, in BLU, and of the first block with the place that it
+/// starts from.
 pub(crate) fn words(delta: &[i64], from: &[i64], hardware: &Hardware) -> Words {
     let events = i128::from(sizes::longest_of(delta));
     let half = events / 2;

@@ -12,16 +12,16 @@
 //!
 //! The axis with the smaller interval is the base axis: it steps at every step, the other where F >= 0. F gains the
 //! weight of the base axis for its pulse and loses that of the other for its own. With `mid` a pulse weighs A before it
-//! plus A behind it, so that F is x² + y² - R² up to its sign; with `pre` A before, with `post` A behind. Where A and B
-//! change places the base axis changes, and F := -F: without that the path drifts by up to 2.8 BLU. The loader splits the
-//! arc at the axes, at R rounded to the nearest integer but never behind the point already reached.
+//! plus A after it, so that F is x² + y² - R² up to its sign; with `pre` A before, with `post` A after it. Where A and
+//! B change places the base axis changes, and F := -F: without that the path drifts by up to 2.8 BLU. The loader splits
+//! the arc at the axes, at R rounded to the nearest integer but never before the point already reached.
 //!
-//! With `mid` the path stays within 1 BLU of the circle. F with `pre` and `post` is within [-R, R] while both axes run, in
-//! n+1 bits; forced steps behind that take it to 1.39 R where a split is off the circle. Inside a quadrant with both
-//! ends on the circle n+1 bits always do: `pre` weighs half of what x² + y² gains less the steps of both axes, `post` half
-//! of that and the steps.
+//! With `mid` the path stays within 1 BLU of the circle. F with `pre` and `post` is within [-R, R] while both axes run,
+//! in n+1 bits; forced steps after that take it to 1.39 R where a split is off the circle. Inside a quadrant with both
+//! ends on the circle n+1 bits always do: `pre` weighs half of what x² + y² gains less the steps of both axes, `post`
+//! half of that and the steps.
 //!
-//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/cim-arc-nr1.csv`; the wave stands next to it:
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/cim-arc-nr1.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/cim-arc-nr1.csv")]

@@ -21,12 +21,13 @@
 //! | ex, ey | steps of each axis in the sector | |
 //!
 //! n bits hold the greatest weight on the arc. A hyperbola whose branch runs along y has a and b, and a parabola that
-//! opens along y has x and y changed over. The method is that of `cim-arc`; which weight grows and where the axes run are
-//! load words (`x_grows`, `y_grows`, `sx`, `sy`), so that one machine runs all of them. The loader splits an ellipse where
-//! it meets its axes, and the others at their vertex. With `mid` a parabola counts in halves: F is 2(y² - cx).
+//! opens along y has x and y changed over. The method is that of `cim-arc`; which weight grows and where the axes run
+//! are load words (`x_grows`, `y_grows`, `sx`, `sy`), so that one machine runs all of them. The loader splits an
+//! ellipse where it meets its axes, and the others at their vertex. With `mid` a parabola counts in halves: F is 2(y² -
+//! cx).
 //!
 //! The ellipse 4x² + 9y² = 36 from (0, -2) to (-3, 0) with `post`, from the golden file
-//! `waves/cim-conic-ellipse.csv`; the wave stands next to it:
+//! `waves/cim-conic-ellipse.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/cim-conic-ellipse.csv")]

@@ -12,7 +12,7 @@
 //! F >= 0. F gains the weight of the base axis for its pulse and loses that of the other for its own. The intervals of
 //! a line are constant, so the three weight rules are one.
 //!
-//! The line (5, 3), from the golden file `waves/cim-line-5-3.csv`; the wave stands next to it:
+//! The line (5, 3), from the golden file `waves/cim-line-5-3.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/cim-line-5-3.csv")]

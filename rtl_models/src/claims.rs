@@ -1,7 +1,7 @@
 //! What is to be proved of a model: over which geometries, and what is to come of them.
 //!
 //! The hardware is the model's own, its load words are those of its loader; said here is only how a geometry is
-//! described by a few numbers, and where the machine stands in the end.
+//! described by a few numbers, and where the machine is in the end.
 
 mod arc;
 pub mod extremes;
@@ -37,8 +37,8 @@ pub enum Region {
 pub struct Claims {
     /// Which geometries are meant.
     pub geometries: Region,
-    /// The same in other kinds, where this hardware tells them apart.
-    pub told_apart: fn(&Hardware) -> Option<Region>,
+    /// The same in finer kinds, where this hardware needs them.
+    pub refined: fn(&Hardware) -> Option<Region>,
     /// Never below 0 while a block runs, and less after every step: why it ends. `None` where that is not claimed.
     pub rank: fn(&Hardware) -> Option<Formula>,
     /// What may hold between two steps of the geometry, the place and `steps`, the number of steps that the block has
@@ -59,7 +59,7 @@ impl Claims {
     pub const fn of(geometries: Region) -> Claims {
         Claims {
             geometries,
-            told_apart: |_| None,
+            refined: |_| None,
             rank: steps_left,
             guesses: |_| Vec::new(),
             modes: &[],
@@ -71,7 +71,7 @@ impl Claims {
     /// What is claimed of this hardware.
     #[must_use]
     pub fn of_hardware(self, hardware: &Hardware) -> Claims {
-        Claims { geometries: (self.told_apart)(hardware).unwrap_or(self.geometries), ..self }
+        Claims { geometries: (self.refined)(hardware).unwrap_or(self.geometries), ..self }
     }
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn steps_left(hardware: &Hardware) -> Option<Formula> {
 /// A kind of geometry within a box, without the words of the loader.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kind {
-    /// What tells it from the others.
+    /// What distinguishes it from the others.
     pub name: String,
     /// Numbers that describe a geometry.
     pub symbols: Vec<Symbol>,
@@ -94,7 +94,7 @@ pub struct Kind {
     pub constants: Vec<(String, i128)>,
     /// What else is true of them.
     pub premises: Vec<Clause>,
-    /// Where the machine stands in the end.
+    /// Where the machine is in the end.
     pub goals: Vec<Clause>,
 }
 
@@ -160,7 +160,7 @@ impl Region {
         }
     }
 
-    /// Curves of k-bit coordinates: all where they are at most `most`, else so many, spread evenly.
+    /// Curves of k-bit coordinates: all where they are at most `most`, else that many, spread evenly.
     #[must_use]
     pub fn curves(self, k: u32, most: usize) -> Vec<Curve> {
         match self {
@@ -177,7 +177,7 @@ fn coordinate(letter: &str) -> Symbol {
     Symbol { name: letter.to_owned(), least: number(0), greatest: name("2^k") - 1 }
 }
 
-/// So many of some, spread evenly over them.
+/// This many of some, spread evenly over them.
 fn spread<T>(all: Vec<T>, most: usize) -> Vec<T> {
     let (count, most) = (all.len(), most.max(1));
     if count <= most {

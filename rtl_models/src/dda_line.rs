@@ -9,15 +9,15 @@
 //!   with --adder serial:  jvi ──┬──► full ──► jri ──┐       n clocks an iteration
 //!                          ▲────┘    adder          │
 //!                                  ▲  ▲─────────────┘
-//!                                  └──┴─ carry flip-flop; behind the last bit it is di
+//!                                  └──┴─ carry flip-flop; after the last bit it is di
 //! ```
 //!
-//! On every iteration {carry, J_R} := J_R + J_V; the carry is the axis's pulse. After t iterations the axis stands at
-//! floor((t·abs(d) + P) / 2^n): at d after 2^n, for every preset P, and J_R is back at P. 2^n must be greater than every
-//! abs(d). Normalised, all J_V are shifted left by the same Q until the largest has its top bit set, one bit a clock,
-//! and e is halved as often: 2^(n-Q) iterations.
+//! On every iteration {carry, J_R} := J_R + J_V; the carry is the axis's pulse. After t iterations the axis is at
+//! floor((t·abs(d) + P) / 2^n): at d after 2^n, for every preset P, and J_R is back at P. 2^n must be greater than
+//! every abs(d). Normalised, all J_V are shifted left by the same Q until the largest has its top bit set, one bit a
+//! clock, and e is halved as often: 2^(n-Q) iterations.
 //!
-//! The line (8, 6) in 4 bits, from the golden file `waves/dda-line-8-6.csv`; the wave stands next to it:
+//! The line (8, 6) in 4 bits, from the golden file `waves/dda-line-8-6.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/dda-line-8-6.csv")]
@@ -32,9 +32,9 @@
 //! ```
 //!
 //! Serial adder: one full adder and a carry flip-flop for each axis, the lowest bit first. J_R is a shift register, J_V
-//! goes round, and an iteration takes n clocks; with its last one the step is completed and all registers stand as those
-//! of the parallel form. In radix 10 one digit adder for each axis takes a digit a clock, k clocks an iteration. The
-//! line (8, 6) in 4 bits, from `waves/dda-line-serial.csv`:
+//! goes round, and an iteration takes n clocks; with its last one the step is completed and all registers stand as
+//! those of the parallel form. In radix 10 one digit adder for each axis takes a digit a clock, k clocks an iteration.
+//! The line (8, 6) in 4 bits, from `waves/dda-line-serial.csv`:
 //!
 //! ```text
 #![doc = include_str!("../waves/dda-line-serial.csv")]
@@ -85,7 +85,7 @@ pub static MODEL: Model = Model {
         &ON_OVERFLOW,
     ],
     claims: Some(Claims {
-        told_apart: |hardware| (hardware.get(&END_POINT) == EndPoint::Longest).then_some(Region::LinesByLength),
+        refined: |hardware| (hardware.get(&END_POINT) == EndPoint::Longest).then_some(Region::LinesByLength),
         rank,
         guesses,
         ..Claims::of(Region::Lines)
@@ -205,14 +205,14 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let delta: Vec<i128> = line.delta().into_iter().map(i128::from).collect();
-    let way = |axis: usize| delta[axis].abs();
-    let longest = (0..hardware.axes).rev().max_by_key(|&axis| way(axis)).unwrap_or(0);
+    let travel = |axis: usize| delta[axis].abs();
+    let longest = (0..hardware.axes).rev().max_by_key(|&axis| travel(axis)).unwrap_or(0);
     let (end_point, mut words) = (hardware.get(&END_POINT), Words::new());
     for (axis, delta) in delta.iter().enumerate() {
-        words = words.set(JV.of(axis), way(axis)).set(JR.of(axis), hardware.preset(JR.of(axis)));
+        words = words.set(JV.of(axis), travel(axis)).set(JR.of(axis), hardware.preset(JR.of(axis)));
         words = words.set(SIGN.of(axis), *delta < 0).set(POSITION.of(axis), line.from()[axis]);
         words = match end_point {
-            EndPoint::PerAxis => words.set(END.of(axis), way(axis)),
+            EndPoint::PerAxis => words.set(END.of(axis), travel(axis)),
             EndPoint::Longest => words.set(LONGEST.of(axis), axis == longest),
             EndPoint::Total | EndPoint::Iterations => words,
         };
@@ -222,8 +222,8 @@ fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
         EndPoint::Iterations => {
             words.set(E, i128::try_from(hardware.modulus(hardware.bits(JR.of(0)))).unwrap_or(i128::MAX))
         }
-        EndPoint::Total => words.set(E, (0..hardware.axes).map(way).sum::<i128>()),
-        EndPoint::Longest => words.set(E, way(longest)),
+        EndPoint::Total => words.set(E, (0..hardware.axes).map(travel).sum::<i128>()),
+        EndPoint::Longest => words.set(E, travel(longest)),
         EndPoint::PerAxis => words,
     }]
 }

@@ -10,30 +10,31 @@
 //!                    pn-1 ──► & ◄── bit 0
 //! ```
 //!
-//! One synchronous counter is shared by all axes. Stage k, from the lowest on, offers a pulse at the clock at which it goes
-//! from 0 to 1, when all stages below it are 1: exactly one stage a clock, but for the clock that takes the counter from
-//! all ones to 0. That carry ends the block after 2^n clocks. Stage k pulses in 2^(n-1-k) of them and is gated by bit
-//! n-1-k of the coefficient, so that every axis gets as many pulses as its coefficient says. They are not evenly spread:
-//! an axis may stand up to (3n+7)/18 + (-1)^n/(9·2^n) pulses off the place t·M/2^n where it should be after clock t. The
-//! report tells how far it did, and the least and greatest distance of its pulses.
+//! One synchronous counter is shared by all axes. Stage k, from the lowest on, offers a pulse at the clock at which it
+//! goes from 0 to 1, when all stages below it are 1: exactly one stage a clock, but for the clock that takes the
+//! counter from all ones to 0. That carry ends the block after 2^n clocks. Stage k pulses in 2^(n-1-k) of them and is
+//! gated by bit n-1-k of the coefficient, so that every axis gets as many pulses as its coefficient says. They are not
+//! evenly spread: an axis may be up to (3n+7)/18 + (-1)^n/(9·2^n) pulses off the place t·M/2^n where it should be after
+//! clock t. The report says how far it was, and the least and greatest distance of its pulses.
 //!
-//! **Cascade** (`--cascade BITS`, the *add* mode). The counter is made of units of so many bits. The first counts every
-//! clock and holds the high bits of the coefficients; the word of each further one extends them below, and it counts only
-//! in the state of all ones of the units before it, where these give no pulse. Unit by unit these are the stages of one
-//! counter of all bits, so a cascade gives the same pulses at the same clocks as one unit of the same n; n is a whole
-//! number of units.
+//! **Cascade** (`--cascade BITS`, the *add* mode). The counter is made of units of this many bits. The first counts every
+//! clock and holds the high bits of the coefficients; the word of each further one extends them below, and it counts
+//! only in the state of all ones of the units before it, where these give no pulse. Unit by unit these are the stages
+//! of one counter of all bits, so a cascade gives the same pulses at the same clocks as one unit of the same n; n is a
+//! whole number of units.
 //!
 //! **Decades** (`--radix 10`). Coefficients are binary-coded decimal, a decade unit counts a digit, and a block lasts
-//! 10^(digits) clocks. A decade has a pulse train for each bit of a digit: bit 8 in the counts 0 to 3 and 5 to 8, bit 4 in
-//! 1, 3, 5, 7, bit 2 in 2, 6, bit 1 in 4, and none in 9, where the next decade counts. Trains that meet (8 and 4, 8 and 2)
-//! belong to no common digit. These counts are a definition of this project; other decade rate multipliers choose others.
-//! An axis stands up to 7k/9 + 56/81·(1 - 10^(-k)) pulses off its place with k digits, and so far where all of them are 7.
+//! 10^(digits) clocks. A decade has a pulse train for each bit of a digit: bit 8 in the counts 0 to 3 and 5 to 8, bit 4
+//! in 1, 3, 5, 7, bit 2 in 2, 6, bit 1 in 4, and none in 9, where the next decade counts. Trains that meet (8 and 4, 8
+//! and 2) belong to no common digit. These counts are a definition of this project; other decade rate multipliers
+//! choose others. An axis is up to 7k/9 + 56/81·(1 - 10^(-k)) pulses off its place with k digits, and so far where all
+//! of them are 7.
 //!
 //! **Feed override** (`--override PERCENT`, the *multiply* mode). Two decade units count every clock and gate their
-//! pulses by the digits of the percentage; the line's own counter takes a step at their pulses only. A block needs about
-//! 100/PERCENT times as many clocks for the same pulses in the same order.
+//! pulses by the digits of the percentage; the line's own counter takes a step at their pulses only. A block needs
+//! about 100/PERCENT times as many clocks for the same pulses in the same order.
 //!
-//! The line (5, 3) in 3 bits, from the golden file `waves/dpm-line-5-3.csv`; the wave stands next to it:
+//! The line (5, 3) in 3 bits, from the golden file `waves/dpm-line-5-3.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/dpm-line-5-3.csv")]

@@ -60,14 +60,14 @@ pub enum ModelError {
         known: String,
     },
     /// A register would be wider than a netlist allows.
-    #[error("register {register} would be {bits} bits wide, but a register holds 1 to 64 bits: {way_out}")]
+    #[error("register {register} would be {bits} bits wide, but a register holds 1 to 64 bits: {remedy}")]
     TooWide {
         /// The register.
         register: String,
         /// Bits that it would have.
         bits: u64,
         /// What to change.
-        way_out: String,
+        remedy: String,
     },
     /// A load value does not fit in its register.
     #[error("{register} = {value} does not fit in its {width}; {needed} bits would hold it: give --width {option}")]

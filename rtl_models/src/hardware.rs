@@ -134,11 +134,11 @@ impl Hardware {
 
     /// Steps that a line of these ways, in BLU, takes by the method; `None` where the axes have no constant rates.
     #[must_use]
-    pub fn steps(&self, ways: &[u64]) -> Option<u128> {
-        let longest = ways.iter().copied().max().unwrap_or(0);
+    pub fn steps(&self, travels: &[u64]) -> Option<u128> {
+        let longest = travels.iter().copied().max().unwrap_or(0);
         match self.pace {
             Pace::Varying => None,
-            Pace::Total => Some(ways.iter().map(|&way| u128::from(way)).sum()),
+            Pace::Total => Some(travels.iter().map(|&travel| u128::from(travel)).sum()),
             Pace::Longest => Some(longest.into()),
             Pace::Cycle(_) if self.get(&NORMALIZE) => Some(1 << Width::needed_unsigned(longest.into())),
             Pace::Cycle(register) => Some(self.modulus(self.bits(register))),

@@ -157,7 +157,7 @@ impl Machine {
         })
     }
 
-    /// The bits of every word of every block, each of which must fit: for whoever makes statements about all geometries.
+    /// The bits of every word of every block, each of which must fit: for statements about all geometries.
     ///
     /// # Errors
     /// A value does not fit in its register.

@@ -12,9 +12,9 @@
 //! Every step looks at the three neighbours ahead (along x, along y, diagonal) and goes where the deviation
 //! F = x² + y² - R² is least in magnitude; of equals Y goes before X, and the diagonal before both. The radial error
 //! stays below half a BLU, so that an axis is met at R rounded to the nearest integer. A diagonal step counts two
-//! pulses in `e`. F stays within ±R, so n+1 bits; behind an end point off the circle one more.
+//! pulses in `e`. F stays within ±R, so n+1 bits; after an end point off the circle one more.
 //!
-//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/mindev-arc-nr1.csv`; the wave stands next to it:
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/mindev-arc-nr1.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/mindev-arc-nr1.csv")]
@@ -68,7 +68,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let f = DeviationAccumulator::new(m, hardware.bits(F));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
 
-    // Judge: F behind each of the three steps, and the least of their magnitudes.
+    // Judge: F after each of the three steps, and the least of their magnitudes.
     let wide = f.value().bits().max(arc.coordinates()[0].bits() + 2) + 2;
     let least = LeastDeviation::new(m, f.value(), arc.gains(wide));
     let taken = arc.redirected([least.takes_x(), least.takes_y()]);

@@ -10,7 +10,7 @@
 //! axis step would leave less the one that the diagonal would, so the nearer of both is taken: the path stays within
 //! half a BLU, measured along the short axis.
 //!
-//! The line (5, 3), from the golden file `waves/mindev-line-5-3.csv`; the wave stands next to it:
+//! The line (5, 3), from the golden file `waves/mindev-line-5-3.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/mindev-line-5-3.csv")]
@@ -60,7 +60,7 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let ways = [0, 1].map(|way| hardware.held(m, &block, L_S.of(way)));
+    let travels = [0, 1].map(|which| hardware.held(m, &block, L_S.of(which)));
     let f = DeviationAccumulator::new(m, hardware.bits(F));
     let line = LineFrame::new(m, &block, hardware);
 
@@ -70,8 +70,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let diagonal = beat.decided("diagonal", f.not_negative());
 
     // Compute.
-    let wide = ways[0].bits().max(ways[1].bits()) + 2;
-    f.close_adding(&block, beat.compute, m.name("operand", line_change(m, ways, wide, diagonal)));
+    let wide = travels[0].bits().max(travels[1].bits()) + 2;
+    f.close_adding(&block, beat.compute, m.name("operand", line_change(m, travels, wide, diagonal)));
 
     // Feed, compare.
     line.close(hardware, beat, diagonal);

@@ -227,7 +227,7 @@ impl Plan {
                 bits => Width::new(u64::from(bits)).map_err(|_| ModelError::TooWide {
                     register: name.to_owned(),
                     bits: u64::from(bits),
-                    way_out: "give a smaller --width or a smaller geometry".to_owned(),
+                    remedy: "give a smaller --width or a smaller geometry".to_owned(),
                 }),
             };
             let width = self.is_free(declaration).then(|| {
@@ -302,7 +302,7 @@ impl Plan {
     }
 
     /// The integrators (`jr…`, `jv…`) share one scale: equally wide remainders, and integrands that fit in them. An
-    /// iteration takes so many `clocks`.
+    /// iteration takes `clocks` clocks.
     ///
     /// # Errors
     /// The widths chosen are of several scales.
@@ -310,8 +310,8 @@ impl Plan {
         self.integrators_with_fraction(self.axes, clocks)
     }
 
-    /// As [`integrators`](Plan::integrators), but only the first `whole` of the axes count whole steps. The integrands of
-    /// the others have a fraction: as many bits as their remainders are wider than `jrx`.
+    /// As [`integrators`](Plan::integrators), but only the first `whole` of the axes count whole steps. The integrands
+    /// of the others have a fraction: as many bits as their remainders are wider than `jrx`.
     ///
     /// # Errors
     /// The widths chosen are of several scales.
@@ -352,7 +352,7 @@ impl Plan {
                 )));
             }
         }
-        // An integrator that has not pulsed in so many additions never will; and as many clocks of normalisation as
+        // An integrator that has not pulsed in this many additions never will; and as many clocks of normalisation as
         // bits, and those of loading.
         let additions = u64::try_from(crate::hardware::modulus(radix, n)).unwrap_or(u64::MAX);
         self.stall_clocks = additions.saturating_mul(clocks).saturating_add(u64::from(n) + 8);

@@ -9,13 +9,13 @@
 //! ```
 //!
 //! F >= 0 steps the axis whose coordinate c shrinks, F -= 2c - 1; F < 0 steps the other, F += 2c + 1, with c before the
-//! step. Where the shrinking coordinate stands at 0 the judge beat turns to the next quadrant (but not in the centre,
+//! step. Where the shrinking coordinate is 0 the judge beat turns to the next quadrant (but not in the centre,
 //! which R = 1 passes through). With `per-axis` the loader splits the arc at the axes, and an exhausted axis hands its
 //! step to the other, so that an end point off the circle is reached too.
 //!
 //! F stays within [-(2R-1), 2·ceil(R)], so n+2 bits; the radial error within [-1, +1) BLU.
 //!
-//! The arc NR1 from (6, 0) to (0, 6), from the golden file `waves/ppc-arc-nr1.csv`; the wave stands next to it:
+//! The arc NR1 from (6, 0) to (0, 6), from the golden file `waves/ppc-arc-nr1.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/ppc-arc-nr1.csv")]

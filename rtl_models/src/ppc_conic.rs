@@ -15,14 +15,15 @@
 //! | e | steps to the end, or to the axis where the loader splits (`total`) | | |
 //! | ex, ey | steps of each axis (`per-axis`) | | |
 //!
-//! gx and gy are the magnitudes of the derivatives of F, and n bits hold the greatest change of F on the arc. A step of x
-//! changes F by gx + ux where |x| grows, by gx - ux where it shrinks, and gx itself by 2ux; y likewise. One of both axes
-//! lowers F: F >= 0 steps that one, F < 0 the other. Which one it is (`x_lowers`), which coordinates grow (`x_grows`,
+//! gx and gy are the magnitudes of the derivatives of F, and n bits hold the greatest change of F on the arc. A step of
+//! x changes F by gx + ux where |x| grows, by gx - ux where it shrinks, and gx itself by 2ux; y likewise. One of both
+//! axes lowers F: F >= 0 steps that one, F < 0 the other. Which one it is (`x_lowers`), which coordinates grow
+//! (`x_grows`,
 //! `y_grows`) and where the axes run (`sx`, `sy`) are load words, so that one machine runs every conic, mirrored or not.
 //! The loader splits an ellipse where it meets its axes, and the others at their vertex.
 //!
 //! The quarter of the ellipse with semi-axes 6 and 4 from (6, 0) to (0, 4), from the golden file
-//! `waves/ppc-conic-ellipse.csv`; the wave stands next to it:
+//! `waves/ppc-conic-ellipse.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/ppc-conic-ellipse.csv")]

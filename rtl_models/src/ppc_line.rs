@@ -9,11 +9,12 @@
 //!
 //! Magnitude form: F >= 0 steps X and F -= b; F < 0 steps Y and F += a. In the signed form F = dx·y - dy·x, whose sign
 //! means the opposite in quadrants 2 and 4; there the tie F = 0 steps Y. A line of a = 0 steps Y only, one of b = 0
-//! steps X only. The bare form leaves this out, as textbooks do: F = 0 steps X, and a line along y ends next to its end.
+//! steps X only. The bare form leaves this out, as textbooks do: F = 0 steps X, and a line along y ends next to its
+//! end.
 //!
 //! Four beats a step: judge, feed, compute, compare; or all at one edge (`--beats 1`). Range of F: [-b, a-1].
 //!
-//! The line (6, 4), from the golden file `waves/ppc-line-6-4.csv`; the wave stands next to it:
+//! The line (6, 4), from the golden file `waves/ppc-line-6-4.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/ppc-line-6-4.csv")]
@@ -56,7 +57,7 @@ pub static MODEL: Model = Model {
         &ON_OVERFLOW,
     ],
     claims: Some(Claims {
-        told_apart: |hardware| (hardware.get(&END_POINT) == EndPoint::Longest).then_some(Region::LinesByLonger),
+        refined: |hardware| (hardware.get(&END_POINT) == EndPoint::Longest).then_some(Region::LinesByLonger),
         rank,
         ..Claims::of(Region::Lines)
     }),
@@ -136,8 +137,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     beat.close(block, last);
 }
 
-/// F stays between what a step of the first axis, which F >= 0 takes, at 0 and one of the second at -1 leave. `ways` are
-/// those of both axes; or one of `unless` is 0 or more.
+/// F stays between what a step of the first axis, which F >= 0 takes, at 0 and one of the second at -1 leave. `ways`
+/// are those of both axes; or one of `unless` is 0 or more.
 fn between_steps(m: Scope<'_>, what: &str, [first, second]: [Formula; 2], unless: &[Formula]) {
     let f = || F.value();
     let state = |bound: &str, any: &[Formula]| {
@@ -153,7 +154,8 @@ fn signs_between_steps(m: Scope<'_>) {
     for (quadrant, [x, y]) in [("q1", [1, 1]), ("q2", [-1, 1]), ("q3", [-1, -1]), ("q4", [1, -1])] {
         let [a, b] = [x * XE.value(), y * YE.value()];
         // The way of a motion that is not negative may be 0.
-        let elsewhere = [(x, &a), (y, &b)].map(|(sign, way)| if sign > 0 { -way.clone() - 1 } else { -way.clone() });
+        let elsewhere =
+            [(x, &a), (y, &b)].map(|(sign, travel)| if sign > 0 { -travel.clone() - 1 } else { -travel.clone() });
         between_steps(m, &format!("f_in_{quadrant}"), if x == y { [a, b] } else { [b, a] }, &elsewhere);
     }
 }

@@ -1,6 +1,6 @@
-//! Registers. Each is declared once, as a constant of the model or of the part that it belongs to, and a model lists those
-//! that it has. Widths, columns of the step table, `stepwave list`, the names of `--width` and those of the netlist follow
-//! from the declaration.
+//! Registers. Each is declared once, as a constant of the model or of the part that it belongs to, and a model lists
+//! those that it has. Widths, columns of the step table, `stepwave list`, the names of `--width` and those of the
+//! netlist follow from the declaration.
 //!
 //! ```
 //! use stepwave_models::registers::{N, PerAxis, Reg};
@@ -43,7 +43,7 @@ macro_rules! per_axis {
 /// Default width of a register.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Rule {
-    /// So many bits more than a magnitude, which has n.
+    /// This many bits more than a magnitude, which has n.
     Magnitude(u32),
     /// A number of bits that the user cannot change.
     Bits(u32),
@@ -58,7 +58,7 @@ pub const N: Rule = Rule::Magnitude(0);
 pub(crate) const AS_NEEDED: Rule = Rule::Planned("as they need");
 
 impl Rule {
-    /// So many bits more; a planned width stays what the plan says.
+    /// This many bits more; a planned width stays what the plan says.
     #[must_use]
     pub const fn plus(self, more: u32) -> Rule {
         match self {
@@ -259,7 +259,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// The names of those that hardware of so many axes has.
+    /// The names of those that hardware of this many axes has.
     #[must_use]
     pub fn names(self, axes: usize) -> &'static [&'static str] {
         if self.names.len() == AXES.len() { &self.names[..axes.min(AXES.len())] } else { self.names }
@@ -275,8 +275,8 @@ impl Row {
     }
 }
 
-/// What a model has in its list of registers: one, several that are declared together, or two of each axis, whose columns
-/// take turns.
+/// What a model has in its list of registers: one, several that are declared together, or two of each axis, whose
+/// columns take turns.
 pub trait Declared: Sync {
     /// The registers that are declared together: `first` or, if there are two for each axis, `second`.
     fn rows(&'static self) -> (Row, Option<Row>);

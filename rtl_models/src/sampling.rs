@@ -98,7 +98,7 @@ impl Sampling {
         let whole = Width::needed_unsigned(whole(room));
         if whole + fraction > MOST {
             let fits = MOST.saturating_sub(whole);
-            let way_out = if fits >= LEAST_FRACTION {
+            let remedy = if fits >= LEAST_FRACTION {
                 format!("give --fraction {fits} or less")
             } else if radius.is_none() && step.units() > greatest {
                 "give a smaller --step, or a lower --feed".to_owned()
@@ -107,7 +107,7 @@ impl Sampling {
             };
             return Err(ModelError::Widths(format!(
                 "{model}: magnitudes of {whole} bits and a fraction of {fraction} make {} bits, but the square root takes \
-                 {MOST} at most: {way_out}",
+                 {MOST} at most: {remedy}",
                 whole + fraction
             )));
         }

@@ -73,8 +73,8 @@ pub(crate) fn arc_positions(arc: &Arc, sectors: &[Sector]) -> [Vec<i64>; 2] {
     [0, 1].map(|axis| ends().map(|end| center[axis] + end[axis]).collect())
 }
 
-/// The n of a deviation register, where that of magnitudes is planned. Forced steps lead to an end off the circle, where F is up
-/// to twice the radius, which may need a bit more than the coordinates between both ends.
+/// The n of a deviation register, where that of magnitudes is planned. Forced steps lead to an end off the circle,
+/// where F is up to twice the radius, which may need a bit more than the coordinates between both ends.
 pub(crate) fn off_circle_bits(arc: &Arc, plan: &Plan) -> u32 {
     plan.n.max(plan.magnitude_bits(off_circle_radius(arc)))
 }
@@ -86,8 +86,8 @@ pub(crate) fn off_circle_radius(arc: &Arc) -> u64 {
     if arc.ends_on_circle() { 0 } else { arc.radius().ceil() as u64 }
 }
 
-/// Plans hardware that judges every step of an arc by its deviation: `f` has so many more bits than the largest coordinate
-/// (where the end point is on the circle, and where it is off it).
+/// Plans hardware that judges every step of an arc by its deviation: `f` has this many more bits than the largest
+/// coordinate (where the end point is on the circle, and where it is off it).
 pub(crate) fn judged_arc(arc: &Arc, plan: &mut Plan, crossing: Crossing, deviation: [u32; 2]) {
     let on_circle = arc.ends_on_circle();
     plan.decide(&END_POINT, if on_circle { EndPoint::Total } else { EndPoint::PerAxis });

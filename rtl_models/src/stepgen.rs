@@ -9,32 +9,32 @@
 //! ```
 //!
 //! Every accumulation adds the rate to the accumulator of each axis. A change of its pick-off bit p is a step in the
-//! direction of the rate: the axis stands at floor(acc / 2^p) steps from its start. The position counters count the steps
+//! direction of the rate: the axis is at floor(acc / 2^p) steps from its start. The position counters count the steps
 //! that are sent.
 //!
 //! **End of a block.** A block has 2^k accumulations, and rates are loaded that make it exact: d·2^(p-k) is a whole number
-//! as long as k <= p, and 2^k of them are d·2^p, d steps to the bit, whatever the preset. No rate is rounded. (A host that
-//! chooses its number N of accumulations freely must round, and d·2^p / N up is exact from an accumulator of 0 where
-//! N <= 2^p: what it is too much stays below a step.) At most one step is made in an accumulation, so 2^k is at
-//! least the longest abs(d). Without a choice k is n + ceil(log2(length + space)): no step of the fastest axis has to wait
-//! for the one before it. The width of e sets another k, and so the feed: `--width e=N` makes 2^(N-1) accumulations. A block
-//! is done when the last step and the space behind it are over.
+//! as long as k <= p, and 2^k of them are d·2^p, d steps to the bit, whatever the preset. No rate is rounded. (A host
+//! that chooses its number N of accumulations freely must round, and d·2^p / N up is exact from an accumulator of 0
+//! where N <= 2^p: what it is too much stays below a step.) At most one step is made in an accumulation, so 2^k is at
+//! least the longest abs(d). Without a choice k is n + ceil(log2(length + space)): no step of the fastest axis has to
+//! wait for the one before it. The width of e sets another k, and so the feed: `--width e=N` makes 2^(N-1)
+//! accumulations. A block is done when the last step and the space after it are over.
 //!
 //! **Timers.** A step is sent at the edge of its accumulation. Where the timers of its axis do not allow that, the
-//! accumulation waits, and with it those of all axes, as on a card whose hold inputs are joined: no step is lost, and the
-//! path stays that of the accumulators. Step output: 1 for `length` clocks, 0 for `space` clocks at least. Direction output:
-//! changes `hold` clocks behind the end of a step at least, `setup` clocks before the next.
+//! accumulation waits, and with it those of all axes, as on a card whose hold inputs are joined: no step is lost, and
+//! the path stays that of the accumulators. Step output: 1 for `length` clocks, 0 for `space` clocks at least.
+//! Direction output: changes `hold` clocks after the end of a step at least, `setup` clocks before the next.
 //!
 //! **Widths.** n bits hold the longest abs(d). What an accumulator comes to lies from -(2^n - 1)·2^p to 2^n·2^p - 1, which
-//! n+1+p bits hold. Without `--pick-off` p is k, the least that makes every rate whole. The cards of today have 48 bits,
-//! rates of 32 bits and p = 32 (`--pick-off 32 --width acc=48,rate=32`): lines of less than 2^15 steps. Too narrow an
-//! accumulator traps. Wrapped around it still makes every step as long as it has its pick-off bit, but tells its host a
-//! wrong position; where it ends below that bit its sign is picked off, and the steps are too many.
+//! n+1+p bits hold. Without `--pick-off` p is k, the least that makes every rate whole. The cards of today have 48
+//! bits, rates of 32 bits and p = 32 (`--pick-off 32 --width acc=48,rate=32`): lines of less than 2^15 steps. Too
+//! narrow an accumulator traps. Wrapped around it still makes every step as long as it has its pick-off bit, but gives
+//! its host a wrong position; where it ends below that bit its sign is picked off, and the steps are too many.
 //!
 //! Each axis is less than one step off its ideal place, and with the preset `half` at most half a step: the path stays
 //! within sqrt(2) BLU, or sqrt(1/2).
 //!
-//! The line (3, -2), from the golden file `waves/stepgen-3-2.csv`; the wave stands next to it:
+//! The line (3, -2), from the golden file `waves/stepgen-3-2.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/stepgen-3-2.csv")]
@@ -114,8 +114,8 @@ pub(crate) fn axis_bound(presets: &[Preset]) -> f64 {
     if presets.iter().all(|preset| *preset == Preset::Half) { 0.5 } else { 1.0 }
 }
 
-/// The registers for blocks of up to `longest` steps that lead to these positions of each axis. Returns the accumulations
-/// of the longest block.
+/// The registers for blocks of up to `longest` steps that lead to these positions of each axis. Returns the
+/// accumulations of the longest block.
 pub(crate) fn registers(
     plan: &mut Plan,
     longest: u64,
@@ -231,8 +231,8 @@ fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     vec![words(&line.delta(), line.from(), hardware, hardware.bits(E) - 1)]
 }
 
-/// The least k for a block of these displacements in BLU, at most that of `e`: 2^k accumulations make every step, and the
-/// rates, which are the greater the fewer accumulations there are, fit in their registers.
+/// The least k for a block of these displacements in BLU, at most that of `e`: 2^k accumulations make every step, and
+/// the rates, which are the greater the fewer accumulations there are, fit in their registers.
 pub(crate) fn least_accumulations(delta: &[i64], hardware: &Hardware) -> u32 {
     let longest = sizes::longest_of(delta);
     let rate = Width::needed_unsigned(u128::from(longest)) + 1;
@@ -241,8 +241,8 @@ pub(crate) fn least_accumulations(delta: &[i64], hardware: &Hardware) -> u32 {
     by_rate.max(log2_up(longest)).min(hardware.bits(E).saturating_sub(1))
 }
 
-/// The words of a block with these displacements of the axes, in BLU, in 2^k accumulations, and of the first block with the
-/// place that it starts from.
+/// The words of a block with these displacements of the axes, in BLU, in 2^k accumulations, and of the first block with
+/// the place that it starts from.
 pub(crate) fn words(delta: &[i64], from: &[i64], hardware: &Hardware, k: u32) -> Words {
     let step = 1_u128.checked_shl(u32::try_from(pick_off(hardware)).unwrap_or(u32::MAX)).unwrap_or(0);
     let unit = i128::try_from(step >> k).unwrap_or(0);

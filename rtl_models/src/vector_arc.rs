@@ -10,11 +10,11 @@
 //! ```
 //!
 //! No primary source of the method survives; this is a definition of this project. The octant fixes an axis vector, x
-//! where |x| < |y| (or both are equal and |x| shrinks), else y, and the diagonal. F = x² + y² - R² >= 0 takes the one of
-//! the two that goes farther inwards, F < 0 the other. The radial error stays below 1 BLU; the axes are met where
+//! where |x| < |y| (or both are equal and |x| shrinks), else y, and the diagonal. F = x² + y² - R² >= 0 takes the one
+//! of the two that goes farther inwards, F < 0 the other. The radial error stays below 1 BLU; the axes are met where
 //! point-by-point comparison meets them. A diagonal step counts two pulses in `e`.
 //!
-//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/vector-arc-nr1.csv`; the wave stands next to it:
+//! The arc NR1 from (5, 0) to (0, 5), from the golden file `waves/vector-arc-nr1.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/vector-arc-nr1.csv")]
@@ -53,7 +53,7 @@ pub static MODEL: Model = Model {
     hardware,
 };
 
-/// Beside an axis the path is that of point-by-point comparison.
+/// Next to an axis the path is that of point-by-point comparison.
 const CROSSING: Crossing = Crossing::PathExtreme;
 
 fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {

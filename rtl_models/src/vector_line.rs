@@ -8,12 +8,12 @@
 //! ```
 //!
 //! No primary source of the method survives; this is a definition of this project. The octant of the line fixes an axis
-//! vector (x where a >= b, else y) and the diagonal vector; on a line of 45° both are the diagonal. F = a·y - b·x is the
-//! cross product of the line and the way gone: an X pulse takes b off, a Y pulse puts a on. On the line, F = 0, the axis
-//! vector is taken; next to it the one that leads back: the diagonal where x is the axis vector and F < 0, or y is and
-//! F > 0. The path stays below 1 BLU off the line, and F within [1 - max(a, b), max(a, b) - 1].
+//! vector (x where a >= b, else y) and the diagonal vector; on a line of 45° both are the diagonal. F = a·y - b·x is
+//! the cross product of the line and the way gone: an X pulse takes b off, a Y pulse puts a on. On the line, F = 0, the
+//! axis vector is taken; next to it the one that leads back: the diagonal where x is the axis vector and F < 0, or y is
+//! and F > 0. The path stays below 1 BLU off the line, and F within [1 - max(a, b), max(a, b) - 1].
 //!
-//! The line (5, 3), from the golden file `waves/vector-line-5-3.csv`; the wave stands next to it:
+//! The line (5, 3), from the golden file `waves/vector-line-5-3.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/vector-line-5-3.csv")]
@@ -62,7 +62,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let f = DeviationAccumulator::new(m, hardware.bits(F));
     let line = LineFrame::new(m, &block, hardware);
     let wide = xe.bits().max(ye.bits()) + 1;
-    let [xe, ye] = [xe, ye].map(|way| way.extend(wide).as_signed());
+    let [xe, ye] = [xe, ye].map(|end| end.extend(wide).as_signed());
 
     invariants(m);
 
@@ -80,7 +80,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     line.close(hardware, beat, diagonal);
 }
 
-/// F stays between what a step of the axis vector at 0 and one of the diagonal beside the line leave.
+/// F stays between what a step of the axis vector at 0 and one of the diagonal next to the line leave.
 fn invariants(m: Scope<'_>) {
     let (f, x_is_long) = (|| F.value(), || LONGEST.of(0).value());
     let [xe, ye] = [0, 1].map(|axis| move || XE_YE.of(axis).value());
@@ -92,6 +92,6 @@ fn invariants(m: Scope<'_>) {
 }
 
 fn load(line: &Line, _: &Hardware) -> Vec<Words> {
-    let (ways, words) = words::judged_line(line);
-    vec![words.set_each(XE_YE, ways).set(F, 0)]
+    let (end, words) = words::judged_line(line);
+    vec![words.set_each(XE_YE, end).set(F, 0)]
 }

@@ -99,7 +99,7 @@ impl FromArgMatches for HardwareArgs {
 
 impl HardwareArgs {
     /// A model's error in the words of this command line: a feed gives the way of a period, which is an option of its own.
-    pub(crate) fn told(&self, error: ModelError) -> Error {
+    pub(crate) fn explain(&self, error: ModelError) -> Error {
         match error {
             ModelError::NotTaken { model, option, takes } if option == STEP.name && self.feed.is_some() => {
                 Error::Invalid(format!("{model} does not take --feed; it takes {takes}"))
@@ -114,10 +114,10 @@ impl HardwareArgs {
         }
     }
 
-    /// As [`told`](Self::told), of a study of the model.
-    pub(crate) fn told_of_study(&self, error: ProofError) -> Error {
+    /// As [`explain`](Self::explain), of a study of the model.
+    pub(crate) fn explain_study(&self, error: ProofError) -> Error {
         match error {
-            ProofError::Model(error) => self.told(error),
+            ProofError::Model(error) => self.explain(error),
             other => other.into(),
         }
     }
@@ -135,8 +135,8 @@ impl HardwareArgs {
     /// The options given.
     pub(crate) fn choices(&self) -> Options {
         let Some(feed) = self.feed else { return self.given.clone() };
-        let way = feed / 60.0 * self.given.value(&SYSTEM).period() / self.blu;
+        let travel = feed / 60.0 * self.given.value(&SYSTEM).period() / self.blu;
         // What is beyond all measure is refused by its length.
-        self.given.clone().with(&STEP, Some(Millionths::nearest(way).unwrap_or(Millionths(1 << 60))))
+        self.given.clone().with(&STEP, Some(Millionths::nearest(travel).unwrap_or(Millionths(1 << 60))))
     }
 }

@@ -1,5 +1,5 @@
 //! Names that shells complete: models, registers, and the values of lists. What is given is judged elsewhere, so that a
-//! wrong name has the sentence of whoever knows the right ones.
+//! wrong name has the sentence of the table with the right ones.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;

@@ -19,10 +19,10 @@ pub(crate) struct Tool {
 }
 
 fn parse_tool(text: &str) -> Result<Tool, String> {
-    let way_out = || format!("invalid tool '{text}': give its D number and radius, such as 1=4mm");
-    let (number, radius) = text.split_once('=').ok_or_else(way_out)?;
-    let number = number.trim().trim_start_matches(['D', 'd']).parse().map_err(|_| way_out())?;
-    let radius = parse_length(radius.trim()).filter(|radius| *radius >= 0.0).ok_or_else(way_out)?;
+    let remedy = || format!("invalid tool '{text}': give its D number and radius, such as 1=4mm");
+    let (number, radius) = text.split_once('=').ok_or_else(remedy)?;
+    let number = number.trim().trim_start_matches(['D', 'd']).parse().map_err(|_| remedy())?;
+    let radius = parse_length(radius.trim()).filter(|radius| *radius >= 0.0).ok_or_else(remedy)?;
     Ok(Tool { number, radius })
 }
 
@@ -31,13 +31,13 @@ fn parse_tool(text: &str) -> Result<Tool, String> {
 pub(crate) struct Home(pub(crate) Option<[f64; 3]>);
 
 fn parse_home(text: &str) -> Result<Home, String> {
-    let way_out = || format!("'{text}' is not a home: give X,Y,Z such as 0,0,50mm, or ignore");
+    let remedy = || format!("'{text}' is not a home: give X,Y,Z such as 0,0,50mm, or ignore");
     if text == "ignore" {
         return Ok(Home(None));
     }
-    let coordinates = text.split(',').map(|word| parse_length(word.trim()).ok_or_else(way_out));
+    let coordinates = text.split(',').map(|word| parse_length(word.trim()).ok_or_else(remedy));
     let coordinates = coordinates.collect::<Result<Vec<f64>, String>>()?;
-    coordinates.try_into().map(|home| Home(Some(home))).map_err(|_| way_out())
+    coordinates.try_into().map(|home| Home(Some(home))).map_err(|_| remedy())
 }
 
 /// A length in mm of either sign or 0, with its unit or, in mm, without one.

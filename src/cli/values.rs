@@ -42,11 +42,11 @@ fn parse_clock(text: &str) -> Result<f64, String> {
 /// One BLU in millimetres.
 pub(super) fn parse_blu(text: &str) -> Result<f64, String> {
     const UNITS: [(&str, f64); 4] = [("mm", 1.0), ("um", 1e-3), ("µm", 1e-3), ("in", 25.4)];
-    let way_out = || format!("invalid length '{text}': give one such as 0.001mm, 1um or 0.0001in");
-    let (unit, scale) = UNITS.iter().find(|(unit, _)| text.ends_with(unit)).ok_or_else(way_out)?;
+    let remedy = || format!("invalid length '{text}': give one such as 0.001mm, 1um or 0.0001in");
+    let (unit, scale) = UNITS.iter().find(|(unit, _)| text.ends_with(unit)).ok_or_else(remedy)?;
     let number = text.strip_suffix(unit).unwrap_or_default().trim();
-    let length: f64 = number.parse().map_err(|_| way_out())?;
-    if length.is_finite() && length > 0.0 { Ok(length * scale) } else { Err(way_out()) }
+    let length: f64 = number.parse().map_err(|_| remedy())?;
+    if length.is_finite() && length > 0.0 { Ok(length * scale) } else { Err(remedy()) }
 }
 
 /// A choice among named values.

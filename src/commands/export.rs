@@ -81,7 +81,7 @@ fn geometry(args: &ExportArgs) -> Result<Subject, Error> {
     let model = find(args.model.as_deref().unwrap_or_default())?;
     let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
     let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
-    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.told(error))?;
+    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.explain(error))?;
     let title = report::title(model, bench.hardware(), &curve);
     let mut text = geometry::moved_center(&curve, &args.geometry).unwrap_or_default() + &summary(&bench);
     for word in bench.cut_words() {

@@ -7,8 +7,8 @@ use crate::nc::{Arc, Conic, Curve, Direction, Helix, Line};
 use crate::Error;
 use crate::cli::{GeometryArgs, HardwareArgs, Point};
 
-/// The curve of this kind that the options give, for a model or a command; the radii of an arc may differ by so many BLU
-/// beyond what rounding makes.
+/// The curve of this kind that the options give, for a model or a command; the radii of an arc may differ by this many
+/// BLU beyond what rounding makes.
 ///
 /// # Errors
 /// Something is missing, or the model does not interpolate such a curve.
@@ -102,8 +102,8 @@ fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Resul
     })
 }
 
-/// The choices made for a model and a clock in Hz: the tolerance counts for the radii of an arc alone where the model itself
-/// takes none.
+/// The choices made for a model and a clock in Hz: the tolerance counts for the radii of an arc alone where the model
+/// itself takes none.
 pub(crate) fn choices(model: &Model, curve: &Curve, hardware: &HardwareArgs, clock_hz: f64) -> Options {
     let of_radii = matches!(curve, Curve::Arc(_) | Curve::Helix(_));
     let choices = hardware.choices_at(clock_hz);

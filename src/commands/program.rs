@@ -104,7 +104,7 @@ impl<'a> Source<'a> {
         let survey = Survey::of(open(self.file)?, family, &preparation).map_err(|error| self.told(&error))?;
         // How far the radii of an arc may differ is not the machine's concern.
         let choices = self.hardware.choices().without(&TOLERANCE);
-        let hardware = family.plan(&survey.size, &choices).map_err(|error| self.hardware.told(error))?;
+        let hardware = family.plan(&survey.size, &choices).map_err(|error| self.hardware.explain(error))?;
         let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware)?).as_hardware_loads();
         let pace = Pace { clock_hz: self.clock_hz, blu_mm: self.hardware.blu, rapid: self.text.rapid };
         Ok(Prepared { source: self, preparation, survey, bench, pace, name: self.file.display().to_string() })

@@ -1,6 +1,6 @@
 //! A progress line for work longer than a second, on a terminal only.
 //!
-//! A thread of its own draws it, so that whoever works only counts, from any thread, and the line lives on while a
+//! A thread of its own draws it, so that the workers only count, from any thread, and the line lives on while a
 //! single step takes long.
 
 use std::io::{self, IsTerminal};
@@ -39,7 +39,7 @@ struct Shared {
     done: AtomicU64,
     /// What was done before the work began.
     begun: AtomicU64,
-    /// The share that is done: so many of so many, of whatever; 0 of 0 where it is not known.
+    /// The share that is done: `part` of `whole`, in any unit; 0 of 0 where it is not known.
     part: AtomicU64,
     whole: AtomicU64,
     over: Mutex<bool>,
@@ -52,7 +52,7 @@ impl Progress {
         Progress::start(what, 0, true)
     }
 
-    /// Of so many pieces of work.
+    /// Of this many pieces of work.
     pub(crate) fn of(all: u64, what: &'static str) -> Progress {
         Progress::start(what, all, true)
     }
@@ -76,19 +76,19 @@ impl Progress {
         Progress { shared, drawer: drawer.flatten() }
     }
 
-    /// So many of them were done before: they count for the share, not for the rate.
+    /// This many of them were done before: they count for the share, not for the rate.
     pub(crate) fn begin_at(&self, done: u64) {
         self.shared.begun.store(done, Ordering::Relaxed);
         self.set(done);
     }
 
-    /// So many are done, all in all.
+    /// This many are done in total.
     pub(crate) fn set(&self, done: u64) {
         self.shared.done.store(done, Ordering::Relaxed);
         self.shared.part.store(done, Ordering::Relaxed);
     }
 
-    /// So many more are done.
+    /// This many more are done.
     pub(crate) fn add(&self, more: u64) {
         self.shared.done.fetch_add(more, Ordering::Relaxed);
         self.shared.part.fetch_add(more, Ordering::Relaxed);
@@ -219,7 +219,7 @@ pub(crate) struct RunProgress {
 impl RunProgress {
     /// Nothing is shown yet.
     pub(crate) fn new(bench: &Testbench, curve: &Curve) -> RunProgress {
-        let progress = Progress::start("clocks", way(curve), false);
+        let progress = Progress::start("clocks", path_length(curve), false);
         let pulses = bench.machine().pulses.iter().map(|port| bench.columns().index(port.net)).collect();
         RunProgress { progress, pulses, begun: false }
     }
@@ -253,7 +253,7 @@ impl Observer for RunProgress {
 
 /// The pulses that the axes make along a curve, but for some at its corners.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-fn way(curve: &Curve) -> u64 {
+fn path_length(curve: &Curve) -> u64 {
     const CHORDS: usize = 1000;
     let straight = |axis: usize| curve.from()[axis].abs_diff(curve.to()[axis]);
     match curve {

@@ -86,7 +86,7 @@ impl<'a> Job<'a> {
     }
 
     fn fixed(&self, extent: Extent) -> Result<Fixed, Error> {
-        let told = |error| self.args.hardware.told_of_study(error);
+        let told = |error| self.args.hardware.explain_study(error);
         Fixed::new(self.model, &self.choices, extent).map_err(told)
     }
 
@@ -114,7 +114,7 @@ impl<'a> Job<'a> {
 
     /// The hardware of every width.
     fn subject(&self) -> Result<Subject, Error> {
-        let told = |error| self.args.hardware.told_of_study(error);
+        let told = |error| self.args.hardware.explain_study(error);
         let subject = Subject::new(self.model, &self.choices, &self.narrower).map_err(told)?;
         Ok(if self.args.any_preset { subject.with_any_preset() } else { subject })
     }
@@ -152,7 +152,7 @@ impl<'a> Job<'a> {
     fn asked(&self, command: &str) -> Result<Option<Answer>, Error> {
         let k = self.args.bits.unwrap_or(ASKED);
         let question = question(self.model, &self.claims, &self.choices, &self.narrower, k)
-            .map_err(|error| self.args.hardware.told_of_study(error))?;
+            .map_err(|error| self.args.hardware.explain_study(error))?;
         let answer =
             match ask(command, &question.script, Duration::from_secs(self.args.solver_seconds), &temporary::attend) {
                 Err(late @ SolverError::Late { .. }) => {

@@ -83,7 +83,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         .files(&args.outputs.steps, &args.outputs.json, &args.outputs.plot, &args.checkpoints);
     // A clock that is not possible is refused as such, before a model finds it too slow.
     ClockTime::from_hz(args.clock.clock_hz)?;
-    let bench = simulation.bench().map_err(|error| args.hardware.told(error))?;
+    let bench = simulation.bench().map_err(|error| args.hardware.explain(error))?;
     let ran = simulation.run_on(bench, outputs, |bench, outputs| {
         if outputs.uses_stdout() {
             no_table(args)?;

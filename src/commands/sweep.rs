@@ -114,8 +114,8 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
             Err(_) => return trouble(format!("--center has {} coordinates: give X,Y", point.len())),
         },
     };
-    let ways = [(args.cw, Direction::Clockwise), (args.ccw, Direction::CounterClockwise)];
-    let directions = ways.into_iter().filter(|(given, _)| *given).map(|(_, direction)| direction).collect();
+    let flags = [(args.cw, Direction::Clockwise), (args.ccw, Direction::CounterClockwise)];
+    let directions = flags.into_iter().filter(|(given, _)| *given).map(|(_, direction)| direction).collect();
     let cells = Cells { drawn, sizes, from, to, center, directions, radii };
     Ok(match args.samples {
         Some(count) if cells.count() <= u128::from(u64::MAX) => Space::Samples { cells, count, seed: args.seed },

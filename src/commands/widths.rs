@@ -20,7 +20,7 @@ pub(crate) fn run(args: &WidthsArgs) -> Result<(), Error> {
     let progress = Progress::new("geometries");
     let found = widths(model, &choices, &args.extent, &|more| progress.add(more));
     progress.finish();
-    let found = found.map_err(|error| args.hardware.told_of_study(error))?;
+    let found = found.map_err(|error| args.hardware.explain_study(error))?;
     if args.json { output::print_data(&as_json(model, &found)) } else { output::print(&table(model, &found)) }?;
     if choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty() {
         return Ok(());

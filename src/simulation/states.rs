@@ -27,8 +27,8 @@ impl<'a> States<'a> {
             return Err(Error::Invalid(format!("--checkpoints: {need}: leave out --steps and --plot")));
         }
         let read = |what: &dyn std::fmt::Display| {
-            let way_out = "name another file, or delete it";
-            Error::Invalid(format!("--checkpoints {}: {what}: {way_out}", path.display()))
+            let remedy = "name another file, or delete it";
+            Error::Invalid(format!("--checkpoints {}: {what}: {remedy}", path.display()))
         };
         match fs::read_to_string(path) {
             Ok(text) => {

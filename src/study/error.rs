@@ -6,7 +6,7 @@ use stepwave_netlist::did_you_mean;
 /// Why a sweep cannot be made, gone on with, or joined; every message names the value and the way out.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// A word is no range.
+    /// A word is not a range.
     #[error("invalid range '{0}': give a whole number, or FIRST..LAST, or FIRST..LAST/STEP")]
     NoRange(String),
     /// A range whose last number is less than its first.
@@ -17,7 +17,7 @@ pub enum StudyError {
         /// Its last.
         last: i64,
     },
-    /// A range that stands still.
+    /// A range with step 0.
     #[error("the range {first}..{last} has a step of 0: give 1 or more")]
     NoStep {
         /// Its first number.

@@ -14,7 +14,8 @@ const FOUND: std::ops::RangeInclusive<u32> = 5..=8;
 /// The greatest k at which a block of a counted model is followed: it takes 2^k clocks.
 const MOST_FOLLOWED: u32 = 16;
 
-/// Widths that are enough for every geometry of coordinates of k bits, whatever k is: those by default, less so many bits.
+/// Widths that are enough for every geometry of coordinates of k bits, whatever k is: those by default, less this many
+/// bits.
 #[derive(Clone, Debug)]
 pub struct KForm {
     model: &'static Model,
@@ -56,7 +57,8 @@ impl KForm {
         Ok(None)
     }
 
-    /// Hardware that is wide enough for every geometry of coordinates of `k` bits; `None` where it is not proved at this k.
+    /// Hardware that is wide enough for every geometry of coordinates of `k` bits; `None` where it is not proved at
+    /// this k.
     ///
     /// # Errors
     /// There is no such hardware.

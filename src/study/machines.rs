@@ -71,7 +71,7 @@ pub(super) struct Machines {
     made: AtomicUsize,
 }
 
-/// What tells most hardware from each other.
+/// What distinguishes most hardware.
 fn digest(hardware: &Hardware) -> u64 {
     let mut hasher = DefaultHasher::new();
     hardware.widths.values().for_each(|width| width.get().hash(&mut hasher));

@@ -147,7 +147,7 @@ impl Source {
         StudyError::Merge { file: self.path.display().to_string(), what: what.to_string() }
     }
 
-    /// Takes the next row, and reads the one behind it.
+    /// Takes the next row, and reads the one after it.
     fn advance(&mut self) -> Result<Option<Row>, StudyError> {
         let row = match &mut self.reader {
             Reader::Csv(part) => part.next(),

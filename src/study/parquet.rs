@@ -23,7 +23,7 @@ use super::{StudyError, Sweep};
 
 /// Rows of a group.
 const GROUP: usize = 1 << 16;
-/// Key of the metadata in which a part tells of itself.
+/// Key of the metadata that describes a part.
 const PART: &str = "stepwave.part";
 
 fn physical(kind: Kind) -> Physical {
@@ -185,13 +185,13 @@ impl ParquetPart {
         let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
         let reader = SerializedFileReader::new(file).map_err(|error| error.to_string())?;
         let file = reader.metadata().file_metadata();
-        let told = file.key_value_metadata().into_iter().flatten().find(|pair| pair.key == PART);
-        let told = told.and_then(|pair| serde_json::from_str::<serde_json::Value>(pair.value.as_deref()?).ok());
-        let head = told.as_ref().and_then(|told| told.get("head")?.as_str()).ok_or(NOT_A_PART)?;
+        let metadata = file.key_value_metadata().into_iter().flatten().find(|pair| pair.key == PART);
+        let metadata = metadata.and_then(|pair| serde_json::from_str::<serde_json::Value>(pair.value.as_deref()?).ok());
+        let head = metadata.as_ref().and_then(|metadata| metadata.get("head")?.as_str()).ok_or(NOT_A_PART)?;
         let head = PartHead::read(head)?;
-        let count = told.as_ref().and_then(|told| told.get("rows")?.as_u64());
+        let count = metadata.as_ref().and_then(|metadata| metadata.get("rows")?.as_u64());
         let checks: Option<Vec<String>> =
-            told.as_ref().and_then(|told| serde_json::from_value(told.get("checks")?.clone()).ok());
+            metadata.as_ref().and_then(|metadata| serde_json::from_value(metadata.get("checks")?.clone()).ok());
         let (Some(count), Some(checks)) = (count, checks) else {
             return Err(NOT_A_PART.to_owned());
         };

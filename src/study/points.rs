@@ -16,7 +16,7 @@ use super::table::fields;
 /// beyond what rounding makes.
 ///
 /// # Errors
-/// The file cannot be read, or has a mistake, which is told with its line.
+/// The file cannot be read, or has a mistake, which is reported with its line.
 pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Space, StudyError> {
     let text = std::fs::read_to_string(file).map_err(|error| StudyError::reading(file, error))?;
     let mistake = |line: usize, what: String| StudyError::Points { file: file.display().to_string(), line, what };

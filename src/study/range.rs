@@ -55,8 +55,8 @@ impl Range {
     /// The index of a number, if the range holds it.
     #[must_use]
     pub fn index(&self, number: i64) -> Option<u64> {
-        let way = number.abs_diff(self.first);
-        ((self.first..=self.last).contains(&number) && way.is_multiple_of(self.step)).then(|| way / self.step)
+        let offset = number.abs_diff(self.first);
+        ((self.first..=self.last).contains(&number) && offset.is_multiple_of(self.step)).then(|| offset / self.step)
     }
 
     /// The numbers, from the least.
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_range_is_refused_with_the_way_out() {
+    fn an_invalid_range_is_refused_with_a_remedy() {
         for (text, hint) in [
             ("9..3", "begins after its end"),
             ("0..9/0", "step of 0"),

@@ -30,7 +30,7 @@ pub struct Cells {
     pub drawn: Drawn,
     /// Radius of circles, and height of helices; semi-axes or parameter of conics.
     pub sizes: Vec<Range>,
-    /// Start points; none where the size tells it: (R, 0), or the vertex, about the centre.
+    /// Start points; none where the size gives it: (R, 0), or the vertex, about the centre.
     pub from: Option<Vec<Range>>,
     /// End points; none where the curve comes back to its start (a helix at its height).
     pub to: Option<Vec<Range>>,
@@ -45,7 +45,7 @@ pub struct Cells {
 /// A geometry, or why there is none.
 pub type Geometry = Result<Curve, GeometryError>;
 
-/// What tells one geometry, whether it can be built or not.
+/// The description of one geometry, whether it can be built or not.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Site {
     /// The curve.
@@ -174,14 +174,14 @@ pub enum Space {
         cells: Cells,
         /// How many.
         count: u64,
-        /// Whatever tells this draw from others.
+        /// Distinguishes this draw from others.
         seed: u64,
     },
     /// The geometries of a file.
     Points {
         /// In the order of its lines.
         points: Vec<Site>,
-        /// What tells the file from others of the same name.
+        /// Distinguishes the file from others of the same name.
         content: u64,
     },
 }
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn a_grid_of_lines_has_every_end_point_and_tells_of_the_one_at_the_start() {
+    fn a_grid_of_lines_has_every_end_point_and_reports_the_one_at_the_start() {
         let lines = all(&Space::Cells(cells(Drawn::Line, &[], Some(["0..2", "-1..1/2"]))));
         let ends: Vec<Vec<i64>> = lines.iter().flatten().map(|line| line.to().to_vec()).collect();
         assert_eq!(ends, [[0, -1], [0, 1], [1, -1], [1, 1], [2, -1], [2, 1]]);

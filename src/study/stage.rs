@@ -1,8 +1,8 @@
 //! The rows of a sweep on their way to the final file, so that a sweep that was stopped can go on.
 //!
 //! Next to the final `F` are `.F.sweep.part`, the rows so far as CSV, and `.F.sweep.journal`: its first line says which
-//! sweep it is, each further one how far the part was when a chunk had been written whole, and the check of all bytes up
-//! to there. What follows the last of them in the part is cut off when the sweep goes on.
+//! sweep it is, each further one how far the part was when a chunk had been written whole, and the check of all bytes
+//! up to there. What follows the last of them in the part is cut off when the sweep goes on.
 
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -30,7 +30,7 @@ pub struct Stage {
     columns: Vec<Column>,
 }
 
-fn beside(target: &Path, what: &str) -> PathBuf {
+fn next_to(target: &Path, what: &str) -> PathBuf {
     let mut name = std::ffi::OsString::from(".");
     name.push(target.file_name().unwrap_or_default());
     name.push(format!(".sweep.{what}"));
@@ -41,11 +41,11 @@ impl Stage {
     /// The files next to a final one: the rows, and the journal.
     #[must_use]
     pub fn files(target: &Path) -> [PathBuf; 2] {
-        ["part", "journal"].map(|what| beside(target, what))
+        ["part", "journal"].map(|what| next_to(target, what))
     }
 
-    /// Begins, or goes on with what a stopped sweep has left if `resume` and there is something. `target` is the final
-    /// file, which this does not touch before [`finish`](Self::finish).
+    /// Begins, or continues from what a stopped sweep has left, if `resume` and there is something. `target` is the
+    /// final file, which this does not touch before [`finish`](Self::finish).
     ///
     /// # Errors
     /// A file cannot be written, another sweep is writing it, what is left is of another sweep or is not as it was
@@ -56,7 +56,7 @@ impl Stage {
         let (journal, is_new) = Journal::open(&notes).map_err(writing)?;
         let stage = Stage::opened(target, sweep, resume, journal);
         if stage.is_err() && is_new {
-            // What stays is no harm.
+            // What stays does no harm.
             let _ = fs::remove_file(&notes);
         }
         stage
@@ -69,7 +69,7 @@ impl Stage {
         let head = PartHead::new(sweep.part(), sweep.identity());
         let left = left::open(&rows).map_err(writing)?;
         if left.is_some() && !journal.is_begun() {
-            return Err(writing(left::in_the_way(&rows, "no sweep has left it there")));
+            return Err(writing(left::occupied(&rows, "no sweep has left it there")));
         }
         let marks = if resume { journal.marks(&head).map_err(refused)? } else { Vec::new() };
         if let Some(mark) = marks.last() {
@@ -86,7 +86,7 @@ impl Stage {
             stage.begin(&head, sweep.part()).map(|()| stage)
         });
         begun.map_err(|error| {
-            // Nothing is done that could be gone on with; what stays is no harm.
+            // Nothing is done that could be continued; what stays does no harm.
             let _ = fs::remove_file(&rows).and_then(|()| fs::remove_file(&notes));
             writing(error)
         })

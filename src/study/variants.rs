@@ -14,10 +14,11 @@ pub struct Dimension {
 
 impl Dimension {
     /// The values that a list with commas gives: `8..12`, `zero,half`, `f=3..5`. Of widths and presets, what is said of
-    /// all registers and of each single one makes a product of its own. A value with commas of its own is a list of one.
+    /// all registers and of each single one makes a product of its own. A value with commas of its own is a list of
+    /// one.
     ///
     /// # Errors
-    /// A word is no value of this option.
+    /// A word is not a value of this option.
     pub fn parse(option: &'static dyn AnyOption, text: &str) -> Result<Dimension, StudyError> {
         let texts = match option.shape() {
             Shape::Commas => vec![text.to_owned()],
@@ -184,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn every_pair_of_values_stands_once_and_the_last_changes_fastest() {
+    fn every_pair_of_values_occurs_once_and_the_last_changes_fastest() {
         let dimensions: [(&'static dyn AnyOption, &str); 3] =
             [(&END_POINT, "total,per-axis"), (&BEATS, "4,1"), (&WIDTH, "f=5")];
         let variants = Variants(dimensions.map(|(choice, text)| Dimension::parse(choice, text).unwrap()).into());
@@ -197,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_value_is_told_with_those_there_are() {
+    fn an_invalid_value_is_reported_with_the_valid_ones() {
         let wrong: [(&'static dyn AnyOption, &str, &str); 6] = [
             (&WIDTH, "8,65", "invalid value '65' of --width: give bits from 1 to 64"),
             (&WIDTH, "12..8", "begins after its end"),

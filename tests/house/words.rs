@@ -2,22 +2,24 @@
 
 use super::tidy::sources;
 
-/// Folders and files whose comments and names have been gone through.
-const FINISHED: [&str; 13] = [
-    "crates",
-    "rtl_models/src/parts",
-    "rtl_models/src/options",
-    "src/testbench",
-    "src/output.rs",
-    "src/waves.rs",
-    "tests/cli",
-    "tests/engine",
-    "tests/export",
-    "tests/models",
-    "tests/netlist",
-    "tests/reference",
-    "tests/waves",
+/// Folders and files whose comments and names have still to be gone through.
+const UNFINISHED: [&str; 12] = [
+    "rtl_models/src/model.rs",
+    "rtl_models/src/program",
+    "rtl_models/src/sampled_arc.rs",
+    "rtl_models/src/sampled_line.rs",
+    "rtl_models/src/sampling.rs",
+    "src/commands/program.rs",
+    "src/commands/prove",
+    "src/program",
+    "src/report",
+    "src/simulation.rs",
+    "src/study",
+    "tests/proofs",
 ];
+
+/// Sources whose doc comments are the help of the command line, which is part of the interface.
+const HELP: [&str; 3] = ["src/cli.rs", "src/cli", "src/commands/diff.rs"];
 
 /// Words that no engineer of this field writes, each with what it should be.
 const WORDS: [(&str, &str); 7] = [
@@ -118,9 +120,11 @@ fn comments_and_names_are_in_the_words_of_the_field() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut found = Vec::new();
     for (path, text) in sources() {
-        if FINISHED.iter().any(|finished| path.starts_with(root.join(finished))) {
+        let is_in = |folders: &[&str]| folders.iter().any(|folder| path.starts_with(root.join(folder)));
+        if !is_in(&UNFINISHED) {
             for (number, line) in without_strings(&text).lines().enumerate() {
-                if let Some((odd, better)) = oddity(line) {
+                let is_help = is_in(&HELP) && line.trim_start().starts_with("///");
+                if let Some((odd, better)) = oddity(line).filter(|_| !is_help) {
                     found.push(format!("{}:{}: {odd:?}, better: {better}: {line}", path.display(), number + 1));
                 }
             }

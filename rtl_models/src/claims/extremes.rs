@@ -40,8 +40,8 @@ impl Reach {
         let below =
             self.least.saturating_add_unsigned(place.abs_diff(self.least) / self.step.max(1) * self.step.max(1));
         let neighbours = (-around..=around).map(|by| {
-            let way = self.step.max(1).saturating_mul(by.unsigned_abs());
-            if by < 0 { below.saturating_sub_unsigned(way) } else { below.saturating_add_unsigned(way) }
+            let offset = self.step.max(1).saturating_mul(by.unsigned_abs());
+            if by < 0 { below.saturating_sub_unsigned(offset) } else { below.saturating_add_unsigned(offset) }
         });
         marks.extend(neighbours.filter(|place| self.holds(*place)));
     }
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn arcs_reach_the_corner_the_axes_and_the_points_next_to_them_both_ways() {
+    fn arcs_reach_the_corner_the_axes_and_the_points_next_to_them_in_both_directions() {
         let most = (1 << 20) - 1;
         let arcs = arcs([Reach::within(most); 2]);
         for [from, to] in [

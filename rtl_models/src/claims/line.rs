@@ -76,9 +76,9 @@ pub(super) fn symbols(kind: &str, curve: &Curve, halved: bool) -> Option<Vec<i12
         (true, true) => "Q3",
         (false, true) => "Q4",
     };
-    let ways = [i128::from(dx).abs(), i128::from(dy).abs()];
-    let half = halved.then(|| ways[0].max(ways[1]) / 2);
-    (at_origin && kind.starts_with(quadrant)).then(|| ways.into_iter().chain(half).collect())
+    let travels = [i128::from(dx).abs(), i128::from(dy).abs()];
+    let half = halved.then(|| travels[0].max(travels[1]) / 2);
+    (at_origin && kind.starts_with(quadrant)).then(|| travels.into_iter().chain(half).collect())
 }
 
 /// The line from the origin to a point.

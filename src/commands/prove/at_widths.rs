@@ -44,7 +44,7 @@ fn simulate(job: &Job<'_>, fixed: &Fixed, few: bool, clocks: u64) -> Result<(Opt
     let show = |done: usize, all: usize| {
         progress.get_or_init(|| Progress::of(all as u64, "geometries")).set(done as u64);
     };
-    fixed.search(few, clocks, show).map_err(|error| job.args.hardware.told_of_study(error))
+    fixed.search(few, clocks, show).map_err(|error| job.args.hardware.explain_study(error))
 }
 
 /// The hardware and its box in words.
@@ -121,7 +121,7 @@ fn exhaust(job: &Job<'_>, fixed: &Fixed, few: Tried, why: &str) -> Result<(), Er
 fn attempt_any_box(job: &Job<'_>) -> Result<(), Error> {
     let Job { args, model, claims, choices, narrower } = job;
     let _ = job.certificate()?;
-    let told = |error| args.hardware.told_of_study(error);
+    let told = |error| args.hardware.explain_study(error);
     let ks = narrowing_ks(model, choices).map_err(told)?;
     let first = search(model, claims, choices, narrower, SEARCHED, |fault| fault != Fault::Refused);
     let mut found = first.found;

@@ -87,7 +87,7 @@ pub(super) fn attempt(job: &Job<'_>) -> Result<(), Error> {
     {
         return refuted(args, model, &example);
     }
-    let told = |error| unfollowed(error, |error| args.hardware.told_of_study(error));
+    let told = |error| unfollowed(error, |error| args.hardware.explain_study(error));
     let blocks = found.map_err(told)?;
     // They are not believed: what counts is what the second way comes to.
     if followed(model, choices, narrower, ks, Way::Recount).map_err(told)? != blocks {

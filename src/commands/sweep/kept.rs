@@ -79,7 +79,7 @@ impl Kept {
 impl Drop for Kept {
     fn drop(&mut self) {
         if let Some(stage) = self.stage.take_if(|stage| stage.done()[0] == 0) {
-            // What stays is no harm.
+            // What stays does no harm.
             let _ = temporary::undisturbed(|_| stage.discard());
             temporary::keep(&self.files, None);
         }

@@ -59,9 +59,10 @@ fn parabolas(c: i64, greatest: i64, all: bool, conics: &mut Vec<Conic>) {
     for [along, across] in ends(found, all) {
         for (opens, side) in OPENS.into_iter().flat_map(|opens| [(opens, 1), (opens, -1)]) {
             let end = place(opens, along, side * across);
-            let ways = [([0, 0], end), (end, [0, 0])];
-            conics
-                .extend(ways.iter().filter_map(|(from, to)| Conic::parabola(c, Some(opens), *from, *to, [0, 0]).ok()));
+            let motions = [([0, 0], end), (end, [0, 0])];
+            conics.extend(
+                motions.iter().filter_map(|(from, to)| Conic::parabola(c, Some(opens), *from, *to, [0, 0]).ok()),
+            );
         }
     }
 }
@@ -80,11 +81,11 @@ fn hyperbolas([real, other]: [i64; 2], greatest: i64, all: bool, conics: &mut Ve
     for [along, across] in ends(found, all) {
         for (opens, side) in OPENS.into_iter().flat_map(|opens| [(opens, 1), (opens, -1)]) {
             let (vertex, end) = (place(opens, real, 0), place(opens, along, side * across));
-            let ways = [(vertex, end), (end, vertex)];
+            let motions = [(vertex, end), (end, vertex)];
             let branch = |(from, to): &([i64; 2], [i64; 2])| {
                 Conic::hyperbola([real, other], Some(opens), *from, *to, [0, 0]).ok()
             };
-            conics.extend(ways.iter().filter_map(branch));
+            conics.extend(motions.iter().filter_map(branch));
         }
     }
 }
@@ -93,7 +94,11 @@ fn ellipses([a, b]: [i64; 2], conics: &mut Vec<Conic>) {
     let corners = [[a, 0], [0, b], [-a, 0], [0, -b]];
     for place in 0..4 {
         let [from, to] = [corners[place], corners[(place + 1) % 4]];
-        let ways = [(from, to, Direction::CounterClockwise), (to, from, Direction::Clockwise)];
-        conics.extend(ways.iter().filter_map(|&(from, to, way)| Conic::ellipse([a, b], from, to, [0, 0], way).ok()));
+        let motions = [(from, to, Direction::CounterClockwise), (to, from, Direction::Clockwise)];
+        conics.extend(
+            motions
+                .iter()
+                .filter_map(|&(from, to, direction)| Conic::ellipse([a, b], from, to, [0, 0], direction).ok()),
+        );
     }
 }

@@ -16,7 +16,7 @@ pub(super) fn helices(k: u32, all: bool) -> Vec<Curve> {
         extremes::arcs([Reach::within((1 << k) - 1); 2]).into_iter().filter_map(extremes::inside).collect()
     };
     arcs.retain(|arc| kinds.iter().any(|kind| region.symbols(kind, arc).is_some()));
-    let ways = if all {
+    let travels = if all {
         sizes(k, true)
     } else {
         let greatest = (1 << k) - 1;
@@ -25,7 +25,7 @@ pub(super) fn helices(k: u32, all: bool) -> Vec<Curve> {
     let mut helices = Vec::new();
     for arc in &arcs {
         let Curve::Arc(arc) = arc else { continue };
-        for z in ways.iter().flat_map(|z| [*z, -z]).chain([0]) {
+        for z in travels.iter().flat_map(|z| [*z, -z]).chain([0]) {
             let [[x, y], [to_x, to_y]] = [arc.from(), arc.to()];
             helices.extend(Helix::new([x, y, 0], [to_x, to_y, z], [0, 0], arc.direction()).ok().map(Curve::Helix));
         }

@@ -1,4 +1,5 @@
-//! Boxes of geometries: all that coordinates of so many bits can tell, or the points of a grid; whole, or the extreme ones.
+//! Boxes of geometries: all that coordinates of this many bits can express, or the points of a grid; whole, or the
+//! extreme ones.
 
 mod conics;
 mod helices;
@@ -21,7 +22,8 @@ pub(super) const MOST_BITS: u32 = 52;
 pub(super) const MOST_SIMULATED_BITS: u32 = 16;
 /// Geometries that are listed at most; of more, the extreme ones.
 const MOST: usize = 1_000_000;
-/// Most bits of semi-axes of which all conics are listed; fewer for integrators, whose blocks take 2^k times the clocks.
+/// Most bits of semi-axes of which all conics are listed; fewer for integrators, whose blocks take 2^k times the
+/// clocks.
 const WHOLE_CONICS: u32 = 8;
 const WHOLE_INTEGRATED_CONICS: u32 = 6;
 /// Most bits of coordinates of which all helices are.
@@ -30,7 +32,7 @@ const WHOLE_HELICES: u32 = 4;
 /// Which geometries a box holds.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Extent {
-    /// Coordinates, or semi-axes and parameters of conics, of so many bits.
+    /// Coordinates, or semi-axes and parameters of conics, of this many bits.
     Bits(u32),
     /// End points of lines from the origin, or both ends of arcs about it, among these points.
     Grid(Grid),
@@ -102,7 +104,7 @@ pub struct Geometries {
     pub k: u32,
     /// The hardware.
     pub hardware: Hardware,
-    /// Options with which a run of any of them is on such hardware, but for what the geometry tells.
+    /// Options with which a run of any of them is on such hardware, but for what the geometry decides.
     pub choices: Options,
 }
 
@@ -126,8 +128,8 @@ impl Geometries {
         Geometries::made(model, choices, extent, true)
     }
 
-    /// The extreme geometries of this box: at its corners, on and next to its axes, of its greatest radii and its largest
-    /// and smallest weights, both ways round.
+    /// The extreme geometries of this box: at its corners, on and next to its axes, of its greatest radii and its
+    /// largest and smallest weights, both ways round.
     ///
     /// # Errors
     /// See [`of`](Geometries::of).
@@ -214,8 +216,8 @@ impl Geometries {
     }
 }
 
-/// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is not
-/// the width of coordinates, but of the ways of a period.
+/// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is
+/// not the width of coordinates, but of the ways of a period.
 fn width(model: &Model, choices: &Options, k: u32) -> Option<Width> {
     if model.method == "data sampling" {
         return None;
@@ -225,7 +227,7 @@ fn width(model: &Model, choices: &Options, k: u32) -> Option<Width> {
     Width::new(u64::from(bits)).ok()
 }
 
-/// Runs of geometries of so many bits come to their ends in some time.
+/// Checks that runs of geometries of this many bits end within a reasonable time.
 ///
 /// # Errors
 /// They do not.

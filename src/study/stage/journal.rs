@@ -54,7 +54,7 @@ impl Journal {
     /// Opens what is left, or makes a new one; gives whether it is new.
     ///
     /// # Errors
-    /// Another sweep holds it, it is no journal, or it cannot be opened.
+    /// Another sweep holds it, it is not a journal, or it cannot be opened.
     pub(super) fn open(path: &Path) -> io::Result<(Journal, bool)> {
         for _ in 0..TRIES {
             let (mut file, is_new) = match left::open(path)? {
@@ -80,7 +80,7 @@ impl Journal {
             let text = String::from_utf8_lossy(&bytes).into_owned();
             let own = text.is_empty() || text.lines().next().is_some_and(PartHead::is_one);
             if !own {
-                return Err(left::in_the_way(path, "no sweep has left it there"));
+                return Err(left::occupied(path, "no sweep has left it there"));
             }
             return Ok((Journal { path: path.to_owned(), file, text }, is_new));
         }
@@ -100,12 +100,12 @@ impl Journal {
         let mut lines = self.text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
         // Killed before its first line: nothing is left.
         let Some(first) = lines.next() else { return Ok(Vec::new()) };
-        let way_out = "give the same options as then, or leave --resume out to begin anew";
+        let remedy = "give the same options as then, or leave --resume out to begin anew";
         let Ok(known) = PartHead::read(first.trim_end()) else {
-            return Err(format!("what is left next to it is of another version: {way_out}"));
+            return Err(format!("what is left next to it is of another version: {remedy}"));
         };
         if known != *head {
-            return Err(format!("it was begun with {}: {way_out}", difference(&known, head)));
+            return Err(format!("it was begun with {}: {remedy}", difference(&known, head)));
         }
         let mut whole = first.len() as u64;
         let mut marks = Vec::new();

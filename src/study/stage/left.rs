@@ -1,12 +1,12 @@
-//! Files with fixed names that an earlier run may have left: opened only where they are this user's own, no link leads to
-//! them, and they are plain files.
+//! Files with fixed names that an earlier run may have left: opened only where they are this user's own, no link leads
+//! to them, and they are plain files.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// That a name is taken, and by what.
-pub(super) fn in_the_way(path: &Path, what: &str) -> io::Error {
+pub(super) fn occupied(path: &Path, what: &str) -> io::Error {
     let name = path.display();
     io::Error::other(format!("{name}, which a sweep needs, is in the way: {what}: delete it, or name another file"))
 }
@@ -14,13 +14,13 @@ pub(super) fn in_the_way(path: &Path, what: &str) -> io::Error {
 /// Opens what is left, to read and write; nothing where nothing is.
 ///
 /// # Errors
-/// It is a link, is no plain file, has a second name, or is another user's; or it cannot be opened.
+/// It is a link, is not a plain file, has a second name, or is another user's; or it cannot be opened.
 pub(super) fn open(path: &Path) -> io::Result<Option<File>> {
     match path.symlink_metadata() {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(error),
-        Ok(found) if found.is_symlink() => return Err(in_the_way(path, "it is a link")),
-        Ok(found) if !found.is_file() => return Err(in_the_way(path, "it is no plain file")),
+        Ok(found) if found.is_symlink() => return Err(occupied(path, "it is a link")),
+        Ok(found) if !found.is_file() => return Err(occupied(path, "it is no plain file")),
         Ok(_) => {}
     }
     let mut options = File::options();
@@ -40,13 +40,13 @@ pub(super) fn open(path: &Path) -> io::Result<Option<File>> {
         use std::os::unix::fs::MetadataExt;
         let found = file.metadata()?;
         if !found.is_file() {
-            return Err(in_the_way(path, "it is no plain file"));
+            return Err(occupied(path, "it is no plain file"));
         }
         if found.nlink() > 1 {
-            return Err(in_the_way(path, "it has a second name"));
+            return Err(occupied(path, "it has a second name"));
         }
         if found.uid() != rustix::process::geteuid().as_raw() {
-            return Err(in_the_way(path, "it is another user's"));
+            return Err(occupied(path, "it is another user's"));
         }
     }
     Ok(Some(file))

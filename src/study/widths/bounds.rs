@@ -152,7 +152,7 @@ mod tests {
     use crate::testbench::Testbench;
 
     #[test]
-    fn the_deviation_is_bounded_by_the_ways_of_the_box_exactly() {
+    fn the_deviation_is_bounded_by_the_travels_of_the_box_exactly() {
         // F of a line is within [-b, a - 1]; of minimum deviation, that of 2S - L, within [-2L, 2S - 1].
         for (name, wanted) in [("ppc-line", (-200_000, 299_999)), ("mindev-line", (-600_000, 399_999))] {
             let model = find(name).expect("a model");

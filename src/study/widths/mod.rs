@@ -1,8 +1,8 @@
 //! The least width of every register over all geometries of a box, and a geometry that one bit less does not hold.
 //!
-//! A width is known to be enough by a proof for every k, or because every geometry of the box was simulated. It is known to
-//! be least by a run of the box that one bit less does not hold. Where neither is to be had, it is only sampled, by the
-//! extreme geometries.
+//! A width is known to be enough by a proof for every k, or because every geometry of the box was simulated. It is
+//! known to be least by a run of the box that one bit less does not hold. Where neither is to be had, it is only
+//! sampled, by the extreme geometries.
 
 mod bounds;
 mod judge;
@@ -57,7 +57,8 @@ pub struct RegisterWidth {
     pub given: u32,
     /// The bits that are enough for the box.
     pub needed: u32,
-    /// The bits that runs of the box were seen to need; `needed`, unless that is only known to be [enough](Known::Enough).
+    /// The bits that runs of the box were seen to need; `needed`, unless that is only known to be
+    /// [enough](Known::Enough).
     pub shown: u32,
     /// Least and greatest value seen.
     pub range: (i128, i128),
@@ -102,10 +103,10 @@ const MOST_CLOCKS: u64 = 1 << 32;
 const LEAST_PROVED: u32 = 3;
 
 /// The least widths of a model's registers over a box of geometries: every line from the origin, every arc inside a
-/// quadrant with both ends on the circle, every quarter of an ellipse and every arc of a parabola or hyperbola from or to
-/// its vertex, or every helix over such an arc. Widths among the choices are those of the hardware that is judged; what is
-/// needed does not depend on them, but for the integrators of one scale, which are never taken narrower than the box needs.
-/// Nor does it depend on what is done on an overflow: the widths are those at which there is none.
+/// quadrant with both ends on the circle, every quarter of an ellipse and every arc of a parabola or hyperbola from or
+/// to its vertex, or every helix over such an arc. Widths among the choices are those of the hardware that is judged;
+/// what is needed does not depend on them, but for the integrators of one scale, which are never taken narrower than
+/// the box needs. Nor does it depend on what is done on an overflow: the widths are those at which there is none.
 ///
 /// # Errors
 /// There is no such box for the model, or the hardware cannot be built.
@@ -136,13 +137,14 @@ fn needed(model: &'static Model, ample: &Options, extent: &Extent, tick: Tick<'_
 /// About how many clocks all of these take.
 fn clocks(model: &Model, set: &Geometries) -> u64 {
     let integrates = model.method == "digital differential analyser" || model.method == "digital pulse multiplier";
-    let way = |curve: &Curve| curve.from().iter().zip(curve.to()).map(|(from, to)| 4 * from.abs_diff(*to)).sum::<u64>();
-    let clocks = |curve: &Curve| if integrates { 1 << set.k } else { way(curve) };
+    let pulses =
+        |curve: &Curve| curve.from().iter().zip(curve.to()).map(|(from, to)| 4 * from.abs_diff(*to)).sum::<u64>();
+    let clocks = |curve: &Curve| if integrates { 1 << set.k } else { pulses(curve) };
     set.curves.iter().map(clocks).fold(0, u64::saturating_add)
 }
 
-/// The widths that a proof for every k gives for this box, with the runs of its extreme geometries that need them; `None`
-/// where there is no such proof.
+/// The widths that a proof for every k gives for this box, with the runs of its extreme geometries that need them;
+/// `None` where there is no such proof.
 ///
 /// # Errors
 /// See [`widths`].
@@ -280,7 +282,7 @@ pub(super) fn least_seen(model: &'static Model, set: &Geometries) -> Result<Vec<
     Ok(runs.seen.into_iter().map(row).collect())
 }
 
-/// Marks what a proof for every k, or for this one, shows: the widths needed here, as so many bits less than by default,
+/// Marks what a proof for every k, or for this one, shows: the widths needed here, as bits less than by default,
 /// are enough.
 fn mark_proved(model: &'static Model, claims: &Claims, choices: &Options, k: u32, registers: &mut [RegisterWidth]) {
     use super::proof::{Block, Way, blocks};

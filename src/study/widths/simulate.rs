@@ -100,8 +100,8 @@ pub(super) fn simulate(bench: &Testbench, curves: &[Curve], limit: u64, tick: Ti
     Ok(runs)
 }
 
-/// Least and greatest value of every register over single runs of these curves on one engine, one after another instead of
-/// in lanes: what [`widths`](super::widths) is judged by. Runs that do not come to their end are left out.
+/// Least and greatest value of every register over single runs of these curves on one engine, one after another instead
+/// of in lanes: what [`widths`](super::widths) is judged by. Runs that do not come to their end are left out.
 ///
 /// # Errors
 /// A value does not fit in its register.
@@ -131,7 +131,7 @@ pub fn ranges_alone(
     curves.par_iter().map(alone).try_reduce(Ranges::new, joined)
 }
 
-/// The run of this curve with a register of so many `bits`, fewer than the curve needs: it is refused, or traps. `None`
+/// The run of this curve with a register of `bits` bits, fewer than the curve needs: it is refused, or traps. `None`
 /// where it does neither within some clocks, unless a proof says that it will (`certain`).
 pub(super) fn too_narrow(
     model: &Model,
