@@ -32,12 +32,18 @@ impl Operands {
 type Meaning = fn(&Operands) -> i128;
 
 /// Operators whose result is as wide as their operands, by their word in the text form.
-const WORDS: [(&str, Meaning); 5] = [
+const WORDS: [(&str, Meaning); 11] = [
     ("and", |o| o.a & o.b),
     ("or", |o| o.a | o.b),
     ("xor", |o| o.a ^ o.b),
     ("add", |o| o.a + o.b),
     ("sub", |o| o.a - o.b),
+    ("mul", |o| o.a.wrapping_mul(o.b)),
+    ("div", |o| if o.b == 0 { 0 } else { o.a / o.b }),
+    ("rem", |o| if o.b == 0 { 0 } else { o.a % o.b }),
+    ("shift-left", |o| o.a << o.b.min(64)),
+    ("shift-right", |o| o.a >> o.b.min(64)),
+    ("shift-arithmetic", |o| o.sa >> o.b.min(64)),
 ];
 
 /// Operators whose result is one bit.
@@ -110,6 +116,51 @@ fn every_operator_is_exact_at_the_edge_values_of_every_width() {
 }
 
 #[test]
+fn a_shift_takes_an_amount_of_any_width_and_loses_all_from_the_width_on() {
+    for (bits, by_bits) in [
+        (1, 1),
+        (1, 2),
+        (1, 64),
+        (2, 1),
+        (3, 5),
+        (5, 3),
+        (8, 4),
+        (13, 64),
+        (32, 6),
+        (33, 64),
+        (64, 6),
+        (64, 7),
+        (64, 64),
+    ] {
+        let text = format!(
+            "netlist m\n%0:{bits} = input\n%1:{by_bits} = input\n%2:{bits} = shift-left %0 %1\n\
+             %3:{bits} = shift-right %0 %1\n%4:{bits} = shift-arithmetic %0 %1\n"
+        );
+        let design = design_of_text(&text);
+        let nets: Vec<Net> = design.netlist().nets().collect();
+        let most = u64::MAX >> (64 - by_bits);
+        let around = [bits - 1, bits, bits + 1, 31, 32, 63, 64, 65].map(u64::from);
+        let amounts: Vec<u64> =
+            (0..8).chain(around).chain([1 << 32, 1 << 63, most - 1, most]).filter(|by| *by <= most).collect();
+        for kind in EngineKind::ALL {
+            let mut probe = Probe::new(&design, kind);
+            for a in if bits <= 4 { values(bits).collect() } else { edges(bits) } {
+                for &by in &amounts {
+                    probe.clock(&[(nets[0], a), (nets[1], by)]);
+                    let beyond = by >= u64::from(bits);
+                    let (o, by) = (Operands::new(bits, a, 0), by.min(64));
+                    let left = if beyond { 0 } else { o.a << by };
+                    for (net, want) in nets[2..].iter().zip([left, o.a >> by, o.sa >> by]) {
+                        let what = design.netlist().cell(*net).op;
+                        assert_eq!(probe.value(*net), encode(want, bits), "{what}: {a:#x} by {by} on {}", kind.name());
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn the_methods_of_a_signal_mean_what_their_names_say() {
     for bits in 1..=3 {
         let design = design(|m| {
@@ -123,6 +174,12 @@ fn the_methods_of_a_signal_mean_what_their_names_say() {
                 ("not", !a),
                 ("wrapping_add", a.wrapping_add(b)),
                 ("wrapping_sub", a.wrapping_sub(b)),
+                ("wrapping_mul", a.wrapping_mul(b)),
+                ("div_or_zero", a.div_or_zero(b)),
+                ("rem_or_zero", a.as_signed().rem_or_zero(b)),
+                ("shift_left", a.shift_left(b)),
+                ("shift_right", a.shift_right(b.as_signed())),
+                ("shift_right_signed", a.as_signed().shift_right(b)),
                 ("carry", carry),
                 ("sum", sum),
                 ("borrow", borrow),
@@ -153,6 +210,12 @@ fn the_methods_of_a_signal_mean_what_their_names_say() {
                         "not" => -1 - o.a,
                         "wrapping_add" | "sum" => o.a + o.b,
                         "wrapping_sub" | "difference" => o.a - o.b,
+                        "wrapping_mul" => o.a * o.b,
+                        "div_or_zero" => o.a.checked_div(o.b).unwrap_or(0),
+                        "rem_or_zero" => o.a.checked_rem(o.b).unwrap_or(0),
+                        "shift_left" => o.a << o.b,
+                        "shift_right" => o.a >> o.b,
+                        "shift_right_signed" => o.sa >> o.b,
                         "carry" => i128::from(o.a + o.b >= 1 << bits),
                         "borrow" | "less_unsigned" | "less_unsigned_again" => i128::from(o.a < o.b),
                         "equals" => i128::from(o.a == o.b),

@@ -39,6 +39,48 @@ fn sub(a: &Slice, b: &Slice) -> (BitVec<u64>, bool, bool) {
     ripple(a, b.iter().by_vals().map(|bit| !bit), true)
 }
 
+/// Shift and add: a, shifted under each bit of b, where that bit is 1.
+fn mul(a: &Slice, b: &Slice) -> BitVec<u64> {
+    let mut sum: BitVec<u64> = BitVec::repeat(false, a.len());
+    for (place, bit) in b.iter().by_vals().enumerate() {
+        let shifted = (0..a.len()).map(|index| bit & (index >= place && a[index - place]));
+        sum = ripple(&sum, shifted, false).0;
+    }
+    sum
+}
+
+/// Restoring division: quotient and remainder, both 0 where b is 0.
+fn divide(a: &Slice, b: &Slice) -> (BitVec<u64>, BitVec<u64>) {
+    let wide = extended(b, b.len() + 1, false);
+    let mut quotient: BitVec<u64> = BitVec::repeat(false, a.len());
+    let mut rest: BitVec<u64> = BitVec::repeat(false, wide.len());
+    for place in (0..a.len()).rev() {
+        rest.pop();
+        rest.insert(0, a[place]);
+        let (difference, _, fits) = sub(&rest, &wide);
+        quotient.set(place, fits);
+        rest = zip(&difference, &rest, |difference, rest| (difference & fits) | (rest & !fits));
+    }
+    rest.pop();
+    let divisible = b.any();
+    (
+        quotient.iter().by_vals().map(|bit| bit & divisible).collect(),
+        rest.iter().by_vals().map(|bit| bit & divisible).collect(),
+    )
+}
+
+/// One stage of multiplexers for each bit of the amount. `fill` enters.
+fn shift(a: &Slice, by: &Slice, left: bool, fill: bool) -> BitVec<u64> {
+    let mut shifted = a.to_bitvec();
+    for (stage, select) in by.iter().by_vals().enumerate() {
+        let distance = if stage < 7 { 1 << stage } else { a.len() };
+        let from = |place: usize| if left { place.checked_sub(distance) } else { Some(place + distance) };
+        let bit = |place: usize| from(place).and_then(|from| shifted.get(from)).map_or(fill, |bit| *bit);
+        shifted = (0..a.len()).map(|place| (bit(place) & select) | (shifted[place] & !select)).collect();
+    }
+    shifted
+}
+
 fn bit(value: bool) -> BitVec<u64> {
     BitVec::repeat(value, 1)
 }
@@ -116,6 +158,12 @@ impl Gates {
             }
             Op::Add(a, b) => add(at(a), at(b)).0,
             Op::Sub(a, b) => sub(at(a), at(b)).0,
+            Op::Mul(a, b) => mul(at(a), at(b)),
+            Op::Div(a, b) => divide(at(a), at(b)).0,
+            Op::Rem(a, b) => divide(at(a), at(b)).1,
+            Op::ShiftLeft(a, by) => shift(at(a), at(by), true, false),
+            Op::ShiftRight(a, by) => shift(at(a), at(by), false, false),
+            Op::ShiftArithmetic(a, by) => shift(at(a), at(by), false, at(a)[width_of(at(a)) - 1]),
             Op::Carry(a, b) => bit(add(at(a), at(b)).2),
             Op::Borrow(a, b) => bit(!sub(at(a), at(b)).2),
             Op::AddOverflow(a, b) => {

@@ -124,6 +124,10 @@ impl Model<'_> {
     fn term(&mut self, term: &Term, symbol: Option<&str>) -> u64 {
         let (word, bits, operands, numbers) = match term {
             Term::Net(net) => return self.net(*net),
+            Term::Zero(bits) => {
+                let sort = self.sort(*bits);
+                return self.shared(format!("constd {sort} 0"), None);
+            }
             Term::Apply(word, bits, operands, numbers) => (word, *bits, operands, numbers),
         };
         let operands: Vec<u64> = operands.iter().map(|operand| self.term(operand, None)).collect();

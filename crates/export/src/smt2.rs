@@ -137,6 +137,7 @@ impl<'a> Script<'a> {
     fn write(&self, term: &Term) -> String {
         let (word, operands, numbers) = match term {
             Term::Net(net) => return self.read(*net),
+            Term::Zero(bits) => return format!("(_ bv0 {bits})"),
             Term::Apply(word, _, operands, numbers) => (word, operands, numbers),
         };
         // A number before operands, whose names may hold anything but these marks.

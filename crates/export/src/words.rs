@@ -27,6 +27,12 @@ const XOR: Word = word("xor", "(bvxor $0 $1)");
 const MUX: Word = word("ite", "(ite (= $0 #b1) $1 $2)");
 const ADD: Word = word("add", "(bvadd $0 $1)");
 const SUB: Word = word("sub", "(bvsub $0 $1)");
+const MUL: Word = word("mul", "(bvmul $0 $1)");
+const DIV: Word = word("udiv", "(bvudiv $0 $1)");
+const REM: Word = word("urem", "(bvurem $0 $1)");
+const SHIFT_LEFT: Word = word("sll", "(bvshl $0 $1)");
+const SHIFT_RIGHT: Word = word("srl", "(bvlshr $0 $1)");
+const SHIFT_ARITHMETIC: Word = word("sra", "(bvashr $0 $1)");
 const LESS: Word = word("ult", "(ite (bvult $0 $1) #b1 #b0)");
 const LESS_SIGNED: Word = word("slt", "(ite (bvslt $0 $1) #b1 #b0)");
 const EQUAL: Word = word("eq", "(bvcomp $0 $1)");
@@ -42,6 +48,8 @@ const SIGN_EXTEND: Word = word("sext", "((_ sign_extend #0) $0)");
 pub(super) enum Term {
     /// Another net.
     Net(Net),
+    /// The number 0 of this many bits.
+    Zero(u32),
     /// An operator: its word, its width in bits, operands, numbers.
     Apply(Word, u32, Vec<Term>, Vec<u32>),
 }
@@ -72,6 +80,22 @@ pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
         let sign = |bit: u32| wider(word, SIGN_EXTEND, a, b).slice(bit, bit);
         Term::Apply(XOR, 1, vec![sign(bits(a)), sign(bits(a) - 1)], vec![])
     };
+    // Both languages make all ones of a division by 0.
+    let guarded = |divisor: Net| {
+        let none = Term::Apply(EQUAL, 1, vec![Term::Net(divisor), Term::Zero(width)], vec![]);
+        let result = |word: Word| Term::Apply(MUX, width, vec![none, Term::Zero(width), apply(word, vec![])], vec![]);
+        result
+    };
+    // Both operands are as wide as the wider one.
+    let shift = |word: Word, extend: Word, a: Net, by: Net| {
+        let wide = width.max(bits(by));
+        let widened = |net: Net, extend: Word| match wide - bits(net) {
+            0 => Term::Net(net),
+            more => Term::Apply(extend, wide, vec![Term::Net(net)], vec![more]),
+        };
+        let shifted = Term::Apply(word, wide, vec![widened(a, extend), widened(by, ZERO_EXTEND)], vec![]);
+        if wide == width { shifted } else { shifted.slice(width - 1, 0) }
+    };
     match op {
         Op::Input | Op::Const(_) | Op::Register { .. } => Term::Net(net),
         Op::Not(_) => apply(NOT, vec![]),
@@ -81,6 +105,12 @@ pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
         Op::Mux { .. } => apply(MUX, vec![]),
         Op::Add(..) => apply(ADD, vec![]),
         Op::Sub(..) => apply(SUB, vec![]),
+        Op::Mul(..) => apply(MUL, vec![]),
+        Op::Div(_, b) => guarded(b)(DIV),
+        Op::Rem(_, b) => guarded(b)(REM),
+        Op::ShiftLeft(a, by) => shift(SHIFT_LEFT, ZERO_EXTEND, a, by),
+        Op::ShiftRight(a, by) => shift(SHIFT_RIGHT, ZERO_EXTEND, a, by),
+        Op::ShiftArithmetic(a, by) => shift(SHIFT_ARITHMETIC, SIGN_EXTEND, a, by),
         Op::Carry(a, b) => wider(ADD, ZERO_EXTEND, a, b).slice(bits(a), bits(a)),
         Op::Borrow(..) => apply(LESS, vec![]),
         Op::AddOverflow(a, b) => overflow(ADD, a, b),

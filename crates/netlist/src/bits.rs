@@ -208,6 +208,48 @@ pub fn less_signed(width: Width, a: u64, b: u64) -> bool {
     to_signed(width, a) < to_signed(width, b)
 }
 
+/// Product modulo 2^width.
+#[inline]
+#[must_use]
+pub fn mul(width: Width, a: u64, b: u64) -> u64 {
+    a.wrapping_mul(b) & width.mask()
+}
+
+/// Quotient of unsigned numbers, without its fraction; 0 where the divisor is 0.
+#[inline]
+#[must_use]
+pub fn div(a: u64, b: u64) -> u64 {
+    a.checked_div(b).unwrap_or(0)
+}
+
+/// Remainder of unsigned numbers; 0 where the divisor is 0.
+#[inline]
+#[must_use]
+pub fn rem(a: u64, b: u64) -> u64 {
+    a.checked_rem(b).unwrap_or(0)
+}
+
+/// `a` shifted left by `by` bits, zeros below; 0 from `by` = width on.
+#[inline]
+#[must_use]
+pub fn shift_left(width: Width, a: u64, by: u64) -> u64 {
+    if by < 64 { a << by & width.mask() } else { 0 }
+}
+
+/// `a` shifted right by `by` bits, zeros above; 0 from `by` = width on.
+#[inline]
+#[must_use]
+pub fn shift_right(a: u64, by: u64) -> u64 {
+    if by < 64 { a >> by } else { 0 }
+}
+
+/// `a` shifted right by `by` bits, its sign bit above; all sign bits from `by` = width - 1 on.
+#[inline]
+#[must_use]
+pub fn shift_arithmetic(width: Width, a: u64, by: u64) -> u64 {
+    (to_signed(width, a) >> by.min(63)).cast_unsigned() & width.mask()
+}
+
 /// `value` of width `from`, its sign bit repeated up to width `to`.
 #[inline]
 #[must_use]
@@ -239,6 +281,12 @@ mod tests {
                     assert_eq!(add_overflow(w, a, b), !(least..=greatest).contains(&(sa + sb)));
                     assert_eq!(sub_overflow(w, a, b), !(least..=greatest).contains(&(sa - sb)));
                     assert_eq!(less_signed(w, a, b), sa < sb);
+                    assert_eq!(i128::from(mul(w, a, b)), ua * ub % modulus);
+                    assert_eq!(i128::from(div(a, b)), if ub == 0 { 0 } else { ua / ub });
+                    assert_eq!(i128::from(rem(a, b)), if ub == 0 { 0 } else { ua % ub });
+                    assert_eq!(i128::from(shift_left(w, a, b)), ua * (1 << ub) % modulus);
+                    assert_eq!(i128::from(shift_right(a, b)), ua / (1 << ub));
+                    assert_eq!(i128::from(shift_arithmetic(w, a, b)), sa.div_euclid(1 << ub).rem_euclid(modulus));
                 }
             }
         }
@@ -251,6 +299,14 @@ mod tests {
         assert!(!carry(w, u64::MAX, 0));
         assert!(add_overflow(w, i64::MAX.cast_unsigned(), 1));
         assert_eq!(add(w, u64::MAX, 2), 1);
+        assert_eq!(mul(w, u64::MAX, u64::MAX), 1);
+        for by in [64, 65, 127, 128, 1 << 32, u64::MAX] {
+            assert_eq!(shift_left(w, u64::MAX, by), 0, "by {by}");
+            assert_eq!(shift_right(u64::MAX, by), 0, "by {by}");
+            assert_eq!(shift_arithmetic(w, 1 << 63, by), u64::MAX, "by {by}");
+            assert_eq!(shift_arithmetic(w, u64::MAX >> 1, by), 0, "by {by}");
+        }
+        assert_eq!(shift_arithmetic(w, 1 << 63, 62), u64::MAX << 1);
         assert_eq!(number(w, u64::MAX, true), -1);
     }
 

@@ -32,12 +32,18 @@ use crate::formula::{Clause, Formula};
 type Make = fn(Net, Net) -> Op;
 
 /// Two-operand operators and their words.
-const BINARY: [(&str, Make); 11] = [
+const BINARY: [(&str, Make); 17] = [
     ("and", Op::And),
     ("or", Op::Or),
     ("xor", Op::Xor),
     ("add", Op::Add),
     ("sub", Op::Sub),
+    ("mul", Op::Mul),
+    ("div", Op::Div),
+    ("rem", Op::Rem),
+    ("shift-left", Op::ShiftLeft),
+    ("shift-right", Op::ShiftRight),
+    ("shift-arithmetic", Op::ShiftArithmetic),
     ("carry", Op::Carry),
     ("borrow", Op::Borrow),
     ("add-overflow", Op::AddOverflow),

@@ -53,6 +53,11 @@ enum Operator {
     Mux,
     WrappingAdd,
     WrappingSub,
+    WrappingMul,
+    DivOrZero,
+    RemOrZero,
+    ShiftLeft,
+    ShiftRight,
     CarryingAdd,
     BorrowingSub,
     SaturatingAdd,
@@ -70,7 +75,7 @@ enum Operator {
     Literal,
 }
 
-const OPERATORS: [Operator; 22] = [
+const OPERATORS: [Operator; 27] = [
     Operator::Not,
     Operator::And,
     Operator::Or,
@@ -78,6 +83,11 @@ const OPERATORS: [Operator; 22] = [
     Operator::Mux,
     Operator::WrappingAdd,
     Operator::WrappingSub,
+    Operator::WrappingMul,
+    Operator::DivOrZero,
+    Operator::RemOrZero,
+    Operator::ShiftLeft,
+    Operator::ShiftRight,
     Operator::CarryingAdd,
     Operator::BorrowingSub,
     Operator::SaturatingAdd,
@@ -244,6 +254,14 @@ impl<'m> Kitchen<'m> {
             Operator::Mux => self.flag(c).mux(left, right),
             Operator::WrappingAdd => left.wrapping_add(right),
             Operator::WrappingSub => left.wrapping_sub(right),
+            Operator::WrappingMul => left.wrapping_mul(right),
+            Operator::DivOrZero => left.div_or_zero(right),
+            Operator::RemOrZero => left.rem_or_zero(right),
+            Operator::ShiftLeft | Operator::ShiftRight => {
+                // Mostly less than the width.
+                let amount = if c % 4 == 0 { self.pick(b) } else { narrowed(self.pick(b), 1 + below(7)) };
+                if matches!(operator, Operator::ShiftLeft) { left.shift_left(amount) } else { left.shift_right(amount) }
+            }
             Operator::CarryingAdd | Operator::BorrowingSub => {
                 let adds = matches!(operator, Operator::CarryingAdd);
                 let (flag, result) = if adds { left.carrying_add(right) } else { left.borrowing_sub(right) };

@@ -39,6 +39,16 @@ impl Generator<'_, '_> {
                 let difference = self.f.ins().isub(at(a), at(b));
                 self.masked(difference, width)
             }
+            Op::Mul(a, b) | Op::Div(a, b) if width == Width::ONE => self.f.ins().band(at(a), at(b)),
+            Op::Rem(..) if width == Width::ONE => self.f.ins().iconst(types::I8, 0),
+            Op::Mul(a, b) => {
+                let product = self.f.ins().imul(at(a), at(b));
+                self.masked(product, width)
+            }
+            Op::Div(a, b) | Op::Rem(a, b) => self.divide(cell.op, at(a), at(b)),
+            Op::ShiftLeft(a, by) | Op::ShiftRight(a, by) | Op::ShiftArithmetic(a, by) => {
+                self.shift(cell.op, at(a), at(by), width)
+            }
             Op::Carry(a, b) => self.carry(at(a), at(b), width_of(a)),
             Op::Borrow(a, b) => self.f.ins().icmp(IntCC::UnsignedLessThan, at(a), at(b)),
             Op::AddOverflow(a, b) => {
@@ -92,6 +102,46 @@ impl Generator<'_, '_> {
             _ => {
                 let mask = self.f.ins().iconst(types::I64, immediate(width.mask()));
                 self.f.ins().band(value, mask)
+            }
+        }
+    }
+
+    /// Quotient or remainder of words. Native code takes no divisor of 0.
+    fn divide(&mut self, op: Op, a: Value, b: Value) -> Value {
+        let [zero, one] = [0, 1].map(|number| self.f.ins().iconst(types::I64, number));
+        let none = self.f.ins().icmp_imm(IntCC::Equal, b, 0);
+        let divisor = self.f.ins().select(none, one, b);
+        if matches!(op, Op::Rem(..)) {
+            // 0 for a divisor of 1, too.
+            return self.f.ins().urem(a, divisor);
+        }
+        let quotient = self.f.ins().udiv(a, divisor);
+        self.f.ins().select(none, zero, quotient)
+    }
+
+    /// A shift by an amount of any width. Native code takes an amount modulo 64.
+    fn shift(&mut self, op: Op, a: Value, by: Value, width: Width) -> Value {
+        let by = self.wide(by);
+        let zero = self.f.ins().iconst(kind(width), 0);
+        match op {
+            Op::ShiftArithmetic(..) if width == Width::ONE => a,
+            Op::ShiftArithmetic(..) => {
+                let all = self.f.ins().iconst(types::I64, 63);
+                let by = self.f.ins().umin(by, all);
+                let signed = self.signed(a, width);
+                let shifted = self.f.ins().sshr(signed, by);
+                self.masked(shifted, width)
+            }
+            _ if width == Width::ONE => {
+                let stays = self.f.ins().icmp_imm(IntCC::Equal, by, 0);
+                self.f.ins().select(stays, a, zero)
+            }
+            _ => {
+                let left = matches!(op, Op::ShiftLeft(..));
+                let shifted = if left { self.f.ins().ishl(a, by) } else { self.f.ins().ushr(a, by) };
+                let shifted = if left { self.masked(shifted, width) } else { shifted };
+                let inside = self.f.ins().icmp_imm(IntCC::UnsignedLessThan, by, i64::from(width.get()));
+                self.f.ins().select(inside, shifted, zero)
             }
         }
     }

@@ -185,6 +185,24 @@ fn perform<T: Lane>(on: Operands<'_, T>, out: &mut Row<T>, what: Do<Slot>) {
         }
         Do::AddIf(a, b, condition) => on.three(out, [a, b, condition], |a, b, condition| a.add(b.and(condition))),
         Do::SubIf(a, b, condition) => on.three(out, [a, b, condition], |a, b, condition| a.sub(b.and(condition))),
+        Do::Mul(a, b, bits) => on.two(out, a, b, |a, b| a.mul(b.right(T::BITS - bits))),
+        Do::Div(a, b, bits) => on.two(out, a, b, |a, b| a.div(b).left(T::BITS - bits)),
+        Do::Rem(a, b) => on.two(out, a, b, T::rem),
+        Do::ShiftLeft(a, by, bits) => on.two(out, a, by, |a, by| {
+            let by = by.amount(bits, T::BITS);
+            if by < T::BITS { a.left(by) } else { T::default() }
+        }),
+        Do::ShiftRight(a, by, bits, p) => {
+            let p = T::top(p);
+            on.two(out, a, by, |a, by| {
+                let by = by.amount(bits, T::BITS);
+                if by < T::BITS { a.right(by).and(p) } else { T::default() }
+            });
+        }
+        Do::ShiftArithmetic(a, by, bits, p) => {
+            let p = T::top(p);
+            on.two(out, a, by, |a, by| a.right_signed(by.amount(bits, top)).and(p));
+        }
         Do::Carry(a, b) => on.two(out, a, b, |a, b| T::mask(a.add(b) < a)),
         Do::Less(a, b) => on.two(out, a, b, |a, b| T::mask(a < b)),
         Do::LessSigned(a, b) => on.two(out, a, b, |a, b| T::mask(a.less_signed(b))),

@@ -35,6 +35,18 @@ pub(super) enum Do<V> {
     AddIf(V, V, V),
     /// a - (b where the third is ones)
     SubIf(V, V, V),
+    /// a * b, of this many bits.
+    Mul(V, V, u32),
+    /// a / b of this many bits, unsigned; 0 where b is 0.
+    Div(V, V, u32),
+    /// a mod b, unsigned; 0 where b is 0.
+    Rem(V, V),
+    /// a << b; b is of this many bits.
+    ShiftLeft(V, V, u32),
+    /// (a >> b) & pattern; b is of this many bits.
+    ShiftRight(V, V, u32, u64),
+    /// (a >> b) & pattern, the top bit repeated; b is of this many bits.
+    ShiftArithmetic(V, V, u32, u64),
     /// Carry of a + b.
     Carry(V, V),
     /// a < b, unsigned.
@@ -113,6 +125,12 @@ impl<V: Copy> Do<V> {
             Do::AddEither(a, b, p, c, q) => Do::AddEither(go(a), go(b), p, go(c), q),
             Do::AddIf(a, b, c) => Do::AddIf(go(a), go(b), go(c)),
             Do::SubIf(a, b, c) => Do::SubIf(go(a), go(b), go(c)),
+            Do::Mul(a, b, bits) => Do::Mul(go(a), go(b), bits),
+            Do::Div(a, b, bits) => Do::Div(go(a), go(b), bits),
+            Do::Rem(a, b) => Do::Rem(go(a), go(b)),
+            Do::ShiftLeft(a, b, bits) => Do::ShiftLeft(go(a), go(b), bits),
+            Do::ShiftRight(a, b, bits, p) => Do::ShiftRight(go(a), go(b), bits, p),
+            Do::ShiftArithmetic(a, b, bits, p) => Do::ShiftArithmetic(go(a), go(b), bits, p),
             Do::Carry(a, b) => Do::Carry(go(a), go(b)),
             Do::Less(a, b) => Do::Less(go(a), go(b)),
             Do::LessSigned(a, b) => Do::LessSigned(go(a), go(b)),

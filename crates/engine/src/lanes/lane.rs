@@ -31,6 +31,11 @@ pub(super) trait Lane: Copy + Default + PartialEq + PartialOrd + Send + Sync + '
     fn real_signed(self) -> f64;
     fn add(self, rhs: Self) -> Self;
     fn sub(self, rhs: Self) -> Self;
+    fn mul(self, rhs: Self) -> Self;
+    /// Quotient; 0 where `rhs` is 0.
+    fn div(self, rhs: Self) -> Self;
+    /// Remainder; 0 where `rhs` is 0.
+    fn rem(self, rhs: Self) -> Self;
     fn and(self, rhs: Self) -> Self;
     fn or(self, rhs: Self) -> Self;
     fn xor(self, rhs: Self) -> Self;
@@ -46,6 +51,13 @@ pub(super) trait Lane: Copy + Default + PartialEq + PartialOrd + Send + Sync + '
     /// The word that stands for a value of this width.
     fn encode(width: Width, value: u64) -> Self {
         Self::top(pattern(width, value))
+    }
+
+    /// The number of a value of `bits` bits, or `most` if that is less.
+    #[inline(always)]
+    fn amount(self, bits: u32, most: u32) -> u32 {
+        let number = self.right(Self::BITS - bits).get();
+        u32::try_from(number).map_or(most, |number| number.min(most))
     }
 
     /// The value of this width that the word stands for.
@@ -92,6 +104,18 @@ macro_rules! lane {
             #[inline(always)]
             fn sub(self, rhs: Self) -> Self {
                 self.wrapping_sub(rhs)
+            }
+            #[inline(always)]
+            fn mul(self, rhs: Self) -> Self {
+                self.wrapping_mul(rhs)
+            }
+            #[inline(always)]
+            fn div(self, rhs: Self) -> Self {
+                self.checked_div(rhs).unwrap_or(0)
+            }
+            #[inline(always)]
+            fn rem(self, rhs: Self) -> Self {
+                self.checked_rem(rhs).unwrap_or(0)
             }
             #[inline(always)]
             fn and(self, rhs: Self) -> Self {

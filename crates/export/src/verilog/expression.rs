@@ -21,7 +21,9 @@ enum Binding {
     And,
     Equal,
     Less,
+    Shift,
     Sum,
+    Product,
     Unary,
     Atom,
 }
@@ -179,6 +181,17 @@ impl Writer<'_> {
             Op::Xor(a, b) => self.both(a, "^", b, Binding::Xor, place),
             Op::Add(a, b) => self.both(a, "+", b, Binding::Sum, place),
             Op::Sub(a, b) => self.both(a, "-", b, Binding::Sum, place),
+            Op::Mul(a, b) => self.both(a, "*", b, Binding::Product, place),
+            Op::Div(a, b) => self.divide(a, "/", b, place),
+            Op::Rem(a, b) => self.divide(a, "%", b, place),
+            Op::ShiftLeft(a, by) => self.shift(a, "<<", by, place),
+            Op::ShiftRight(a, by) => self.shift(a, ">>", by, place),
+            // In braces: an unsigned operand next to it would let zeros enter.
+            Op::ShiftArithmetic(a, by) => {
+                let (a, by) = (read(a), read(by).into_unsigned().within(Binding::Unary));
+                let a = if a.signed { a.within(Binding::Unary) } else { format!("$signed({})", a.text) };
+                Expression::atom(format!("{{{a} >>> {by}}}"))
+            }
             Op::Mux { select, high, low } => {
                 let (select, high, low) = (read(select), read(high), read(low));
                 let tight = Binding::Or;
@@ -237,6 +250,32 @@ impl Writer<'_> {
         let left = side(&a, chains || binding == Binding::Sum);
         let right = side(&b, chains);
         Expression { text: format!("{left} {operator} {right}"), binding, signed: a.signed && b.signed }
+    }
+
+    /// A quotient or remainder of unsigned numbers, 0 where the divisor is 0.
+    fn divide(&self, a: Net, operator: &str, b: Net, place: ScopeId) -> Expression {
+        let width = self.netlist.width(a);
+        let zero = literal(width, 0);
+        let (a, b) = (self.read(a, place).into_unsigned(), self.read(b, place).into_unsigned());
+        match (width, operator) {
+            // Only 1 divides.
+            (Width::ONE, "/") => Expression {
+                binding: Binding::And,
+                ..Expression::atom(format!("{} & {}", a.within(Binding::Unary), b.within(Binding::Unary)))
+            },
+            (Width::ONE, _) => Expression::atom(zero),
+            _ => {
+                let (a, b) = (a.within(Binding::Unary), b.within(Binding::Unary));
+                Expression::atom(format!("{{{b} == {zero} ? {zero} : {a} {operator} {b}}}"))
+            }
+        }
+    }
+
+    /// A shift in which zeros enter.
+    fn shift(&self, a: Net, operator: &str, by: Net, place: ScopeId) -> Expression {
+        let (a, by) = (self.read(a, place), self.read(by, place).into_unsigned());
+        let text = format!("{} {operator} {}", a.within(Binding::Unary), by.within(Binding::Unary));
+        Expression { text, binding: Binding::Shift, signed: a.signed }
     }
 
     fn less(&self, reading: &str, a: Net, b: Net, place: ScopeId) -> Expression {

@@ -111,6 +111,12 @@ impl Layout {
             }
             return;
         }
+        // A divisor is also compared with 0.
+        if let Op::Div(a, b) | Op::Rem(a, b) = cell.op {
+            visit(a, false);
+            visit(b, true);
+            return;
+        }
         let cut = match cell.op {
             Op::Slice { of, .. } => cell.width < netlist.width(of),
             Op::SignExtend(of) => cell.width > netlist.width(of),

@@ -79,7 +79,7 @@ impl<'m> Signal<'m> {
         self.cell(op, self.bits(), self.signed)
     }
 
-    /// An operator whose result is as wide as both operands.
+    /// An operator whose result is as wide as this.
     #[track_caller]
     fn with(self, rhs: Signal<'m>, make: fn(Net, Net) -> Op) -> Signal<'m> {
         self.same_width(make(self.net, self.own(rhs).net))
@@ -123,6 +123,41 @@ impl<'m> Signal<'m> {
     #[must_use]
     pub fn wrapping_sub(self, rhs: Signal<'m>) -> Signal<'m> {
         self.with(rhs, Op::Sub)
+    }
+
+    /// Product modulo 2^width, on purpose. Operands are equally wide.
+    #[track_caller]
+    #[must_use]
+    pub fn wrapping_mul(self, rhs: Signal<'m>) -> Signal<'m> {
+        self.with(rhs, Op::Mul)
+    }
+
+    /// Quotient of both as unsigned numbers, without its fraction; 0 where `rhs` is 0. Operands are equally wide.
+    #[track_caller]
+    #[must_use]
+    pub fn div_or_zero(self, rhs: Signal<'m>) -> Signal<'m> {
+        self.with(rhs, Op::Div).as_unsigned()
+    }
+
+    /// Remainder of both as unsigned numbers; 0 where `rhs` is 0. Operands are equally wide.
+    #[track_caller]
+    #[must_use]
+    pub fn rem_or_zero(self, rhs: Signal<'m>) -> Signal<'m> {
+        self.with(rhs, Op::Rem).as_unsigned()
+    }
+
+    /// Shifted left by as many bits as the unsigned number `by`, of any width, says; zeros enter.
+    #[track_caller]
+    #[must_use]
+    pub fn shift_left(self, by: Signal<'m>) -> Signal<'m> {
+        self.with(by, Op::ShiftLeft)
+    }
+
+    /// Shifted right by as many bits as the unsigned number `by`, of any width, says; sign or zeros enter, as this is read.
+    #[track_caller]
+    #[must_use]
+    pub fn shift_right(self, by: Signal<'m>) -> Signal<'m> {
+        self.with(by, if self.signed { Op::ShiftArithmetic } else { Op::ShiftRight })
     }
 
     /// Carry (1 bit) and sum modulo 2^width. Operands are equally wide.

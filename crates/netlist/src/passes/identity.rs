@@ -56,6 +56,30 @@ pub(super) fn simpler(builder: &mut Builder, op: Op, width: Width) -> Option<Sim
         },
         Op::Sub(a, b) if a == b => Some(Constant(0)),
         Op::Sub(a, b) => (known(builder, b) == Some(0)).then_some(Same(a)),
+        Op::Mul(a, b) => match (known(builder, a), known(builder, b)) {
+            (Some(0), _) | (_, Some(0)) => Some(Constant(0)),
+            (Some(1), _) => Some(Same(b)),
+            (_, Some(1)) => Some(Same(a)),
+            _ => None,
+        },
+        Op::Div(a, b) => match (known(builder, a), known(builder, b)) {
+            (Some(0), _) | (_, Some(0)) => Some(Constant(0)),
+            (_, Some(1)) => Some(Same(a)),
+            _ => None,
+        },
+        Op::Rem(a, b) => {
+            (known(builder, a) == Some(0) || a == b || matches!(known(builder, b), Some(0 | 1))).then_some(Constant(0))
+        }
+        Op::ShiftLeft(a, by) | Op::ShiftRight(a, by) | Op::ShiftArithmetic(a, by) => {
+            match (known(builder, a), known(builder, by)) {
+                (_, Some(0)) => Some(Same(a)),
+                (Some(0), _) => Some(Constant(0)),
+                (_, Some(by)) if by >= u64::from(width.get()) && !matches!(op, Op::ShiftArithmetic(..)) => {
+                    Some(Constant(0))
+                }
+                _ => None,
+            }
+        }
         Op::Carry(a, b) | Op::AddOverflow(a, b) => {
             (known(builder, a) == Some(0) || known(builder, b) == Some(0)).then_some(Constant(0))
         }

@@ -82,6 +82,7 @@ fn ordered(op: Op) -> Op {
         Op::Or(a, b) if b < a => Op::Or(b, a),
         Op::Xor(a, b) if b < a => Op::Xor(b, a),
         Op::Add(a, b) if b < a => Op::Add(b, a),
+        Op::Mul(a, b) if b < a => Op::Mul(b, a),
         Op::Carry(a, b) if b < a => Op::Carry(b, a),
         Op::AddOverflow(a, b) if b < a => Op::AddOverflow(b, a),
         Op::Equal(a, b) if b < a => Op::Equal(b, a),

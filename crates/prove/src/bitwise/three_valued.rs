@@ -84,6 +84,48 @@ fn ripple(a: &[Bit], b: impl Iterator<Item = Bit>, carry: Bit, mut sum: impl FnM
     (into_highest, carry)
 }
 
+/// The product: a, shifted under each bit of b, where that bit is 1.
+fn product(a: &[Bit], b: &[Bit]) -> Vec<Bit> {
+    let mut sum = vec![Bit::all(false); a.len()];
+    for (place, bit) in b.iter().enumerate() {
+        let shifted =
+            (0..a.len()).map(|index| if index >= place { a[index - place].and(*bit) } else { Bit::all(false) });
+        let old = sum.clone();
+        ripple(&old, shifted, Bit::all(false), |place, bit| sum[place] = bit);
+    }
+    sum
+}
+
+/// Quotient and remainder by restoring division, both 0 where b is 0.
+fn quotient(a: &[Bit], b: &[Bit]) -> [Vec<Bit>; 2] {
+    let mut quotient = vec![Bit::all(false); a.len()];
+    let mut rest = vec![Bit::all(false); b.len() + 1];
+    for place in (0..a.len()).rev() {
+        rest.rotate_right(1);
+        rest[0] = a[place];
+        let wide = b.iter().copied().chain([Bit::all(false)]).map(Bit::not);
+        let mut difference = rest.clone();
+        let (_, fits) = ripple(&rest, wide, Bit::all(true), |place, bit| difference[place] = bit);
+        quotient[place] = fits;
+        rest.iter_mut().zip(&difference).for_each(|(rest, less)| *rest = fits.choose(*less, *rest));
+    }
+    rest.pop();
+    let divisible = b.iter().fold(Bit::all(false), |any, bit| any.or(*bit));
+    [quotient, rest].map(|bits| bits.into_iter().map(|bit| bit.and(divisible)).collect())
+}
+
+/// One stage of multiplexers for each bit of the amount. `fill` enters.
+fn shifted(a: &[Bit], by: &[Bit], left: bool, fill: Bit) -> Vec<Bit> {
+    let mut shifted = a.to_vec();
+    for (stage, select) in by.iter().enumerate() {
+        let distance = if stage < 7 { 1 << stage } else { a.len() };
+        let from = |place: usize| if left { place.checked_sub(distance) } else { Some(place + distance) };
+        let bit = |place: usize| from(place).and_then(|from| shifted.get(from)).copied().unwrap_or(fill);
+        shifted = (0..a.len()).map(|place| select.choose(bit(place), shifted[place])).collect();
+    }
+    shifted
+}
+
 /// A netlist in one sample.
 #[derive(Clone, Debug)]
 pub(super) struct ThreeValued<'d> {
@@ -180,6 +222,14 @@ fn work_out<'b>(op: Op, own: &mut [Bit], held: impl Fn(Net) -> &'b [Bit]) {
         }
         Op::Add(a, b) => _ = ripple(held(a), held(b).iter().copied(), Bit::all(false), |place, bit| own[place] = bit),
         Op::Sub(a, b) => _ = ripple(held(a), complement(b), Bit::all(true), |place, bit| own[place] = bit),
+        Op::Mul(a, b) => own.copy_from_slice(&product(held(a), held(b))),
+        Op::Div(a, b) => own.copy_from_slice(&quotient(held(a), held(b))[0]),
+        Op::Rem(a, b) => own.copy_from_slice(&quotient(held(a), held(b))[1]),
+        Op::ShiftLeft(a, by) => own.copy_from_slice(&shifted(held(a), held(by), true, Bit::all(false))),
+        Op::ShiftRight(a, by) => own.copy_from_slice(&shifted(held(a), held(by), false, Bit::all(false))),
+        Op::ShiftArithmetic(a, by) => {
+            own.copy_from_slice(&shifted(held(a), held(by), false, held(a)[held(a).len() - 1]));
+        }
         Op::Carry(a, b) => own[0] = ripple(held(a), held(b).iter().copied(), Bit::all(false), nothing).1,
         Op::Borrow(a, b) => own[0] = ripple(held(a), complement(b), Bit::all(true), nothing).1.not(),
         Op::AddOverflow(a, b) => {

@@ -69,7 +69,7 @@ impl<'p, 'o> Path<'p, 'o> {
             }
             Op::Const(value) => Ok(value != 0),
             Op::Not(a) => Ok(!self.truth(a, clock)?),
-            Op::And(a, b) => self.either(a, b, clock, false),
+            Op::And(a, b) | Op::Mul(a, b) => self.either(a, b, clock, false),
             Op::Or(a, b) => self.either(a, b, clock, true),
             Op::Xor(a, b) | Op::Add(a, b) | Op::Sub(a, b) => Ok(self.truth(a, clock)? != self.truth(b, clock)?),
             Op::Mux { select, high, low } => {
@@ -116,6 +116,8 @@ impl<'p, 'o> Path<'p, 'o> {
                 Ok(!self.is_zero(&bit)?)
             }
             Op::Concat { .. } => Err(Stop::Unsupported("a concatenation of one bit".to_owned())),
+            Op::Div(..) | Op::Rem(..) => Err(divided()),
+            Op::ShiftLeft(..) | Op::ShiftRight(..) | Op::ShiftArithmetic(..) => Err(shifted()),
         }
     }
 
@@ -159,6 +161,9 @@ impl<'p, 'o> Path<'p, 'o> {
             Op::Not(a) => Ok(self.residue(a, clock)?.negated().plus_number(-1)),
             Op::Add(a, b) => Ok(self.residue(a, clock)?.plus(&self.residue(b, clock)?)),
             Op::Sub(a, b) => Ok(self.residue(a, clock)?.minus(&self.residue(b, clock)?)),
+            Op::Mul(a, b) => Ok(self.residue(a, clock)?.times(&self.residue(b, clock)?)),
+            Op::Div(..) | Op::Rem(..) => Err(divided()),
+            Op::ShiftLeft(..) | Op::ShiftRight(..) | Op::ShiftArithmetic(..) => Err(shifted()),
             Op::Mux { select, high, low } => {
                 let taken = if self.truth(select, clock)? { high } else { low };
                 self.residue(taken, clock)
@@ -341,6 +346,14 @@ impl<'p, 'o> Path<'p, 'o> {
         }
         self.held[clock][net.index()] = Some(poly);
     }
+}
+
+fn divided() -> Stop {
+    Stop::Unsupported("a quotient or remainder of two nets".to_owned())
+}
+
+fn shifted() -> Stop {
+    Stop::Unsupported("a shift by a net".to_owned())
 }
 
 #[cfg(test)]

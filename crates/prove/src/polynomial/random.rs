@@ -34,7 +34,7 @@ pub(crate) fn netlist(dice: &mut Dice) -> Netlist {
         let (b, select) = (alike[dice.below(alike.len())], narrow[dice.below(narrow.len())]);
         let (other, others) = nets[dice.below(nets.len())];
         let low = dice.below(bits);
-        let (op, bits) = match dice.below(17) {
+        let (op, bits) = match dice.below(23) {
             0 => (Op::Not(a), bits),
             1 => (Op::And(a, b), bits),
             2 => (Op::Or(a, b), bits),
@@ -52,6 +52,12 @@ pub(crate) fn netlist(dice: &mut Dice) -> Netlist {
             14 if bits + others <= 6 => (Op::Concat { high: a, low: other }, bits + others),
             15 if bits < 6 => (Op::ZeroExtend(a), bits + 1),
             16 if bits < 6 => (Op::SignExtend(a), bits + 1),
+            17 => (Op::Mul(a, b), bits),
+            18 => (Op::Div(a, b), bits),
+            19 => (Op::Rem(a, b), bits),
+            20 => (Op::ShiftLeft(a, other), bits),
+            21 => (Op::ShiftRight(a, other), bits),
+            22 => (Op::ShiftArithmetic(a, other), bits),
             _ => continue,
         };
         nets.push(add(op, bits));

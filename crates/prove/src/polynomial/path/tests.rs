@@ -110,6 +110,7 @@ fn what_the_walk_says_of_every_net_is_what_the_engine_has_a_clock_later_too() {
         "Mux",
         "Add",
         "Sub",
+        "Mul",
         "Carry",
         "Borrow",
         "AddOverflow",
