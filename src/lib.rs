@@ -62,5 +62,6 @@ mod waves;
 pub use app::main_with;
 pub use error::Error;
 pub use simulation::Simulation;
+pub use study::proof;
 pub use testbench::Trace;
 pub use waves::WaveOptions;

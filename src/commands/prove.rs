@@ -1,27 +1,21 @@
 //! `stepwave prove`: proofs over all geometries and widths, and counterexamples.
 
-mod at_widths;
-mod check;
-mod counted;
-mod every_width;
 mod replay;
-mod simulated;
-mod verdict;
+mod text;
 
-use std::io::Write as _;
-use std::ops::RangeInclusive;
+use std::fs::File;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::models::options::WIDTH;
-use crate::models::{Claims, Model, Options, find};
-use crate::prove::Certificate;
-use crate::study::Extent;
+use crate::models::find;
 use crate::study::proof::{
-    Answer, CertificateFile, Fault, Fixed, Narrower, ProofError, SolverError, Subject, Survey, ask, question, search,
+    Answer, Attempt, CheckError, Claim, Effort, Evidence, INDUCTION_KS, InductionSearch, MOST_BYTES, ProofError,
+    Proposition, SEARCHED, SolverError, Verdict, ask, check_with, choices_at, names, proved, question, unproved,
 };
 
-use self::verdict::hardware_in_words;
+use super::progress::Progress;
 use crate::Error;
 use crate::cli::{ProveArgs, ProveCommand};
 use crate::output::{self, Outputs, Sink, temporary};
@@ -29,7 +23,7 @@ use crate::output::{self, Outputs, Sink, temporary};
 /// Attempts a proof, or checks one.
 pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
     match &args.check {
-        Some(ProveCommand::Check { file }) => check::check(file),
+        Some(ProveCommand::Check { file }) => check(file),
         None => attempt(args),
     }
 }
@@ -40,153 +34,101 @@ fn tell(args: &ProveArgs, text: &str) -> Result<(), Error> {
     if is_stdout(&args.certificate) || is_stdout(&args.vcd) { Ok(()) } else { output::print(text) }
 }
 
-/// By how many bits registers are narrower.
-fn narrower(args: &ProveArgs) -> Result<Narrower, Error> {
-    let mut narrower = Narrower::new();
-    for (name, bits) in args.narrower.iter().flat_map(|list| list.0.iter().cloned()) {
-        if let Some(before) = narrower.insert(name.clone(), bits) {
+/// Bits of coordinates that a solver is asked about unless the user says otherwise.
+const ASKED: u32 = 2;
+
+/// What the command line asks to prove.
+fn proposition(args: &ProveArgs) -> Result<Proposition, Error> {
+    let extent = args.extent.clone().or_else(|| args.travel.clone().map(|travel| travel.0));
+    let mut asked = Proposition::of(find(args.model.as_deref().unwrap_or_default())?)
+        .options(args.hardware.choices())
+        .extent(extent)
+        .any_preset(args.any_preset);
+    for (name, bits) in args.narrower.iter().flat_map(|list| list.0.iter()) {
+        if let Some(before) = asked.narrower.insert(name.clone(), *bits) {
             return Err(Error::Invalid(format!(
                 "--narrower gives '{name}' two values, {before} and {bits}: leave one of them out"
             )));
         }
     }
-    Ok(narrower)
+    Ok(asked)
 }
 
-/// Bits of coordinates among which counterexamples are looked for.
-const SEARCHED: RangeInclusive<u32> = 1..=6;
-/// Bits of coordinates that a solver is asked about unless the user says otherwise.
-const ASKED: u32 = 2;
-
-/// What is to be proved of which hardware.
-struct Job<'a> {
-    args: &'a ProveArgs,
-    model: &'static Model,
-    claims: Claims,
-    choices: Options,
-    narrower: Narrower,
-}
-
-impl<'a> Job<'a> {
-    fn new(args: &'a ProveArgs, narrower: Narrower) -> Result<Job<'a>, Error> {
-        let model = find(args.model.as_deref().unwrap_or_default())?;
-        let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-        Ok(Job { args, model, claims, choices: args.hardware.choices(), narrower })
-    }
-
-    /// The box that is given, or what coordinates of the width that is given for all registers hold.
-    fn extent(&self) -> Option<Extent> {
-        let of_width = || self.choices.of_all(&WIDTH).map(|width| Extent::Bits(width.get()));
-        self.args.extent.clone().or_else(|| self.args.travel.clone().map(|travel| travel.0)).or_else(of_width)
-    }
-
-    /// It is about one hardware, and not about one for every k.
-    fn is_fixed(&self) -> bool {
-        self.extent().is_some() || !self.choices.of_single(&WIDTH).is_empty()
-    }
-
-    fn fixed(&self, extent: Extent) -> Result<Fixed, Error> {
-        let told = |error| self.args.hardware.explain_study(error);
-        Fixed::new(self.model, &self.choices, extent).map_err(told)
-    }
-
-    /// Refuses options that are about one width at a time, or about every one, where the widths are given.
-    fn check_fixed(&self) -> Result<(), Error> {
-        let ProveArgs { narrower, solver, bits, any_preset, .. } = self.args;
-        let given = [
-            (!narrower.is_empty(), "--narrower"),
-            (solver.is_some(), "--solver"),
-            (bits.is_some(), "--bits"),
-            (*any_preset, "--any-preset"),
-        ];
-        match given.into_iter().find(|(given, _)| *given) {
-            Some((_, option)) => Err(Error::Invalid(format!(
-                "{option} is for hardware of every k, but --width, --box or --travel choose one: leave one of them out"
-            ))),
-            None => Ok(()),
+/// Refuses options that are about one width at a time, or about every one, where they have no meaning.
+fn check_options(args: &ProveArgs, proposition: &Proposition) -> Result<(), Error> {
+    let counted = !proposition.claims()?.counted.is_empty();
+    let ProveArgs { narrower, solver, bits, any_preset, .. } = args;
+    let given = [
+        (!narrower.is_empty(), "--narrower"),
+        (solver.is_some(), "--solver"),
+        (bits.is_some(), "--bits"),
+        (*any_preset, "--any-preset"),
+    ];
+    match given.into_iter().find(|(given, _)| *given) {
+        Some((_, option)) if proposition.is_fixed() => Err(ProofError::ForEveryK { option }.into()),
+        _ if bits.is_some() && !counted && solver.is_none() && !proposition.is_fixed() => {
+            let model = proposition.model.name;
+            Err(Error::Invalid(format!("{model} is proved for all k at once: leave --bits out")))
         }
+        _ => Ok(()),
     }
+}
 
-    /// The hardware in words.
-    fn hardware(&self) -> String {
-        hardware_in_words(self.model, &self.options(), &self.narrower)
-    }
+/// What a solver says of every geometry of some bits; `None` where it says nothing in time.
+fn asked(args: &ProveArgs, proposition: &Proposition, command: &str) -> Result<Option<Answer>, Error> {
+    let Proposition { model, options, narrower, .. } = proposition;
+    let k = args.bits.unwrap_or(ASKED);
+    let question = question(model, &proposition.claims()?, options, narrower, k)
+        .map_err(|error| args.hardware.explain_study(error))?;
+    let answer = match ask(command, &question.script, Duration::from_secs(args.solver_seconds), &temporary::attend) {
+        Err(late @ SolverError::Late { .. }) => {
+            tell(args, &format!("{late}\n"))?;
+            return Ok(None);
+        }
+        answer => answer?,
+    };
+    let (word, what) = match answer {
+        Answer::Sat => ("sat", "a register overflows or an end point is missed"),
+        Answer::Unsat => ("unsat", "no register overflows, and every end point is reached"),
+    };
+    let (geometries, clocks) = (question.geometries, question.clocks);
+    let text = format!("{command} says {word} of {geometries} geometries of {k} bits within {clocks} clocks: {what}\n");
+    tell(args, &text)?;
+    Ok(Some(answer))
+}
 
-    /// The hardware of every width.
-    fn subject(&self) -> Result<Subject, Error> {
-        let told = |error| self.args.hardware.explain_study(error);
-        let subject = Subject::new(self.model, &self.choices, &self.narrower).map_err(told)?;
-        Ok(if self.args.any_preset { subject.with_any_preset() } else { subject })
-    }
+/// Shows how far each piece of work is, one after the other.
+#[derive(Default)]
+struct Bars(Mutex<Option<(&'static str, Progress)>>);
 
-    /// Simulates until a geometry refutes the claims on hardware of these choices, of coordinates of so many bits.
-    fn search(&self, choices: &Options, ks: RangeInclusive<u32>) -> Survey {
-        // A word that does not fit refutes a narrower register; else it says that a choice, such as a preset, needs more
-        // bits.
-        let refutes = |fault| fault != Fault::Refused || !self.narrower.is_empty();
-        search(self.model, &self.claims, choices, &self.narrower, ks, refutes)
-    }
-
-    /// The options of the hardware, for a certificate.
-    fn options(&self) -> Vec<String> {
-        let any = self.args.any_preset.then(|| "--any-preset".to_owned());
-        let extent = self.extent().filter(|_| self.args.extent.is_some() || self.args.travel.is_some());
-        let extent = extent.into_iter().flat_map(|extent| {
-            let extent = match extent {
-                Extent::Bits(bits) => bits.to_string(),
-                Extent::Grid(grid) => grid.to_string(),
-            };
-            ["--box".to_owned(), extent]
-        });
-        self.choices.words().into_iter().chain(any).chain(extent).collect()
-    }
-
-    /// Opens the file of the certificate, if one is wanted, before anything is attempted.
-    fn certificate(&self) -> Result<CertificateOutput<'_>, Error> {
-        let mut outputs = Outputs::default();
-        let sink = self.args.certificate.as_deref().map(|path| outputs.open(path)).transpose()?;
-        Ok(CertificateOutput { job: self, outputs, sink })
-    }
-
-    /// What a solver says of every geometry of some bits; `None` where it says nothing in time.
-    fn asked(&self, command: &str) -> Result<Option<Answer>, Error> {
-        let k = self.args.bits.unwrap_or(ASKED);
-        let question = question(self.model, &self.claims, &self.choices, &self.narrower, k)
-            .map_err(|error| self.args.hardware.explain_study(error))?;
-        let answer =
-            match ask(command, &question.script, Duration::from_secs(self.args.solver_seconds), &temporary::attend) {
-                Err(late @ SolverError::Late { .. }) => {
-                    tell(self.args, &format!("{late}\n"))?;
-                    return Ok(None);
-                }
-                answer => answer?,
-            };
-        let (word, what) = match answer {
-            Answer::Sat => ("sat", "a register overflows or an end point is missed"),
-            Answer::Unsat => ("unsat", "no register overflows, and every end point is reached"),
-        };
-        let (geometries, clocks) = (question.geometries, question.clocks);
-        let text =
-            format!("{command} says {word} of {geometries} geometries of {k} bits within {clocks} clocks: {what}\n");
-        tell(self.args, &text)?;
-        Ok(Some(answer))
+impl Bars {
+    fn show(&self, what: &'static str, done: usize, all: usize) {
+        let mut shown = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let same = shown.take().filter(|(before, _)| done > 0 && *before == what);
+        let (_, progress) = shown.insert(same.unwrap_or_else(|| (what, Progress::of(all as u64, what))));
+        progress.set(done as u64);
     }
 }
 
 /// Where the certificate goes; dropped, it leaves no file.
-struct CertificateOutput<'a> {
-    job: &'a Job<'a>,
+struct CertificateOutput {
     outputs: Outputs,
     sink: Option<Sink>,
 }
 
-impl CertificateOutput<'_> {
-    /// Writes what was proved, with these options of the hardware.
-    fn write(self, options: Vec<String>, kinds: Vec<(String, Certificate)>, counted: Vec<String>) -> Result<(), Error> {
+impl CertificateOutput {
+    /// Opens the file, if one is wanted, before anything is attempted.
+    fn open(args: &ProveArgs) -> Result<CertificateOutput, Error> {
+        let mut outputs = Outputs::default();
+        let sink = args.certificate.as_deref().map(|path| outputs.open(path)).transpose()?;
+        Ok(CertificateOutput { outputs, sink })
+    }
+
+    /// Writes the certificate; where there is none, no file.
+    fn write(self, verdict: &Verdict) -> Result<(), Error> {
+        let Some(certificate) = verdict.certificate() else { return Ok(()) };
         if let Some(mut sink) = self.sink {
-            let narrower = self.job.narrower.clone().into_iter().collect();
-            let file = CertificateFile { model: self.job.model.name.to_owned(), options, narrower, kinds, counted };
-            write!(sink, "{file}")?;
+            write!(sink, "{certificate}")?;
             sink.flush()?;
         }
         self.outputs.commit()
@@ -197,24 +139,133 @@ fn attempt(args: &ProveArgs) -> Result<(), Error> {
     // Whichever is written in the end, both are tried before anything is attempted.
     let mut both = Outputs::default();
     args.certificate.iter().chain(&args.vcd).try_for_each(|path| both.claim(path).map(drop))?;
-    let job = Job::new(args, narrower(args)?)?;
-    let model = job.model;
-    if job.is_fixed() {
-        job.check_fixed()?;
-        return at_widths::attempt(&job);
-    }
-    let counted = !job.claims.counted.is_empty();
-    if args.bits.is_some() && !counted && args.solver.is_none() {
-        let model = model.name;
-        return Err(Error::Invalid(format!("{model} is proved for all k at once: leave --bits out")));
-    }
-    let second = args.solver.as_deref().map(|command| job.asked(command)).transpose()?.flatten();
-    let own = if counted { counted::attempt(&job) } else { every_width::attempt(&job) };
-    match (&own, second) {
+    let proposition = proposition(args)?;
+    check_options(args, &proposition)?;
+    let second = args.solver.as_deref().map(|command| asked(args, &proposition, command)).transpose()?.flatten();
+    let certificate = CertificateOutput::open(args)?;
+    let bars = Bars::default();
+    let progress = |what, done, all| bars.show(what, done, all);
+    let effort = Effort { bits: args.bits, certificate: args.certificate.is_some(), progress: &progress };
+    let verdict = proposition.prove(&effort).map_err(|error| args.hardware.explain_study(error))?;
+    drop(bars);
+    match (show(args, &verdict, certificate), second) {
         (Ok(()), Some(Answer::Sat)) => Err(Error::Check(vec![format!(
             "{}: what is proved here the solver says is wrong: one of both errs, please report this",
-            model.name
+            proposition.model.name
         )])),
-        _ => own,
+        (own, _) => own,
     }
+}
+
+/// Reports a verdict, and writes its certificate.
+fn show(args: &ProveArgs, verdict: &Verdict, certificate: CertificateOutput) -> Result<(), Error> {
+    let Verdict { proposition, scope, evidence, .. } = verdict;
+    let failure = match evidence {
+        Evidence::Refuted(example) => return replay::refuted(args, proposition, example),
+        Evidence::Open(why) => why.clone(),
+        Evidence::Unbounded => {
+            let hardware = proposition.hardware();
+            tell(args, &format!("{hardware}\nUNKNOWN: where these widths begin to be too narrow was not found\n"))?;
+            format!("not proved: {}; give a box of geometries, such as --travel 100", names(&Claim::ALL))
+        }
+        Evidence::Simulated { tried, why } => {
+            let whole = tried.is_whole();
+            let no_proof = whole && args.certificate.is_some();
+            let none = if no_proof { "no certificate: simulation shows it, no proof\n" } else { "" };
+            tell(args, &format!("{}{none}", text::of_simulated(scope, tried, why)))?;
+            if whole {
+                return Ok(());
+            }
+            format!("not proved {}: {}; no counterexample was found", scope.widths, names(&Claim::ALL))
+        }
+        Evidence::Blocks(blocks) => {
+            certificate.write(verdict)?;
+            return tell(args, &text::of_blocks(scope, blocks));
+        }
+        Evidence::Steps { attempts, below, induction } => {
+            let mut text = text::of_steps(scope, attempts, args.details) + &text::of_least_widths(below);
+            let failure = induction.as_ref().map(|looked| undecided(args, proposition, attempts, looked, &mut text));
+            let failure = failure.transpose()?;
+            if failure.is_some() && args.certificate.is_some() {
+                text += &match proved(attempts) {
+                    none if none.is_empty() => "no certificate: nothing is proved\n".to_owned(),
+                    shown => format!("the certificate proves a part: {}\n", names(&shown)),
+                };
+            }
+            certificate.write(verdict)?;
+            tell(args, &text)?;
+            let Some(failure) = failure else { return Ok(()) };
+            failure
+        }
+    };
+    Err(Error::Check(vec![failure]))
+}
+
+/// What is open after every attempt, and what keeps a proof from being one, after the text of what was proved.
+fn undecided(
+    args: &ProveArgs,
+    proposition: &Proposition,
+    attempts: &[Attempt],
+    looked: &InductionSearch,
+    text: &mut String,
+) -> Result<String, Error> {
+    let open = names(&unproved(attempts));
+    let most = SEARCHED.end();
+    let mut failure =
+        format!("not proved: {open}; no counterexample among the geometries of up to {most} bits that were tried");
+    if let Some(step) = &looked.found {
+        let Proposition { model, options, narrower, .. } = proposition;
+        let own = choices_at(model, &proposition.claims()?, options, narrower, step.k)?;
+        *text += &replay::not_inductive(args, model, step, &own)?;
+        failure += "; a step from a state that may be unreachable shows why";
+    } else {
+        let ([first, last], tried) = (INDUCTION_KS, looked.tried);
+        *text += &format!(
+            "UNKNOWN: no step from {tried} states at k = {first} and {last} that the invariants allow shows why\n"
+        );
+    }
+    Ok(failure)
+}
+
+/// Checks a file of certificates: nothing is looked for.
+fn check(path: &Path) -> Result<(), Error> {
+    let name = path.display();
+    let bars = Bars::default();
+    let progress = |what, done, all| bars.show(what, done, all);
+    let verdict = check_with(&read(path)?, &Effort { progress: &progress, ..Effort::default() });
+    drop(bars);
+    let verdict = verdict.map_err(|error| match error {
+        CheckError::File(_) => Error::Invalid(format!("{name} is {error}")),
+        CheckError::Proof(error) => error.into(),
+        CheckError::Blocks | CheckError::NoFamily => Error::Check(vec![format!("{name} {error}")]),
+    })?;
+    let Evidence::Steps { attempts, .. } = &verdict.evidence else {
+        return match verdict.evidence {
+            Evidence::Blocks(blocks) => output::print(&text::of_blocks(&verdict.scope, &blocks)),
+            Evidence::Open(why) => Err(Error::Check(vec![why])),
+            _ => Err(Error::Check(vec![format!("{name} proves nothing")])),
+        };
+    };
+    output::print(&text::of_steps(&verdict.scope, attempts, false))?;
+    let (open, shown) = (names(&unproved(attempts)), names(&proved(attempts)));
+    Err(Error::Check(vec![match (&*open, &*shown) {
+        ("", _) => return Ok(()),
+        (open, "") => format!("{name} does not prove: {open}"),
+        (open, shown) => format!("{name} proves a part ({shown}), and does not prove: {open}"),
+    }]))
+}
+
+/// The text of a file that is not too large for a certificate.
+fn read(path: &Path) -> Result<String, Error> {
+    let name = path.display();
+    let mut text = String::new();
+    let read = File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_string(&mut text));
+    read.map_err(|error| Error::Invalid(format!("cannot read {name}: {error}")))?;
+    if text.len() as u64 > MOST_BYTES {
+        let most = MOST_BYTES >> 20;
+        return Err(Error::Invalid(format!(
+            "{name} is no certificate: it holds more than {most} MiB, the most of one"
+        )));
+    }
+    Ok(text)
 }

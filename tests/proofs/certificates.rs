@@ -3,6 +3,10 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
+use stepwave::models::find;
+use stepwave::proof::{CheckError, Effort, Proposition, check};
+use stepwave::study::Extent;
+
 use crate::cli::{Folder, Ran};
 
 #[test]
@@ -41,6 +45,47 @@ fn a_check_names_the_hardware_its_options_and_narrower_registers() {
     let checked = folder.good("prove check line.cert");
     let hardware = "ppc-line --beats 1 --on-overflow wrap with x 1 bit narrower and with y 1 bit narrower: every line ";
     assert!(checked.starts_with(hardware), "{checked}");
+}
+
+#[test]
+fn a_certificate_whose_header_is_not_one_hardware_is_refused() {
+    let folder = Folder::new();
+    folder.good("prove ppc-line --width 6 --travel 40,20 --certificate box.cert");
+    let text = folder.read("box.cert");
+    assert!(text.contains("option --width\noption 6\noption --box\noption -40..40x-20..20\n"), "{text}");
+    assert!(folder.good("prove check box.cert").starts_with("ppc-line --width 6 --box -40..40x-20..20: "));
+    folder.good("prove dda-line --any-preset --certificate any.cert");
+    let any = folder.read("any.cert");
+    assert!(folder.good("prove check any.cert").starts_with("dda-line --any-preset: "));
+    let head = |text: &str, from: &str, to: &str| text.replacen(from, to, 1);
+    for (what, text, hint) in [
+        ("narrower at widths", head(&text, "\nkind", "\nnarrower 1 f\nkind"), "--narrower is for hardware of every k"),
+        ("preset at widths", head(&text, "option --box", "option --any-preset\noption --box"), "--any-preset is for"),
+        ("two presets", head(&any, "option", "option --preset\noption half\noption"), "is not hardware alone"),
+        ("travel", head(&text, "--box\noption -40..40x-20..20", "--travel\noption 40"), "is not hardware alone"),
+        (
+            "order",
+            head(&any, "option --any-preset", "option --any-preset\noption --beats\noption 1"),
+            "is not hardware",
+        ),
+        ("value", head(&text, "option 6", "option six"), "is not hardware alone"),
+        ("model", head(&text, "ppc-line", "ppc-lime"), "there is no model 'ppc-lime'"),
+    ] {
+        let (ran, _) = timed(&folder, &text);
+        assert!(ran.code == 2 && ran.out.is_empty() && ran.err.contains(hint), "{what}: {ran:?}");
+    }
+}
+
+#[test]
+fn a_certificate_of_the_library_is_that_of_the_command() {
+    let folder = Folder::new();
+    let asked = Proposition::of(find("cim-line").unwrap()).extent("5".parse::<Extent>().unwrap());
+    let verdict = asked.prove(&Effort { certificate: true, ..Effort::default() }).unwrap();
+    folder.good("prove cim-line --box 5 --certificate line.cert");
+    let certificate = verdict.certificate().unwrap().to_string();
+    assert_eq!(certificate, folder.read("line.cert"));
+    assert!(check(&certificate).unwrap().is_proved());
+    assert!(matches!(check("line"), Err(CheckError::File(_))));
 }
 
 /// A check, and how long it took.

@@ -53,6 +53,14 @@ pub struct Tried {
     pub given_up: usize,
 }
 
+impl Tried {
+    /// Every geometry that there is was simulated, and did as claimed.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.all && self.as_claimed == self.geometries && self.geometries > 0
+    }
+}
+
 /// What a search came to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Survey {

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
+use stepwave_models::{ModelError, find};
 use stepwave_prove::{Certificate, CertificateError};
+
+use super::{Narrower, Proposition};
 
 /// First line of a file of certificates.
 const TITLE: &str = "stepwave certificate 1";
@@ -13,14 +16,10 @@ const MOST_KINDS: usize = 64;
 pub const MOST_BYTES: u64 = 1 << 22;
 
 /// What a file of certificates holds.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct CertificateFile {
-    /// The model.
-    pub model: String,
-    /// The choices of hardware, as options.
-    pub options: Vec<String>,
-    /// Registers that are narrower than by default, and by how many bits.
-    pub narrower: Vec<(String, u32)>,
+    /// What it proves.
+    pub proposition: Proposition,
     /// A certificate for each kind of geometry, by its name.
     pub kinds: Vec<(String, Certificate)>,
     /// Blocks that were followed clock by clock, each with its width and kind.
@@ -28,7 +27,7 @@ pub struct CertificateFile {
 }
 
 /// Why a file is no file of certificates.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// It is something else.
     #[error("it does not begin with '{TITLE}'")]
@@ -40,6 +39,23 @@ pub enum FileError {
         line: usize,
         /// The line.
         text: String,
+    },
+    /// There is no such model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// Its options are of something else too.
+    #[error("'{0}' is not hardware alone")]
+    Options(String),
+    /// A block has no width that is counted.
+    #[error("counted {0}")]
+    Counted(String),
+    /// The model has no such kind of geometry.
+    #[error("{model} has no kind {kind}")]
+    NoKind {
+        /// The model.
+        model: &'static str,
+        /// The kind of geometry.
+        kind: String,
     },
     /// There are two of one kind, or too many.
     #[error("kind {kind} is one too many: a certificate has each kind once, and at most {MOST_KINDS}")]
@@ -59,11 +75,11 @@ pub enum FileError {
 
 impl fmt::Display for CertificateFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{TITLE}\nmodel {}", self.model)?;
-        for option in &self.options {
+        writeln!(f, "{TITLE}\nmodel {}", self.proposition.model.name)?;
+        for option in self.proposition.words() {
             writeln!(f, "option {option}")?;
         }
-        for (register, bits) in &self.narrower {
+        for (register, bits) in &self.proposition.narrower {
             writeln!(f, "narrower {bits} {register}")?;
         }
         for block in &self.counted {
@@ -82,29 +98,8 @@ impl std::str::FromStr for CertificateFile {
     fn from_str(text: &str) -> Result<CertificateFile, FileError> {
         let rest = text.strip_prefix(TITLE).ok_or(FileError::NoTitle)?;
         let mut parts = rest.split("\nkind ");
-        let mut file = CertificateFile {
-            model: String::new(),
-            options: Vec::new(),
-            narrower: Vec::new(),
-            kinds: Vec::new(),
-            counted: Vec::new(),
-        };
-        for (index, line) in parts.next().unwrap_or_default().lines().enumerate().filter(|(_, line)| !line.is_empty()) {
-            let wrong = || FileError::Head { line: index + 1, text: line.chars().take(60).collect() };
-            match line.split_once(' ').ok_or_else(wrong)? {
-                ("model", name) if file.model.is_empty() => name.clone_into(&mut file.model),
-                ("counted", block) => file.counted.push(block.to_owned()),
-                ("option", option) => file.options.push(option.to_owned()),
-                ("narrower", pair) => {
-                    let (bits, register) = pair.split_once(' ').ok_or_else(wrong)?;
-                    if file.narrower.iter().any(|(other, _)| other == register) {
-                        return Err(wrong());
-                    }
-                    file.narrower.push((register.to_owned(), bits.parse().map_err(|_| wrong())?));
-                }
-                _ => return Err(wrong()),
-            }
-        }
+        let (proposition, counted) = head(parts.next().unwrap_or_default())?;
+        let mut file = CertificateFile { proposition, kinds: Vec::new(), counted };
         for part in parts {
             let (kind, body) = part.split_once('\n').unwrap_or((part, ""));
             if file.kinds.len() == MOST_KINDS || file.kinds.iter().any(|(other, _)| other == kind) {
@@ -115,4 +110,28 @@ impl std::str::FromStr for CertificateFile {
         }
         Ok(file)
     }
+}
+
+/// What a file proves, and the blocks that were followed, from the lines before the first kind.
+fn head(text: &str) -> Result<(Proposition, Vec<String>), FileError> {
+    let (mut model, mut options, mut narrower, mut counted) = (String::new(), Vec::new(), Narrower::new(), Vec::new());
+    for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.is_empty()) {
+        let wrong = || FileError::Head { line: index + 1, text: line.chars().take(60).collect() };
+        match line.split_once(' ').ok_or_else(wrong)? {
+            ("model", name) if model.is_empty() => name.clone_into(&mut model),
+            ("counted", block) => counted.push(block.to_owned()),
+            ("option", option) => options.push(option.to_owned()),
+            ("narrower", pair) => {
+                let (bits, register) = pair.split_once(' ').ok_or_else(wrong)?;
+                let bits = bits.parse().map_err(|_| wrong())?;
+                if narrower.insert(register.to_owned(), bits).is_some() {
+                    return Err(wrong());
+                }
+            }
+            _ => return Err(wrong()),
+        }
+    }
+    let own = Proposition { narrower, ..Proposition::of(find(&model)?) };
+    let proposition = own.with_words(&options).ok_or_else(|| FileError::Options(options.join(" ")))?;
+    Ok((proposition, counted))
 }

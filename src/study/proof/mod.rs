@@ -1,31 +1,40 @@
-//! Proofs about models: the family of a model's netlists, recorded runs of each, and one attempt for each kind of
-//! geometry.
+//! Proofs about models: a [`Proposition`] says what of which hardware, [`Proposition::prove`] decides it, and [`check`]
+//! checks the certificate of what it found. To that end there are the family of a model's netlists, recorded runs of each,
+//! and one attempt for each kind of geometry.
 
+mod check;
 mod counted;
 mod counter;
+mod decide;
 mod file;
 mod fixed;
 mod induction;
 mod learning;
 mod members;
+mod proposition;
 mod runs;
 mod solver;
 mod subject;
+mod verdict;
 
 use stepwave_models::ModelError;
 use stepwave_prove::{CaseError, FamilyError, Lost};
 
+pub use check::{CheckError, check, check_with};
 pub use counted::{Block, Way, blocks};
 pub use counter::{Counterexample, Fault, Survey, Tried, search};
+pub use decide::{Effort, SEARCHED, Watcher};
 pub use file::{CertificateFile, FileError, MOST_BYTES};
 pub use fixed::{Fixed, narrowing_ks, symmetric_box};
 pub use induction::{CounterexampleToInduction, INDUCTION_KS, InductionSearch};
 use members::largest;
 pub use members::{Narrower, choices_at};
+pub use proposition::Proposition;
 use runs::number;
 pub use runs::{State, states};
 pub use solver::{Answer, Attend, Question, SolverError, ask, question};
 pub use subject::{Subject, strobes};
+pub use verdict::{Attempt, Claim, Evidence, Scope, Shown, Verdict, names, proved, unproved};
 
 /// Why nothing can be attempted.
 #[derive(Debug, thiserror::Error)]
@@ -41,6 +50,18 @@ pub enum ProofError {
     /// There is no such box of geometries for the model.
     #[error("{0}")]
     Box(String),
+    /// An option is about hardware of every k, and the widths are given.
+    #[error("{option} is for hardware of every k, but --width, --box or --travel choose one: leave one of them out")]
+    ForEveryK {
+        /// The option.
+        option: &'static str,
+    },
+    /// The model has no register that a preset is for.
+    #[error("{model} has no remainder to preset: leave --any-preset out")]
+    NoRemainder {
+        /// The model.
+        model: &'static str,
+    },
     /// The hardware cannot be built.
     #[error(transparent)]
     Model(#[from] ModelError),
