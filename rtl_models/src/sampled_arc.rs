@@ -58,8 +58,8 @@ use crate::model::{Interpolates, Method, Model};
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System, TOLERANCE};
 use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
 use crate::parts::{
-    BURST, Block, CCW, DISPLACEMENT, FineStage, JR, JV, Microprogram, POINT, POSITION, Row, STATE, TARGET, magnitude,
-    negated, row, with_sign,
+    BURST, Block, CCW, DISPLACEMENT, EndRadius, FineStage, JV, Microprogram, POINT, POSITION, Row, STATE, magnitude,
+    magnitude_of_difference, row, squares, states, with_sign,
 };
 use crate::plan::Plan;
 use crate::registers::{Reg, Rule};
@@ -100,20 +100,15 @@ fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
     let sectors = arc.sectors(Crossing::PathExtreme);
     // The end may lie 1 BLU off the circle, and a path by the step factor ends outside it.
     let more = 2.0 + growth(&sampling, radius);
-    let coarse = f64::from(coarse_clocks(&sampling));
-    sampling.hardware(plan, [more, coarse], sizes::arc_positions(arc, &sectors))?;
-    Ok(())
-}
-
-/// Clocks from one hand-over to the next: a component takes a bit a clock, and its state two more.
-fn coarse_clocks(sampling: &Sampling) -> u32 {
+    // From one hand-over to the next: a component takes a bit a clock, and its state two more.
     let bits = sampling.magnitude();
     let [product, root, quotient] = [bits + 2, bits + 2, 2 * bits + 2];
     let (sides, hand, drive) = (2 * product, 1, 1);
-    match sampling.system {
-        System::Direction => 2 * quotient + 2 * root + 2 * product + drive + sides + hand,
-        System::StepFactor => 4 * product + sides + hand,
-    }
+    let own = match sampling.system {
+        System::Direction => 2 * quotient + 2 * root + 2 * product + drive,
+        System::StepFactor => 4 * product,
+    };
+    FineStage::plan(sampling, plan, more, own + sides + hand, sizes::arc_positions(arc, &sectors))
 }
 
 /// How far a full circle by the step factor ends outside, in BLU: λ = f/R, and R grows by the factor sqrt(1 + λ⁴/4) in
@@ -125,124 +120,109 @@ fn growth(sampling: &Sampling, radius: f64) -> f64 {
     }
 }
 
-/// States of the coarse stage: common ones, those of `7m`, those of `7360`.
-mod at {
-    use crate::parts::states;
+// States of the coarse stage: common ones, those of `7m`, those of `7360`.
+states! { mod at {
+    IDLE = 0, SQUARE_X = 1, SQUARE_Y = 2, SIDE_X = 3, SIDE_Y = 4, HAND_OVER = 5,
+    HALF_STEP = 6, TANGENT = 7, SQUARE_TAN = 8, SECANT = 9, COSINE = 10, DRIVE = 11, SQUARE = 12, ROOT = 13,
+    RADIUS = 6, LAMBDA = 7, MIDDLE_X = 8, MIDDLE_Y = 9, STEP_X = 10, STEP_Y = 11
+} }
 
-    states! { IDLE = 0, SQUARE_X = 1, SQUARE_Y = 2, SIDE_X = 3, SIDE_Y = 4, HAND_OVER = 5 }
-    states! { HALF_STEP = 6, TANGENT = 7, SQUARE_TAN = 8, SECANT = 9, COSINE = 10, DRIVE = 11, SQUARE = 12, ROOT = 13 }
-    states! { RADIUS = 6, LAMBDA = 7, MIDDLE_X = 8, MIDDLE_Y = 9, STEP_X = 10, STEP_Y = 11 }
-}
-
-/// The coarse point and what calculates it, in the scope `coarse`.
+/// What both systems calculate with.
+#[derive(Clone, Copy)]
 struct Coarse<'m> {
-    m: Scope<'m>,
+    program: Microprogram<'m>,
     bits: u32,
     f: Signal<'m>,
     ccw: Signal<'m>,
-    /// Both axes of the point.
     point: [Register<'m>; 2],
     /// R² with the fraction of a square.
     radicand: Signal<'m>,
-    program: Microprogram<'m>,
 }
 
-impl<'m> Coarse<'m> {
-    /// Magnitude of a coordinate, n+q bits.
-    fn magnitude(&self, value: Signal<'m>) -> Signal<'m> {
-        magnitude(self.m, value).slice(0, self.bits)
-    }
+/// tan α = (u + f/2·cos 45°) / (v - f/2·sin 45°) of the axis u that is driven and the other, v; u moves by f·cos α,
+/// and v is what the circle leaves of R².
+fn by_direction(coarse: Coarse<'_>) -> Vec<Row<'_>> {
+    let Coarse { program, bits, f, ccw, point: [px, py], radicand } = coarse;
+    let (m, size) = (program.m, |value| magnitude(program.m, value).slice(0, bits));
+    let (product, quotient, root) = (program.multiplier.product(), program.divider.quotient(), program.root.root());
+    // Bits of the fraction of tan and sec; ½·cos 45° with as many bits as f has.
+    let (p, k) = (f.bits().min(bits - 2), f.bits().min(40));
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let half_cosine = m.lit(k, (std::f64::consts::FRAC_1_SQRT_2 / 2.0 * (1_u64 << k) as f64).round() as u64);
+    let half_step = m.reg("half_step", f.bits());
+    let [drives_x, backwards, other_negative] =
+        ["x_is_driven", "backwards", "other_negative"].map(|name| m.reg(name, 1));
+    let tangent = m.reg("tangent", p + 1);
 
-    /// tan α = (u + f/2·cos 45°) / (v - f/2·sin 45°) of the axis u that is driven and the other, v; u moves by f·cos α,
-    /// and v is what the circle leaves of R².
-    fn by_direction(&self) -> Vec<Row<'m>> {
-        let Coarse { m, bits, f, point: [px, py], program, .. } = *self;
-        let (product, quotient, root) = (program.multiplier.product(), program.divider.quotient(), program.root.root());
-        // Bits of the fraction of tan and sec; ½·cos 45° with as many bits as f has.
-        let (p, k) = (f.bits().min(bits - 2), f.bits().min(40));
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let half_cosine = m.lit(k, (std::f64::consts::FRAC_1_SQRT_2 / 2.0 * (1_u64 << k) as f64).round() as u64);
-        let half_step = m.reg("half_step", f.bits());
-        let [drives_x, backwards, other_negative] =
-            ["x_is_driven", "backwards", "other_negative"].map(|name| m.reg(name, 1));
-        let tangent = m.reg("tangent", p + 1);
+    let (x, y) = (px.q, py.q);
+    let [ax, ay] = [x, y].map(size);
+    let x_is_driven = !ay.less_than(ax);
+    let [driven, other] = [x_is_driven.mux(x, y), x_is_driven.mux(y, x)];
+    let [u, v] = [x_is_driven.mux(ax, ay), x_is_driven.mux(ay, ax)];
+    // Clockwise x goes with y, and y against x.
+    let against = x_is_driven.mux(y.msb(), !x.msb()) ^ ccw;
+    let outwards = u.is_zero() | !(driven.msb() ^ against);
+    let half = half_step.q.extend(bits);
+    let ahead = outwards.mux(u.wrapping_add(half), magnitude_of_difference(m, u, half));
+    let below = outwards.mux(v.wrapping_sub(half), v.wrapping_add(half));
+    let kept = [(drives_x, x_is_driven), (backwards, against), (other_negative, other.msb())];
 
-        let (x, y) = (px.q, py.q);
-        let [ax, ay] = [x, y].map(|coordinate| self.magnitude(coordinate));
-        let x_is_driven = !ay.less_than(ax);
-        let [driven, other] = [x_is_driven.mux(x, y), x_is_driven.mux(y, x)];
-        let [u, v] = [x_is_driven.mux(ax, ay), x_is_driven.mux(ay, ax)];
-        // Clockwise x goes with y, and y against x.
-        let against = x_is_driven.mux(y.msb(), !x.msb()) ^ self.ccw;
-        let outwards = u.is_zero() | !(driven.msb() ^ against);
-        let half = half_step.q.extend(bits);
-        let ahead = outwards.mux(u.wrapping_add(half), magnitude_of_difference(m, u, half));
-        let below = outwards.mux(v.wrapping_sub(half), v.wrapping_add(half));
-        let kept = [(drives_x, x_is_driven), (backwards, against), (other_negative, other.msb())];
-
-        let one = m.lit(1, 1).concat(m.lit(2 * p, 0)).extend(2 * bits);
-        let above_one = product.slice(0, 2 * p + 2).extend(2 * bits).wrapping_add(one);
-        let driven = drives_x.q.mux(x, y);
-        let way = quotient.slice(0, f.bits()).extend(bits + 1).as_signed();
-        let moved = backwards.q.mux(driven.wrapping_sub(way), driven.wrapping_add(way));
-        let found = with_sign(m, root, bits + 1, other_negative.q);
-        let drive = [(px, drives_x.q.mux(moved, x)), (py, drives_x.q.mux(y, moved))];
-        let follow = [(px, drives_x.q.mux(x, found)), (py, drives_x.q.mux(found, y))];
-        let [ahead, scaled_f] = [ahead, f].map(|value| value.concat(m.lit(p, 0)));
-        let (cosine, tan, coordinate) = (product.slice(k, f.bits()), quotient.slice(0, p + 1), self.magnitude(driven));
-        vec![
-            row(at::HALF_STEP, Multiply(f, half_cosine), [(half_step, cosine)], at::SIDE_X),
-            row(at::TANGENT, Divide(ahead, below), [(tangent, tan)], at::SQUARE_TAN).keeping(kept),
-            row(at::SQUARE_TAN, Multiply(tangent.q, tangent.q), [], at::SECANT),
-            row(at::SECANT, Root(above_one), [], at::COSINE),
-            row(at::COSINE, Divide(scaled_f, root.slice(0, p + 2)), [], at::DRIVE),
-            row(at::DRIVE, Wait(m.lit(1, 1)), drive, at::SQUARE),
-            row(at::SQUARE, Multiply(coordinate, coordinate), [], at::ROOT),
-            row(at::ROOT, Root(self.radicand.saturating_sub(product)), follow, at::SIDE_X),
-        ]
-    }
-
-    /// λ = f/R, and clockwise Δx = λ(y - ½λx), Δy = -λ(x + ½λy); counter-clockwise λ is negative. `rests` is what a step
-    /// leaves below the fraction.
-    fn by_step_factor(&self) -> (Vec<Row<'m>>, [Register<'m>; 2]) {
-        let Coarse { m, bits, f, ccw, point: [px, py], program, .. } = *self;
-        let product = program.multiplier.product();
-        let plus =
-            |a: Signal<'m>, b: Signal<'m>, subtract: Signal<'m>| subtract.mux(a.wrapping_sub(b), a.wrapping_add(b));
-        let lambda = m.reg("lambda", bits);
-        let [middle_y, middle_x] = ["middle_y", "middle_x"].map(|name| m.reg(name, bits + 1));
-        // From a coordinate, half of λ times the other.
-        let middle = |from: Register<'m>, other: Register<'m>, subtract| {
-            let half = with_sign(m, product.slice(bits + 1, bits - 1), bits + 1, other.q.msb());
-            plus(from.q, half, subtract)
-        };
-        let step = |axis: Register<'m>, rest: Register<'m>, middle: Register<'m>, against| {
-            let way = product.extend(2 * bits + 1).as_signed();
-            let sum = plus(axis.q.concat(rest.q), way, middle.q.msb() ^ against);
-            [(axis, sum.slice(bits, bits + 1).as_signed()), (rest, sum.slice(0, bits))]
-        };
-        let [rest_x, rest_y] = [0, 1].map(|axis| m.reg(REMAINDERS.of(axis).name(), bits));
-        let (to_y, to_x) = (middle(py, px, !ccw), middle(px, py, ccw));
-        let (step_x, step_y) = (step(px, rest_x, middle_y, ccw), step(py, rest_y, middle_x, !ccw));
-        let [x, y, at_y, at_x] =
-            [px.q, py.q, middle_y.q, middle_x.q].map(|coordinate| self.magnitude(coordinate.as_signed()));
-        let (scaled_f, found) = (f.concat(m.lit(bits, 0)), program.divider.quotient().slice(0, bits));
-        let rows = vec![
-            row(at::RADIUS, Root(self.radicand), [], at::LAMBDA),
-            row(at::LAMBDA, Divide(scaled_f, program.root.root()), [(lambda, found)], at::SIDE_X),
-            row(at::MIDDLE_X, Multiply(x, lambda.q), [(middle_y, to_y)], at::MIDDLE_Y),
-            row(at::MIDDLE_Y, Multiply(y, lambda.q), [(middle_x, to_x)], at::STEP_X),
-            row(at::STEP_X, Multiply(at_y, lambda.q), step_x, at::STEP_Y),
-            row(at::STEP_Y, Multiply(at_x, lambda.q), step_y, at::SIDE_X),
-        ];
-        (rows, [rest_x, rest_y])
-    }
+    let one = m.lit(1, 1).concat(m.lit(2 * p, 0)).extend(2 * bits);
+    let above_one = product.slice(0, 2 * p + 2).extend(2 * bits).wrapping_add(one);
+    let driven = drives_x.q.mux(x, y);
+    let way = quotient.slice(0, f.bits()).extend(bits + 1).as_signed();
+    let moved = backwards.q.mux(driven.wrapping_sub(way), driven.wrapping_add(way));
+    let found = with_sign(m, root, bits + 1, other_negative.q);
+    let drive = [(px, drives_x.q.mux(moved, x)), (py, drives_x.q.mux(y, moved))];
+    let follow = [(px, drives_x.q.mux(x, found)), (py, drives_x.q.mux(found, y))];
+    let [ahead, scaled_f] = [ahead, f].map(|value| value.concat(m.lit(p, 0)));
+    let (cosine, tan, coordinate) = (product.slice(k, f.bits()), quotient.slice(0, p + 1), size(driven));
+    vec![
+        row(at::HALF_STEP, Multiply(f, half_cosine), [(half_step, cosine)], at::SIDE_X),
+        row(at::TANGENT, Divide(ahead, below), [(tangent, tan)], at::SQUARE_TAN).keeping(kept),
+        row(at::SQUARE_TAN, Multiply(tangent.q, tangent.q), [], at::SECANT),
+        row(at::SECANT, Root(above_one), [], at::COSINE),
+        row(at::COSINE, Divide(scaled_f, root.slice(0, p + 2)), [], at::DRIVE),
+        row(at::DRIVE, Wait(m.lit(1, 1)), drive, at::SQUARE),
+        row(at::SQUARE, Multiply(coordinate, coordinate), [], at::ROOT),
+        row(at::ROOT, Root(radicand.saturating_sub(product)), follow, at::SIDE_X),
+    ]
 }
 
-/// |a - b| of two unsigned numbers of the same width.
-fn magnitude_of_difference<'m>(m: Scope<'m>, a: Signal<'m>, b: Signal<'m>) -> Signal<'m> {
-    let (borrow, difference) = a.borrowing_sub(b);
-    borrow.mux(negated(m, difference.as_signed()).as_unsigned(), difference)
+/// λ = f/R, and clockwise Δx = λ(y - ½λx), Δy = -λ(x + ½λy); counter-clockwise λ is negative. `rests` is what a step
+/// leaves below the fraction.
+fn by_step_factor<'m>(coarse: Coarse<'m>) -> (Vec<Row<'m>>, [Register<'m>; 2]) {
+    let Coarse { program, bits, f, ccw, point: [px, py], radicand } = coarse;
+    let m = program.m;
+    let product = program.multiplier.product();
+    let plus = |a: Signal<'m>, b: Signal<'m>, subtract: Signal<'m>| subtract.mux(a.wrapping_sub(b), a.wrapping_add(b));
+    let lambda = m.reg("lambda", bits);
+    let [middle_y, middle_x] = ["middle_y", "middle_x"].map(|name| m.reg(name, bits + 1));
+    // From a coordinate, half of λ times the other.
+    let middle = |from: Register<'m>, other: Register<'m>, subtract| {
+        let half = with_sign(m, product.slice(bits + 1, bits - 1), bits + 1, other.q.msb());
+        plus(from.q, half, subtract)
+    };
+    let step = |axis: Register<'m>, rest: Register<'m>, middle: Register<'m>, against| {
+        let way = product.extend(2 * bits + 1).as_signed();
+        let sum = plus(axis.q.concat(rest.q), way, middle.q.msb() ^ against);
+        [(axis, sum.slice(bits, bits + 1).as_signed()), (rest, sum.slice(0, bits))]
+    };
+    let [rest_x, rest_y] = [0, 1].map(|axis| m.reg(REMAINDERS.of(axis).name(), bits));
+    let (to_y, to_x) = (middle(py, px, !ccw), middle(px, py, ccw));
+    let (step_x, step_y) = (step(px, rest_x, middle_y, ccw), step(py, rest_y, middle_x, !ccw));
+    let [x, y, at_y, at_x] =
+        [px.q, py.q, middle_y.q, middle_x.q].map(|coordinate| magnitude(m, coordinate.as_signed()).slice(0, bits));
+    let (scaled_f, found) = (f.concat(m.lit(bits, 0)), program.divider.quotient().slice(0, bits));
+    let rows = vec![
+        row(at::RADIUS, Root(radicand), [], at::LAMBDA),
+        row(at::LAMBDA, Divide(scaled_f, program.root.root()), [(lambda, found)], at::SIDE_X),
+        row(at::MIDDLE_X, Multiply(x, lambda.q), [(middle_y, to_y)], at::MIDDLE_Y),
+        row(at::MIDDLE_Y, Multiply(y, lambda.q), [(middle_x, to_x)], at::STEP_X),
+        row(at::STEP_X, Multiply(at_y, lambda.q), step_x, at::STEP_Y),
+        row(at::STEP_Y, Multiply(at_x, lambda.q), step_y, at::SIDE_X),
+    ];
+    (rows, [rest_x, rest_y])
 }
 
 fn hardware(top: Scope<'_>, hardware: &Hardware) {
@@ -257,49 +237,31 @@ fn hardware(top: Scope<'_>, hardware: &Hardware) {
     let square = m.reg("square", 2 * n);
     let program = Microprogram::new(m, [bits; 2], [2 * bits, bits], bits);
     let ends = [0, 1].map(|axis| block.held_signed(m, ENDS.of(axis).name(), n + 1));
-    let coarse = Coarse { m, bits, f, ccw, point, radicand: square.q.concat(m.lit(2 * q, 0)), program };
+    let coarse = Coarse { program, bits, f, ccw, point, radicand: square.q.concat(m.lit(2 * q, 0)) };
     let [start_x, start_y] = [0, 1].map(|axis| block.word_signed(P_XY.of(axis).name(), bits + 1));
     let (own, rests, [after_square, period]) = match sampling.system {
-        System::Direction => (coarse.by_direction(), vec![], [at::HALF_STEP, at::TANGENT]),
+        System::Direction => (by_direction(coarse), vec![], [at::HALF_STEP, at::TANGENT]),
         System::StepFactor => {
-            let (rows, rests) = coarse.by_step_factor();
+            let (rows, rests) = by_step_factor(coarse);
             (rows, rests.to_vec(), [at::RADIUS, at::MIDDLE_X])
         }
     };
 
-    // On which side of the end's radius the point lies: xe·y - ye·x.
     let [x, y] = point.map(|axis| axis.q);
-    let [ax, ay] = [x, y].map(|coordinate| coarse.magnitude(coordinate));
-    let [ex, ey] = ends.map(|end| magnitude(m, end).slice(0, n));
-    let product = program.multiplier.product();
-    let turned = |negative| with_sign(m, product.slice(0, bits + n), bits + n + 2, negative);
-    let half_side = m.reg("side", bits + n + 2);
-    let side = half_side.q.as_signed().wrapping_sub(turned(ends[1].msb() ^ x.msb()));
-    // Before it, in the sense of the motion.
-    let before = ccw.mux(side.msb(), !side.msb() & side.is_nonzero());
-    let [was_before, arrives, first_side] = ["before", "arrives", "first"].map(|name| m.reg(name, 1));
-    let passed = was_before.q & !before & !first_side.q;
+    let radius = EndRadius::new(program, [x, y], ends, [bits, n], ccw);
     let hand = m.name("hand", program.at(at::HAND_OVER) & fine.free());
 
     let [yes, no] = [m.lit(1, 1), m.lit(1, 0)];
-    let start = [(point[0], start_x), (point[1], start_y), (arrives, no), (first_side, yes)];
-    let [whole_x, whole_y] = [ax, ay].map(|coordinate| coordinate.slice(q, n));
-    let squared = product.slice(0, 2 * n);
-    let sum = square.q.wrapping_add(squared);
-    let part = turned(ends[0].msb() ^ y.msb());
-    let judged = [(was_before, before), (arrives, passed), (first_side, no)];
-    let common = [
-        row(at::IDLE, Start(block.load), start, at::SQUARE_X).clearing(m, &rests),
-        row(at::SQUARE_X, Multiply(whole_x, whole_x), [(square, squared)], at::SQUARE_Y),
-        row(at::SQUARE_Y, Multiply(whole_y, whole_y), [(square, sum)], after_square),
-        row(at::SIDE_X, Multiply(ay, ex), [(half_side, part)], at::SIDE_Y),
-        row(at::SIDE_Y, Multiply(ax, ey), judged, at::HAND_OVER).unless(first_side.q, period),
-        row(at::HAND_OVER, Wait(fine.free()), [], period).unless(arrives.q, at::IDLE),
-    ];
-    program.close(&[&common[..], &own].concat());
+    let start = [(point[0], start_x), (point[1], start_y), (radius.arrives, no), (radius.first, yes)];
+    let wholes = radius.magnitudes.map(|coordinate| coordinate.slice(q, n));
+    let squares = squares(&program, square, wholes, [at::SQUARE_X, at::SQUARE_Y, after_square]);
+    let sides = radius.rows([at::SIDE_X, at::SIDE_Y, at::HAND_OVER], period, no);
+    let idle = row(at::IDLE, Start(block.load), start, at::SQUARE_X).clearing(m, &rests);
+    let hand_over = row(at::HAND_OVER, Wait(fine.free()), [], period).unless(radius.arrives.q, at::IDLE);
+    program.close(&[&[idle][..], &squares, &sides, &[hand_over], &own].concat());
     // As wide as the points that the fine stage takes.
     let points = [x, y].map(|coordinate| coordinate.extend(bits + 2));
-    fine.close(block, hardware, [hand, arrives.q], points, q, ends);
+    fine.close(block, hardware, [hand, radius.arrives.q], points, q, ends);
 }
 
 fn load(arc: &Arc, hardware: &Hardware) -> Vec<Words> {
@@ -308,7 +270,5 @@ fn load(arc: &Arc, hardware: &Hardware) -> Vec<Words> {
     let ccw = arc.direction() == Direction::CounterClockwise;
     let words = Words::new().set(DISPLACEMENT, sampling.word).set(CCW, ccw);
     let words = words.set_each(P_XY, start.map(|coordinate| coordinate << sampling.fraction)).set_each(ENDS, end);
-    let words = words.set_each(TARGET.pair(), start);
-    let words = words.set_each(JR.pair(), [0, 1].map(|axis| hardware.preset(JR.of(axis))));
-    vec![words.set_each(POSITION.pair(), from)]
+    FineStage::words(words, hardware, start, from)
 }

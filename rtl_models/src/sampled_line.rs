@@ -47,8 +47,8 @@ use crate::model::{Interpolates, Method, Model};
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System};
 use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
 use crate::parts::{
-    BURST, Block, DISPLACEMENT, FineStage, JR, JV, LONGEST, Microprogram, POINT, POSITION, Row, SIGN, STATE, TARGET,
-    row, with_sign,
+    BURST, Block, DISPLACEMENT, FineStage, JV, LONGEST, Microprogram, POINT, POSITION, Row, SIGN, STATE, row, squares,
+    states, with_sign,
 };
 use crate::plan::Plan;
 use crate::registers::{Reg, Rule};
@@ -84,34 +84,28 @@ pub static MODEL: Model = Model {
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
     let sampling = Sampling::plan(plan, line.length(), None)?;
-    let coarse = f64::from(coarse_clocks(&sampling));
-    sampling.hardware(plan, [0.0, coarse], sizes::end_positions(line))?;
+    // From one hand-over to the next, with its own: a component takes a bit a clock, and its state two more.
+    let product = sampling.whole + 2;
+    let coarse = match sampling.system {
+        System::Direction => product + dividend_bits(&sampling) + 2 + 1,
+        System::StepFactor => 2 * product + 1,
+    };
+    FineStage::plan(sampling, plan, 0.0, coarse, sizes::end_positions(line))?;
     // Half a pulse of rounding on each axis, twice where the fine stage is between two pulses.
     plan.error_bound = Some(1.5 * SQRT_2);
     Ok(())
-}
-
-/// Clocks from one hand-over to the next, with its own: a component takes a bit a clock, and its state two more.
-fn coarse_clocks(sampling: &Sampling) -> u32 {
-    let product = sampling.whole + 2;
-    match sampling.system {
-        System::Direction => product + dividend_bits(sampling) + 2 + 1,
-        System::StepFactor => 2 * product + 1,
-    }
 }
 
 fn dividend_bits(sampling: &Sampling) -> u32 {
     sampling.magnitude() + sampling.word_bits().max(sampling.whole + 1)
 }
 
-/// States of the coarse stage: common ones, those of `7m`, those of `7360`.
-mod at {
-    use crate::parts::states;
-
-    states! { IDLE = 0, SQUARE_FAR = 1, SQUARE_NEAR = 2, LENGTH = 3, HAND_OVER = 8 }
-    states! { SHARE = 4, STEP = 5, SLOPE = 6, RATIO = 7 }
-    states! { LAMBDA = 5, STEP_FAR = 6, STEP_NEAR = 7 }
-}
+// States of the coarse stage: common ones, those of `7m`, those of `7360`.
+states! { mod at {
+    IDLE = 0, SQUARE_FAR = 1, SQUARE_NEAR = 2, LENGTH = 3, HAND_OVER = 8,
+    SHARE = 4, STEP = 5, SLOPE = 6, RATIO = 7,
+    LAMBDA = 5, STEP_FAR = 6, STEP_NEAR = 7
+} }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let Some(sampling) = hardware.sampling else { return };
@@ -132,16 +126,11 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
     let last = m.name("arrived", !far.less_than(long.concat(m.lit(q, 0)).extend(bits + 1)));
     let hand = m.name("hand", program.at(at::HAND_OVER) & fine.free());
-    let product = program.multiplier.product().slice(0, 2 * n);
-    let (sum, radicand) = (square.q.wrapping_add(product), square.q.concat(m.lit(2 * q, 0)));
-    let common = [
-        row(at::IDLE, Start(block.load), [], at::SQUARE_FAR).clearing(m, &cleared),
-        row(at::SQUARE_FAR, Multiply(long, long), [(square, product)], at::SQUARE_NEAR),
-        row(at::SQUARE_NEAR, Multiply(short, short), [(square, sum)], at::LENGTH),
-        row(at::LENGTH, Root(radicand), [], after_length),
-        row(at::HAND_OVER, Wait(fine.free()), [], period).unless(last, at::IDLE),
-    ];
-    program.close(&[&common[..], &own].concat());
+    let squares = squares(&program, square, [long, short], [at::SQUARE_FAR, at::SQUARE_NEAR, at::LENGTH]);
+    let length = row(at::LENGTH, Root(square.q.concat(m.lit(2 * q, 0))), [], after_length);
+    let idle = row(at::IDLE, Start(block.load), [], at::SQUARE_FAR).clearing(m, &cleared);
+    let hand_over = row(at::HAND_OVER, Wait(fine.free()), [], period).unless(last, at::IDLE);
+    program.close(&[&[idle][..], &squares, &[length, hand_over], &own].concat());
 
     let signs = [0, 1].map(|axis| hardware.held(m, &block, NEGATIVE.of(axis)));
     let ways = [x_is_longest.mux(far, near), x_is_longest.mux(near, far)];
@@ -205,7 +194,6 @@ fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
     let ([a, b], own) = words::line(line);
     let pair = |registers: Reg<2>| [0, 1].map(|axis| own.get(registers.of(axis)).unwrap_or(0));
     let words = Words::new().set(DISPLACEMENT, sampling.word).set_each(LONG_SHORT, [a.max(b), a.min(b)]);
-    let words = words.set(LONGEST.of(0), a >= b).set_each(NEGATIVE, pair(SIGN.pair())).set_each(TARGET.pair(), [0; 2]);
-    let words = words.set_each(JR.pair(), [0, 1].map(|axis| hardware.preset(JR.of(axis))));
-    vec![words.set_each(POSITION.pair(), pair(POSITION.pair()))]
+    let words = words.set(LONGEST.of(0), a >= b).set_each(NEGATIVE, pair(SIGN.pair()));
+    FineStage::words(words, hardware, [0; 2], pair(POSITION.pair()))
 }

@@ -1,10 +1,9 @@
-//! The plan of data sampling: the way of a period in fixed point, and the widths of the coarse stage.
+//! The coarse stage of data sampling: the way of a period in fixed point, and its widths.
 
 use stepwave_netlist::Width;
 
 use crate::error::ModelError;
-use crate::options::{END_POINT, EndPoint, FRACTION, Millionths, STEP, SYSTEM, System, TOLERANCE};
-use crate::parts::{JR, JV};
+use crate::options::{FRACTION, Millionths, STEP, SYSTEM, System, TOLERANCE};
 use crate::plan::Plan;
 
 /// The coarse stage of data sampling: all that fixes it.
@@ -29,9 +28,6 @@ pub struct Sampling {
     /// Clocks of a period T, as a ratio of whole numbers without a common divisor.
     pub clocks: [u64; 2],
 }
-
-/// Most bits of the clocks of a period, so that the divider of the clock adds within 64 bits.
-const MOST_CLOCK_BITS: u32 = 60;
 
 /// The way of a period in BLU where none is chosen.
 const USUAL_STEP: u64 = 8;
@@ -74,12 +70,11 @@ impl Sampling {
         // Down, so that it is none too great.
         let down = |length: f64| Millionths::nearest((length * 1e3).floor() / 1e3).unwrap_or(Millionths(0));
         let step = plan.get(&STEP).unwrap_or_else(|| down(default));
+        let chord_error = radius.map_or(0.0, |radius| step.units() * step.units() / (8.0 * radius));
         if let Some((radius, most)) = radius.zip(most).filter(|(_, most)| step.units() > *most) {
-            let chord = step.units() * step.units() / (8.0 * radius);
-            let why = if chord > tolerance.units() {
-                format!(
-                    "its chords would be up to {chord:.3} BLU off the radius {radius:.3}, but --tolerance is {tolerance}"
-                )
+            let why = if chord_error > tolerance.units() {
+                let off = format!("its chords would be up to {chord_error:.3} BLU off the radius {radius:.3}");
+                format!("{off}, but --tolerance is {tolerance}")
             } else {
                 format!("it is more than half the radius {radius:.3}")
             };
@@ -111,80 +106,15 @@ impl Sampling {
                 whole + fraction
             )));
         }
-        let chord_error = radius.map_or(0.0, |radius| step.units() * step.units() / (8.0 * radius));
         // It is below 2^31: a step beyond does not get here.
         let word = u64::try_from(word).unwrap_or(u64::MAX);
         let (system, clock_hz, clocks) = (plan.get(&SYSTEM), plan.options().clock_hz, [1, 1]);
         Ok(Sampling { system, fraction, step, word, whole, chord_error, tolerance, clock_hz, clocks })
     }
-
-    /// Clocks of a period T at the clock that was chosen, or else the least that hold `least` clocks.
-    ///
-    /// # Errors
-    /// The clock leaves fewer clocks in a period than `least`, which `why` needs.
-    fn period(&self, model: &'static str, least: u64, why: &str) -> Result<[u64; 2], ModelError> {
-        let [seconds, of] = self.system.period_ratio().map(u128::from);
-        let Some(hz) = self.clock_hz else { return Ok([least, 1]) };
-        let (clocks, of) = (u128::from(hz.0) * seconds, of * 1_000_000);
-        let period = self.system.period() * 1e3;
-        if clocks < u128::from(least) * of {
-            let enough = (u128::from(least) * of).div_ceil(seconds * 1_000_000);
-            return Err(ModelError::Widths(format!(
-                "{model}: a clock of {hz} Hz has {} clocks in the period of {period} ms, but {why} {least}: give --clock-hz \
-                 {enough} or more",
-                clocks / of
-            )));
-        }
-        let common = common_divisor(clocks, of);
-        let ratio = [clocks / common, of / common].map(u64::try_from);
-        match ratio {
-            [Ok(clocks), Ok(of)] if clocks >> MOST_CLOCK_BITS == 0 => Ok([clocks, of]),
-            _ => Err(ModelError::Widths(format!(
-                "{model}: a clock of {hz} Hz is more than the divider of the clock can count in the period of {period} ms: \
-                 give a lower --clock-hz, or one in whole Hz"
-            ))),
-        }
-    }
-
-    /// Plans hardware of a coarse stage and a fine stage of two axes, whose integrators hold the greatest way of a period:
-    /// f, rounded to whole pulses, and `more` BLU by which the last way may be longer. The coarse stage takes `coarse`
-    /// clocks a period.
-    pub(crate) fn hardware(
-        self,
-        plan: &mut Plan,
-        [more, coarse]: [f64; 2],
-        positions: impl IntoIterator<Item = impl IntoIterator<Item = i64>>,
-    ) -> Result<(), ModelError> {
-        let n = plan.bits_or(Width::needed_unsigned(whole(self.step.units() + 1.0 + more)));
-        plan.set_each(JV, n).set_each(JR, n).positions(positions);
-        plan.fix(&END_POINT, EndPoint::Iterations);
-        plan.integrators(1)?;
-        let coarse = u64::try_from(whole(coarse)).unwrap_or(u64::MAX);
-        // Additions at least two clocks apart leave one for the integrands of the next period.
-        let burst = 1_u64.checked_shl(plan.bits(JR.of(0)) + 1).unwrap_or(u64::MAX);
-        let (least, why) = if burst > coarse {
-            (burst, "the additions of the fine stage take")
-        } else {
-            (coarse, "the coarse calculation takes")
-        };
-        let clocks = self.period(plan.model(), least, why)?;
-        // The calculation once a block; and periods without a pulse.
-        let periods = u64::try_from(whole((4.0 / self.step.units()).min(1e9))).unwrap_or(u64::MAX >> 32) + 4;
-        let period = (clocks[0] / clocks[1]).saturating_add(2);
-        plan.stall_clocks = coarse.saturating_mul(2).saturating_add(period.saturating_mul(periods));
-        plan.fix(&STEP, Some(self.step));
-        plan.fix(&TOLERANCE, Some(self.tolerance));
-        plan.sampling = Some(Sampling { clocks, ..self });
-        Ok(())
-    }
-}
-
-fn common_divisor(a: u128, b: u128) -> u128 {
-    if b == 0 { a.max(1) } else { common_divisor(b, a % b) }
 }
 
 /// The whole number not below a length.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-fn whole(length: f64) -> u128 {
+pub(crate) fn whole(length: f64) -> u128 {
     length.max(0.0).ceil() as u128
 }

@@ -4,10 +4,18 @@
 use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
-use super::{Block, Iteration, JR, JV, SIGN, axis_scope, integrator, magnitude};
+use super::{Block, Iteration, JR, JV, POSITION, SIGN, axis_scope, integrator, magnitude};
+use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::machine::Words;
+use crate::options::{END_POINT, EndPoint, STEP, TOLERANCE};
 use crate::per_axis;
+use crate::plan::Plan;
 use crate::registers::{PerAxis, Reg, Rule};
+use crate::sampling::{Sampling, whole};
+
+/// Most bits of the clocks of a period, so that the divider of the clock adds within 64 bits.
+const MOST_CLOCK_BITS: u32 = 60;
 
 /// The coarse point of the period.
 pub const POINT: PerAxis =
@@ -47,11 +55,51 @@ pub struct FineStage<'m> {
 }
 
 impl<'m> FineStage<'m> {
+    /// Plans a fine stage of two axes after this coarse stage: its integrators hold the greatest way of a period:
+    /// f, rounded to whole pulses, and `more` BLU by which the last way may be longer. The coarse stage takes `coarse`
+    /// clocks a period.
+    ///
+    /// # Errors
+    /// A register is too wide, or the clock leaves a period too few clocks.
+    pub fn plan(
+        sampling: Sampling,
+        plan: &mut Plan,
+        more: f64,
+        coarse: u32,
+        positions: impl IntoIterator<Item = impl IntoIterator<Item = i64>>,
+    ) -> Result<(), ModelError> {
+        let n = plan.bits_or(Width::needed_unsigned(whole(sampling.step.units() + 1.0 + more)));
+        plan.set_each(JV, n).set_each(JR, n).positions(positions);
+        plan.fix(&END_POINT, EndPoint::Iterations);
+        plan.integrators(1)?;
+        let coarse = u64::from(coarse);
+        // Additions at least two clocks apart leave one for the integrands of the next period.
+        let burst = 1_u64.checked_shl(plan.bits(JR.of(0)) + 1).unwrap_or(u64::MAX);
+        let needs = [(coarse, "the coarse calculation takes"), (burst, "the additions of the fine stage take")];
+        let clocks = period(&sampling, plan.model(), needs[usize::from(burst > coarse)])?;
+        // The calculation once a block; and periods without a pulse.
+        let periods = u64::try_from(whole((4.0 / sampling.step.units()).min(1e9))).unwrap_or(u64::MAX >> 32) + 4;
+        let period = (clocks[0] / clocks[1]).saturating_add(2);
+        plan.stall_clocks = coarse.saturating_mul(2).saturating_add(period.saturating_mul(periods));
+        plan.fix(&STEP, Some(sampling.step));
+        plan.fix(&TOLERANCE, Some(sampling.tolerance));
+        plan.sampling = Some(Sampling { clocks, ..sampling });
+        Ok(())
+    }
+
     /// The registers of its control, for integrators of `bits` bits.
     #[must_use]
     pub fn new(m: Scope<'m>, bits: u32) -> FineStage<'m> {
         let [full, next_last, last] = ["next_full", "next_last", "last"].map(|name| m.reg(name, 1));
         FineStage { m, full, next_last, last, e: m.reg("e", bits + 1) }
+    }
+
+    /// These load words and its own: the preset of every remainder, and where a block starts, in the coordinates of its points
+    /// and in those of the machine.
+    #[must_use]
+    pub fn words(words: Words, hardware: &Hardware, start: [i128; 2], from: [i128; 2]) -> Vec<Words> {
+        let presets = [0, 1].map(|axis| hardware.preset(JR.of(axis)));
+        vec![words.set_each(TARGET.pair(), start).set_each(JR.pair(), presets).set_each(POSITION.pair(), from)]
     }
 
     /// 1 bit: a period can be handed over.
@@ -146,4 +194,35 @@ impl<'m> FineStage<'m> {
         phase.when(block.load, m.lit(bits, 0)).when(tick, sum.wrapping_sub(all)).when(going.q, sum).else_hold();
         tick
     }
+}
+
+/// Clocks of a period T at the clock that was chosen, or else the least that hold `least` clocks.
+///
+/// # Errors
+/// The clock leaves fewer clocks in a period than `least`, which `why` needs.
+fn period(sampling: &Sampling, model: &'static str, (least, why): (u64, &str)) -> Result<[u64; 2], ModelError> {
+    let [seconds, of] = sampling.system.period_ratio().map(u128::from);
+    let Some(hz) = sampling.clock_hz else { return Ok([least, 1]) };
+    let (clocks, of) = (u128::from(hz.0) * seconds, of * 1_000_000);
+    let period = sampling.system.period() * 1e3;
+    if clocks < u128::from(least) * of {
+        let enough = (u128::from(least) * of).div_ceil(seconds * 1_000_000);
+        return Err(ModelError::Widths(format!(
+            "{model}: a clock of {hz} Hz has {} clocks in the period of {period} ms, but {why} {least}: give --clock-hz \
+             {enough} or more",
+            clocks / of
+        )));
+    }
+    let common = common_divisor(clocks, of);
+    match [clocks / common, of / common].map(u64::try_from) {
+        [Ok(clocks), Ok(of)] if clocks >> MOST_CLOCK_BITS == 0 => Ok([clocks, of]),
+        _ => Err(ModelError::Widths(format!(
+            "{model}: a clock of {hz} Hz is more than the divider of the clock can count in the period of {period} ms: \
+             give a lower --clock-hz, or one in whole Hz"
+        ))),
+    }
+}
+
+fn common_divisor(a: u128, b: u128) -> u128 {
+    if b == 0 { a.max(1) } else { common_divisor(b, a % b) }
 }

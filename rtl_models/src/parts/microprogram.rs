@@ -22,10 +22,13 @@ pub struct State {
     pub name: &'static str,
 }
 
-/// Constants of states: `states! { IDLE = 0, ROOT = 1 }`.
+/// A module of states: `states! { mod at { IDLE = 0, ROOT = 1 } }`.
 macro_rules! states {
-    ($($name:ident = $number:literal),*) => {
-        $(pub(super) const $name: $crate::parts::State = $crate::parts::State { number: $number, name: stringify!($name) };)*
+    (mod $module:ident { $($name:ident = $number:literal),* $(,)? }) => {
+        mod $module {
+            $(pub(super) const $name: $crate::parts::State =
+                $crate::parts::State { number: $number, name: stringify!($name) };)*
+        }
     };
 }
 pub(crate) use states;
@@ -69,6 +72,22 @@ pub fn row<'m, const N: usize>(state: State, task: Task<'m>, last: [Write<'m>; N
     Row { state, task, first: Vec::new(), last: last.to_vec(), next, exit: None }
 }
 
+/// Rows that leave a² + b² of two magnitudes in the register `square`, twice as wide: both states, and the one after them.
+#[must_use]
+pub fn squares<'m>(
+    program: &Microprogram<'m>,
+    square: Register<'m>,
+    [a, b]: [Signal<'m>; 2],
+    [first, second, next]: [State; 3],
+) -> [Row<'m>; 2] {
+    let product = program.multiplier.product().slice(0, square.q.bits());
+    let sum = square.q.wrapping_add(product);
+    [
+        row(first, Task::Multiply(a, a), [(square, product)], second),
+        row(second, Task::Multiply(b, b), [(square, sum)], next),
+    ]
+}
+
 impl<'m> Row<'m> {
     /// Registers that take a value as soon as the task takes its operands.
     #[must_use]
@@ -95,7 +114,8 @@ impl<'m> Row<'m> {
 /// - `state`, 4 bits. `waits`, 1 bit: the state has lasted for a clock or more.
 #[derive(Clone, Copy, Debug)]
 pub struct Microprogram<'m> {
-    m: Scope<'m>,
+    /// Where it is.
+    pub m: Scope<'m>,
     state: Register<'m>,
     waits: Register<'m>,
     /// Shift and add.

@@ -21,3 +21,10 @@ pub fn with_sign<'m>(m: Scope<'m>, value: Signal<'m>, bits: u32, negative: Signa
     let value = value.as_unsigned().extend(bits).as_signed();
     negative.mux(negated(m, value), value)
 }
+
+/// |a - b| of two unsigned numbers of the same width.
+#[must_use]
+pub fn magnitude_of_difference<'m>(m: Scope<'m>, a: Signal<'m>, b: Signal<'m>) -> Signal<'m> {
+    let (borrow, difference) = a.borrowing_sub(b);
+    borrow.mux(negated(m, difference.as_signed()).as_unsigned(), difference)
+}

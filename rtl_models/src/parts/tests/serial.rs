@@ -1,7 +1,7 @@
 //! The sequential multiplier, divider and square root, and the microprogram that starts them.
 
 use super::super::Task::{Multiply, Start, Wait};
-use super::super::{Microprogram, SerialDivider, SerialMultiplier, SerialRoot, row};
+use super::super::{Microprogram, SerialDivider, SerialMultiplier, SerialRoot, row, states};
 use super::bench::{Bench, numbers, on_every_engine};
 
 /// Starts a unit, and waits for it as many clocks as it may take.
@@ -83,11 +83,7 @@ fn every_number_of_up_to_eight_bits_has_the_whole_part_of_its_root() {
     }
 }
 
-mod at {
-    use super::super::super::states;
-
-    states! { IDLE = 0, FIRST = 1, SECOND = 2 }
-}
+states! { mod at { IDLE = 0, FIRST = 1, SECOND = 2 } }
 
 #[test]
 fn a_microprogram_begins_each_state_once_waits_for_its_result_and_goes_on() {
