@@ -192,67 +192,6 @@ fn a_mismatch_names_both_sides_with_their_paths_and_widths() {
 }
 
 #[test]
-fn every_rule_of_widths_is_checked_on_a_parsed_netlist_too() {
-    for (cell, code, message) in [
-        ("%3:4 = not %1", Code::WidthMismatch, "m.three (3 bits) is given where 4 bits are needed"),
-        ("%3:4 = and %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
-        ("%3:3 = xor %0 %0", Code::WidthMismatch, "m.four (4 bits) is given where 3 bits are needed"),
-        ("%3:4 = sub %1 %0", Code::WidthMismatch, "m.three (3 bits) and m.four (4 bits) are not equally wide"),
-        ("%3:1 = carry %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
-        ("%3:4 = equal %0 %0", Code::NotOneBit, "a yes-or-no result is 1 bit wide, not 4 bits"),
-        ("%3:4 = mux %1 %0 %0", Code::NotOneBit, "m.three (3 bits) selects, so it must be 1 bit"),
-        ("%3:4 = mux %2 %0 %1", Code::WidthMismatch, "m.four (4 bits) and m.three (3 bits) are not equally wide"),
-        ("%3:3 = mux %2 %0 %0", Code::WidthMismatch, "m.four (4 bits) is given where 3 bits are needed"),
-        ("%3:2 = slice %0 3", Code::OutOfRange, "a slice of 2 bits from bit 3 of m.four (4 bits) reaches past its top"),
-        ("%3:8 = concat %0 %1", Code::WidthMismatch, "m.four (4 bits) above m.three (3 bits) do not make 8 bits"),
-        ("%3:3 = zero-extend %0", Code::OutOfRange, "m.four (4 bits) cannot be extended to 3 bits"),
-        ("%3:3 = sign-extend %0", Code::OutOfRange, "m.four (4 bits) cannot be extended to 3 bits"),
-        ("%3:4 = const 0x10", Code::ValueTooWide, "the value 16 does not fit in 4 bits"),
-        ("%3:4 = register reset 0x10 next %0", Code::ValueTooWide, "the value 16 does not fit in 4 bits"),
-        ("%3:4 = register reset 0x0 next %1", Code::WidthMismatch, "m.three (3 bits) is given where 4 bits are needed"),
-        ("%3:4 = register reset 0x0", Code::UndrivenRegister, "register %3 never gets a next value"),
-        ("%3:4 = register reset 0x0 next %4", Code::Order, "net %3 reads a net that does not come before it"),
-        ("%3:4 = not %3", Code::Order, "net %3 reads a net that does not come before it"),
-        ("property \"p\" never %0 invariant", Code::NotOneBit, "a property is 1 bit wide"),
-        ("property \"p\" never %9 invariant", Code::Order, "the property's net does not exist"),
-        ("property \"p\" never %2 add %0 signed %9 unsigned", Code::Order, "an operand of the property does not exist"),
-        ("property \"p\" never %2 sub %9 signed %0 unsigned", Code::Order, "an operand of the property does not exist"),
-        ("name %0 in 0 \"a b\" unsigned", Code::BadName, "invalid name for a wave 'a b'"),
-        ("name %0 in 0 \"one\" unsigned", Code::DuplicateName, "'m.one' is given to net %2 and to net %0"),
-        (
-            "name %9 in 0 \"ghost\" unsigned",
-            Code::Order,
-            "the name 'ghost' is given to a net or in a scope that does not exist",
-        ),
-        (
-            "name %0 in 7 \"ghost\" unsigned",
-            Code::Order,
-            "the name 'ghost' is given to a net or in a scope that does not exist",
-        ),
-        ("scope 1 in 0 \"a b\"", Code::BadName, "invalid name for a wave 'a b'"),
-        ("scope 1 in 0 \"one\"", Code::DuplicateName, "'m.one' is given to scope 1 and to net %2"),
-        (
-            "scope 1 in 0 \"x\"\nscope 2 in 1 \"y\"\nscope 3 in 1 \"y\"",
-            Code::DuplicateName,
-            "'m.x.y' is given to scope 2 and to scope 3",
-        ),
-    ] {
-        let inputs = "%0:4 = input\n%1:3 = input\n%2:1 = input\n";
-        let names = "name %0 in 0 \"four\" unsigned\nname %1 in 0 \"three\" signed\nname %2 in 0 \"one\" unsigned\n";
-        let diagnostics = parsed(&format!("{inputs}{names}{cell}\n"));
-        let found: Vec<(Code, &str)> = diagnostics.0.iter().map(|d| (d.code, d.message.as_str())).collect();
-        assert_eq!(found, [(code, message)], "{cell}");
-    }
-}
-
-#[test]
-fn a_name_in_no_scope_is_reported_alone_where_a_mistake_would_be_described_by_it() {
-    let diagnostics = parsed("%0:3 = input\n%1:4 = not %0\nname %0 in 7 \"ghost\" unsigned\n");
-    let message = "the name 'ghost' is given to a net or in a scope that does not exist";
-    assert_eq!(messages(&diagnostics), [message]);
-}
-
-#[test]
 fn a_module_and_its_scopes_bear_names_that_a_wave_can_carry() {
     for name in ["two words", "", "1st", "é", "a.b"] {
         let diagnostics = Module::new(name).finish().unwrap_err();
@@ -267,21 +206,6 @@ fn a_module_and_its_scopes_bear_names_that_a_wave_can_carry() {
         let _ = module.top().scope(name).input(name, 1);
         assert!(module.finish().is_ok(), "'{name}'");
     }
-}
-
-#[test]
-fn every_line_that_cannot_be_read_is_named_with_its_number() {
-    let text = "netlist m\n\n%0:4 = input extra\nscope 5 in 0 \"x\"\nnonsense\nname %0 in 0 \"a\" green\n";
-    let said = text::parse(text).unwrap_err().to_string();
-    assert_eq!(
-        said.lines().collect::<Vec<&str>>(),
-        [
-            "line 3: expected the end of the line in '%0:4 = input extra' [Syntax]",
-            "line 4: expected scope 1 in an earlier one in 'scope 5 in 0 \"x\"' [Syntax]",
-            "line 5: expected a cell, 'netlist' (once, first), 'scope', 'name', 'property' or 'between-steps' in 'nonsense' [Syntax]",
-            "line 6: expected a format in 'name %0 in 0 \"a\" green' [Syntax]",
-        ]
-    );
 }
 
 #[test]

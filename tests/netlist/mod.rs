@@ -4,6 +4,7 @@
 #![cfg(test)]
 
 mod diagnostics;
+mod files;
 mod mistakes;
 mod one_mistake;
 mod simplified;

@@ -88,37 +88,3 @@ pub fn move_property(property: &mut Property, go: impl Fn(Net) -> Net) {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::text::{parse, print};
-
-    /// Cells of the simplified text, without those that nothing uses.
-    fn simplified(text: &str) -> String {
-        let simplified = simplify(&parse(text).unwrap(), &HashMap::new());
-        print(&simplified.netlist)
-    }
-
-    #[test]
-    fn constants_are_computed_and_equal_cells_shared() {
-        let before = "netlist m\n%0:4 = input\n%1:4 = const 0x3\n%2:4 = const 0x2\n%3:4 = add %1 %2\n\
-                      %4:4 = add %0 %3\n%5:4 = add %3 %0\n%6:1 = equal %4 %5\nname %6 in 0 \"e\" unsigned\n";
-        let after = "netlist m\n%0:4 = input\n%1:4 = const 0x3\n%2:4 = const 0x2\n%3:4 = const 0x5\n\
-                     %4:4 = add %0 %3\n%5:1 = const 0x1\nname %5 in 0 \"e\" unsigned\n";
-        assert_eq!(simplified(before), after);
-    }
-
-    #[test]
-    fn a_fixed_register_becomes_a_constant_and_its_enable_logic_goes() {
-        let before = parse(
-            "netlist m\n%0:1 = register reset 0x0 next %1\n%1:1 = not %0\n%2:4 = register reset 0x0 next %4\n\
-             %3:4 = not %2\n%4:4 = mux %0 %3 %2\n",
-        )
-        .unwrap();
-        let fixed = HashMap::from([(Net(0), 0)]);
-        let after = simplify(&before, &fixed);
-        assert_eq!(after.constant(Net(1)), Some(1));
-        assert_eq!(after.net(Net(4)), after.net(Net(2)));
-    }
-}
