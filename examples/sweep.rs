@@ -9,7 +9,7 @@
 use stepwave::Error;
 use stepwave::models::options::{BEATS, WIDTH};
 use stepwave::models::{Millionths, find};
-use stepwave::study::{Cells, Dimension, Drawn, Part, Range, Space, Sweep, Value, Variants, heading, write_line};
+use stepwave::study::{Cells, Dimension, Drawn, Range, Space, Sweep, SweepPart, Value, Variants, heading, write_line};
 
 fn main() -> Result<(), Error> {
     // Every line from the origin to a point of the grid, but the one without a pulse.
@@ -24,7 +24,7 @@ fn main() -> Result<(), Error> {
     };
     // Each with three widths and two forms of the controller.
     let hardware = Variants(vec![Dimension::parse(&WIDTH, "5..7")?, Dimension::parse(&BEATS, "4,1")?]);
-    let sweep = Sweep::new(find("ppc-line")?, Space::Cells(lines), hardware, Part::WHOLE, 1 << 20)?;
+    let sweep = Sweep::new(find("ppc-line")?, Space::Cells(lines), hardware, SweepPart::WHOLE, 1 << 20)?;
 
     let rows = sweep.rows(0..sweep.geometries())?;
     let (clocks, error) = (sweep.column("clocks"), sweep.column("max_error"));

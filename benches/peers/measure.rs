@@ -60,7 +60,7 @@ impl Job {
 
 /// What a run took and made.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Run {
+pub(crate) struct Measurement {
     /// Seconds on the clock, and of processor time.
     pub(crate) wall: f64,
     pub(crate) computed: f64,
@@ -69,7 +69,7 @@ pub(crate) struct Run {
     said: String,
 }
 
-impl Run {
+impl Measurement {
     /// The clocks that the program said it has run.
     pub(crate) fn clocks(&self) -> f64 {
         self.said.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(f64::NAN)
@@ -84,8 +84,8 @@ impl Run {
 
 /// Runs all jobs round by round, so that what else the machine does meets all alike; all must come to the same. The
 /// runs of each job.
-pub(crate) fn race(rounds: usize, jobs: &[Job]) -> Fallible<Vec<Vec<Run>>> {
-    let mut runs: Vec<Vec<Run>> = vec![Vec::new(); jobs.len()];
+pub(crate) fn race(rounds: usize, jobs: &[Job]) -> Fallible<Vec<Vec<Measurement>>> {
+    let mut runs: Vec<Vec<Measurement>> = vec![Vec::new(); jobs.len()];
     for round in 0..rounds {
         for (job, runs) in jobs.iter().zip(&mut runs).filter(|(job, _)| round < job.rounds) {
             let run = measure(job, round)?;
@@ -102,7 +102,7 @@ pub(crate) fn race(rounds: usize, jobs: &[Job]) -> Fallible<Vec<Vec<Run>>> {
 }
 
 #[allow(clippy::cast_precision_loss)]
-fn measure(job: &Job, round: usize) -> Fallible<Run> {
+fn measure(job: &Job, round: usize) -> Fallible<Measurement> {
     let mut command = Command::new(std::env::current_exe()?);
     command.arg("--measure").arg(job.cores.unwrap_or(0).to_string()).arg(round.to_string());
     let output = command.args(&job.words).current_dir(&job.dir).stderr(Stdio::inherit()).output()?;
@@ -119,7 +119,7 @@ fn measure(job: &Job, round: usize) -> Fallible<Run> {
         wave_bytes = path.metadata()?.len() as f64;
         std::fs::remove_file(path)?;
     }
-    Ok(Run { wall, computed, peak_mb, wave_bytes, said: (job.says)(said.trim())? })
+    Ok(Measurement { wall, computed, peak_mb, wave_bytes, said: (job.says)(said.trim())? })
 }
 
 /// The other side: cores, round, program and words. Prints what the program prints, and in the last line, after `--`,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::contender::{Wave, first_line};
-use crate::measure::{Job, Run, race};
+use crate::measure::{Job, Measurement, race};
 use crate::table::{Table, median, number, times};
 use crate::unit::{Case, MODELS, Unit, block};
 use crate::{Fallible, cxxrtl, growth, icarus, own, verilator};
@@ -85,16 +85,16 @@ fn machine() -> String {
 }
 
 /// Millions of clocks a second of processor time.
-pub(crate) fn rate(runs: &[Run]) -> f64 {
+pub(crate) fn rate(runs: &[Measurement]) -> f64 {
     median(runs, |run| run.clocks() / run.computed / 1e6)
 }
 
 /// Seconds on the clock.
-fn wall(runs: &[Run]) -> f64 {
+fn wall(runs: &[Measurement]) -> f64 {
     median(runs, |run| run.wall)
 }
 
-fn peak(runs: &[Run]) -> String {
+fn peak(runs: &[Measurement]) -> String {
     number(median(runs, |run| run.peak_mb))
 }
 
@@ -248,8 +248,8 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
             verilator::run(&unit, &dir, Wave::None, &blocks)?.rounds(2),
         ];
         let runs = race(sizes.rounds, &jobs)?;
-        let computed = |runs: &Vec<Run>| median(runs, |run| run.all_clocks() / run.computed / 1e6);
-        let wall = |runs: &Vec<Run>| median(runs, |run| run.all_clocks() / run.wall / 1e6);
+        let computed = |runs: &Vec<Measurement>| median(runs, |run| run.all_clocks() / run.computed / 1e6);
+        let wall = |runs: &Vec<Measurement>| median(runs, |run| run.all_clocks() / run.wall / 1e6);
         let (checked, bare, peer) = (computed(&runs[0]), computed(&runs[2]), computed(&runs[3]));
         let (single, multiple) = (wall(&runs[0]), wall(&runs[1]));
         let rates = [bare, checked, peer].map(number).into_iter().chain([bare, checked].map(|own| times(own / peer)));

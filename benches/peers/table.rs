@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::measure::Run;
+use crate::measure::Measurement;
 
 /// The middle one of what `of` takes from the runs.
-pub(crate) fn median(runs: &[Run], of: impl Fn(&Run) -> f64) -> f64 {
+pub(crate) fn median(runs: &[Measurement], of: impl Fn(&Measurement) -> f64) -> f64 {
     let mut values: Vec<f64> = runs.iter().map(of).collect();
     values.sort_by(f64::total_cmp);
     if values.is_empty() {

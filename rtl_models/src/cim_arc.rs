@@ -38,7 +38,7 @@ use crate::machine::Words;
 use crate::model::{Interpolates, Method, Model};
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH, Weights};
 use crate::parts::{
-    A_B, BASE, Block, CCW, Change, END, F, Kind, POSITION, QUAD, Side, comparison_integral, quadrant_register,
+    A_B, ArcKind, BASE, Block, CCW, Change, END, F, POSITION, QUAD, Side, comparison_integral, quadrant_register,
 };
 use crate::plan::Plan;
 use crate::{sizes, words};
@@ -78,7 +78,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let ccw = hardware.held(m, &block, CCW);
     let quad = quadrant_register(m);
     quad.when(block.load, hardware.word(&block, QUAD)).else_hold();
-    let kind = Kind::decode(m.scope("quadrant"), quad.q, ccw);
+    let kind = ArcKind::decode(m.scope("quadrant"), quad.q, ccw);
     let side = |negative, grows| Side { negative, change: Some(Change { grows, unit: m.lit(1, 1) }) };
     let sides = [side(kind.x_negative, kind.x_grows), side(kind.y_negative, !kind.x_grows)];
     between_steps(m, hardware.get(&WEIGHTS));

@@ -39,7 +39,7 @@ use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::{Interpolates, Method, Model};
 use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
-use crate::parts::{Block, E, END, IntegratorPair, JR, JV, Kind, Normalizer, POSITION, QUAD, shifted_left};
+use crate::parts::{ArcKind, Block, E, END, IntegratorPair, JR, JV, Normalizer, POSITION, QUAD, shifted_left};
 use crate::plan::Plan;
 use crate::registers::{N, Reg};
 use crate::{sizes, words};
@@ -85,7 +85,7 @@ fn plan(arc: &Arc, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let normalizer = Normalizer::new(m, &block, hardware.get(&NORMALIZE));
-    let kind = Kind::held(m, &block);
+    let kind = ArcKind::held(m, &block);
     let pair = IntegratorPair::new(m, &block, hardware);
     let integrands = pair.integrands();
     let wide = integrands[0].bits();

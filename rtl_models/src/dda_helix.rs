@@ -39,7 +39,7 @@ use crate::machine::Words;
 use crate::model::{Interpolates, Method, Model};
 use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{
-    Block, END, IntegratorPair, Iteration, JR, JV, Kind, Normalizer, POSITION, QUAD, SIGN, axis_scope, integrator,
+    ArcKind, Block, END, IntegratorPair, Iteration, JR, JV, Normalizer, POSITION, QUAD, SIGN, axis_scope, integrator,
 };
 use crate::plan::Plan;
 use crate::registers::{N, Reg};
@@ -98,7 +98,7 @@ fn plan(helix: &Helix, plan: &mut Plan) -> Result<(), ModelError> {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let normalized = Normalizer::new(m, &block, false).close(&[], 1);
-    let kind = Kind::held(m, &block);
+    let kind = ArcKind::held(m, &block);
     let pair = IntegratorPair::new(m, &block, hardware);
     let last_in_plane = pair.close(hardware, normalized, kind.pair_sides(m.name("unit", m.lit(1, 1))));
 

@@ -9,7 +9,7 @@ use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
 use crate::options::{AnyOption, ON_OVERFLOW, Options, Takes, chosen, taken};
 use crate::plan::Plan;
-use crate::registers::{Registers, Row, rows};
+use crate::registers::{RegisterGroup, Registers, rows};
 
 /// What a model interpolates.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -126,7 +126,7 @@ impl Model {
     }
 
     /// Its registers by what is declared together, in the order of the step table.
-    pub fn rows(&self) -> impl Iterator<Item = Row> {
+    pub fn rows(&self) -> impl Iterator<Item = RegisterGroup> {
         rows(self.registers)
     }
 

@@ -9,7 +9,7 @@ use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace};
 use crate::options::{ADDER, Adder, NORMALIZE, OptionDef, Options, PRESET, PerRegister, Preset, RADIX, Radix, WIDTH};
 use crate::parts::{JR, JV, POSITION};
-use crate::registers::{AXES, Declaration, Reg, Registers, Row, Rule};
+use crate::registers::{AXES, Declaration, Reg, RegisterGroup, Registers, Rule};
 use crate::sampling::Sampling;
 
 /// What a model says of its hardware for a curve: widths that follow no rule, and promises.
@@ -147,7 +147,7 @@ impl Plan {
     fn each(&self, mut visit: impl FnMut(&'static str, &'static Declaration)) {
         for declared in self.registers {
             let (first, second) = declared.rows();
-            let names = |Row { names, declaration }: Row| match (declaration.when)(self) {
+            let names = |RegisterGroup { names, declaration }: RegisterGroup| match (declaration.when)(self) {
                 true => &names[..(declaration.count)(self).min(names.len())],
                 false => &[],
             };

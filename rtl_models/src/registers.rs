@@ -252,13 +252,13 @@ impl fmt::Debug for Reg {
 
 /// Registers that are declared together: a line of `stepwave list`.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct RegisterGroup {
     pub(crate) names: &'static [&'static str],
     /// What is said of them.
     pub declaration: &'static Declaration,
 }
 
-impl Row {
+impl RegisterGroup {
     /// The names of those that hardware of this many axes has.
     #[must_use]
     pub fn names(self, axes: usize) -> &'static [&'static str] {
@@ -279,17 +279,17 @@ impl Row {
 /// columns take turns.
 pub trait Declared: Sync {
     /// The registers that are declared together: `first` or, if there are two for each axis, `second`.
-    fn rows(&'static self) -> (Row, Option<Row>);
+    fn rows(&'static self) -> (RegisterGroup, Option<RegisterGroup>);
 }
 
 impl<const K: usize> Declared for Reg<K> {
-    fn rows(&'static self) -> (Row, Option<Row>) {
-        (Row { names: &self.names, declaration: &self.declaration }, None)
+    fn rows(&'static self) -> (RegisterGroup, Option<RegisterGroup>) {
+        (RegisterGroup { names: &self.names, declaration: &self.declaration }, None)
     }
 }
 
 impl<const K: usize> Declared for (Reg<K>, Reg<K>) {
-    fn rows(&'static self) -> (Row, Option<Row>) {
+    fn rows(&'static self) -> (RegisterGroup, Option<RegisterGroup>) {
         (self.0.rows().0, Some(self.1.rows().0))
     }
 }
@@ -304,7 +304,7 @@ impl fmt::Debug for dyn Declared {
 pub type Registers = &'static [&'static dyn Declared];
 
 /// The rows of a list.
-pub(crate) fn rows(registers: Registers) -> impl Iterator<Item = Row> {
+pub(crate) fn rows(registers: Registers) -> impl Iterator<Item = RegisterGroup> {
     registers.iter().flat_map(|declared| {
         let (first, second) = declared.rows();
         [Some(first), second].into_iter().flatten()

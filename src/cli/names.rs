@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 
-use crate::models::registers::{Row, Rule};
+use crate::models::registers::{RegisterGroup, Rule};
 use crate::models::{AXES, Model, ModelError, installed};
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Command, Error};
@@ -49,7 +49,7 @@ pub(crate) enum Registers {
 
 /// Registers of a model: those of each axis for every axis that it takes.
 pub(crate) fn registers(model: &Model, which: Registers) -> Vec<String> {
-    let fixed = |row: &Row| matches!(row.declaration.rule, Rule::Bits(_));
+    let fixed = |row: &RegisterGroup| matches!(row.declaration.rule, Rule::Bits(_));
     let rows = model.rows().filter(|row| which == Registers::All || !fixed(row));
     // Of the many units of a cascade the first are enough.
     let few = |names: &'static [&'static str]| if names.len() > 2 * AXES.len() { &names[..2] } else { names };

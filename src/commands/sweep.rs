@@ -10,8 +10,8 @@ use crate::nc::Direction;
 use crate::netlist::did_you_mean;
 use crate::report::heat::HeatMap;
 use crate::study::{
-    self, Cells, Dimension, Drawn, Grid, Kind, ParquetTable, Part, Range, Row, Space, Stage, StudyError, Summary,
-    Sweep, Variants, write_line,
+    self, Cells, ColumnType, Dimension, Drawn, Grid, ParquetTable, Range, Row, Space, Stage, StudyError, Summary,
+    Sweep, SweepPart, Variants, write_line,
 };
 use rayon::prelude::*;
 
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
             names.try_for_each(|name| known_register(model, option.name(), name))?;
         }
     }
-    let sweep = Sweep::new(model, space, variants, Part { number, of }, args.outputs.max_clocks)?;
+    let sweep = Sweep::new(model, space, variants, SweepPart { number, of }, args.outputs.max_clocks)?;
     let inputs: Vec<&PathBuf> = args.space.file.iter().collect();
     let mut outputs = Outputs::reading(&inputs);
     let written = write(&sweep, &args.outputs, Outputs::reading(&inputs), &mut outputs);
@@ -72,22 +72,8 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
         one.or_else(|| many.as_ref().map(|Grid(ranges)| ranges.clone()))
     };
     let (mut from, to) = (points(&args.from, &args.from_grid), points(&args.to, &args.to_grid));
-    let sizes = [&args.ellipse, &args.parabola, &args.hyperbola].into_iter().flatten().next();
-    let mut sizes: Vec<Range> = sizes.map(|Grid(ranges)| ranges.clone()).unwrap_or_default();
-    sizes.extend(args.radius.into_iter().chain(args.height));
+    let sizes = sizes(model, args, drawn)?;
     let who = model.name;
-    let wanted = match drawn {
-        Drawn::Ellipse | Drawn::Hyperbola(_) => 2,
-        Drawn::Parabola(_) => 1,
-        Drawn::Helix if args.height.is_some() => 2,
-        _ => usize::from(args.radius.is_some()),
-    };
-    if sizes.len() != wanted {
-        return trouble(format!(
-            "{} sizes were given where {who} takes {wanted}: see `stepwave sweep --help`",
-            sizes.len()
-        ));
-    }
     let axes = to.as_ref().or(from.as_ref()).map_or(2, Vec::len);
     let least = if drawn == Drawn::Helix { 3 } else { 2 };
     let most = model.curve().max_axes();
@@ -107,13 +93,7 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
     if matches!(drawn, Drawn::Arc | Drawn::Helix) && from.is_none() && args.radius.is_none() {
         return trouble(format!("the start points are missing: give {who} --radius, --from or --from-grid"));
     }
-    let center = match &args.center {
-        None => [0, 0],
-        Some(Point(point)) => match <[i64; 2]>::try_from(point.as_slice()) {
-            Ok(center) => center,
-            Err(_) => return trouble(format!("--center has {} coordinates: give X,Y", point.len())),
-        },
-    };
+    let center = center(args)?;
     let flags = [(args.cw, Direction::Clockwise), (args.ccw, Direction::CounterClockwise)];
     let directions = flags.into_iter().filter(|(given, _)| *given).map(|(_, direction)| direction).collect();
     let cells = Cells { drawn, sizes, from, to, center, directions, radii };
@@ -122,6 +102,37 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
         Some(_) => return trouble(format!("a grid of {} geometries is too large to draw from", cells.count())),
         None => Space::Cells(cells),
     })
+}
+
+/// The radius and height, the semi-axes or the parameter: as many as the curve has.
+fn sizes(model: &Model, args: &SpaceArgs, drawn: Drawn) -> Result<Vec<Range>, Error> {
+    let sizes = [&args.ellipse, &args.parabola, &args.hyperbola].into_iter().flatten().next();
+    let mut sizes: Vec<Range> = sizes.map(|Grid(ranges)| ranges.clone()).unwrap_or_default();
+    sizes.extend(args.radius.into_iter().chain(args.height));
+    let who = model.name;
+    let wanted = match drawn {
+        Drawn::Ellipse | Drawn::Hyperbola(_) => 2,
+        Drawn::Parabola(_) => 1,
+        Drawn::Helix if args.height.is_some() => 2,
+        _ => usize::from(args.radius.is_some()),
+    };
+    if sizes.len() != wanted {
+        return trouble(format!(
+            "{} sizes were given where {who} takes {wanted}: see `stepwave sweep --help`",
+            sizes.len()
+        ));
+    }
+    Ok(sizes)
+}
+
+fn center(args: &SpaceArgs) -> Result<[i64; 2], Error> {
+    match &args.center {
+        None => Ok([0, 0]),
+        Some(Point(point)) => match <[i64; 2]>::try_from(point.as_slice()) {
+            Ok(center) => Ok(center),
+            Err(_) => trouble(format!("--center has {} coordinates: give X,Y", point.len())),
+        },
+    }
 }
 
 /// What the model interpolates, if nothing was given that it has not.
@@ -205,7 +216,7 @@ struct Heat {
 
 impl Heat {
     fn new(sweep: &Sweep, name: &str) -> Result<Heat, Error> {
-        let numbers = sweep.columns().iter().filter(|column| column.kind != Kind::Word && column.name != "index");
+        let numbers = sweep.columns().iter().filter(|column| column.kind != ColumnType::Word && column.name != "index");
         let known: Vec<&str> = numbers.map(|column| column.name.as_str()).collect();
         if !known.contains(&name) {
             let what = match sweep.column(name) {
@@ -370,7 +381,7 @@ fn write(sweep: &Sweep, args: &TableArgs, claims: Outputs, outputs: &mut Outputs
     all_rows(sweep, begun, &mut tables)?;
 
     let Tables { mut stage, stream, summary, heat } = tables;
-    if summary.rows() == 0 && sweep.part() == Part::WHOLE {
+    if summary.rows() == 0 && sweep.part() == SweepPart::WHOLE {
         stage.map(Kept::discard).transpose()?;
         return trouble("no point of the grid lies within 1 BLU of such a curve: give another grid".to_owned());
     }

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-use crate::testbench::{Checkpoints, State, Testbench};
+use crate::testbench::{Checkpoint, Checkpoints, Testbench};
 
 use super::Simulation;
 use crate::Error;
@@ -15,7 +15,7 @@ pub(super) enum States<'a> {
     /// It does not exist yet: this run writes it.
     Kept(&'a Path, Checkpoints),
     /// It holds a state shortly before the window of the wave: this run begins there.
-    Resumed(State),
+    Resumed(Checkpoint),
 }
 
 impl<'a> States<'a> {
@@ -62,7 +62,7 @@ pub(super) enum Begin {
         sink: Sink,
     },
     /// At a state.
-    At(State),
+    At(Checkpoint),
 }
 
 impl Begin {

@@ -4,7 +4,7 @@ use stepwave_models::{AXES, Model};
 use stepwave_nc::Opens;
 
 use super::space::{Drawn, Site, Space};
-use super::table::{Column, Kind, Row, Value};
+use super::table::{Column, ColumnType, Row, Value};
 use super::{StudyError, Variants};
 use crate::testbench::{Ending, Measured};
 
@@ -40,40 +40,40 @@ impl Layout {
         let mut columns = Vec::new();
         let mut add = |name: &str, kind| columns.push(Column { name: name.to_owned(), kind });
         let letters = &AXES[..axes];
-        add("index", Kind::Whole);
+        add("index", ColumnType::Whole);
         if is_conic(drawn) {
-            add("curve", Kind::Word);
-            add("size_a", Kind::Whole);
-            add("size_b", Kind::Whole);
-            add("opens", Kind::Word);
+            add("curve", ColumnType::Word);
+            add("size_a", ColumnType::Whole);
+            add("size_b", ColumnType::Whole);
+            add("opens", ColumnType::Word);
         }
         for point in ["from", "to"] {
-            letters.iter().for_each(|axis| add(&format!("{point}_{axis}"), Kind::Whole));
+            letters.iter().for_each(|axis| add(&format!("{point}_{axis}"), ColumnType::Whole));
         }
         if drawn != Drawn::Line {
-            add("center_x", Kind::Whole);
-            add("center_y", Kind::Whole);
-            add("direction", Kind::Word);
+            add("center_x", ColumnType::Whole);
+            add("center_y", ColumnType::Whole);
+            add("direction", ColumnType::Word);
         }
         for (option, _) in variants.words() {
-            add(&option.name().replace('-', "_"), Kind::Word);
+            add(&option.name().replace('-', "_"), ColumnType::Word);
         }
-        add("ending", Kind::Word);
-        add("clocks", Kind::Whole);
-        add("steps", Kind::Whole);
+        add("ending", ColumnType::Word);
+        add("clocks", ColumnType::Whole);
+        add("steps", ColumnType::Whole);
         for number in ["pulses", "reached"] {
-            letters.iter().for_each(|axis| add(&format!("{number}_{axis}"), Kind::Whole));
+            letters.iter().for_each(|axis| add(&format!("{number}_{axis}"), ColumnType::Whole));
         }
-        add("exact", Kind::Flag);
-        add("error_max", Kind::Real);
-        add("error_mean", Kind::Real);
-        add("overflows", Kind::Whole);
-        add("overflow", Kind::Word);
+        add("exact", ColumnType::Flag);
+        add("error_max", ColumnType::Real);
+        add("error_mean", ColumnType::Real);
+        add("overflows", ColumnType::Whole);
+        add("overflow", ColumnType::Word);
         for axis in letters {
-            add(&format!("spacing_min_{axis}"), Kind::Whole);
-            add(&format!("spacing_max_{axis}"), Kind::Whole);
+            add(&format!("spacing_min_{axis}"), ColumnType::Whole);
+            add(&format!("spacing_max_{axis}"), ColumnType::Whole);
         }
-        add("reason", Kind::Word);
+        add("reason", ColumnType::Word);
         Ok(Layout { columns, drawn, axes })
     }
 

@@ -175,30 +175,8 @@ impl Source {
 /// # Errors
 /// A part cannot be read, is not whole, is of another sweep, is missing or is there twice; or `sink` cannot be written.
 pub fn merge(inputs: &[PathBuf], sink: impl Write + Send, as_parquet: bool) -> Result<u64, StudyError> {
-    let mut sources = inputs.iter().map(|path| Source::open(path)).collect::<Result<Vec<_>, _>>()?;
-    sources.sort_by_key(|source| source.head().number);
-    let Some(first) = sources.first().map(|source| source.head().clone()) else {
-        return Err(StudyError::Geometries("there are no parts to merge: name them".to_owned()));
-    };
-    for source in &sources {
-        let head = source.head();
-        if (head.of, &head.sweep) != (first.of, &first.sweep) {
-            return Err(source.wrong(format!("it is of another sweep than {}", sources[0].path.display())));
-        }
-    }
-    for (source, number) in sources.iter().zip(1..) {
-        if source.head().number < number {
-            return Err(source.wrong(format!("part {}/{} is given twice", source.head().number, first.of)));
-        }
-        if source.head().number > number {
-            return Err(source.wrong(format!("part {number}/{} is missing", first.of)));
-        }
-    }
-    if (sources.len() as u64) < first.of {
-        let last = &sources[sources.len() - 1];
-        return Err(last.wrong(format!("part {}/{} is missing", sources.len() + 1, first.of)));
-    }
-    let columns = first.columns().unwrap_or_default();
+    let mut sources = in_order(inputs)?;
+    let columns = sources[0].head().columns().unwrap_or_default();
     for source in &mut sources {
         source.advance()?;
     }
@@ -234,6 +212,34 @@ pub fn merge(inputs: &[PathBuf], sink: impl Write + Send, as_parquet: bool) -> R
         sink.flush().map_err(failed)?;
     }
     Ok(rows)
+}
+
+/// All parts of one sweep by their numbers, at least one, each there once.
+fn in_order(inputs: &[PathBuf]) -> Result<Vec<Source>, StudyError> {
+    let mut sources = inputs.iter().map(|path| Source::open(path)).collect::<Result<Vec<_>, _>>()?;
+    sources.sort_by_key(|source| source.head().number);
+    let Some(first) = sources.first().map(|source| source.head().clone()) else {
+        return Err(StudyError::Geometries("there are no parts to merge: name them".to_owned()));
+    };
+    for source in &sources {
+        let head = source.head();
+        if (head.of, &head.sweep) != (first.of, &first.sweep) {
+            return Err(source.wrong(format!("it is of another sweep than {}", sources[0].path.display())));
+        }
+    }
+    for (source, number) in sources.iter().zip(1..) {
+        if source.head().number < number {
+            return Err(source.wrong(format!("part {}/{} is given twice", source.head().number, first.of)));
+        }
+        if source.head().number > number {
+            return Err(source.wrong(format!("part {number}/{} is missing", first.of)));
+        }
+    }
+    if (sources.len() as u64) < first.of {
+        let last = &sources[sources.len() - 1];
+        return Err(last.wrong(format!("part {}/{} is missing", sources.len() + 1, first.of)));
+    }
+    Ok(sources)
 }
 
 /// A file is in Parquet by its first bytes.

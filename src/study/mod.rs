@@ -10,7 +10,7 @@
 //! ```
 //! use stepwave::models::{Millionths, find};
 //! use stepwave::models::options::WIDTH;
-//! use stepwave::study::{Cells, Dimension, Drawn, Part, Range, Space, Sweep, Value, Variants};
+//! use stepwave::study::{Cells, Dimension, Drawn, SweepPart, Range, Space, Sweep, Value, Variants};
 //!
 //! let cells = Cells {
 //!     drawn: Drawn::Line,
@@ -22,7 +22,7 @@
 //!     radii: Millionths(0),
 //! };
 //! let variants = Variants(vec![Dimension::parse(&WIDTH, "3..4")?]);
-//! let sweep = Sweep::new(find("dda-line")?, Space::Cells(cells), variants, Part::WHOLE, 1 << 20)?;
+//! let sweep = Sweep::new(find("dda-line")?, Space::Cells(cells), variants, SweepPart::WHOLE, 1 << 20)?;
 //! let rows = sweep.rows(0..sweep.geometries())?;
 //! assert_eq!(rows.len(), 7 * 4 * 2);
 //! let clocks = sweep.column("clocks").unwrap();
@@ -33,8 +33,8 @@
 mod boxes;
 mod columns;
 mod error;
+mod hardware_cache;
 mod kform;
-mod machines;
 mod merge;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -61,9 +61,9 @@ pub use merge::merge;
 pub use parquet::ParquetTable;
 pub use points::read_points;
 pub use range::{Grid, Range};
-pub use space::{Cells, Drawn, Geometry, Part, Space};
+pub use space::{Cells, Drawn, Geometry, Space, SweepPart};
 pub use stage::Stage;
 pub use summary::Summary;
 pub use sweep::{MOST_RUNS, Sweep};
-pub use table::{Column, Kind, Row, Value, heading, read_line, write_line};
+pub use table::{Column, ColumnType, Row, Value, heading, read_line, write_line};
 pub use variants::{Dimension, Variants};

@@ -18,7 +18,7 @@ use parquet::schema::types::Type;
 use stepwave_trace::guard::guarded;
 
 use super::parts::{Check, NOT_A_PART, PartHead};
-use super::table::{Column, Kind, Row, Value, write_line};
+use super::table::{Column, ColumnType, Row, Value, write_line};
 use super::{StudyError, Sweep};
 
 /// Rows of a group.
@@ -26,19 +26,19 @@ const GROUP: usize = 1 << 16;
 /// Key of the metadata that describes a part.
 const PART: &str = "stepwave.part";
 
-fn physical(kind: Kind) -> Physical {
+fn physical(kind: ColumnType) -> Physical {
     match kind {
-        Kind::Whole => Physical::INT64,
-        Kind::Real => Physical::DOUBLE,
-        Kind::Flag => Physical::BOOLEAN,
-        Kind::Word => Physical::BYTE_ARRAY,
+        ColumnType::Whole => Physical::INT64,
+        ColumnType::Real => Physical::DOUBLE,
+        ColumnType::Flag => Physical::BOOLEAN,
+        ColumnType::Word => Physical::BYTE_ARRAY,
     }
 }
 
 fn schema(columns: &[Column]) -> Result<Type, ParquetError> {
     let field = |column: &Column| {
         let field = Type::primitive_type_builder(&column.name, physical(column.kind));
-        let logical = (column.kind == Kind::Word).then_some(LogicalType::String);
+        let logical = (column.kind == ColumnType::Word).then_some(LogicalType::String);
         field.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build().map(Arc::new)
     };
     let fields = columns.iter().map(field).collect::<Result<Vec<_>, _>>()?;
@@ -77,7 +77,7 @@ impl<W: Write + Send> ParquetTable<W> {
     /// # Errors
     /// The sink cannot be written.
     pub fn new(sweep: &Sweep, sink: W) -> Result<ParquetTable<W>, StudyError> {
-        let part = (sweep.part() != super::Part::WHOLE).then(|| PartHead::new(sweep.part(), sweep.identity()));
+        let part = (sweep.part() != super::SweepPart::WHOLE).then(|| PartHead::new(sweep.part(), sweep.identity()));
         ParquetTable::of(sweep.columns().to_vec(), part, sink)
     }
 
@@ -107,19 +107,19 @@ impl<W: Write + Send> ParquetTable<W> {
         for (place, column) in self.columns.iter().enumerate() {
             let values = rows.iter().map(|row| row.get(place).unwrap_or(&Value::None));
             match column.kind {
-                Kind::Whole => {
+                ColumnType::Whole => {
                     let number = |value: &Value| if let Value::Whole(number) = value { Some(*number) } else { None };
                     write_column::<Int64Type>(&mut group, values, number)?;
                 }
-                Kind::Real => {
+                ColumnType::Real => {
                     let number = |value: &Value| if let Value::Real(number) = value { Some(*number) } else { None };
                     write_column::<DoubleType>(&mut group, values, number)?;
                 }
-                Kind::Flag => {
+                ColumnType::Flag => {
                     let flag = |value: &Value| if let Value::Flag(flag) = value { Some(*flag) } else { None };
                     write_column::<BoolType>(&mut group, values, flag)?;
                 }
-                Kind::Word => {
+                ColumnType::Word => {
                     let word =
                         |value: &Value| if let Value::Word(word) = value { Some(word.as_str().into()) } else { None };
                     write_column::<ByteArrayType>(&mut group, values, word)?;

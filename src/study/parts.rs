@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-use super::space::Part;
+use super::space::SweepPart;
 use super::table::Column;
 
 /// Beginning of a part's first line.
@@ -37,7 +37,7 @@ pub(super) struct PartHead {
 }
 
 impl PartHead {
-    pub(super) fn new(part: Part, sweep: Json) -> PartHead {
+    pub(super) fn new(part: SweepPart, sweep: Json) -> PartHead {
         PartHead { schema: SCHEMA, number: part.number, of: part.of, sweep }
     }
 

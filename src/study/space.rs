@@ -265,16 +265,16 @@ impl Draw {
 
 /// Which geometries of a sweep are done here: every `of`-th, from `number` on.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Part {
+pub struct SweepPart {
     /// From 1.
     pub number: u64,
     /// How many parts there are.
     pub of: u64,
 }
 
-impl Part {
+impl SweepPart {
     /// The only part.
-    pub const WHOLE: Part = Part { number: 1, of: 1 };
+    pub const WHOLE: SweepPart = SweepPart { number: 1, of: 1 };
 
     /// How many of `all` geometries this part has.
     #[must_use]
@@ -359,7 +359,7 @@ mod tests {
         for (all, of) in [(0, 3), (1, 3), (10, 3), (12, 5), (7, 1)] {
             let mut seen: Vec<u64> = (1..=of)
                 .flat_map(|number| {
-                    let part = Part { number, of };
+                    let part = SweepPart { number, of };
                     (0..part.count(all)).map(move |place| part.geometry(place))
                 })
                 .collect();

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use super::parts::{Blocks, Check, PartHead};
 use super::table::{Column, Row, heading, read_line};
-use super::{Part, StudyError, Sweep};
+use super::{StudyError, Sweep, SweepPart};
 
 mod journal;
 mod left;
@@ -74,7 +74,7 @@ impl Stage {
         let marks = if resume { journal.marks(&head).map_err(refused)? } else { Vec::new() };
         if let Some(mark) = marks.last() {
             let part = left.ok_or_else(|| refused(GONE.to_owned()))?;
-            let shard = sweep.part() != Part::WHOLE;
+            let shard = sweep.part() != SweepPart::WHOLE;
             let mut stage = Stage::of(target, part, journal, sweep);
             stage.verify(&marks, shard).map_err(refused)?;
             stage.mark = mark.clone();
@@ -98,9 +98,9 @@ impl Stage {
     }
 
     /// Writes what comes before the first row.
-    fn begin(&mut self, head: &PartHead, part: Part) -> io::Result<()> {
-        self.blocks = (part != Part::WHOLE).then(Blocks::default);
-        let first = if part == Part::WHOLE { None } else { Some(head.line()) };
+    fn begin(&mut self, head: &PartHead, part: SweepPart) -> io::Result<()> {
+        self.blocks = (part != SweepPart::WHOLE).then(Blocks::default);
+        let first = if part == SweepPart::WHOLE { None } else { Some(head.line()) };
         for line in first.into_iter().chain([heading(&self.columns) + "\n"]) {
             if let Some(blocks) = &mut self.blocks {
                 blocks.line(line.as_bytes());

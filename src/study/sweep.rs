@@ -9,8 +9,8 @@ use stepwave_models::{Model, Options};
 use stepwave_nc::Curve;
 
 use super::columns::Layout;
-use super::machines::{Machine, Machines};
-use super::space::{Part, Site, Space};
+use super::hardware_cache::{HardwareCache, PlannedHardware};
+use super::space::{Site, Space, SweepPart};
 use super::table::{Column, Row};
 use super::{StudyError, Variants};
 use crate::testbench::Measured;
@@ -25,9 +25,9 @@ pub struct Sweep {
     model: &'static Model,
     space: Space,
     variants: Variants,
-    part: Part,
+    part: SweepPart,
     layout: Layout,
-    machines: Machines,
+    machines: HardwareCache,
     /// Geometries of all parts.
     all: u64,
     limit: u64,
@@ -37,7 +37,7 @@ pub struct Sweep {
 struct Task {
     geometry: usize,
     variant: usize,
-    machine: Result<std::sync::Arc<Machine>, String>,
+    machine: Result<std::sync::Arc<PlannedHardware>, String>,
 }
 
 impl Sweep {
@@ -49,7 +49,7 @@ impl Sweep {
         model: &'static Model,
         space: Space,
         variants: Variants,
-        part: Part,
+        part: SweepPart,
         limit: u64,
     ) -> Result<Sweep, StudyError> {
         for dimension in &variants.0 {
@@ -63,7 +63,7 @@ impl Sweep {
             return Err(StudyError::TooMany { geometries: geometries.to_string(), variants, limit: MOST_RUNS });
         };
         let layout = Layout::new(model, &space, &variants)?;
-        let machines = Machines::new(model);
+        let machines = HardwareCache::new(model);
         Ok(Sweep { model, space, variants, part, layout, machines, all, limit })
     }
 
@@ -88,7 +88,7 @@ impl Sweep {
 
     /// The part.
     #[must_use]
-    pub fn part(&self) -> Part {
+    pub fn part(&self) -> SweepPart {
         self.part
     }
 
@@ -211,7 +211,7 @@ impl Sweep {
         curve: &(impl Fn(&'t Task) -> Option<&'t Curve> + Sync),
         measured: &mut [Option<Result<Measured, String>>],
     ) {
-        let mut groups: BTreeMap<usize, (&Machine, Vec<usize>)> = BTreeMap::new();
+        let mut groups: BTreeMap<usize, (&PlannedHardware, Vec<usize>)> = BTreeMap::new();
         for (index, task) in tasks.iter().enumerate() {
             if let Ok(machine) = &task.machine {
                 groups.entry(machine.number).or_insert((machine, Vec::new())).1.push(index);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// What a column holds.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum ColumnType {
     /// Whole numbers.
     Whole,
     /// Real numbers.
@@ -22,7 +22,7 @@ pub struct Column {
     /// Its name in the heading.
     pub name: String,
     /// What it holds.
-    pub kind: Kind,
+    pub kind: ColumnType,
 }
 
 /// A value in a row.
@@ -140,10 +140,10 @@ pub fn read_line(columns: &[Column], line: &str) -> Option<Row> {
     let fields = fields(line);
     let value = |(column, word): (&Column, String)| match column.kind {
         _ if word.is_empty() => Some(Value::None),
-        Kind::Whole => word.parse().ok().map(Value::Whole),
-        Kind::Real => word.parse().ok().map(Value::Real),
-        Kind::Flag => word.parse().ok().map(Value::Flag),
-        Kind::Word => Some(Value::Word(word)),
+        ColumnType::Whole => word.parse().ok().map(Value::Whole),
+        ColumnType::Real => word.parse().ok().map(Value::Real),
+        ColumnType::Flag => word.parse().ok().map(Value::Flag),
+        ColumnType::Word => Some(Value::Word(word)),
     };
     let fits = fields.len() == columns.len();
     columns.iter().zip(fields).map(value).collect::<Option<Row>>().filter(|_| fits)
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn a_row_is_read_as_it_was_written() {
-        let kinds = [Kind::Whole, Kind::Real, Kind::Flag, Kind::Word, Kind::Word];
+        let kinds = [ColumnType::Whole, ColumnType::Real, ColumnType::Flag, ColumnType::Word, ColumnType::Word];
         let columns = kinds.map(|kind| Column { name: "c".to_owned(), kind });
         let row = vec![
             Value::Whole(i64::MIN),

@@ -33,7 +33,7 @@ pub(super) fn recalled<T: DeserializeOwned>(memory: &Memory, name: &str) -> Opti
 
 /// The state of a machine and its observers after some clock.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct State {
+pub struct Checkpoint {
     /// Clock of the sample.
     pub(super) clock: u64,
     /// Index of the block that runs.
@@ -46,11 +46,11 @@ pub struct State {
     pub(super) memory: Memory,
 }
 
-impl State {
-    pub(super) fn of(engine: &dyn Engine, bench: &Testbench, block: usize, memory: Memory) -> State {
+impl Checkpoint {
+    pub(super) fn of(engine: &dyn Engine, bench: &Testbench, block: usize, memory: Memory) -> Checkpoint {
         let values = |nets: &[Net]| nets.iter().map(|&net| engine.value(net)).collect();
         let design = bench.design();
-        State {
+        Checkpoint {
             clock: engine.clock(),
             block,
             registers: values(design.registers()),
@@ -100,7 +100,7 @@ pub enum CheckpointError {
 #[derive(Clone, Debug)]
 pub struct Checkpoints {
     subject: Subject,
-    states: Vec<State>,
+    states: Vec<Checkpoint>,
     interval: u64,
 }
 
@@ -117,14 +117,14 @@ impl Checkpoints {
     /// The text is not a checkpoint, or of another run.
     pub fn read(text: &str, bench: &Testbench) -> Result<Checkpoints, CheckpointError> {
         let unreadable = |error: serde_json::Error| CheckpointError::Unreadable(error.to_string());
-        let (subject, states): (Subject, Vec<State>) = serde_json::from_str(text).map_err(unreadable)?;
+        let (subject, states): (Subject, Vec<Checkpoint>) = serde_json::from_str(text).map_err(unreadable)?;
         let fresh = Checkpoints::new(bench);
         let design = bench.design();
         let hold = |nets: &[Net], values: &[u64]| {
             let width = |net: &Net| design.netlist().width(*net);
             nets.len() == values.len() && nets.iter().zip(values).all(|(net, &value)| value <= width(net).mask())
         };
-        let fits = |state: &State| {
+        let fits = |state: &Checkpoint| {
             hold(design.registers(), &state.registers)
                 && hold(design.inputs(), &state.inputs)
                 && state.block < bench.blocks.len()
@@ -146,7 +146,7 @@ impl Checkpoints {
 
     /// The last state from which the sample of `clock` is still to come.
     #[must_use]
-    pub fn before(&self, clock: u64) -> Option<&State> {
+    pub fn before(&self, clock: u64) -> Option<&Checkpoint> {
         self.states.iter().rev().find(|state| state.clock < clock)
     }
 
@@ -155,7 +155,7 @@ impl Checkpoints {
         clock >= self.states.last().map_or(0, |state| state.clock) + self.interval
     }
 
-    pub(super) fn keep(&mut self, state: State) {
+    pub(super) fn keep(&mut self, state: Checkpoint) {
         self.states.push(state);
         if self.states.len() > KEPT {
             let mut index = 0;

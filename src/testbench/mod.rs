@@ -29,7 +29,7 @@ use stepwave_models::{CutWord, Hardware, Machine, Model, ModelError};
 use stepwave_netlist::{Design, Net};
 
 pub use block::{BlockReport, Part};
-pub use checkpoint::{CheckpointError, Checkpoints, Memory, State};
+pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints, Memory};
 pub use coarse::{CoarseError, CoarseWatch};
 pub use columns::Columns;
 pub use feeder::{Feeder, Next};
@@ -278,7 +278,7 @@ impl Testbench {
         &self,
         engine: EngineKind,
         observers: &mut [&mut dyn Observer],
-        state: &State,
+        state: &Checkpoint,
     ) -> Result<Outcome, ObserverError> {
         Run::new(self, engine, &mut self.geometry(state.block + 1), observers).from(state).whole()
     }

@@ -6,7 +6,7 @@ use stepwave_models::options::ON_OVERFLOW;
 use stepwave_netlist::{Net, OnOverflow};
 
 use super::block::Account;
-use super::checkpoint::{self, Checkpoints, Memory, State};
+use super::checkpoint::{self, Checkpoint, Checkpoints, Memory};
 use super::feeder::{Feeder, Next};
 use super::load::CUT_CLOCKS;
 use super::steps::StepReader;
@@ -90,7 +90,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// The same run from a state on, whose block is loaded and running.
-    pub(super) fn from(mut self, state: &State) -> Self {
+    pub(super) fn from(mut self, state: &Checkpoint) -> Self {
         self.engine.restore(state.clock, &state.registers, &state.inputs);
         self.steps.recall(&state.memory);
         for observer in self.observers.iter_mut() {
@@ -267,7 +267,7 @@ impl<'a, 'o> Run<'a, 'o> {
         for observer in self.observers.iter() {
             observer.remember(&mut memory);
         }
-        states.keep(State::of(self.engine.as_ref(), self.bench, self.loaded.saturating_sub(1), memory));
+        states.keep(Checkpoint::of(self.engine.as_ref(), self.bench, self.loaded.saturating_sub(1), memory));
     }
 
     /// Clocks that the run may still take.

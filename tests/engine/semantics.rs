@@ -6,21 +6,21 @@ use stepwave_netlist::Design;
 use crate::netlist::{design, net};
 
 /// An engine that records some nets of a design and stops at some, with its rows.
-struct Run {
+struct Recorder {
     design: Design,
     engine: Box<dyn Engine>,
     rows: Rows,
 }
 
-impl Run {
+impl Recorder {
     /// After the reset; the rows hold sample 0.
-    fn new(kind: EngineKind, design: &Design, columns: &[&str], stops: &[&str], room: usize) -> Run {
+    fn new(kind: EngineKind, design: &Design, columns: &[&str], stops: &[&str], room: usize) -> Recorder {
         let nets = |names: &[&str]| names.iter().map(|name| net(design, name)).collect();
         let watch = Watch { columns: nets(columns), stops: nets(stops) };
         let mut rows = Rows::new(columns.len(), room);
         let mut engine = kind.build(design, &watch);
         engine.reset(&mut rows);
-        Run { design: design.clone(), engine, rows }
+        Recorder { design: design.clone(), engine, rows }
     }
 
     fn set(&mut self, input: &str, value: u64) {
@@ -74,7 +74,7 @@ fn counter(bits: u32, reset: u64) -> Design {
 fn sample_k_shows_every_net_settled_after_edge_k() {
     let design = counter(4, 0);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["count", "next", "at_5"], &[], 9);
+        let mut run = Recorder::new(kind, &design, &["count", "next", "at_5"], &[], 9);
         run.set("enable", 1);
         run.reset();
         assert_eq!(run.run(8), Stop::Clocks);
@@ -98,7 +98,7 @@ fn all_registers_take_their_next_values_at_once_so_two_of_them_can_swap() {
         chain[2].set(chain[1].q);
     });
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["a", "b", "c", "d", "e"], &[], 5);
+        let mut run = Recorder::new(kind, &design, &["a", "b", "c", "d", "e"], &[], 5);
         run.run(4);
         assert_eq!(run.column(0), [3, 12, 3, 12, 3]);
         assert_eq!(run.column(1), [12, 3, 12, 3, 12]);
@@ -117,7 +117,7 @@ fn of_the_conditions_of_a_register_the_first_that_is_1_wins_and_none_means_hold_
         m.reg("else", 4).when(first, m.lit(4, 1)).when(second, m.lit(4, 2)).otherwise(m.lit(4, 9));
     });
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["holds", "else"], &[], 8);
+        let mut run = Recorder::new(kind, &design, &["holds", "else"], &[], 8);
         for conditions in [2, 0, 3, 1, 2] {
             run.set("conditions", conditions);
             run.run(1);
@@ -136,7 +136,7 @@ fn an_input_changes_right_after_the_next_edge_which_still_sees_the_old_value() {
         m.reg("registered", 4).set(a);
     });
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["a", "combinational", "registered"], &[], 8);
+        let mut run = Recorder::new(kind, &design, &["a", "combinational", "registered"], &[], 8);
         run.set("a", 7);
         assert_eq!(run.value("a"), 0, "nothing changes between two edges");
         assert_eq!(run.value("combinational"), 15);
@@ -153,7 +153,7 @@ fn an_input_changes_right_after_the_next_edge_which_still_sees_the_old_value() {
 fn of_several_values_set_between_two_edges_the_last_counts() {
     let design = counter(4, 0);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["enable", "count"], &[], 8);
+        let mut run = Recorder::new(kind, &design, &["enable", "count"], &[], 8);
         run.set("enable", 1);
         run.set("enable", 0);
         run.run(2);
@@ -172,7 +172,7 @@ fn bits_above_the_width_of_an_input_are_ignored() {
         m.name("b", a.concat(m.lit(1, 0)));
     });
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["a", "b"], &[], 8);
+        let mut run = Recorder::new(kind, &design, &["a", "b"], &[], 8);
         run.set("a", 0xffff_fff6);
         run.run(1);
         assert_eq!(run.rows.row(1), [6, 12]);
@@ -192,7 +192,7 @@ fn a_net_that_is_no_input_cannot_be_set() {
         register.set(register.q);
     });
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["constant", "sum", "register"], &[], 8);
+        let mut run = Recorder::new(kind, &design, &["constant", "sum", "register"], &[], 8);
         for name in ["constant", "sum", "register"] {
             run.set(name, 9);
         }
@@ -205,7 +205,7 @@ fn a_net_that_is_no_input_cannot_be_set() {
 fn sample_0_is_the_state_after_reset_with_the_inputs_set_before_it() {
     let design = counter(4, 4);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["enable", "count", "next"], &[], 4);
+        let mut run = Recorder::new(kind, &design, &["enable", "count", "next"], &[], 4);
         assert_eq!((run.clocks(), run.rows.row(0)), (vec![0], vec![0, 4, 5]));
         run.set("enable", 1);
         run.reset();
@@ -230,7 +230,7 @@ fn an_engine_is_built_reset_with_all_inputs_0() {
 fn a_reset_in_the_middle_takes_registers_and_clock_back_but_leaves_the_inputs() {
     let design = counter(4, 2);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["enable", "count"], &[], 8);
+        let mut run = Recorder::new(kind, &design, &["enable", "count"], &[], 8);
         run.set("enable", 1);
         run.run(4);
         assert_eq!((run.engine.clock(), run.value("count")), (4, 5));
@@ -247,7 +247,7 @@ fn a_reset_in_the_middle_takes_registers_and_clock_back_but_leaves_the_inputs() 
 fn a_reset_forgets_the_rows_held_so_that_every_row_keeps_its_clock() {
     let design = counter(4, 2);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["count"], &[], 4);
+        let mut run = Recorder::new(kind, &design, &["count"], &[], 4);
         run.set("enable", 1);
         run.run(3);
         assert_eq!((run.clocks(), run.rows.is_full()), (vec![0, 1, 2, 3], true));
@@ -262,7 +262,7 @@ fn a_reset_forgets_the_rows_held_so_that_every_row_keeps_its_clock() {
 fn a_run_of_0_clocks_changes_and_records_nothing() {
     let design = counter(4, 5);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["count"], &["at_5"], 1);
+        let mut run = Recorder::new(kind, &design, &["count"], &["at_5"], 1);
         run.set("enable", 1);
         // Neither the stop net, which is 1, nor the full rows are the reason.
         assert_eq!(run.run(0), Stop::Clocks);
@@ -275,7 +275,7 @@ fn a_run_of_0_clocks_changes_and_records_nothing() {
 fn a_run_ends_in_the_sample_where_a_stop_net_is_1_and_the_next_goes_on_from_there() {
     let design = counter(3, 0);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["count"], &["at_5"], 32);
+        let mut run = Recorder::new(kind, &design, &["count"], &["at_5"], 32);
         run.set("enable", 1);
         run.reset();
         assert_eq!(run.run(u64::MAX), Stop::Net(0));
@@ -295,7 +295,7 @@ fn of_two_stop_nets_that_are_1_the_first_in_the_list_is_named() {
             (["at_5", "odd"], [(1, Stop::Net(1)), (3, Stop::Net(1)), (5, Stop::Net(0)), (7, Stop::Net(1))]),
             (["odd", "at_5"], [(1, Stop::Net(0)), (3, Stop::Net(0)), (5, Stop::Net(0)), (7, Stop::Net(0))]),
         ] {
-            let mut run = Run::new(kind, &design, &["count"], &stops, 32);
+            let mut run = Recorder::new(kind, &design, &["count"], &stops, 32);
             run.set("enable", 1);
             run.reset();
             for (clock, reason) in reasons {
@@ -310,7 +310,7 @@ fn of_two_stop_nets_that_are_1_the_first_in_the_list_is_named() {
 fn a_run_ends_where_the_rows_are_full_and_goes_on_when_there_is_room() {
     let design = counter(4, 0);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["count"], &[], 3);
+        let mut run = Recorder::new(kind, &design, &["count"], &[], 3);
         run.set("enable", 1);
         run.reset();
         assert_eq!(run.run(100), Stop::RowsFull);
@@ -327,7 +327,7 @@ fn a_run_ends_where_the_rows_are_full_and_goes_on_when_there_is_room() {
 fn a_sample_that_fills_the_rows_and_stops_is_a_stop() {
     let design = counter(4, 0);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &["count"], &["at_5"], 6);
+        let mut run = Recorder::new(kind, &design, &["count"], &["at_5"], 6);
         run.set("enable", 1);
         run.reset();
         assert_eq!(run.run(100), Stop::Net(0));
@@ -340,7 +340,7 @@ fn a_sample_that_fills_the_rows_and_stops_is_a_stop() {
 fn without_columns_nothing_is_recorded_and_no_run_ends_for_want_of_room() {
     let design = counter(4, 0);
     on_every_engine(|kind| {
-        let mut run = Run::new(kind, &design, &[], &["at_5"], 2);
+        let mut run = Recorder::new(kind, &design, &[], &["at_5"], 2);
         run.set("enable", 1);
         run.reset();
         assert_eq!(run.run(100), Stop::Net(0));
@@ -354,7 +354,7 @@ fn without_columns_nothing_is_recorded_and_no_run_ends_for_want_of_room() {
 fn columns_stand_in_the_order_asked_for_and_a_net_may_be_asked_for_twice() {
     let design = counter(4, 3);
     on_every_engine(|kind| {
-        let run = Run::new(kind, &design, &["next", "count", "next", "enable"], &[], 1);
+        let run = Recorder::new(kind, &design, &["next", "count", "next", "enable"], &[], 1);
         assert_eq!(run.rows.row(0), [4, 3, 4, 0]);
     });
 }
@@ -363,8 +363,8 @@ fn columns_stand_in_the_order_asked_for_and_a_net_may_be_asked_for_twice() {
 fn two_engines_of_one_design_do_not_disturb_each_other() {
     let design = counter(4, 0);
     on_every_engine(|kind| {
-        let mut first = Run::new(kind, &design, &["count"], &[], 8);
-        let second = Run::new(kind, &design, &["count"], &[], 8);
+        let mut first = Recorder::new(kind, &design, &["count"], &[], 8);
+        let second = Recorder::new(kind, &design, &["count"], &[], 8);
         first.set("enable", 1);
         first.run(3);
         assert_eq!((first.value("count"), second.value("count")), (2, 0));

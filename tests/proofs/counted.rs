@@ -6,7 +6,7 @@ use stepwave_models::options::{CASCADE, OVERRIDE, WIDTH};
 use stepwave_models::{Machine, Options, find};
 use stepwave_netlist::cells::Op;
 use stepwave_netlist::{Net, Width, elaborate};
-use stepwave_prove::{AxisNets, Lost, Word, follow, recount};
+use stepwave_prove::{AxisNets, LoadWord, Lost, follow, recount};
 
 use crate::cli::Folder;
 
@@ -43,10 +43,10 @@ fn every_coefficient_is_counted_bit_by_bit_at_every_width() {
 fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) -> usize {
     let (design, netlist) = (&machine.design, machine.design.netlist());
     let inputs = machine.inputs.iter();
-    let words: Vec<(Net, Word)> = inputs
+    let words: Vec<(Net, LoadWord)> = inputs
         .map(|(register, port)| {
             let given = known.iter().find(|(name, _)| name == register);
-            (port.net, given.map_or(Word::Unknown, |(_, bits)| Word::Known(*bits)))
+            (port.net, given.map_or(LoadWord::Unknown, |(_, bits)| LoadWord::Known(*bits)))
         })
         .collect();
     let watch = Watch { columns: netlist.nets().collect(), stops: Vec::new() };
@@ -54,8 +54,8 @@ fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) 
     let mut place = 0;
     for (net, word) in &words {
         let bits = match word {
-            Word::Known(bits) => *bits,
-            Word::Unknown => {
+            LoadWord::Known(bits) => *bits,
+            LoadWord::Unknown => {
                 let width = netlist.width(*net).get() as usize;
                 place += width;
                 let own = &unknowns[place - width..place];
@@ -74,7 +74,7 @@ fn assert_followed(machine: &Machine, known: &[(&str, u64)], unknowns: &[bool]) 
     }
     engine.run(1 << 13, &mut rows);
     let mut asserted = 0;
-    let judge = |clock: u64, sample: &stepwave_prove::Sample<'_>| {
+    let judge = |clock: u64, sample: &stepwave_prove::KnownSample<'_>| {
         let row = rows.row(usize::try_from(clock).unwrap());
         for net in netlist.nets() {
             if let Some(value) = sample.value(net, unknowns) {
@@ -123,11 +123,11 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
     let machine = model.machine(&model.plan(&largest, &choices).unwrap()).unwrap();
     for (negative, clock) in [(0, 16), (1, 17)] {
         let word = |name: &str| match name {
-            "mx" | "my" => Word::Unknown,
-            "sx" => Word::Known(negative),
-            _ => Word::Known(0),
+            "mx" | "my" => LoadWord::Unknown,
+            "sx" => LoadWord::Known(negative),
+            _ => LoadWord::Known(0),
         };
-        let words: Vec<(Net, Word)> = machine.inputs.iter().map(|(name, port)| (port.net, word(name))).collect();
+        let words: Vec<(Net, LoadWord)> = machine.inputs.iter().map(|(name, port)| (port.net, word(name))).collect();
         let lost = follow(&machine.design, strobes(&machine), &words, &[], 100, |_, _| {}).unwrap_err().to_string();
         assert!(lost.contains(&format!("dpm_line.axis_x.x may overflow at clock {clock}")), "{lost}");
     }
@@ -135,7 +135,7 @@ fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_fo
     let model = find("ppc-line").unwrap();
     let largest = model.claims.unwrap().geometries.largest(3).unwrap();
     let machine = model.machine(&model.plan(&largest, &Options::default()).unwrap()).unwrap();
-    let words: Vec<(Net, Word)> = machine.inputs.values().map(|port| (port.net, Word::Unknown)).collect();
+    let words: Vec<(Net, LoadWord)> = machine.inputs.values().map(|port| (port.net, LoadWord::Unknown)).collect();
     let lost = follow(&machine.design, strobes(&machine), &words, &[], 100, |_, _| {}).unwrap_err();
     assert!(matches!(lost, Lost::Claim { .. } | Lost::End { .. }), "{lost}");
 }
@@ -222,11 +222,11 @@ fn what_is_counted_pulse_by_pulse_is_so_for_every_coefficient_of_machines_that_w
     let (mut refused, mut other, mut same) = (0, 0, 0);
     for machine in sound.design.netlist().nets().filter_map(|net| changed(&sound, net)) {
         let word = |name: &str| match name {
-            "mx" | "my" => Word::Unknown,
-            "sx" => Word::Known(1),
-            _ => Word::Known(0),
+            "mx" | "my" => LoadWord::Unknown,
+            "sx" => LoadWord::Known(1),
+            _ => LoadWord::Known(0),
         };
-        let words: Vec<(Net, Word)> = machine.inputs.iter().map(|(name, port)| (port.net, word(name))).collect();
+        let words: Vec<(Net, LoadWord)> = machine.inputs.iter().map(|(name, port)| (port.net, word(name))).collect();
         let axes = machine.pulses.iter().zip(&machine.positions);
         let axes: Vec<AxisNets> =
             axes.map(|(pulse, position)| AxisNets { pulse: pulse.net, position: position.net }).collect();
@@ -238,9 +238,9 @@ fn what_is_counted_pulse_by_pulse_is_so_for_every_coefficient_of_machines_that_w
         for coefficients in 0..64_u64 {
             let unknowns: Vec<bool> = (0..6).map(|bit| coefficients >> bit & 1 == 1).collect();
             let mut left = coefficients;
-            let mut put = |word: Word| match word {
-                Word::Known(word) => word,
-                Word::Unknown => (left & 7, left >>= 3).0,
+            let mut put = |word: LoadWord| match word {
+                LoadWord::Known(word) => word,
+                LoadWord::Unknown => (left & 7, left >>= 3).0,
             };
             let words: Vec<(Net, u64)> = words.iter().map(|(net, word)| (*net, put(*word))).collect();
             let ends: Vec<i128> = found.ends.iter().map(|end| end.as_ref().unwrap().at(&unknowns)).collect();

@@ -5,14 +5,14 @@
 
 /// An arc kind SRi / NRi: a quadrant together with a sense of rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Kind {
+pub(crate) struct ArcKind {
     /// The quadrant, 0 ..= 3.
     pub(crate) quadrant: i64,
     /// True for SR (clockwise, G02), false for NR (counter-clockwise, G03).
     pub(crate) clockwise: bool,
 }
 
-impl Kind {
+impl ArcKind {
     /// The kind that the motion enters at a point: a point on an axis belongs to the quadrant that
     /// lies ahead of it (NR at (R,0) is in Q1, SR at (R,0) is in Q4).
     pub(crate) fn entered_at([x, y]: [i64; 2], clockwise: bool) -> Self {
@@ -28,19 +28,19 @@ impl Kind {
             (-1, _) => 2 - i64::from(clockwise),
             _ => 3 - i64::from(clockwise),
         };
-        Kind { quadrant: quadrant.rem_euclid(4), clockwise }
+        ArcKind { quadrant: quadrant.rem_euclid(4), clockwise }
     }
 
     /// The kind that the motion comes from at a point: the reversed motion would enter it.
     pub(crate) fn left_at(point: [i64; 2], clockwise: bool) -> Self {
-        let reversed = Kind::entered_at(point, !clockwise);
-        Kind { clockwise, ..reversed }
+        let reversed = ArcKind::entered_at(point, !clockwise);
+        ArcKind { clockwise, ..reversed }
     }
 
     /// The kind that follows in the sense of rotation.
     pub(crate) fn next(self) -> Self {
         let turn = if self.clockwise { -1 } else { 1 };
-        Kind { quadrant: (self.quadrant + turn).rem_euclid(4), ..self }
+        ArcKind { quadrant: (self.quadrant + turn).rem_euclid(4), ..self }
     }
 
     /// The signs of x and y inside the quadrant.
@@ -75,7 +75,7 @@ impl Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sector {
     /// The kind that steers the whole sector.
-    pub(crate) kind: Kind,
+    pub(crate) kind: ArcKind,
     /// Where it starts.
     pub(crate) from: [i64; 2],
     /// Where it ends.
@@ -96,8 +96,8 @@ impl Sector {
 /// same quadrant, means a full turn, or nearly. An end point on an axis belongs to the quadrant
 /// that the motion comes from, so that no sector is empty.
 pub(crate) fn sectors(from: [i64; 2], to: [i64; 2], clockwise: bool, crossing: [i64; 2]) -> Vec<Sector> {
-    let last = Kind::left_at(to, clockwise);
-    let mut kind = Kind::entered_at(from, clockwise);
+    let last = ArcKind::left_at(to, clockwise);
+    let mut kind = ArcKind::entered_at(from, clockwise);
     let mut point = from;
     let mut list = Vec::new();
     // Only in the first sector can the end point lie before the point that was reached.
@@ -124,7 +124,7 @@ fn is_ahead(from: [i64; 2], to: [i64; 2], clockwise: bool) -> bool {
 }
 
 /// A sector whose end can be reached by the pulses of its kind.
-fn sector(kind: Kind, from: [i64; 2], to: [i64; 2]) -> Sector {
+fn sector(kind: ArcKind, from: [i64; 2], to: [i64; 2]) -> Sector {
     let travel = kind.travel();
     for axis in 0..2 {
         assert!(

@@ -95,7 +95,7 @@ fn run(curve: &Curve, list: &[Piece], from: [i64; 2], weights: Weights) -> Table
 
     let mut position = from;
     for (index, piece) in list.iter().enumerate() {
-        let mut state = State::load(curve, piece, weights);
+        let mut state = PieceRegisters::load(curve, piece, weights);
         if index == 0 {
             table.push(&[&state.registers(), &[0, 0], &position]);
         }
@@ -111,7 +111,7 @@ fn run(curve: &Curve, list: &[Piece], from: [i64; 2], weights: Weights) -> Table
 }
 
 /// The registers of one piece.
-struct State {
+struct PieceRegisters {
     /// The comparison value.
     f: i64,
     /// A and B.
@@ -122,7 +122,7 @@ struct State {
     left: [i64; 2],
 }
 
-impl State {
+impl PieceRegisters {
     /// What the loader writes at the start of a piece.
     fn load(curve: &Curve, piece: &Piece, weights: Weights) -> Self {
         let weight = [curve.weight(0, piece.from[0]), curve.weight(1, piece.from[1])];
@@ -134,7 +134,7 @@ impl State {
             Weights::Mid => -deviation,
             Weights::Pre | Weights::Post => 0,
         };
-        State { f, weight, base, left: piece.distance() }
+        PieceRegisters { f, weight, base, left: piece.distance() }
     }
 
     /// One step; returns the pulses.

@@ -1,7 +1,7 @@
 //! Digital differential analyser: per step each integrator adds its integrand J_V to its remainder
 //! J_R modulo 2^n, and the overflow is the pulse of its axis.
 
-use super::arc_geometry::{Kind, Sector, nearest_radius, radius_squared, sectors};
+use super::arc_geometry::{ArcKind, Sector, nearest_radius, radius_squared, sectors};
 use super::{AXES, EndPoint, Table, counter_columns, per_axis_columns};
 
 /// The step table of a straight line in 2 to 6 axes, in BLU, with `n`-bit integrators.
@@ -177,7 +177,7 @@ pub(crate) fn dda_arc(
 /// The registers of an arc inside one sector.
 struct ArcState {
     /// The quadrant and the sense of rotation.
-    kind: Kind,
+    kind: ArcKind,
     /// J_VX = 2^Q·|y|, J_VY = 2^Q·|x|.
     jv: [i64; 2],
     /// J_RX, J_RY.

@@ -62,7 +62,7 @@ pub(crate) fn dda_conic(
 
     let mut position = from;
     for (index, piece) in list.iter().enumerate() {
-        let mut state = State::load(&curve, piece, preset, if normalize { modulus } else { 0 }, end);
+        let mut state = PieceRegisters::load(&curve, piece, preset, if normalize { modulus } else { 0 }, end);
         assert!(state.fits(modulus), "2^n must exceed every J_V");
         if index == 0 {
             table.push(&[&state.jv, &state.jr, &state.unit, &state.left, &[0, 0], &position]);
@@ -89,7 +89,7 @@ pub(crate) fn dda_conic(
 }
 
 /// The registers of one piece.
-struct State {
+struct PieceRegisters {
     /// J_VX, J_VY.
     jv: [i64; 2],
     /// J_RX, J_RY.
@@ -100,7 +100,7 @@ struct State {
     left: Vec<i64>,
 }
 
-impl State {
+impl PieceRegisters {
     /// What the loader writes at the start of a piece, doubled as long as it stays below `limit`.
     fn load(curve: &Curve, piece: &Piece, preset: [i64; 2], limit: i64, end: EndPoint) -> Self {
         let jv = |[x, y]: [i64; 2]| [curve.weight(1, y), curve.weight(0, x)];
@@ -111,7 +111,7 @@ impl State {
             scale *= 2;
         }
         let [dx, dy] = piece.distance();
-        State {
+        PieceRegisters {
             jv: start.map(|jv| jv * scale),
             jr: preset,
             unit: unit.map(|unit| unit * scale),

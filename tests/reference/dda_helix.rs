@@ -1,6 +1,6 @@
 //! Digital differential analyser along a helix: an arc in X and Y and a third integrator for Z.
 
-use super::arc_geometry::{Kind, Sector, nearest_radius, radius_squared, sectors};
+use super::arc_geometry::{ArcKind, Sector, nearest_radius, radius_squared, sectors};
 use super::{Table, per_axis_columns};
 
 /// The step table of a helix about an axis parallel to Z, in BLU.
@@ -60,7 +60,7 @@ pub(crate) fn dda_helix(
     for (index, (sector, &(jvz, ez))) in list.iter().zip(z_words).enumerate() {
         assert!((0..modulus[2]).contains(&jvz) && ez >= 0, "a word fits its register");
         // Load.
-        let kind: Kind = sector.kind;
+        let kind: ArcKind = sector.kind;
         let [x, y] = sector.from.map(i64::abs);
         let mut jv = [y, x, jvz];
         let mut jr = preset;

@@ -1,6 +1,6 @@
 //! Circular arcs of the eight-direction methods: a step may move both axes.
 
-use super::arc_geometry::{Kind, Sector, natural_extreme, nearest_radius, radius_squared, sectors};
+use super::arc_geometry::{ArcKind, Sector, natural_extreme, nearest_radius, radius_squared, sectors};
 use super::{EndPoint, Table, counter_columns, per_axis_columns};
 
 /// The step table of a circular arc by minimum deviation, in BLU; R² is that of the start point, and
@@ -46,7 +46,7 @@ pub(crate) fn vector_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwi
 }
 
 /// Which axes step: the judge of a method.
-type Judge = fn(&Arc, Kind) -> [bool; 2];
+type Judge = fn(&Arc, ArcKind) -> [bool; 2];
 
 /// An arc by either method; `crossing` gives from R² where the axes are met.
 fn run(
@@ -78,7 +78,7 @@ fn run(
 }
 
 /// Of X, Y and XY the step that leaves the smallest |F|.
-fn smallest_deviation(arc: &Arc, kind: Kind) -> [bool; 2] {
+fn smallest_deviation(arc: &Arc, kind: ArcKind) -> [bool; 2] {
     let mut best = [true, true];
     for candidate in [[false, true], [true, false]] {
         if arc.deviation_after(kind, candidate).abs() < arc.deviation_after(kind, best).abs() {
@@ -89,7 +89,7 @@ fn smallest_deviation(arc: &Arc, kind: Kind) -> [bool; 2] {
 }
 
 /// The axis vector of the octant or the diagonal.
-fn inward_or_outward(arc: &Arc, kind: Kind) -> [bool; 2] {
+fn inward_or_outward(arc: &Arc, kind: ArcKind) -> [bool; 2] {
     let [x, y] = arc.point.map(i64::abs);
     let x_shrinks = kind.shrinking() == 0;
     let axis = if x < y || (x == y && x_shrinks) { 0 } else { 1 };
@@ -149,7 +149,7 @@ impl Arc {
 
     /// F after a step of these axes: each adds 2|c| + 1 where its magnitude grows, -2|c| + 1 where
     /// it shrinks.
-    fn deviation_after(&self, kind: Kind, steps: [bool; 2]) -> i64 {
+    fn deviation_after(&self, kind: ArcKind, steps: [bool; 2]) -> i64 {
         let mut f = self.f;
         for axis in (0..2).filter(|&axis| steps[axis]) {
             let magnitude = self.point[axis].abs();
@@ -159,7 +159,7 @@ impl Arc {
     }
 
     /// One step; returns the pulses.
-    fn step(&mut self, kind: Kind, steps: [bool; 2]) -> [i64; 2] {
+    fn step(&mut self, kind: ArcKind, steps: [bool; 2]) -> [i64; 2] {
         self.f = self.deviation_after(kind, steps);
         let mut pulse = [0, 0];
         for axis in (0..2).filter(|&axis| steps[axis]) {
@@ -170,7 +170,7 @@ impl Arc {
     }
 
     /// Writes a row.
-    fn record(&mut self, kind: Kind, left: &[i64], pulse: [i64; 2]) {
+    fn record(&mut self, kind: ArcKind, left: &[i64], pulse: [i64; 2]) {
         let [x, y] = self.point;
         let position = [self.center[0] + x, self.center[1] + y];
         self.table.push(&[&[self.f, x.abs(), y.abs(), kind.quadrant], left, &pulse, &position]);

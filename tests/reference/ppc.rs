@@ -1,6 +1,6 @@
 //! Point-by-point comparison: the sign of a deviation F chooses the axis of every step.
 
-use super::arc_geometry::{Kind, Sector, natural_extreme, radius_squared, sectors};
+use super::arc_geometry::{ArcKind, Sector, natural_extreme, radius_squared, sectors};
 use super::{EndPoint, Form, Table, counter_columns, per_axis_columns};
 
 /// The step table of a straight line, in BLU.
@@ -136,7 +136,7 @@ struct Arc {
 
 impl Arc {
     /// One counter of all steps; the path itself finds the next quadrant.
-    fn run_total(&mut self, first: Kind, list: &[Sector]) {
+    fn run_total(&mut self, first: ArcKind, list: &[Sector]) {
         let mut kind = first;
         let mut e: i64 = list.iter().flat_map(Sector::distance).sum();
         self.record(kind, &[e], [0, 0]);
@@ -170,12 +170,12 @@ impl Arc {
     }
 
     /// The axis that the sign of F asks for.
-    fn wanted(&self, kind: Kind) -> usize {
+    fn wanted(&self, kind: ArcKind) -> usize {
         if self.f >= 0 { kind.shrinking() } else { kind.growing() }
     }
 
     /// One step of one axis; returns the pulses.
-    fn step(&mut self, kind: Kind, axis: usize) -> [i64; 2] {
+    fn step(&mut self, kind: ArcKind, axis: usize) -> [i64; 2] {
         let magnitude = self.point[axis].abs();
         if axis == kind.shrinking() {
             self.f -= 2 * magnitude - 1;
@@ -189,7 +189,7 @@ impl Arc {
     }
 
     /// Writes a row.
-    fn record(&mut self, kind: Kind, left: &[i64], pulse: [i64; 2]) {
+    fn record(&mut self, kind: ArcKind, left: &[i64], pulse: [i64; 2]) {
         let [x, y] = self.point;
         let position = [self.center[0] + x, self.center[1] + y];
         self.table.push(&[&[self.f, x.abs(), y.abs(), kind.quadrant], left, &pulse, &position]);

@@ -11,11 +11,11 @@ struct Operation {
     target: u32,
     /// Width of the result, or of the operands where the result is a flag.
     width: Width,
-    kind: Kind,
+    kind: WordOp,
 }
 
 /// Operators on indices into the array of values. Those that need a second width or constant carry it.
-enum Kind {
+enum WordOp {
     Not(u32),
     And(u32, u32),
     Or(u32, u32),
@@ -63,32 +63,32 @@ fn lower(design: &Design, net: Net) -> Option<Operation> {
     let of = |net: Net| netlist.width(net);
     let (kind, width) = match cell.op {
         Op::Input | Op::Const(_) | Op::Register { .. } => return None,
-        Op::Not(a) => (Kind::Not(a.0), cell.width),
-        Op::And(a, b) => (Kind::And(a.0, b.0), cell.width),
-        Op::Or(a, b) => (Kind::Or(a.0, b.0), cell.width),
-        Op::Xor(a, b) => (Kind::Xor(a.0, b.0), cell.width),
-        Op::Mux { select, high, low } => (Kind::Mux(select.0, high.0, low.0), cell.width),
-        Op::Add(a, b) => (Kind::Add(a.0, b.0), cell.width),
-        Op::Sub(a, b) => (Kind::Sub(a.0, b.0), cell.width),
-        Op::Mul(a, b) => (Kind::Mul(a.0, b.0), cell.width),
-        Op::Div(a, b) => (Kind::Div(a.0, b.0), cell.width),
-        Op::Rem(a, b) => (Kind::Rem(a.0, b.0), cell.width),
-        Op::ShiftLeft(a, by) => (Kind::ShiftLeft(a.0, by.0), cell.width),
-        Op::ShiftRight(a, by) => (Kind::ShiftRight(a.0, by.0), cell.width),
-        Op::ShiftArithmetic(a, by) => (Kind::ShiftArithmetic(a.0, by.0), cell.width),
-        Op::Carry(a, b) => (Kind::Carry(a.0, b.0), of(a)),
-        Op::Borrow(a, b) => (Kind::Borrow(a.0, b.0), of(a)),
-        Op::AddOverflow(a, b) => (Kind::AddOverflow(a.0, b.0), of(a)),
-        Op::SubOverflow(a, b) => (Kind::SubOverflow(a.0, b.0), of(a)),
-        Op::Equal(a, b) => (Kind::Equal(a.0, b.0), of(a)),
-        Op::LessSigned(a, b) => (Kind::LessSigned(a.0, b.0), of(a)),
-        Op::Slice { of, low } => (Kind::Slice(of.0, low), cell.width),
+        Op::Not(a) => (WordOp::Not(a.0), cell.width),
+        Op::And(a, b) => (WordOp::And(a.0, b.0), cell.width),
+        Op::Or(a, b) => (WordOp::Or(a.0, b.0), cell.width),
+        Op::Xor(a, b) => (WordOp::Xor(a.0, b.0), cell.width),
+        Op::Mux { select, high, low } => (WordOp::Mux(select.0, high.0, low.0), cell.width),
+        Op::Add(a, b) => (WordOp::Add(a.0, b.0), cell.width),
+        Op::Sub(a, b) => (WordOp::Sub(a.0, b.0), cell.width),
+        Op::Mul(a, b) => (WordOp::Mul(a.0, b.0), cell.width),
+        Op::Div(a, b) => (WordOp::Div(a.0, b.0), cell.width),
+        Op::Rem(a, b) => (WordOp::Rem(a.0, b.0), cell.width),
+        Op::ShiftLeft(a, by) => (WordOp::ShiftLeft(a.0, by.0), cell.width),
+        Op::ShiftRight(a, by) => (WordOp::ShiftRight(a.0, by.0), cell.width),
+        Op::ShiftArithmetic(a, by) => (WordOp::ShiftArithmetic(a.0, by.0), cell.width),
+        Op::Carry(a, b) => (WordOp::Carry(a.0, b.0), of(a)),
+        Op::Borrow(a, b) => (WordOp::Borrow(a.0, b.0), of(a)),
+        Op::AddOverflow(a, b) => (WordOp::AddOverflow(a.0, b.0), of(a)),
+        Op::SubOverflow(a, b) => (WordOp::SubOverflow(a.0, b.0), of(a)),
+        Op::Equal(a, b) => (WordOp::Equal(a.0, b.0), of(a)),
+        Op::LessSigned(a, b) => (WordOp::LessSigned(a.0, b.0), of(a)),
+        Op::Slice { of, low } => (WordOp::Slice(of.0, low), cell.width),
         Op::Concat { high, low } => {
             // A part is at least 1 bit, so the shift is at most 63.
-            (Kind::Concat(high.0, low.0, u8::try_from(of(low).get()).unwrap_or(63)), cell.width)
+            (WordOp::Concat(high.0, low.0, u8::try_from(of(low).get()).unwrap_or(63)), cell.width)
         }
-        Op::ZeroExtend(a) => (Kind::Copy(a.0), cell.width),
-        Op::SignExtend(a) => (Kind::SignExtend(a.0, of(a)), cell.width),
+        Op::ZeroExtend(a) => (WordOp::Copy(a.0), cell.width),
+        Op::SignExtend(a) => (WordOp::SignExtend(a.0, of(a)), cell.width),
     };
     Some(Operation { target: net.0, width, kind })
 }
@@ -137,35 +137,35 @@ impl WordEngine {
             let w = *width;
             let at = |index: u32| v[index as usize];
             let result = match *kind {
-                Kind::Not(a) => !at(a) & w.mask(),
-                Kind::And(a, b) => at(a) & at(b),
-                Kind::Or(a, b) => at(a) | at(b),
-                Kind::Xor(a, b) => at(a) ^ at(b),
-                Kind::Mux(select, high, low) => {
+                WordOp::Not(a) => !at(a) & w.mask(),
+                WordOp::And(a, b) => at(a) & at(b),
+                WordOp::Or(a, b) => at(a) | at(b),
+                WordOp::Xor(a, b) => at(a) ^ at(b),
+                WordOp::Mux(select, high, low) => {
                     if at(select) == 1 {
                         at(high)
                     } else {
                         at(low)
                     }
                 }
-                Kind::Add(a, b) => bits::add(w, at(a), at(b)),
-                Kind::Sub(a, b) => bits::sub(w, at(a), at(b)),
-                Kind::Mul(a, b) => bits::mul(w, at(a), at(b)),
-                Kind::Div(a, b) => bits::div(at(a), at(b)),
-                Kind::Rem(a, b) => bits::rem(at(a), at(b)),
-                Kind::ShiftLeft(a, by) => bits::shift_left(w, at(a), at(by)),
-                Kind::ShiftRight(a, by) => bits::shift_right(at(a), at(by)),
-                Kind::ShiftArithmetic(a, by) => bits::shift_arithmetic(w, at(a), at(by)),
-                Kind::Carry(a, b) => u64::from(bits::carry(w, at(a), at(b))),
-                Kind::Borrow(a, b) => u64::from(bits::borrow(at(a), at(b))),
-                Kind::AddOverflow(a, b) => u64::from(bits::add_overflow(w, at(a), at(b))),
-                Kind::SubOverflow(a, b) => u64::from(bits::sub_overflow(w, at(a), at(b))),
-                Kind::Equal(a, b) => u64::from(at(a) == at(b)),
-                Kind::LessSigned(a, b) => u64::from(bits::less_signed(w, at(a), at(b))),
-                Kind::Slice(of, low) => at(of) >> low & w.mask(),
-                Kind::Concat(high, low, shift) => at(high) << shift | at(low),
-                Kind::Copy(a) => at(a),
-                Kind::SignExtend(a, from) => bits::sign_extend(from, w, at(a)),
+                WordOp::Add(a, b) => bits::add(w, at(a), at(b)),
+                WordOp::Sub(a, b) => bits::sub(w, at(a), at(b)),
+                WordOp::Mul(a, b) => bits::mul(w, at(a), at(b)),
+                WordOp::Div(a, b) => bits::div(at(a), at(b)),
+                WordOp::Rem(a, b) => bits::rem(at(a), at(b)),
+                WordOp::ShiftLeft(a, by) => bits::shift_left(w, at(a), at(by)),
+                WordOp::ShiftRight(a, by) => bits::shift_right(at(a), at(by)),
+                WordOp::ShiftArithmetic(a, by) => bits::shift_arithmetic(w, at(a), at(by)),
+                WordOp::Carry(a, b) => u64::from(bits::carry(w, at(a), at(b))),
+                WordOp::Borrow(a, b) => u64::from(bits::borrow(at(a), at(b))),
+                WordOp::AddOverflow(a, b) => u64::from(bits::add_overflow(w, at(a), at(b))),
+                WordOp::SubOverflow(a, b) => u64::from(bits::sub_overflow(w, at(a), at(b))),
+                WordOp::Equal(a, b) => u64::from(at(a) == at(b)),
+                WordOp::LessSigned(a, b) => u64::from(bits::less_signed(w, at(a), at(b))),
+                WordOp::Slice(of, low) => at(of) >> low & w.mask(),
+                WordOp::Concat(high, low, shift) => at(high) << shift | at(low),
+                WordOp::Copy(a) => at(a),
+                WordOp::SignExtend(a, from) => bits::sign_extend(from, w, at(a)),
             };
             v[*target as usize] = result;
         }

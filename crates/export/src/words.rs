@@ -9,39 +9,39 @@ use stepwave_netlist::cells::{Net, Netlist, Op, Property};
 
 /// An operator in both languages.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Word {
+pub(super) struct OperatorName {
     /// In BTOR2; operands and then numbers follow.
     pub(super) btor2: &'static str,
     /// In SMT-LIB, with `$0` for the first operand and `#0` for the first number.
     pub(super) smt2: &'static str,
 }
 
-const fn word(btor2: &'static str, smt2: &'static str) -> Word {
-    Word { btor2, smt2 }
+const fn word(btor2: &'static str, smt2: &'static str) -> OperatorName {
+    OperatorName { btor2, smt2 }
 }
 
-const NOT: Word = word("not", "(bvnot $0)");
-const AND: Word = word("and", "(bvand $0 $1)");
-const OR: Word = word("or", "(bvor $0 $1)");
-const XOR: Word = word("xor", "(bvxor $0 $1)");
-const MUX: Word = word("ite", "(ite (= $0 #b1) $1 $2)");
-const ADD: Word = word("add", "(bvadd $0 $1)");
-const SUB: Word = word("sub", "(bvsub $0 $1)");
-const MUL: Word = word("mul", "(bvmul $0 $1)");
-const DIV: Word = word("udiv", "(bvudiv $0 $1)");
-const REM: Word = word("urem", "(bvurem $0 $1)");
-const SHIFT_LEFT: Word = word("sll", "(bvshl $0 $1)");
-const SHIFT_RIGHT: Word = word("srl", "(bvlshr $0 $1)");
-const SHIFT_ARITHMETIC: Word = word("sra", "(bvashr $0 $1)");
-const LESS: Word = word("ult", "(ite (bvult $0 $1) #b1 #b0)");
-const LESS_SIGNED: Word = word("slt", "(ite (bvslt $0 $1) #b1 #b0)");
-const EQUAL: Word = word("eq", "(bvcomp $0 $1)");
-const CONCAT: Word = word("concat", "(concat $0 $1)");
+const NOT: OperatorName = word("not", "(bvnot $0)");
+const AND: OperatorName = word("and", "(bvand $0 $1)");
+const OR: OperatorName = word("or", "(bvor $0 $1)");
+const XOR: OperatorName = word("xor", "(bvxor $0 $1)");
+const MUX: OperatorName = word("ite", "(ite (= $0 #b1) $1 $2)");
+const ADD: OperatorName = word("add", "(bvadd $0 $1)");
+const SUB: OperatorName = word("sub", "(bvsub $0 $1)");
+const MUL: OperatorName = word("mul", "(bvmul $0 $1)");
+const DIV: OperatorName = word("udiv", "(bvudiv $0 $1)");
+const REM: OperatorName = word("urem", "(bvurem $0 $1)");
+const SHIFT_LEFT: OperatorName = word("sll", "(bvshl $0 $1)");
+const SHIFT_RIGHT: OperatorName = word("srl", "(bvlshr $0 $1)");
+const SHIFT_ARITHMETIC: OperatorName = word("sra", "(bvashr $0 $1)");
+const LESS: OperatorName = word("ult", "(ite (bvult $0 $1) #b1 #b0)");
+const LESS_SIGNED: OperatorName = word("slt", "(ite (bvslt $0 $1) #b1 #b0)");
+const EQUAL: OperatorName = word("eq", "(bvcomp $0 $1)");
+const CONCAT: OperatorName = word("concat", "(concat $0 $1)");
 /// Highest and lowest bit.
-const SLICE: Word = word("slice", "((_ extract #0 #1) $0)");
+const SLICE: OperatorName = word("slice", "((_ extract #0 #1) $0)");
 /// Bits added.
-const ZERO_EXTEND: Word = word("uext", "((_ zero_extend #0) $0)");
-const SIGN_EXTEND: Word = word("sext", "((_ sign_extend #0) $0)");
+const ZERO_EXTEND: OperatorName = word("uext", "((_ zero_extend #0) $0)");
+const SIGN_EXTEND: OperatorName = word("sext", "((_ sign_extend #0) $0)");
 
 /// What a net is made of.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -51,7 +51,7 @@ pub(super) enum Term {
     /// The number 0 of this many bits.
     Zero(u32),
     /// An operator: its word, its width in bits, operands, numbers.
-    Apply(Word, u32, Vec<Term>, Vec<u32>),
+    Apply(OperatorName, u32, Vec<Term>, Vec<u32>),
 }
 
 impl Term {
@@ -64,32 +64,32 @@ impl Term {
 pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
     let (op, width) = (netlist.cell(net).op, netlist.width(net).get());
     let bits = |net: Net| netlist.width(net).get();
-    let apply = |word: Word, numbers: Vec<u32>| {
+    let apply = |word: OperatorName, numbers: Vec<u32>| {
         let mut operands = Vec::new();
         op.visit_inputs(|input| operands.push(Term::Net(input)));
         Term::Apply(word, width, operands, numbers)
     };
     // One bit more, and its value.
-    let wider = |word: Word, extend: Word, a: Net, b: Net| {
+    let wider = |word: OperatorName, extend: OperatorName, a: Net, b: Net| {
         let wide = bits(a) + 1;
         let operand = |net: Net| Term::Apply(extend, wide, vec![Term::Net(net)], vec![1]);
         Term::Apply(word, wide, vec![operand(a), operand(b)], vec![])
     };
     // The added bit holds the sign of the exact result.
-    let overflow = |word: Word, a: Net, b: Net| {
+    let overflow = |word: OperatorName, a: Net, b: Net| {
         let sign = |bit: u32| wider(word, SIGN_EXTEND, a, b).slice(bit, bit);
         Term::Apply(XOR, 1, vec![sign(bits(a)), sign(bits(a) - 1)], vec![])
     };
     // Both languages make all ones of a division by 0.
     let guarded = |divisor: Net| {
         let none = Term::Apply(EQUAL, 1, vec![Term::Net(divisor), Term::Zero(width)], vec![]);
-        let result = |word: Word| Term::Apply(MUX, width, vec![none, Term::Zero(width), apply(word, vec![])], vec![]);
+        let result = |word: OperatorName| Term::Apply(MUX, width, vec![none, Term::Zero(width), apply(word, vec![])], vec![]);
         result
     };
     // Both operands are as wide as the wider one.
-    let shift = |word: Word, extend: Word, a: Net, by: Net| {
+    let shift = |word: OperatorName, extend: OperatorName, a: Net, by: Net| {
         let wide = width.max(bits(by));
-        let widened = |net: Net, extend: Word| match wide - bits(net) {
+        let widened = |net: Net, extend: OperatorName| match wide - bits(net) {
             0 => Term::Net(net),
             more => Term::Apply(extend, wide, vec![Term::Net(net)], vec![more]),
         };

@@ -102,6 +102,15 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
     }
     let mut found = Vec::new();
     let mut report = |code, place, message| found.push(Diagnostic { code, place, message });
+    check_cells(netlist, &mut report);
+    check_names(netlist, &mut report);
+    check_properties(netlist, &mut report);
+    found
+}
+
+/// Every cell comes after what it reads, and obeys the rule of its operator.
+fn check_cells(netlist: &Netlist, report: &mut impl FnMut(Code, Place, String)) {
+    let count = netlist.cells.len();
     let place = |net: Net| match netlist.sources.get(net.index()) {
         Some(Some(location)) => Place::Source(location),
         _ => Place::Component(format!("net %{}", net.index())),
@@ -122,11 +131,15 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
             report(code, place(net), message);
         }
     }
+}
+
+/// Every name is an identifier, and is given once in its scope.
+fn check_names(netlist: &Netlist, report: &mut impl FnMut(Code, Place, String)) {
     let scopes = netlist.scopes.iter().enumerate();
     let scopes = scopes.map(|(index, scope)| (scope.parent, scope.name.as_str(), format!("scope {index}")));
     let nets = netlist.names.iter();
     let nets = nets.map(|named| (Some(named.scope), named.name.as_str(), format!("net {}", named.net)));
-    // What bears each name.
+    // The scope or net of each name.
     let mut used: HashMap<(Option<ScopeId>, &str), String> = HashMap::new();
     for (scope, name, bearer) in scopes.chain(nets) {
         let place = Place::Component(name.to_owned());
@@ -140,6 +153,11 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
             used.insert((scope, name), bearer);
         }
     }
+}
+
+/// Every property is one existing bit about existing operands.
+fn check_properties(netlist: &Netlist, report: &mut impl FnMut(Code, Place, String)) {
+    let count = netlist.cells.len();
     for property in &netlist.properties {
         let place = Place::Component(property.name.clone());
         if property.never.index() >= count {
@@ -153,7 +171,6 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
             report(Code::Order, place, "an operand of the property does not exist".to_owned());
         }
     }
-    found
 }
 
 fn ghost(named: &NamedNet) -> Diagnostic {

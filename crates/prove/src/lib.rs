@@ -54,7 +54,7 @@ pub mod bitwise;
 pub mod polynomial;
 mod strobes;
 
-pub use bitwise::{AxisNets, Followed, Lost, Sample, Sum, Word, follow, recount};
+pub use bitwise::{AxisNets, Followed, KnownSample, LoadWord, Lost, Sum, follow, recount};
 pub use polynomial::{
     Case, CaseError, Certificate, CertificateError, Family, FamilyError, InvariantStates, Proof, Row, check, fit,
     prove, violated,

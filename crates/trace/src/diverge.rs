@@ -27,7 +27,7 @@ mod tests;
 pub(crate) use frame::{Frame, Frames, Walk};
 pub(crate) use pairing::pairs;
 
-use super::read::{ClockError, Kind, Signal, Timescale, Value, Wave};
+use super::read::{ClockError, Signal, Timescale, Value, ValueKind, Wave};
 use std::collections::HashMap;
 
 /// What to compare and how.
@@ -298,8 +298,8 @@ impl<'w> Group<'w> {
 }
 
 /// Kinds whose values compare: a sign changes only how bits are shown.
-fn class(kind: Kind) -> Kind {
-    if kind == Kind::Signed { Kind::Unsigned } else { kind }
+fn class(kind: ValueKind) -> ValueKind {
+    if kind == ValueKind::Signed { ValueKind::Unsigned } else { kind }
 }
 
 fn context<'w>(frames: &Frames<'w>, found: &[(i128, Group<'w>)], lines: usize) -> Context<'w> {

@@ -14,7 +14,7 @@ mod tests;
 mod track;
 
 use super::diverge::{CompareError, Frame, Frames, Options, pairs};
-use super::read::{Kind, Signal, Timescale, Wave};
+use super::read::{Signal, Timescale, ValueKind, Wave};
 use std::cmp::Reverse;
 use std::collections::binary_heap::{BinaryHeap, PeekMut};
 use std::collections::{HashMap, HashSet};
@@ -72,7 +72,7 @@ fn entries<'w>(frames: &Frames<'w>, options: &Options) -> Result<Vec<Entry<'w>>,
     let mut next: HashMap<(Vec<String>, String), u64> = HashMap::new();
     let mut push = |top: &str, name: &str, source: Source<'w>| {
         // A vector without bits has nothing to show.
-        if source.width() == 0 && matches!(source.kind(), Kind::Unsigned | Kind::Signed) {
+        if source.width() == 0 && matches!(source.kind(), ValueKind::Unsigned | ValueKind::Signed) {
             return;
         }
         let mut scopes: Vec<String> = std::iter::once(top).chain(name.split('.')).map(identifier).collect();
@@ -101,7 +101,7 @@ fn entries<'w>(frames: &Frames<'w>, options: &Options) -> Result<Vec<Entry<'w>>,
         if let Some(b) = pair.b {
             push("b", &pair.name, Source::B(b));
         }
-        let bits = |signal: &Signal| matches!(signal.kind, Kind::Unsigned | Kind::Signed);
+        let bits = |signal: &Signal| matches!(signal.kind, ValueKind::Unsigned | ValueKind::Signed);
         if let (Some(a), Some(b)) = (pair.a, pair.b)
             && bits(a)
             && bits(b)
@@ -165,11 +165,11 @@ fn header<'w>(
         scopes[common..].iter().try_for_each(|scope| writer.add_module(scope))?;
         open = scopes;
         let (var, width) = match (source.kind(), source.width()) {
-            (Kind::Unsigned, width) => (VarType::Wire, width),
-            (Kind::Signed, width) => (VarType::Integer, width),
-            (Kind::Real, width) => (VarType::Real, width),
-            (Kind::Text, _) => (VarType::String, 1),
-            (Kind::Event, _) => (VarType::Event, 1),
+            (ValueKind::Unsigned, width) => (VarType::Wire, width),
+            (ValueKind::Signed, width) => (VarType::Integer, width),
+            (ValueKind::Real, width) => (VarType::Real, width),
+            (ValueKind::Text, _) => (VarType::String, 1),
+            (ValueKind::Event, _) => (VarType::Event, 1),
         };
         let range = match (var, i32::try_from(width)) {
             (VarType::Wire, Ok(width @ 2..)) => Some(ReferenceIndex::Range(width - 1, 0)),

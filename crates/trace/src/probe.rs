@@ -5,10 +5,10 @@ use std::collections::{HashMap, HashSet};
 use globset::GlobMatcher;
 
 use crate::pattern::glob;
-use stepwave_netlist::Design;
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Format, Net, Op};
 use stepwave_netlist::did_you_mean;
+use stepwave_netlist::{Design, Netlist};
 
 /// What kind of thing drives a shown net.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -127,14 +127,6 @@ impl Selection {
             path.push(scope.name.clone());
             scopes.push(path);
         }
-        // Scopes in depth-first order: an inner scope comes directly after its parent's own names.
-        let mut order: Vec<usize> = Vec::new();
-        let mut pending = vec![0];
-        while let Some(scope) = pending.pop() {
-            order.push(scope);
-            let inner = (0..netlist.scopes.len()).rev();
-            pending.extend(inner.filter(|&i| netlist.scopes[i].parent.is_some_and(|parent| parent.index() == scope)));
-        }
         let names = || netlist.names.iter().map(|named| (&scopes[named.scope.index()], named.name.as_str()));
         let fits = |glob: &&GlobMatcher| names().any(|(scopes, name)| matches(glob, scopes, name));
         if let Some(unused) = self.include.iter().find(|glob| !fits(glob)) {
@@ -143,27 +135,20 @@ impl Selection {
             return Err(PatternError::Unused { pattern, hint });
         }
         let mut probes = Vec::new();
-        for scope in order {
+        for scope in depth_first(netlist) {
             for named in netlist.names.iter().filter(|named| named.scope.index() == scope) {
                 let Some(&column) = column_of.get(&named.net) else { continue };
                 if !self.keeps(&scopes[scope], &named.name) {
                     continue;
                 }
                 let cell = netlist.cell(named.net);
-                let role = match cell.op {
-                    Op::Register { .. } => Role::Register,
-                    Op::Const(_) => Role::Constant,
-                    Op::Input => Role::Input,
-                    _ if flags.contains(&named.net) => Role::Flag,
-                    _ => Role::Wire,
-                };
                 probes.push(Probe {
                     scopes: scopes[scope].clone(),
                     name: named.name.clone(),
                     net: named.net,
                     width: cell.width,
                     format: named.format.clone(),
-                    role,
+                    role: role(cell.op, flags.contains(&named.net)),
                     column,
                 });
             }
@@ -177,6 +162,28 @@ impl Selection {
             return Err(PatternError::NothingLeft { patterns: patterns.join(", ") });
         }
         Ok(probes)
+    }
+}
+
+/// The scopes in depth-first order: an inner scope comes directly after its parent's own names.
+fn depth_first(netlist: &Netlist) -> Vec<usize> {
+    let mut order: Vec<usize> = Vec::new();
+    let mut pending = vec![0];
+    while let Some(scope) = pending.pop() {
+        order.push(scope);
+        let inner = (0..netlist.scopes.len()).rev();
+        pending.extend(inner.filter(|&i| netlist.scopes[i].parent.is_some_and(|parent| parent.index() == scope)));
+    }
+    order
+}
+
+fn role(op: Op, is_flag: bool) -> Role {
+    match op {
+        Op::Register { .. } => Role::Register,
+        Op::Const(_) => Role::Constant,
+        Op::Input => Role::Input,
+        _ if is_flag => Role::Flag,
+        _ => Role::Wire,
     }
 }
 

@@ -73,7 +73,7 @@ pub struct Signal {
     /// Number of bits; 64 for a real, 0 for a text or an event.
     pub width: u32,
     /// How its values read.
-    pub kind: Kind,
+    pub kind: ValueKind,
     pub(crate) stored: usize,
 }
 
@@ -86,13 +86,13 @@ impl Signal {
 
     /// What it counts as before its first change.
     pub(crate) fn first_value(&self) -> Value<'static> {
-        if self.kind == Kind::Event { Value::Count(0) } else { Value::Unset }
+        if self.kind == ValueKind::Event { Value::Count(0) } else { Value::Unset }
     }
 }
 
 /// How the values of a signal read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum ValueKind {
     /// Bits; the number has no sign.
     Unsigned,
     /// Bits in two's complement: an `integer` or one of SystemVerilog's signed types.
@@ -324,7 +324,7 @@ impl Wave {
 
     /// The value of a signal of this wave after its change with this number.
     pub(crate) fn value(&self, signal: &Signal, change: usize) -> Value<'_> {
-        self.stored[signal.stored].value(change, signal.kind == Kind::Signed)
+        self.stored[signal.stored].value(change, signal.kind == ValueKind::Signed)
     }
 
     /// The time indices of the changes of a signal of this wave, not decreasing.

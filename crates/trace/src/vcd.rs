@@ -87,6 +87,28 @@ impl VcdHeader<'_> {
         writeln!(head.writer(), "$version stepwave {} $end", env!("CARGO_PKG_VERSION"))?;
         writeln!(head.writer(), "$comment schema 1; clock {} Hz; {} $end", self.time.hz(), self.comment)?;
         head.timescale(self.time.magnitude(), self.time.unit())?;
+        let (clk, changes) = self.declarations(&mut head)?;
+        head.enddefinitions()?;
+        out.write_all(head.writer())?;
+        let longest: usize = changes.iter().map(|change| change.line.len()).sum();
+        let ticks = self.time.ticks();
+        Ok(VcdBody {
+            out,
+            // Two stamps and `$dumpvars` fit into a window too.
+            buffer: vec![0; BUFFER + longest + 3 * WINDOW],
+            filled: 0,
+            moves: Moves::new(changes.iter().map(|change| change.column).collect()),
+            changes,
+            clk,
+            rise: Stamps::new(ticks),
+            fall: Stamps::new(ticks),
+            ticks,
+            last_clock: None,
+        })
+    }
+
+    /// Declares the clock and every probe in its scope: the lines of the clock's edges, and those of the changes.
+    fn declarations(&self, head: &mut Writer<Vec<u8>>) -> io::Result<(Option<[Tail; 2]>, Vec<Change>)> {
         let mut open: Vec<String> = Vec::new();
         let mut changes: Vec<Change> = Vec::new();
         let mut next = IdCode::FIRST;
@@ -127,23 +149,7 @@ impl VcdHeader<'_> {
         for _ in 0..open.len() {
             head.upscope()?;
         }
-        head.enddefinitions()?;
-        out.write_all(head.writer())?;
-        let longest: usize = changes.iter().map(|change| change.line.len()).sum();
-        let ticks = self.time.ticks();
-        Ok(VcdBody {
-            out,
-            // Two stamps and `$dumpvars` fit into a window too.
-            buffer: vec![0; BUFFER + longest + 3 * WINDOW],
-            filled: 0,
-            moves: Moves::new(changes.iter().map(|change| change.column).collect()),
-            changes,
-            clk,
-            rise: Stamps::new(ticks),
-            fall: Stamps::new(ticks),
-            ticks,
-            last_clock: None,
-        })
+        Ok((clk, changes))
     }
 }
 

@@ -3,7 +3,7 @@
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{
-    BeatRing, Block, CCW, EndCounters, Kind, QUAD, axis_scope, negated, next_quadrant, quadrant_register,
+    ArcKind, BeatRing, Block, CCW, EndCounters, QUAD, axis_scope, negated, next_quadrant, quadrant_register,
     up_down_counter, x_grows,
 };
 use crate::hardware::Hardware;
@@ -30,7 +30,7 @@ pub struct ArcFrame<'m> {
     yi: Register<'m>,
     end: EndCounters<'m>,
     /// The decoded quadrant and direction.
-    pub kind: Kind<'m>,
+    pub kind: ArcKind<'m>,
 }
 
 impl<'m> ArcFrame<'m> {
@@ -51,7 +51,7 @@ impl<'m> ArcFrame<'m> {
         };
         quad.when(block.load, hardware.word(block, QUAD)).when(judge, entered).else_hold();
         // After the judge beat `entered` is `quad` itself, until the coordinates change.
-        ArcFrame { m, block: *block, xi, yi, end, kind: Kind::decode(q, entered, ccw) }
+        ArcFrame { m, block: *block, xi, yi, end, kind: ArcKind::decode(q, entered, ccw) }
     }
 
     /// |x| and |y|, equally wide.

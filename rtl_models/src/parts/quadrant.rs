@@ -13,7 +13,7 @@ pub const CCW: Reg = Reg::new("ccw", Rule::Bits(1), "direction of the arc, 1 is 
 
 /// The kind of an arc (SR1 … NR4), decoded. 1 bit each.
 #[derive(Clone, Copy, Debug)]
-pub struct Kind<'m> {
+pub struct ArcKind<'m> {
     /// |x| grows and |y| shrinks; else vice versa.
     pub x_grows: Signal<'m>,
     /// The motion in x is negative.
@@ -22,14 +22,14 @@ pub struct Kind<'m> {
     pub y_negative: Signal<'m>,
 }
 
-impl<'m> Kind<'m> {
+impl<'m> ArcKind<'m> {
     /// The kind of the arc that was loaded: `ccw`, 1 bit, and [`quad`](quadrant_register) hold their words.
     #[must_use]
-    pub fn held(m: Scope<'m>, block: &Block<'m>) -> Kind<'m> {
+    pub fn held(m: Scope<'m>, block: &Block<'m>) -> ArcKind<'m> {
         let ccw = block.held(m, CCW.name(), 1);
         let quad = quadrant_register(m);
         quad.when(block.load, block.word(QUAD.name(), 2)).else_hold();
-        Kind::decode(m.scope("quadrant"), quad.q, ccw)
+        ArcKind::decode(m.scope("quadrant"), quad.q, ccw)
     }
 
     /// The sides of the pair of integrators that draws the arc: a Y pulse changes |y|, which is J_VX, an X pulse |x|,
@@ -44,12 +44,12 @@ impl<'m> Kind<'m> {
     /// Decodes a quadrant (2 bits, Q1 = 0 … Q4 = 3) and a direction (1 bit, 1 is counter-clockwise), and shows the kind
     /// by its textbook name in the wave.
     #[must_use]
-    pub fn decode(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Kind<'m> {
-        Kind::show(m, counter_clockwise.concat(quadrant), &[]);
-        Kind::of(m, quadrant, counter_clockwise)
+    pub fn decode(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> ArcKind<'m> {
+        ArcKind::show(m, counter_clockwise.concat(quadrant), &[]);
+        ArcKind::of(m, quadrant, counter_clockwise)
     }
 
-    /// As [`decode`](Kind::decode), of a machine of arcs and lines: on an arc the first of `modes` (1 bit each) is 1,
+    /// As [`decode`](ArcKind::decode), of a machine of arcs and lines: on an arc the first of `modes` (1 bit each) is 1,
     /// on a line the second, before the first block none. The wave says which.
     #[must_use]
     pub fn decode_in_modes(
@@ -57,11 +57,11 @@ impl<'m> Kind<'m> {
         quadrant: Signal<'m>,
         counter_clockwise: Signal<'m>,
         [arc, line]: [Signal<'m>; 2],
-    ) -> Kind<'m> {
+    ) -> ArcKind<'m> {
         let of_arc = counter_clockwise.concat(quadrant).extend(4);
         let kind = arc.mux(of_arc, line.mux(m.lit(4, 8), m.lit(4, 9)));
-        Kind::show(m, kind, &["LINE", "NONE"]);
-        Kind::of(m, quadrant, counter_clockwise)
+        ArcKind::show(m, kind, &["LINE", "NONE"]);
+        ArcKind::of(m, quadrant, counter_clockwise)
     }
 
     fn show(m: Scope<'m>, kind: Signal<'m>, others: &[&str]) {
@@ -70,9 +70,9 @@ impl<'m> Kind<'m> {
         m.show("kind", kind, Format::States(states));
     }
 
-    fn of(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> Kind<'m> {
+    fn of(m: Scope<'m>, quadrant: Signal<'m>, counter_clockwise: Signal<'m>) -> ArcKind<'m> {
         let (low, high) = (quadrant.bit(0), quadrant.bit(1));
-        Kind {
+        ArcKind {
             x_grows: m.name("x_grows", x_grows(quadrant, counter_clockwise)),
             // Clockwise x falls in the lower half, Q3 and Q4.
             x_negative: m.name("x_negative", high ^ counter_clockwise),

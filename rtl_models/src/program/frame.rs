@@ -7,7 +7,7 @@ use stepwave_netlist::dsl::{Register, Scope, Signal};
 use super::PROGRAM_WORDS;
 use crate::hardware::Hardware;
 use crate::parts::{
-    Block, Buffer, CCW, DownCounter, END, Kind, Motion, QUAD, WHOLE, count_coordinates, distributor, follower,
+    ArcKind, Block, Buffer, CCW, DownCounter, END, Motion, QUAD, WHOLE, count_coordinates, distributor, follower,
     handed_over, pulse_source, quadrant_register,
 };
 use crate::registers::{Reg, Rule};
@@ -51,7 +51,7 @@ impl<'m> Frame<'m> {
         let quad = quadrant_register(m);
         quad.when(block.load, hardware.word(&block, QUAD)).else_hold();
         let ccw = hardware.held(m, &block, CCW);
-        let kind = Kind::decode_in_modes(m.scope("quadrant"), quad.q, ccw, [arc, mode.q.bit(0)]);
+        let kind = ArcKind::decode_in_modes(m.scope("quadrant"), quad.q, ccw, [arc, mode.q.bit(0)]);
         // A line into Q2 or Q3 has negative x, one into Q3 or Q4 negative y.
         let (low, high) = (quad.q.bit(0), quad.q.bit(1));
         let negative = [arc.mux(kind.x_negative, low ^ high), arc.mux(kind.y_negative, high)];

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use stepwave_models::{AXES, Claims, Kind, Model, Options, Reg};
 use stepwave_nc::Curve;
 use stepwave_netlist::bits::Reading;
-use stepwave_prove::{AxisNets, Followed, Sum, Word, follow, recount};
+use stepwave_prove::{AxisNets, Followed, LoadWord, Sum, follow, recount};
 
 use super::{Narrower, ProofError, choices_at, largest};
 
@@ -123,13 +123,13 @@ fn block(
     let (mut given, mut names, mut bounds) = (Vec::new(), Vec::new(), vec![0..0; claims.counted.len()]);
     for ((register, _), (net, bits)) in common.iter().zip(encoded) {
         let Some(axis) = claims.counted.iter().position(|counted| counted.name() == *register) else {
-            given.push((net, Word::Known(bits)));
+            given.push((net, LoadWord::Known(bits)));
             continue;
         };
         let width = machine.inputs.get(*register).ok_or_else(|| wrong(register))?.width.get();
         bounds[axis] = names.len()..names.len() + width as usize;
         names.extend((0..width).map(|bit| format!("{register}.{bit}")));
-        given.push((net, Word::Unknown));
+        given.push((net, LoadWord::Unknown));
     }
     let strobes = super::strobes(&machine);
     let (design, limit) = (&machine.design, hardware.stall_clocks);

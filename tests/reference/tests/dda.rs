@@ -1,6 +1,6 @@
 //! Digital differential analyser: worked tables and claims.
 
-use super::super::arc_geometry::{Kind, nearest_radius};
+use super::super::arc_geometry::{ArcKind, nearest_radius};
 use super::super::{AXES, EndPoint, Table, dda_arc, dda_line};
 use super::{assert_pulses_make_the_path, end_of, lattice_arcs, moves, pulse_steps, radial_error, turned};
 
@@ -89,7 +89,7 @@ fn the_correction_table_of_the_eight_arc_kinds_follows_from_the_tangent() {
     ];
     for (column, quadrant) in [0, 1, 2, 3, 0, 1, 2, 3].into_iter().enumerate() {
         let clockwise = column < 4;
-        let kind = Kind { quadrant, clockwise };
+        let kind = ArcKind { quadrant, clockwise };
         let correction = |axis| if kind.growing() == axis { 1 } else { -1 };
         let [x, y] = kind.travel();
         let shown = [correction(1), correction(0), x, y];

@@ -1,6 +1,6 @@
 //! Point-by-point comparison: worked tables and claims.
 
-use super::super::arc_geometry::{Kind, natural_extreme};
+use super::super::arc_geometry::{ArcKind, natural_extreme};
 use super::super::{EndPoint, Form, Table, ppc_arc, ppc_line};
 use super::{
     LINE_ENDS, assert_pulses_make_the_path, at_most_root, below_root, end_of, lattice_arcs, lattice_circle, moves,
@@ -81,7 +81,7 @@ fn the_move_table_of_the_eight_arc_kinds_follows_from_the_tangent() {
     let rows = [(0, "-Y +X", "-X +Y"), (1, "+X +Y", "-Y -X"), (2, "+Y -X", "+X -Y"), (3, "-X -Y", "+Y +X")];
     for (quadrant, clockwise, counter_clockwise) in rows {
         for (expected, clockwise) in [(clockwise, true), (counter_clockwise, false)] {
-            let kind = Kind { quadrant, clockwise };
+            let kind = ArcKind { quadrant, clockwise };
             let word = |axis: usize| {
                 let sign = if kind.travel()[axis] > 0 { '+' } else { '-' };
                 format!("{sign}{}", ['X', 'Y'][axis])

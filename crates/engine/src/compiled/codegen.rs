@@ -85,7 +85,7 @@ impl Plan<'_> {
 }
 
 /// Register values in one sample, by index into `Plan::registers`.
-pub(super) type Sample = Vec<Value>;
+pub(super) type RegisterValues = Vec<Value>;
 
 pub(super) struct Generator<'a, 'c> {
     plan: &'a Plan<'a>,
@@ -185,12 +185,13 @@ impl<'a, 'c> Generator<'a, 'c> {
         resting: &[usize],
         f: &'a mut FunctionBuilder<'c>,
         state: Value,
-    ) -> (Generator<'a, 'c>, Sample) {
+    ) -> (Generator<'a, 'c>, RegisterValues) {
         let busy = (0..plan.columns.len()).filter(|column| !resting.contains(column)).collect();
         let mut generator = Generator { plan, f, state, inputs: Vec::new(), busy };
         let nets = plan.registers.iter().map(|&(net, _)| net).chain(plan.inputs.iter().copied());
         let width = |net: Net| plan.entry.netlist.width(plan.entry.net(net));
-        let mut words: Sample = nets.enumerate().map(|(word, net)| generator.load(word, kind(width(net)))).collect();
+        let mut words: RegisterValues =
+            nets.enumerate().map(|(word, net)| generator.load(word, kind(width(net)))).collect();
         generator.inputs = words.split_off(plan.registers.len());
         (generator, words)
     }
@@ -210,7 +211,7 @@ impl<'a, 'c> Generator<'a, 'c> {
     }
 
     /// Fixed registers are constants in this phase.
-    fn pin(&mut self, sample: &mut Sample, phase: &Phase, widths: &[Width]) {
+    fn pin(&mut self, sample: &mut RegisterValues, phase: &Phase, widths: &[Width]) {
         for (index, (net, _)) in self.plan.registers.iter().enumerate() {
             if let Some(&value) = phase.fixed.get(net) {
                 sample[index] = self.f.ins().iconst(kind(widths[index]), immediate(value));
@@ -219,14 +220,24 @@ impl<'a, 'c> Generator<'a, 'c> {
     }
 
     /// Values of all nets that the next values and `observed` depend on.
-    pub(super) fn settle(&mut self, logic: &Simplified, sample: &Sample, observed: &[Net]) -> HashMap<Net, Value> {
+    pub(super) fn settle(
+        &mut self,
+        logic: &Simplified,
+        sample: &RegisterValues,
+        observed: &[Net],
+    ) -> HashMap<Net, Value> {
         let mut roots: Vec<Net> = observed.iter().map(|&net| logic.net(net)).collect();
         roots.extend(self.plan.registers.iter().map(|&(_, next)| logic.net(next)));
         self.settle_roots(logic, sample, roots)
     }
 
     /// Values of some nets of `logic`, and of all that they depend on.
-    pub(super) fn settle_roots(&mut self, logic: &Simplified, sample: &Sample, roots: Vec<Net>) -> HashMap<Net, Value> {
+    pub(super) fn settle_roots(
+        &mut self,
+        logic: &Simplified,
+        sample: &RegisterValues,
+        roots: Vec<Net>,
+    ) -> HashMap<Net, Value> {
         self.settle_each(logic, sample, roots, |_, _, value| value)
     }
 
@@ -234,7 +245,7 @@ impl<'a, 'c> Generator<'a, 'c> {
     pub(super) fn settle_each(
         &mut self,
         logic: &Simplified,
-        sample: &Sample,
+        sample: &RegisterValues,
         mut pending: Vec<Net>,
         mut each: impl FnMut(&mut FunctionBuilder<'_>, Net, Value) -> Value,
     ) -> HashMap<Net, Value> {
@@ -268,14 +279,19 @@ impl<'a, 'c> Generator<'a, 'c> {
     }
 
     /// Next values of all registers.
-    pub(super) fn edge(&mut self, logic: &Simplified, values: &HashMap<Net, Value>, sample: &Sample) -> Sample {
+    pub(super) fn edge(
+        &mut self,
+        logic: &Simplified,
+        values: &HashMap<Net, Value>,
+        sample: &RegisterValues,
+    ) -> RegisterValues {
         let next = self.plan.registers.iter().enumerate();
         next.map(|(index, &(_, next))| values.get(&logic.net(next)).copied().unwrap_or(sample[index])).collect()
     }
 
     /// Leaves after an edge if a register is not as the phase expects. With `logic` the next values that are
     /// constants in it need no comparison.
-    fn guard(&mut self, next: &Sample, logic: Option<&Simplified>, phase: &Phase, recorded: Value) {
+    fn guard(&mut self, next: &RegisterValues, logic: Option<&Simplified>, phase: &Phase, recorded: Value) {
         let mut unequal: Option<Value> = None;
         for (index, &(net, source)) in self.plan.registers.iter().enumerate() {
             let Some(&wanted) = phase.fixed.get(&net) else { continue };
@@ -306,7 +322,7 @@ impl<'a, 'c> Generator<'a, 'c> {
     }
 
     /// Where `condition` is not 0: writes the registers back and returns the number of samples recorded.
-    fn leave_if(&mut self, condition: Value, sample: &Sample, recorded: Value, unrecorded_edge: bool) {
+    fn leave_if(&mut self, condition: Value, sample: &RegisterValues, recorded: Value, unrecorded_edge: bool) {
         let stay = self.leaving(condition, sample);
         let flag = self.f.ins().iconst(types::I64, i64::from(unrecorded_edge));
         self.store_state(self.plan.registers.len() + self.plan.inputs.len(), flag);
@@ -315,7 +331,7 @@ impl<'a, 'c> Generator<'a, 'c> {
     }
 
     /// Leaves where `condition` is not 0, with the registers written back; the block returned is the other branch.
-    pub(super) fn leaving(&mut self, condition: Value, sample: &Sample) -> Block {
+    pub(super) fn leaving(&mut self, condition: Value, sample: &RegisterValues) -> Block {
         let (exit, stay) = (self.f.create_block(), self.f.create_block());
         self.f.set_cold_block(exit);
         self.f.ins().brif(condition, exit, &[], stay, &[]);

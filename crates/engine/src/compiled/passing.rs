@@ -22,7 +22,7 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, Value, types};
 use cranelift_frontend::FunctionBuilder;
 
-use super::codegen::{Generator, Plan, Sample, kind, offset, trusted};
+use super::codegen::{Generator, Plan, RegisterValues, kind, offset, trusted};
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Net, Netlist, Op};
 use stepwave_netlist::passes::{Simplified, simplify};
@@ -141,7 +141,7 @@ pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuild
 }
 
 impl Passing<'_, '_> {
-    fn loops(&mut self, rows: Value, start: &Sample) {
+    fn loops(&mut self, rows: Value, start: &RegisterValues) {
         let plan = self.plan;
         let (carried, running) = (self.carried.clone(), self.running.clone());
         let values = self.generator.settle(plan.entry, start, &self.next());
@@ -208,7 +208,7 @@ impl Passing<'_, '_> {
     }
 
     /// 1 where a register but the running ones changes at the next edge, or one of `flags` is 1.
-    fn woken(&mut self, sample: &Sample, flags: &[Net]) -> Value {
+    fn woken(&mut self, sample: &RegisterValues, flags: &[Net]) -> Value {
         let logic = &self.rest.logic;
         let flags: Vec<Net> = flags.iter().map(|&net| logic.net(net)).collect();
         let others = self.rest.others.iter().flat_map(|&(register, next)| [register, next]);
@@ -230,7 +230,7 @@ impl Passing<'_, '_> {
     }
 
     /// The enables, each as if all before it were 0: the first that is 1 is right, and one is enough.
-    fn enables(&mut self, sample: &Sample) -> Vec<Value> {
+    fn enables(&mut self, sample: &RegisterValues) -> Vec<Value> {
         let plan = self.plan;
         let mut found = Vec::new();
         self.generator.settle_each(plan.entry, sample, self.rest.enables.clone(), |f, net, value| {
@@ -244,7 +244,7 @@ impl Passing<'_, '_> {
     }
 
     /// The extremes with those of a sample that is passed over.
-    fn extremes(&mut self, sample: &Sample, before: &[Value]) -> Vec<Value> {
+    fn extremes(&mut self, sample: &RegisterValues, before: &[Value]) -> Vec<Value> {
         let mut extremes = Vec::with_capacity(before.len());
         for (place, &index) in self.running.iter().enumerate() {
             let value = self.generator.wide(sample[index]);
@@ -275,17 +275,17 @@ impl Passing<'_, '_> {
         block
     }
 
-    fn arguments(&self, registers: &[usize], sample: &Sample, account: &Account) -> Vec<BlockArg> {
+    fn arguments(&self, registers: &[usize], sample: &RegisterValues, account: &Account) -> Vec<BlockArg> {
         registers.iter().map(|&index| sample[index]).chain(account.values()).map(BlockArg::from).collect()
     }
 
-    fn jump(&mut self, block: Block, registers: &[usize], sample: &Sample, account: &Account) {
+    fn jump(&mut self, block: Block, registers: &[usize], sample: &RegisterValues, account: &Account) {
         let arguments = self.arguments(registers, sample, account);
         self.generator.f.ins().jump(block, &arguments);
     }
 
     /// Continues in a block, with its parameters in the place of some registers.
-    fn enter(&mut self, block: Block, registers: &[usize], others: &Sample) -> (Sample, Account) {
+    fn enter(&mut self, block: Block, registers: &[usize], others: &RegisterValues) -> (RegisterValues, Account) {
         self.generator.f.switch_to_block(block);
         let parameters = self.generator.f.block_params(block).to_vec();
         let mut sample = others.clone();
@@ -295,13 +295,13 @@ impl Passing<'_, '_> {
         (sample, Account::of(&parameters[registers.len()..]))
     }
 
-    fn leave_at_the_end(&mut self, sample: &Sample, account: &Account) {
+    fn leave_at_the_end(&mut self, sample: &RegisterValues, account: &Account) {
         let ended = self.generator.f.ins().icmp(IntCC::Equal, account.done, self.clocks);
         self.leave_if(ended, sample, account);
     }
 
     /// Where `condition` is not 0: writes registers and account back and returns the clocks done.
-    fn leave_if(&mut self, condition: Value, sample: &Sample, account: &Account) {
+    fn leave_if(&mut self, condition: Value, sample: &RegisterValues, account: &Account) {
         let stay = self.generator.leaving(condition, sample);
         let words = self.plan.registers.len() + self.plan.inputs.len();
         self.generator.store_state(words + ROOM, account.recorded);

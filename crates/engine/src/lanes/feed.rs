@@ -7,7 +7,7 @@ use std::sync::{Condvar, Mutex, MutexGuard};
 /// Results that may wait for an older one.
 const WINDOW: usize = 1 << 16;
 
-struct State<I, R, S> {
+struct Queue<I, R, S> {
     jobs: I,
     /// No further job will come: they are at their end, or a worker has failed.
     ended: bool,
@@ -22,18 +22,18 @@ struct State<I, R, S> {
 
 /// Where workers get jobs and leave results.
 pub(super) struct Feed<I, R, S> {
-    state: Mutex<State<I, R, S>>,
+    state: Mutex<Queue<I, R, S>>,
     moved: Condvar,
 }
 
 impl<J, R, I: Iterator<Item = J>, S: FnMut(R)> Feed<I, R, S> {
     pub(super) fn new(jobs: I, sink: S) -> Feed<I, R, S> {
-        let state = State { jobs, ended: false, taken: 0, given: 0, waiting: VecDeque::new(), sink };
+        let state = Queue { jobs, ended: false, taken: 0, given: 0, waiting: VecDeque::new(), sink };
         Feed { state: Mutex::new(state), moved: Condvar::new() }
     }
 
     /// The state; none if another worker panicked while it held it.
-    fn lock(&self) -> Option<MutexGuard<'_, State<I, R, S>>> {
+    fn lock(&self) -> Option<MutexGuard<'_, Queue<I, R, S>>> {
         self.state.lock().ok()
     }
 
@@ -76,7 +76,7 @@ impl<J, R, I: Iterator<Item = J>, S: FnMut(R)> Feed<I, R, S> {
     /// Waits until there may be a job for a worker that has none left; false if there will be none.
     pub(super) fn wait(&self) -> bool {
         let Some(state) = self.lock() else { return false };
-        let full = |state: &mut State<I, R, S>| !state.ended && state.waiting.len() >= WINDOW;
+        let full = |state: &mut Queue<I, R, S>| !state.ended && state.waiting.len() >= WINDOW;
         self.moved.wait_while(state, full).is_ok_and(|state| !state.ended)
     }
 

@@ -163,11 +163,11 @@ lane!(u64);
 /// The words of one net in all lanes of a block, aligned so that no vector load crosses a cache line.
 #[derive(Clone)]
 #[repr(align(64))]
-pub(super) struct Row<T>(pub(super) [[T; GROUP]; GROUPS]);
+pub(super) struct LaneRow<T>(pub(super) [[T; GROUP]; GROUPS]);
 
-impl<T: Lane> Row<T> {
-    pub(super) fn filled(word: T) -> Box<Row<T>> {
-        Box::new(Row([[word; GROUP]; GROUPS]))
+impl<T: Lane> LaneRow<T> {
+    pub(super) fn filled(word: T) -> Box<LaneRow<T>> {
+        Box::new(LaneRow([[word; GROUP]; GROUPS]))
     }
 
     pub(super) fn get(&self, lane: usize) -> T {

@@ -13,12 +13,12 @@
 //! What is loaded only while the inputs do not rest is folded away from the code that runs the lanes (`lower`,
 //! `fuse`, `build`); a second code for the whole design loads blocks and reads the last sample (`worker`).
 
-mod block;
 mod build;
 mod code;
 mod feed;
 mod fuse;
 mod lane;
+mod lane_machine;
 mod lower;
 mod watch;
 mod worker;

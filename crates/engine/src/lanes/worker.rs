@@ -3,10 +3,10 @@
 use std::collections::VecDeque;
 
 use super::LaneProgram;
-use super::block::Block;
 use super::code::{Code, RegisterRow, Slot};
 use super::feed::Feed;
 use super::lane::{GROUP, LANES, Lane};
+use super::lane_machine::LaneMachine;
 use super::watch::{Job, LaneEnd, LaneStop, Observe};
 use stepwave_netlist::bits::Width;
 
@@ -34,9 +34,9 @@ enum Verdict {
 pub(super) struct Worker<'p, T> {
     program: &'p LaneProgram,
     /// All lanes, running.
-    lanes: Block<T>,
+    lanes: LaneMachine<T>,
     /// A few lanes, loading or being read.
-    loader: Block<T>,
+    loader: LaneMachine<T>,
     busy: Vec<Busy>,
     /// Samples settled.
     tick: u64,
@@ -50,8 +50,8 @@ impl<'p, T: Lane> Worker<'p, T> {
     pub(super) fn new(program: &'p LaneProgram) -> Worker<'p, T> {
         Worker {
             program,
-            lanes: Block::new(&program.running),
-            loader: Block::new(&program.whole),
+            lanes: LaneMachine::new(&program.running),
+            loader: LaneMachine::new(&program.whole),
             busy: Vec::with_capacity(LANES),
             tick: 0,
             next_due: u64::MAX,
@@ -219,7 +219,7 @@ impl<'p, T: Lane> Worker<'p, T> {
         let mut last = program.whole.outputs[1 + program.watch.traps.len()..].iter();
         let mut accumulators = program.running.accumulators.iter();
         let word =
-            |row: Option<&Slot>, block: &Block<T>, at: usize| row.map_or(T::default(), |&row| block.get(row, at));
+            |row: Option<&Slot>, block: &LaneMachine<T>, at: usize| row.map_or(T::default(), |&row| block.get(row, at));
         let value = |(observe, width): (&Observe, &Width)| match observe {
             Observe::Last(_) => word(last.next(), &self.loader, place).decode(*width),
             Observe::Count(_) | Observe::Sum { .. } | Observe::RootGaps { .. } | Observe::GreatestGap(_) => {
@@ -244,7 +244,7 @@ impl<'p, T: Lane> Worker<'p, T> {
         let (running, whole) = (&self.program.running, &self.program.whole);
         for (place, &lane) in lanes.iter().enumerate() {
             let first = self.busy[lane].loaded == 0;
-            let word = |from: &RegisterRow, block: &Block<T>| {
+            let word = |from: &RegisterRow, block: &LaneMachine<T>| {
                 if first { T::encode(from.width, from.reset) } else { block.get(from.row, lane) }
             };
             for (from, to) in running.registers.iter().zip(&whole.registers) {

@@ -57,6 +57,22 @@ pub(super) struct Layout {
     part_of: HashMap<Net, usize>,
 }
 
+/// How the nets are read, by net.
+struct Uses {
+    of: Vec<usize>,
+    /// A slice or a sign extension reads it, for which it needs a name.
+    is_cut: Vec<bool>,
+    /// A register, a port, or a net with a name.
+    is_root: Vec<bool>,
+}
+
+impl Uses {
+    /// Only one expression reads the net, as a whole.
+    fn are_one(&self, net: Net) -> bool {
+        self.of[net.index()] == 1 && !self.is_root[net.index()] && !self.is_cut[net.index()]
+    }
+}
+
 impl Layout {
     pub(super) fn new(design: &Design, names: &Names) -> Layout {
         let netlist = design.netlist();
@@ -126,6 +142,37 @@ impl Layout {
     }
 
     fn choose_forms(&mut self, netlist: &Netlist, names: &Names, registers: &[Net]) {
+        let uses = self.uses(netlist, names, registers);
+        let mut size = vec![1usize; netlist.cells.len()];
+        for net in netlist.nets() {
+            let index = net.index();
+            let op = netlist.cell(net).op;
+            let is_part = self.wide_of(net).is_some();
+            let mut total = 1;
+            if !is_part {
+                op.visit_inputs(|input| {
+                    total += if self.forms[input.index()] == Form::Inline { size[input.index()] } else { 0 };
+                });
+            }
+            size[index] = total;
+            self.forms[index] = match op {
+                Op::Input | Op::Register { .. } if names.first(net).is_some() => Form::Named,
+                Op::Input | Op::Register { .. } => Form::Unnamed,
+                _ if names.first(net).is_some() => Form::Named,
+                _ if uses.of[index] == 0 && !uses.is_root[index] => Form::Dead,
+                _ if self.known(net).is_some() => Form::Inline,
+                // A part of a name is as short as a name.
+                Op::Slice { of, .. } if netlist.cell(net).width < netlist.width(of) => Form::Inline,
+                Op::Add(..) | Op::Sub(..) | Op::Carry(..) if is_part => Form::Inline,
+                Op::Not(_) if total == 1 && !uses.is_cut[index] => Form::Inline,
+                _ if uses.are_one(net) && total <= LARGEST => Form::Inline,
+                _ => Form::Unnamed,
+            };
+        }
+        self.choose_arms(netlist, registers, &uses);
+    }
+
+    fn uses(&self, netlist: &Netlist, names: &Names, registers: &[Net]) -> Uses {
         let mut uses = vec![0usize; netlist.cells.len()];
         let mut cut = vec![false; netlist.cells.len()];
         let mut root = vec![false; netlist.cells.len()];
@@ -151,32 +198,11 @@ impl Layout {
                 });
             }
         }
-        let mut size = vec![1usize; netlist.cells.len()];
-        for net in netlist.nets() {
-            let index = net.index();
-            let op = netlist.cell(net).op;
-            let is_part = self.wide_of(net).is_some();
-            let mut total = 1;
-            if !is_part {
-                op.visit_inputs(|input| {
-                    total += if self.forms[input.index()] == Form::Inline { size[input.index()] } else { 0 };
-                });
-            }
-            size[index] = total;
-            self.forms[index] = match op {
-                Op::Input | Op::Register { .. } if names.first(net).is_some() => Form::Named,
-                Op::Input | Op::Register { .. } => Form::Unnamed,
-                _ if names.first(net).is_some() => Form::Named,
-                _ if uses[index] == 0 && !root[index] => Form::Dead,
-                _ if self.known(net).is_some() => Form::Inline,
-                // A part of a name is as short as a name.
-                Op::Slice { of, .. } if netlist.cell(net).width < netlist.width(of) => Form::Inline,
-                Op::Add(..) | Op::Sub(..) | Op::Carry(..) if is_part => Form::Inline,
-                Op::Not(_) if total == 1 && !cut[index] => Form::Inline,
-                _ if uses[index] == 1 && !root[index] && !cut[index] && total <= LARGEST => Form::Inline,
-                _ => Form::Unnamed,
-            };
-        }
+        Uses { of: uses, is_cut: cut, is_root: root }
+    }
+
+    /// The chains of multiplexers in front of registers become branches of their `if`s.
+    fn choose_arms(&mut self, netlist: &Netlist, registers: &[Net], uses: &Uses) {
         for &register in registers {
             let mut next = match netlist.cell(register).op {
                 Op::Register { next: Some(next), .. } => next,
@@ -184,8 +210,7 @@ impl Layout {
             };
             // Also where the chain was cut for its size, but not where another reads it.
             while let Op::Mux { select, low, .. } = netlist.cell(next).op {
-                let alone = uses[next.index()] == 1 && !root[next.index()] && !cut[next.index()];
-                if !alone || self.known(select) == Some(1) {
+                if !uses.are_one(next) || self.known(select) == Some(1) {
                     break;
                 }
                 self.forms[next.index()] = Form::Arm;

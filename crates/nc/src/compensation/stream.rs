@@ -57,12 +57,12 @@ enum Tail {
     /// A block is held back until its end is known.
     Held(Held),
     /// The last block is put out, up to the normal of its end.
-    Stopped(Block),
+    Stopped(OffsetBlock),
 }
 
 /// A block with its side.
 #[derive(Debug, Clone, Copy)]
-struct Block {
+struct OffsetBlock {
     source: Move,
     edge: Edge,
     /// 1 left, -1 right.
@@ -72,7 +72,7 @@ struct Block {
 
 #[derive(Debug, Clone, Copy)]
 struct Held {
-    block: Block,
+    block: OffsetBlock,
     start_up: bool,
     /// Where the block's offset path begins.
     enter: Vector,
@@ -130,7 +130,7 @@ impl Compensator {
         match sided(block.side).map_err(alone)? {
             None => self.cancel(block, edge, out),
             Some((side, radius)) => {
-                let next = Block { source: block, edge, side, radius };
+                let next = OffsetBlock { source: block, edge, side, radius };
                 if let Some(arc) = [edge.start(), edge.end()].iter().find_map(|tip| tip.too_small(side, radius)) {
                     return Err(alone(Kind::InsideArc { arc, radius }));
                 }
@@ -170,14 +170,14 @@ impl Compensator {
         if length < radius {
             return Err(Kind::StartTooShort { length, radius });
         }
-        let start = Block { source: block, edge, side, radius };
+        let start = OffsetBlock { source: block, edge, side, radius };
         self.position = block.segment.from;
         self.tail = Tail::Held(Held { block: start, start_up: true, enter: edge.from, before: None });
         Ok(())
     }
 
     /// A block without motion in the plane.
-    fn wait(&mut self, block: Move, before: &Block, out: &mut Vec<ToolMove>) -> Result<(), Kind> {
+    fn wait(&mut self, block: Move, before: &OffsetBlock, out: &mut Vec<ToolMove>) -> Result<(), Kind> {
         if self.waiting.len() == WAITING_LIMIT {
             return Err(Kind::TooManyWithoutMotion);
         }
@@ -202,14 +202,14 @@ impl Compensator {
             return Err(alone(Kind::CancelTooShort { length, radius }));
         }
         self.flush(out)?;
-        let cancel = Block { source: block, edge, side: before.side, radius };
+        let cancel = OffsetBlock { source: block, edge, side: before.side, radius };
         self.put(&cancel, Path { to: edge.to, shape: SegmentShape::Line, cause: Cause::Cancel }, out);
         self.tail = Tail::Off;
         Ok(())
     }
 
     /// A compensated block after another.
-    fn follow(&mut self, next: Block, out: &mut Vec<ToolMove>) -> Result<(), CompensationError> {
+    fn follow(&mut self, next: OffsetBlock, out: &mut Vec<ToolMove>) -> Result<(), CompensationError> {
         let (before, held) = match self.tail {
             Tail::Off => return Ok(()),
             Tail::Held(held) => (held.block, Some(held)),
@@ -239,13 +239,13 @@ impl Compensator {
         Ok(())
     }
 
-    fn joint(&self, before: &Block, held: Option<Held>, next: &Block) -> Result<Joint, Kind> {
+    fn joint(&self, before: &OffsetBlock, held: Option<Held>, next: &OffsetBlock) -> Result<Joint, Kind> {
         let [leaving, entering] = [before.edge.end(), next.edge.start()];
         let enter = entering.foot(next.side, next.radius);
         if held.is_some_and(|held| held.start_up) {
             return Ok(Joint::straight(enter, enter));
         }
-        let Block { side, radius, .. } = *before;
+        let OffsetBlock { side, radius, .. } = *before;
         let same_side = side * next.side > 0.0;
         let straight = [before, next].iter().all(|block| block.edge.bend == Bend::Straight);
         if !same_side && !straight {
@@ -263,7 +263,7 @@ impl Compensator {
     }
 
     /// Puts out the moves without motion in the plane, where the tool is.
-    fn release(&mut self, before: &Block, out: &mut Vec<ToolMove>) {
+    fn release(&mut self, before: &OffsetBlock, out: &mut Vec<ToolMove>) {
         for source in std::mem::take(&mut self.waiting) {
             let [u, v, _] = source.plane.of(self.position);
             let [_, _, third] = source.plane.of(source.segment.to);
@@ -278,7 +278,7 @@ impl Compensator {
     }
 
     /// Puts out what a corner inserts after a block.
-    fn insert(&mut self, before: &Block, joint: &Joint, out: &mut Vec<ToolMove>) {
+    fn insert(&mut self, before: &OffsetBlock, joint: &Joint, out: &mut Vec<ToolMove>) {
         let plane = before.source.plane;
         let [u, v, third] = plane.of(self.position);
         let [x, y] = before.edge.to;
@@ -300,7 +300,7 @@ impl Compensator {
     }
 
     /// Puts out the tool's path along a block.
-    fn put(&mut self, block: &Block, path: Path, out: &mut Vec<ToolMove>) {
+    fn put(&mut self, block: &OffsetBlock, path: Path, out: &mut Vec<ToolMove>) {
         let plane = block.source.plane;
         let [_, _, third] = plane.of(block.source.segment.to);
         let [u, v, _] = plane.of(self.position);
@@ -322,7 +322,7 @@ impl Compensator {
     }
 }
 
-impl Block {
+impl OffsetBlock {
     fn end_foot(&self) -> Vector {
         self.edge.end().foot(self.side, self.radius)
     }
@@ -331,7 +331,7 @@ impl Block {
 impl Held {
     /// The tool's path along the block, to where it is left; `other` is the block to blame if that is not possible.
     fn path(&self, leave: Vector, other: Option<Place>) -> Result<Path, CompensationError> {
-        let Block { source, edge, side, radius } = self.block;
+        let OffsetBlock { source, edge, side, radius } = self.block;
         let line = |cause| Path { to: leave, shape: SegmentShape::Line, cause };
         if self.start_up {
             return Ok(line(Cause::StartUp));

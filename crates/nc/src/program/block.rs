@@ -57,7 +57,7 @@ pub(super) type Slot<'l, T> = Option<(T, Word<'l>)>;
 
 /// A block: of every modal group and every letter at most one word.
 #[derive(Debug, Default)]
-pub(super) struct Block<'l> {
+pub(super) struct BlockWords<'l> {
     pub(super) number: Option<u64>,
     pub(super) feed_mode: Slot<'l, FeedMode>,
     pub(super) tool_change: Slot<'l, ()>,
@@ -99,10 +99,10 @@ fn place(letter: char) -> usize {
     usize::from(u8::try_from(letter).unwrap_or_default().saturating_sub(b'A')).min(25)
 }
 
-impl<'l> Block<'l> {
+impl<'l> BlockWords<'l> {
     /// Sorts the words; `head` where no block was in front, so that an O word may be the number of the program.
-    pub(super) fn read(mut words: Words<'l>, head: bool) -> Result<Block<'l>, Fault> {
-        let mut block = Block::default();
+    pub(super) fn read(mut words: Words<'l>, head: bool) -> Result<BlockWords<'l>, Fault> {
+        let mut block = BlockWords::default();
         let mut first = true;
         while let Some(word) = words.next()? {
             match word.letter {

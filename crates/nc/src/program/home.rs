@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::block::{Block, Distance, Motion};
+use super::block::{BlockWords, Distance, Motion};
 use super::error::{Fault, ProgramErrorKind};
 use super::modal::{AXES, Modal, within};
 use super::words::Word;
@@ -11,7 +11,7 @@ use crate::{Feed, Move, Place, Segment, SegmentShape, Side};
 
 impl Modal {
     /// What a coordinate counts from, in BLU.
-    pub(super) fn origin(&self, block: &Block<'_>, letter: char, at: f64, reading: &Reading) -> f64 {
+    pub(super) fn origin(&self, block: &BlockWords<'_>, letter: char, at: f64, reading: &Reading) -> f64 {
         match (block.machine, self.distance) {
             (Some(_), _) => AXES.iter().position(|axis| *axis == letter).map_or(0.0, |axis| zero(reading)[axis]),
             (None, Distance::Absolute) => 0.0,
@@ -33,7 +33,7 @@ impl Modal {
     /// G28: a rapid move to the place given, and from there along the same axes to the machine's zero.
     pub(super) fn go_home(
         &mut self,
-        block: &Block<'_>,
+        block: &BlockWords<'_>,
         place: Place,
         reading: &Reading,
         events: &mut VecDeque<Event>,

@@ -59,7 +59,7 @@ use std::io::{BufRead, Read};
 
 use crate::{Move, Place};
 
-use block::Block;
+use block::BlockWords;
 use error::Fault;
 use modal::Modal;
 use words::{LINE_LIMIT, Words};
@@ -290,7 +290,7 @@ impl<R: BufRead> Program<R> {
         if words.left()?.is_none() {
             return Ok(());
         }
-        let block = Block::read(words, self.head)?;
+        let block = BlockWords::read(words, self.head)?;
         self.head = false;
         let place = Place { line: self.lines, number: block.number };
         let ends = self.modal.run(&block, place, &self.reading, &mut self.events)?;

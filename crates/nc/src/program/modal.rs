@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::arc;
-use super::block::{Block, Compensation, Distance, FeedMode, Halt, Hand, Motion};
+use super::block::{BlockWords, Compensation, Distance, FeedMode, Halt, Hand, Motion};
 use super::error::{Fault, ProgramErrorKind};
 use super::words::Word;
 use super::{Auxiliary, Event, Integers, PROGRAM_LIMIT, Reading};
@@ -71,7 +71,7 @@ impl Modal {
     /// Runs a block in the order of RS-274, and returns whether the program ends with it.
     pub(super) fn run(
         &mut self,
-        block: &Block<'_>,
+        block: &BlockWords<'_>,
         place: Place,
         reading: &Reading,
         events: &mut VecDeque<Event>,
@@ -123,7 +123,7 @@ impl Modal {
     }
 
     /// The turns that an arc takes, 1 where nothing is said.
-    fn turns(&self, block: &Block<'_>) -> Result<u64, Fault> {
+    fn turns(&self, block: &BlockWords<'_>) -> Result<u64, Fault> {
         match (block.word('P').filter(|_| !block.times()), self.motion) {
             (None, _) => Ok(1),
             (Some(word), Some(Motion::Arc(_))) => {
@@ -148,7 +148,7 @@ impl Modal {
     }
 
     /// Takes the feed mode and the F word, and returns the block's own F number.
-    fn feed(&mut self, block: &Block<'_>) -> Result<Option<f64>, Fault> {
+    fn feed(&mut self, block: &BlockWords<'_>) -> Result<Option<f64>, Fault> {
         if let Some((mode, _)) = block.feed_mode
             && mode != self.feed_mode
         {
@@ -169,7 +169,7 @@ impl Modal {
     }
 
     /// The feed of a block that moves, whose own F number is known.
-    fn feed_of_move(&self, block: &Block<'_>, number: Option<f64>) -> Result<Feed, Fault> {
+    fn feed_of_move(&self, block: &BlockWords<'_>, number: Option<f64>) -> Result<Feed, Fault> {
         let (feed, missing) = match (self.motion, self.feed_mode) {
             (Some(Motion::Rapid), _) => return Ok(Feed::Rapid),
             (_, FeedMode::PerMinute) => (self.feed.map(Feed::PerMinute), ProgramErrorKind::NoFeed),
@@ -218,7 +218,7 @@ impl Modal {
     }
 
     /// The segment of the block, of any length; nothing where it has no word that moves.
-    fn segment(&self, block: &Block<'_>, reading: &Reading) -> Result<Option<Segment>, Fault> {
+    fn segment(&self, block: &BlockWords<'_>, reading: &Reading) -> Result<Option<Segment>, Fault> {
         let Some(first) = block.any("XYZIJKR") else {
             return Ok(None);
         };
@@ -260,7 +260,7 @@ impl Modal {
 
     fn arc(
         &self,
-        block: &Block<'_>,
+        block: &BlockWords<'_>,
         from: Point,
         to: Point,
         direction: Direction,
@@ -320,7 +320,7 @@ fn not_negative(word: Word<'_>) -> Result<f64, Fault> {
 }
 
 /// What a block switches next to the motion, in the order of RS-274.
-fn auxiliaries(block: &Block<'_>, place: Place, events: &mut VecDeque<Event>) -> Result<(), Fault> {
+fn auxiliaries(block: &BlockWords<'_>, place: Place, events: &mut VecDeque<Event>) -> Result<(), Fault> {
     let mut auxiliary = |function| events.push_back(Event::Auxiliary { place, function });
     if let Some(word) = block.word('S') {
         auxiliary(Auxiliary::Speed(not_negative(word)?));

@@ -29,12 +29,12 @@ pub use signal::Signal;
 /// A netlist under construction.
 #[derive(Debug)]
 pub struct Module {
-    state: RefCell<State>,
+    state: RefCell<Draft>,
     on_overflow: OnOverflow,
 }
 
 #[derive(Debug)]
-struct State {
+struct Draft {
     netlist: Netlist,
     diagnostics: Vec<Diagnostic>,
     /// Where each name was given first.
@@ -57,7 +57,7 @@ impl Module {
     #[track_caller]
     #[must_use]
     pub fn with_overflow(name: &str, on_overflow: OnOverflow) -> Module {
-        let state = State {
+        let state = Draft {
             netlist: Netlist::new(name),
             diagnostics: Vec::new(),
             used_names: HashMap::new(),
@@ -81,7 +81,7 @@ impl Module {
         });
         let used_names = nets.chain(scopes).collect();
         let (diagnostics, driven, guesses) = (Vec::new(), HashMap::new(), HashSet::new());
-        let state = State { used_names, netlist, diagnostics, driven, guesses };
+        let state = Draft { used_names, netlist, diagnostics, driven, guesses };
         Module { state: RefCell::new(state), on_overflow: OnOverflow::Trap }
     }
 
@@ -96,7 +96,7 @@ impl Module {
     /// # Errors
     /// All mistakes made while it was described.
     pub fn finish(self) -> Result<Netlist, Diagnostics> {
-        let State { netlist, mut diagnostics, .. } = self.state.into_inner();
+        let Draft { netlist, mut diagnostics, .. } = self.state.into_inner();
         for (net, cell) in netlist.nets().zip(&netlist.cells) {
             if matches!(cell.op, Op::Register { next: None, .. }) {
                 let message = format!("register {} never gets a next value", netlist.describe(net));

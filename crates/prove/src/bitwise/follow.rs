@@ -15,7 +15,7 @@ use stepwave_netlist::passes::constant;
 
 /// The value of an input while the block is loaded.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Word {
+pub enum LoadWord {
     /// These bits.
     Known(u64),
     /// Any bits: each is an unknown.
@@ -135,12 +135,12 @@ impl Sum {
 
 /// What is known of every net in one sample.
 #[derive(Debug)]
-pub struct Sample<'d> {
+pub struct KnownSample<'d> {
     netlist: &'d Netlist,
     values: &'d [Value],
 }
 
-impl Sample<'_> {
+impl KnownSample<'_> {
     /// The bits of a net where the unknown bits are these; `None` where nothing is known.
     #[must_use]
     pub fn value(&self, net: Net, unknowns: &[bool]) -> Option<u64> {
@@ -166,27 +166,27 @@ impl Sample<'_> {
 pub fn follow(
     design: &Design,
     strobes: Strobes,
-    words: &[(Net, Word)],
+    words: &[(Net, LoadWord)],
     ends: &[Net],
     limit: u64,
-    mut seen: impl FnMut(u64, &Sample<'_>),
+    mut seen: impl FnMut(u64, &KnownSample<'_>),
 ) -> Result<Followed, Lost> {
     let netlist = design.netlist();
     let mut values = vec![Value::Any; netlist.cells.len()];
     let mut unknowns = 0;
     for (input, word) in words {
         values[input.index()] = match word {
-            Word::Known(bits) => Value::Known(*bits),
-            Word::Unknown => Value::Bits { first: unknowns },
+            LoadWord::Known(bits) => Value::Known(*bits),
+            LoadWord::Unknown => Value::Bits { first: unknowns },
         };
-        if *word == Word::Unknown {
+        if *word == LoadWord::Unknown {
             unknowns += netlist.width(*input).get() as usize;
         }
     }
     for strobe in [strobes.load, strobes.preset_position] {
         values[strobe.index()] = Value::Known(1);
     }
-    let machine = Machine { netlist, unknowns };
+    let machine = Follower { netlist, unknowns };
     for clock in 0..=limit {
         machine.settle(&mut values);
         for property in &netlist.properties {
@@ -195,7 +195,7 @@ pub fn follow(
             }
         }
         if clock > 0 {
-            seen(clock, &Sample { netlist, values: &values });
+            seen(clock, &KnownSample { netlist, values: &values });
             match values[strobes.done.index()] {
                 Value::Known(0) => {}
                 Value::Known(_) => {
@@ -217,12 +217,12 @@ pub fn follow(
     Err(Lost::Endless { clocks: limit })
 }
 
-struct Machine<'d> {
+struct Follower<'d> {
     netlist: &'d Netlist,
     unknowns: usize,
 }
 
-impl Machine<'_> {
+impl Follower<'_> {
     /// All nets but registers and inputs; creation order is evaluation order.
     fn settle(&self, values: &mut [Value]) {
         for net in self.netlist.nets() {

@@ -6,5 +6,5 @@ mod follow;
 mod recount;
 mod three_valued;
 
-pub use follow::{Followed, Lost, Sample, Sum, Word, follow};
+pub use follow::{Followed, KnownSample, LoadWord, Lost, Sum, follow};
 pub use recount::{AxisNets, recount};

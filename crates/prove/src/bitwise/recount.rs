@@ -8,7 +8,7 @@
 //! after its pulse: from every place that the pulses so far can lead to, it must count one pulse as one, and nothing
 //! may overflow.
 
-use super::follow::{Followed, Lost, Sum, Word};
+use super::follow::{Followed, LoadWord, Lost, Sum};
 use super::three_valued::{Bit, ThreeValued};
 use crate::Strobes;
 use stepwave_netlist::Design;
@@ -59,15 +59,15 @@ struct Axis {
 pub fn recount(
     design: &Design,
     strobes: Strobes,
-    words: &[(Net, Word)],
+    words: &[(Net, LoadWord)],
     axes: &[AxisNets],
     limit: u64,
 ) -> Result<Followed, Lost> {
     let netlist = design.netlist();
-    let unknown = words.iter().filter(|(_, word)| *word == Word::Unknown);
+    let unknown = words.iter().filter(|(_, word)| *word == LoadWord::Unknown);
     let unknowns: usize = unknown.map(|(net, _)| netlist.width(*net).get() as usize).sum();
     let mut block =
-        Block { design, strobes, words, nets: axes, open: vec![false; netlist.properties.len()], seen: None };
+        Recount { design, strobes, words, nets: axes, open: vec![false; netlist.properties.len()], seen: None };
     let mut found = vec![Axis::default(); axes.len()];
     let mut clocks = 0;
     for first in (0..unknowns.max(1)).step_by(AT_ONCE) {
@@ -110,10 +110,10 @@ impl Axis {
     }
 }
 
-struct Block<'b> {
+struct Recount<'b> {
     design: &'b Design,
     strobes: Strobes,
-    words: &'b [(Net, Word)],
+    words: &'b [(Net, LoadWord)],
     nets: &'b [AxisNets],
     /// Claims that are not known to hold, whatever the places of the axes.
     open: Vec<bool>,
@@ -121,7 +121,7 @@ struct Block<'b> {
     seen: Option<ThreeValued<'b>>,
 }
 
-impl<'b> Block<'b> {
+impl<'b> Recount<'b> {
     /// One run that examines the unknown bits from `first` on; returns its clocks.
     fn run(&mut self, first: usize, limit: u64, axes: &mut [Axis]) -> Result<u64, Lost> {
         let netlist = self.design.netlist();
@@ -129,8 +129,8 @@ impl<'b> Block<'b> {
         let mut place = 0;
         for (net, word) in self.words {
             match *word {
-                Word::Known(word) => sample.set(*net, word),
-                Word::Unknown => {
+                LoadWord::Known(word) => sample.set(*net, word),
+                LoadWord::Unknown => {
                     for bit in sample.of_mut(*net) {
                         if let Some(lane) = (first..first + AT_ONCE).position(|examined| examined == place) {
                             let [is_zero, is_one] = [1 << (2 * lane), 2 << (2 * lane)];

@@ -18,7 +18,7 @@ use std::str::FromStr;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-use super::farkas::{Part, Refutation};
+use super::farkas::{Refutation, WeightedRow};
 use super::obligations::Invariants;
 use super::poly::{Poly, Var};
 use stepwave_netlist::formula::Formula;
@@ -50,7 +50,7 @@ fn write_answer(text: &mut String, answer: &Refutation) {
     // Writing to a string cannot fail.
     match answer {
         Refutation::Sum(parts) => {
-            let part = |part: &Part| match part.by {
+            let part = |part: &WeightedRow| match part.by {
                 Some(by) => format!("{}*{}*{by}", part.factor, part.row),
                 None => format!("{}*{}", part.factor, part.row),
             };
@@ -188,7 +188,7 @@ fn read_answer(text: &mut &str, depth: usize) -> Option<Refutation> {
     if let Some(rest) = text.strip_prefix('(') {
         let (parts, rest) = rest.split_once(')')?;
         *text = rest;
-        let parts: Vec<Part> = parts.split_whitespace().map(read_part).collect::<Option<_>>()?;
+        let parts: Vec<WeightedRow> = parts.split_whitespace().map(read_part).collect::<Option<_>>()?;
         return (parts.len() <= MOST).then_some(Refutation::Sum(parts));
     }
     let rest = text.strip_prefix('[').filter(|_| depth < DEEPEST)?;
@@ -205,7 +205,7 @@ fn read_answer(text: &mut &str, depth: usize) -> Option<Refutation> {
     }
 }
 
-fn read_part(text: &str) -> Option<Part> {
+fn read_part(text: &str) -> Option<WeightedRow> {
     let mut words = text.split('*');
     let factor = words.next()?;
     let (above, below) = factor.split_once('/').unwrap_or((factor, "1"));
@@ -218,7 +218,7 @@ fn read_part(text: &str) -> Option<Part> {
     }
     let row = words.next()?.parse().ok()?;
     let by = words.next().map(str::parse).transpose().ok()?;
-    words.next().is_none().then_some(Part { row, by, factor: BigRational::new(above, below) })
+    words.next().is_none().then_some(WeightedRow { row, by, factor: BigRational::new(above, below) })
 }
 
 #[cfg(test)]

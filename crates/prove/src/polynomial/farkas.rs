@@ -14,7 +14,7 @@ use super::poly::{Monomial, Poly};
 
 /// A condition, or the product of two, with its factor in the sum.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub(crate) struct Part {
+pub(crate) struct WeightedRow {
     /// Place of the condition in the list.
     pub(crate) row: usize,
     /// Place of the one that it is multiplied by.
@@ -27,7 +27,7 @@ pub(crate) struct Part {
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) enum Refutation {
     /// This sum is a negative number.
-    Sum(Vec<Part>),
+    Sum(Vec<WeightedRow>),
     /// One of the alternatives of this clause holds, and each contradicts the others.
     Cases {
         /// Place of the clause in the list.
@@ -65,7 +65,7 @@ pub(crate) fn holds(refutation: &Refutation, rows: &mut Vec<Poly>, clauses: &[Ve
     }
 }
 
-fn is_negative(rows: &[Poly], parts: &[Part], effort: &mut usize) -> bool {
+fn is_negative(rows: &[Poly], parts: &[WeightedRow], effort: &mut usize) -> bool {
     let mut sum: BTreeMap<Monomial, BigRational> = BTreeMap::new();
     for part in parts {
         let terms = |row| rows.get(row).map_or(1, |row: &Poly| row.terms().len());
@@ -96,8 +96,8 @@ mod tests {
     use super::super::poly::Var;
     use super::*;
 
-    fn part(row: usize, by: Option<usize>, factor: i64) -> Part {
-        Part { row, by, factor: BigRational::from(BigInt::from(factor)) }
+    fn part(row: usize, by: Option<usize>, factor: i64) -> WeightedRow {
+        WeightedRow { row, by, factor: BigRational::from(BigInt::from(factor)) }
     }
 
     /// x - 1, y - 2, 1 - x*y: each 0 or more.

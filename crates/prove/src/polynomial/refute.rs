@@ -6,7 +6,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use super::farkas::{Part, Refutation, holds, product};
+use super::farkas::{Refutation, WeightedRow, holds, product};
 use super::poly::{Monomial, Poly};
 use super::simplex;
 
@@ -177,7 +177,7 @@ fn sum(rows: &[Poly], candidates: &[Product]) -> Option<Refutation> {
     let parts = support.iter().zip(factors).filter(|(_, factor)| !factor.is_zero());
     let parts = parts.map(|(column, factor)| {
         let ((row, by), _) = columns[*column];
-        Part { row, by, factor }
+        WeightedRow { row, by, factor }
     });
     let found = Refutation::Sum(parts.collect());
     holds(&found, &mut rows.to_vec(), &[], &mut { usize::MAX }).then_some(found)

@@ -104,46 +104,13 @@ impl<'f> System<'f> {
             let (least, greatest) = (bound(&symbol.least)?, bound(&symbol.greatest)?);
             symbols.push(variables.add(symbol.name.clone(), Some(least), Some(greatest)).ok_or_else(too_large)?);
         }
-        let mut words: Vec<(Net, Poly)> = Vec::new();
-        for &input in family.design().inputs() {
-            let name = netlist.name_of(input).map(|named| named.name.clone()).unwrap_or_default();
-            let word = if input == strobes.load || input == strobes.preset_position {
-                Poly::from(1)
-            } else {
-                let no_word = || CaseError::NoWord { case: case.name.clone(), name: name.clone() };
-                let (_, formula) = case.words.iter().find(|(given, _)| *given == name).ok_or_else(no_word)?;
-                poly(formula, case, family, &variables)?
-            };
-            words.push((input, word));
-        }
+        let words = load_words(family, strobes, case, &variables)?;
         let premises: Result<_, CaseError> = case
             .premises
             .iter()
             .map(|clause| clause.any.iter().map(|formula| poly(formula, case, family, &variables)).collect())
             .collect();
-        let (mut registers, mut bitwise) = (Vec::new(), Vec::new());
-        for &register in family.design().registers() {
-            let named = netlist.name_of(register);
-            let name = named.map_or_else(|| format!("%{}", register.index()), |named| named.name.clone());
-            let is_bitwise = case.bitwise.contains(&name);
-            // A name that occurs twice is replaced by its path.
-            let name = match (variables.find(&name), named) {
-                (Some(_), Some(named)) => netlist.path(named),
-                _ => name,
-            };
-            let width = family.width(register);
-            if is_bitwise && !width.grows {
-                let bit = |variables: &mut Variables, bit| {
-                    variables.add(format!("{name}.{bit}"), Some(Poly::from(0)), Some(Poly::from(1)))
-                };
-                let bits: Option<Vec<Var>> = (0..width.fixed).map(|place| bit(&mut variables, place)).collect();
-                bitwise.push((register, bits.ok_or_else(too_large)?));
-                continue;
-            }
-            let (least, greatest) = range(family, register);
-            let var = variables.add(name, Some(least), Some(greatest)).ok_or_else(too_large)?;
-            registers.push((register, var));
-        }
+        let (registers, bitwise) = registers(family, case, &mut variables)?;
         let steps = case.steps.clone().map(|name| variables.add(name, Some(Poly::from(0)), None).ok_or_else(too_large));
         let steps = steps.transpose()?;
         let clauses = |clauses: &[Clause]| -> Result<Vec<(String, Vec<Poly>)>, CaseError> {
@@ -235,6 +202,64 @@ impl<'f> System<'f> {
 
 fn is_signed(family: &Family, register: Net) -> bool {
     family.netlist().name_of(register).is_some_and(|named| named.format.reading() == Reading::Signed)
+}
+
+/// The words on the inputs while the block is loaded.
+fn load_words(
+    family: &Family,
+    strobes: Strobes,
+    case: &Case,
+    variables: &Variables,
+) -> Result<Vec<(Net, Poly)>, CaseError> {
+    let netlist = family.netlist();
+    let mut words: Vec<(Net, Poly)> = Vec::new();
+    for &input in family.design().inputs() {
+        let name = netlist.name_of(input).map(|named| named.name.clone()).unwrap_or_default();
+        let word = if input == strobes.load || input == strobes.preset_position {
+            Poly::from(1)
+        } else {
+            let no_word = || CaseError::NoWord { case: case.name.clone(), name: name.clone() };
+            let (_, formula) = case.words.iter().find(|(given, _)| *given == name).ok_or_else(no_word)?;
+            poly(formula, case, family, variables)?
+        };
+        words.push((input, word));
+    }
+    Ok(words)
+}
+
+/// Registers with the variables of what they hold, and those that are held bit by bit with the variables of their bits.
+#[expect(clippy::type_complexity, reason = "two lists of the same registers")]
+fn registers(
+    family: &Family,
+    case: &Case,
+    variables: &mut Variables,
+) -> Result<(Vec<(Net, Var)>, Vec<(Net, Vec<Var>)>), CaseError> {
+    let netlist = family.netlist();
+    let too_large = || CaseError::TooLarge { case: case.name.clone() };
+    let (mut registers, mut bitwise) = (Vec::new(), Vec::new());
+    for &register in family.design().registers() {
+        let named = netlist.name_of(register);
+        let name = named.map_or_else(|| format!("%{}", register.index()), |named| named.name.clone());
+        let is_bitwise = case.bitwise.contains(&name);
+        // A name that occurs twice is replaced by its path.
+        let name = match (variables.find(&name), named) {
+            (Some(_), Some(named)) => netlist.path(named),
+            _ => name,
+        };
+        let width = family.width(register);
+        if is_bitwise && !width.grows {
+            let bit = |variables: &mut Variables, bit| {
+                variables.add(format!("{name}.{bit}"), Some(Poly::from(0)), Some(Poly::from(1)))
+            };
+            let bits: Option<Vec<Var>> = (0..width.fixed).map(|place| bit(variables, place)).collect();
+            bitwise.push((register, bits.ok_or_else(too_large)?));
+            continue;
+        }
+        let (least, greatest) = range(family, register);
+        let var = variables.add(name, Some(least), Some(greatest)).ok_or_else(too_large)?;
+        registers.push((register, var));
+    }
+    Ok((registers, bitwise))
 }
 
 /// Least and greatest number in a register.

@@ -1,7 +1,7 @@
 //! A comparison in words.
 
 use super::{Comparison, Context, Difference, Divergence, Lengths, Mismatch, Moment};
-use crate::read::{Kind, Signal};
+use crate::read::{Signal, ValueKind};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for Comparison<'_> {
@@ -87,10 +87,10 @@ impl Display for Mismatch<'_> {
 
 fn type_of(signal: &Signal) -> String {
     match signal.kind {
-        Kind::Unsigned | Kind::Signed => counted(signal.width as usize, "bit"),
-        Kind::Real => "real".into(),
-        Kind::Text => "string".into(),
-        Kind::Event => "event".into(),
+        ValueKind::Unsigned | ValueKind::Signed => counted(signal.width as usize, "bit"),
+        ValueKind::Real => "real".into(),
+        ValueKind::Text => "string".into(),
+        ValueKind::Event => "event".into(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! One variable of the merged file, followed through time.
 
 use crate::diverge::{Frame, Frames, Walk};
-use crate::read::{Kind, Signal, Value, extension};
+use crate::read::{Signal, Value, ValueKind, extension};
 use std::io::{self, Write};
 use vcd::IdCode;
 
@@ -19,10 +19,10 @@ pub(super) enum Source<'w> {
 }
 
 impl Source<'_> {
-    pub(super) fn kind(self) -> Kind {
+    pub(super) fn kind(self) -> ValueKind {
         match self {
             Source::Clock(signal) | Source::A(signal) | Source::B(signal) => signal.kind,
-            Source::Xor(..) => Kind::Unsigned,
+            Source::Xor(..) => ValueKind::Unsigned,
         }
     }
 
@@ -47,7 +47,7 @@ impl Source<'_> {
 pub(super) struct Track<'f, 'w> {
     /// The id code and the line break after it.
     id: Vec<u8>,
-    kind: Kind,
+    kind: ValueKind,
     width: u32,
     clock: bool,
     main: Walk<'f, 'w>,
@@ -89,7 +89,7 @@ impl<'f, 'w> Track<'f, 'w> {
         self.line.clear();
         self.format(value, other)?;
         // An event is the same line each time that it happens.
-        if self.line == self.written && self.kind != Kind::Event {
+        if self.line == self.written && self.kind != ValueKind::Event {
             return Ok(());
         }
         out(&self.line)?;
@@ -100,7 +100,7 @@ impl<'f, 'w> Track<'f, 'w> {
     fn format(&mut self, value: Value<'_>, other: Option<Value<'_>>) -> io::Result<()> {
         let Self { id, width, line, .. } = self;
         match value {
-            Value::Unset if !matches!(self.kind, Kind::Unsigned | Kind::Signed) => Ok(()),
+            Value::Unset if !matches!(self.kind, ValueKind::Unsigned | ValueKind::Signed) => Ok(()),
             Value::Unset | Value::Bits(_) => {
                 let width = *width;
                 if width > 1 {

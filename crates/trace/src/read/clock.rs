@@ -1,6 +1,6 @@
 //! The clock of a wave and the cycles it cuts time into.
 
-use super::{Kind, Signal, Value, Wave};
+use super::{Signal, Value, ValueKind, Wave};
 use std::cmp::Reverse;
 use std::collections::HashSet;
 
@@ -138,7 +138,7 @@ fn rising(wave: &Wave, signal: &Signal) -> Vec<u32> {
 }
 
 fn is_bit(signal: &Signal) -> bool {
-    signal.width == 1 && matches!(signal.kind, Kind::Unsigned | Kind::Signed)
+    signal.width == 1 && matches!(signal.kind, ValueKind::Unsigned | ValueKind::Signed)
 }
 
 fn shallowest(wave: &Wave, fits: impl Fn(&Signal) -> bool) -> Option<usize> {

@@ -2,7 +2,7 @@
 
 use super::names::{Names, Var};
 use super::store::{Changes, Misfit};
-use super::{Content, Kind, Timescale, WaveError, blocks, limits};
+use super::{Content, Timescale, ValueKind, WaveError, blocks, limits};
 use crate::guard::guarded;
 use fst_reader::{
     FstFilter, FstHierarchyEntry, FstReader, FstSignalHandle, FstSignalValue, FstVarType, FstVhdlDataType,
@@ -104,23 +104,23 @@ impl Declarations {
 
     fn var(&mut self, tpe: &FstVarType, name: &str, width: u32, handle: &FstSignalHandle) -> Result<(), String> {
         let mut kind = match tpe {
-            FstVarType::GenericString => Kind::Text,
-            FstVarType::Event => Kind::Event,
-            tpe if tpe.is_real() => Kind::Real,
+            FstVarType::GenericString => ValueKind::Text,
+            FstVarType::Event => ValueKind::Event,
+            tpe if tpe.is_real() => ValueKind::Real,
             FstVarType::Integer | FstVarType::Int | FstVarType::ShortInt | FstVarType::LongInt | FstVarType::Byte => {
-                Kind::Signed
+                ValueKind::Signed
             }
-            _ => Kind::Unsigned,
+            _ => ValueKind::Unsigned,
         };
-        let bits = matches!(kind, Kind::Unsigned | Kind::Signed);
+        let bits = matches!(kind, ValueKind::Unsigned | ValueKind::Signed);
         if std::mem::take(&mut self.signed) && bits {
-            kind = Kind::Signed;
+            kind = ValueKind::Signed;
         }
         let path = self.names.quoted(name);
         if bits && width > limits::MAX_WIDTH {
             return Err(format!("`{path}` is declared {width} bits wide; at most {} can be read", limits::MAX_WIDTH));
         }
-        let new = Changes::new(if bits { Kind::Unsigned } else { kind }, width);
+        let new = Changes::new(if bits { ValueKind::Unsigned } else { kind }, width);
         let place = *self.places.entry(handle.get_index()).or_insert(self.stored.len());
         match self.stored.get(place) {
             Some(old) if old.kind() != new.kind() => {
@@ -169,8 +169,8 @@ impl Values<'_> {
         let (kind, width) = changes.kind();
         let result = match value {
             // A constant may be a real.
-            FstSignalValue::Real(_) if kind == Kind::Unsigned && width == 64 && changes.times().is_empty() => {
-                changes.becomes(Kind::Real);
+            FstSignalValue::Real(_) if kind == ValueKind::Unsigned && width == 64 && changes.times().is_empty() => {
+                changes.becomes(ValueKind::Real);
                 put(changes, now, value)
             }
             _ => put(changes, now, value),
@@ -186,9 +186,9 @@ impl Values<'_> {
 fn put(changes: &mut Changes, now: u32, value: &FstSignalValue<'_>) -> Result<(), Misfit> {
     match (value, changes.kind()) {
         (FstSignalValue::Real(real), _) => changes.real(now, *real),
-        (FstSignalValue::String(_), (Kind::Event, _)) => changes.event(now),
+        (FstSignalValue::String(_), (ValueKind::Event, _)) => changes.event(now),
         // Strings are in ISO 8859-1.
-        (FstSignalValue::String(text), (Kind::Text, _)) => {
+        (FstSignalValue::String(text), (ValueKind::Text, _)) => {
             changes.text(now, &text.iter().map(|byte| char::from(*byte)).collect::<String>())
         }
         (FstSignalValue::String(digits), (_, width)) if digits.len() == width as usize => changes.bits(now, digits),

@@ -3,7 +3,7 @@
 use super::limits::{self, MAX_DEPTH, MAX_PATH};
 use super::store::Changes;
 use super::value::Value;
-use super::{Kind, Signal};
+use super::{Signal, ValueKind};
 use std::collections::{HashMap, HashSet, VecDeque};
 
 /// The variables declared so far, and the scope that is open.
@@ -29,7 +29,7 @@ struct Declared {
 /// What a declaration says of its variable.
 pub(super) struct Var<'a> {
     pub(super) name: &'a str,
-    pub(super) kind: Kind,
+    pub(super) kind: ValueKind,
     pub(super) width: u32,
     /// Its place among the stored changes.
     pub(super) stored: usize,
@@ -80,7 +80,7 @@ impl Names {
 
     /// A variable of the scope that is open.
     pub(super) fn var(&mut self, var: &Var<'_>) -> Result<(), String> {
-        let (name, index) = split(var.name, var.width, matches!(var.kind, Kind::Unsigned | Kind::Signed))?;
+        let (name, index) = split(var.name, var.width, matches!(var.kind, ValueKind::Unsigned | ValueKind::Signed))?;
         self.room(name.len())?;
         let path = format!("{}{name}", self.prefix);
         self.bytes += path.len() as u64 + limits::SIGNAL;
@@ -91,7 +91,7 @@ impl Names {
                 "the signals and their paths take more than {limit}, the limit for a file of its size"
             ));
         }
-        let signed = var.kind == Kind::Signed;
+        let signed = var.kind == ValueKind::Signed;
         self.vars.push(Declared { path, index, place: self.place, signed, stored: var.stored });
         Ok(())
     }
@@ -114,8 +114,8 @@ impl Names {
                 place = stored.len();
                 stored.push(whole);
             }
-            let (kind, width) = stored.get(place).map_or((Kind::Event, 0), Changes::kind);
-            let kind = if kind == Kind::Unsigned && var.signed { Kind::Signed } else { kind };
+            let (kind, width) = stored.get(place).map_or((ValueKind::Event, 0), Changes::kind);
+            let kind = if kind == ValueKind::Unsigned && var.signed { ValueKind::Signed } else { kind };
             let path = unique.path(var.path, Some(parts.range).filter(|_| var.index.is_some()));
             signals.push(Signal { path, width, kind, stored: place });
         }
@@ -136,7 +136,8 @@ impl Parts {
 
     /// Whether the variable continues the vector that began with `first`, as some simulators declare vectors.
     fn takes(&self, first: &Declared, next: &Declared, stored: &[Changes]) -> bool {
-        let bits = |var: &Declared| stored.get(var.stored).is_some_and(|changes| changes.kind().0 == Kind::Unsigned);
+        let bits =
+            |var: &Declared| stored.get(var.stored).is_some_and(|changes| changes.kind().0 == ValueKind::Unsigned);
         let Some((msb, lsb)) = next.index.filter(|_| first.index.is_some()) else { return false };
         let adjacent = lsb == self.range.0.saturating_add(1) || self.range.1 == msb.saturating_add(1);
         let falling = msb >= lsb && self.range.0 >= self.range.1;
@@ -167,7 +168,7 @@ impl Parts {
         *room = room.checked_sub(cost).ok_or_else(|| {
             format!("`{path}` is declared bit by bit, {width} bits, and together its changes take too much memory")
         })?;
-        let mut whole = Changes::new(Kind::Unsigned, u32::try_from(width).unwrap_or(u32::MAX));
+        let mut whole = Changes::new(ValueKind::Unsigned, u32::try_from(width).unwrap_or(u32::MAX));
         let mut digits = vec![b'x'; width];
         for (number, (time, first, part, change)) in at.iter().enumerate() {
             if let Value::Bits(bits) = part.value(*change, false) {

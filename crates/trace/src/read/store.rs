@@ -1,7 +1,7 @@
 //! The changes of one signal in memory. Their size follows the size of what was written, not the declared width: a
 //! vector up to [`PACKED`] bits wide takes its bytes, a wider one the digits that were written.
 
-use super::Kind;
+use super::ValueKind;
 use super::value::{Content, Value, Vector};
 
 /// The widest vector whose values are kept as numbers, in bits.
@@ -69,11 +69,11 @@ pub(super) enum Misfit {
 
 impl Changes {
     /// None yet; of a vector with this width, or of another kind.
-    pub(super) fn new(kind: Kind, width: u32) -> Self {
+    pub(super) fn new(kind: ValueKind, width: u32) -> Self {
         let values = match kind {
-            Kind::Event => Values::Events,
-            Kind::Real => Values::Reals(Vec::new()),
-            Kind::Text => Values::Texts(Written::default()),
+            ValueKind::Event => Values::Events,
+            ValueKind::Real => Values::Reals(Vec::new()),
+            ValueKind::Text => Values::Texts(Written::default()),
             _ if width <= PACKED => {
                 Values::Packed { width, numbers: Vec::new(), odd: Vec::new(), digits: Written::default() }
             }
@@ -83,17 +83,17 @@ impl Changes {
     }
 
     /// The kind, a vector as unsigned, and the width of a vector.
-    pub(super) fn kind(&self) -> (Kind, u32) {
+    pub(super) fn kind(&self) -> (ValueKind, u32) {
         match self.values {
-            Values::Events => (Kind::Event, 0),
-            Values::Reals(_) => (Kind::Real, 64),
-            Values::Texts(_) => (Kind::Text, 0),
-            Values::Packed { width, .. } | Values::Wide { width, .. } => (Kind::Unsigned, width),
+            Values::Events => (ValueKind::Event, 0),
+            Values::Reals(_) => (ValueKind::Real, 64),
+            Values::Texts(_) => (ValueKind::Text, 0),
+            Values::Packed { width, .. } | Values::Wide { width, .. } => (ValueKind::Unsigned, width),
         }
     }
 
     /// The kind is another one after all; nothing may be stored yet.
-    pub(super) fn becomes(&mut self, kind: Kind) {
+    pub(super) fn becomes(&mut self, kind: ValueKind) {
         debug_assert!(self.times.is_empty());
         *self = Self::new(kind, self.kind().1);
     }
@@ -166,7 +166,7 @@ impl Changes {
 
     /// The digits of a vector, the most significant first; equal to the last ones they are not a change.
     pub(super) fn bits(&mut self, time: u32, written: &[u8]) -> Result<(), Misfit> {
-        let (Kind::Unsigned, width) = self.kind() else { return Err(Misfit::Kind) };
+        let (ValueKind::Unsigned, width) = self.kind() else { return Err(Misfit::Kind) };
         let mut lower = Vec::new();
         let digits = shortest(written, width, &mut lower)?;
         let last = self.times.len().checked_sub(1).map(|last| self.value(last, false));
@@ -243,10 +243,10 @@ fn shortest<'d>(written: &'d [u8], width: u32, lower: &'d mut Vec<u8>) -> Result
 
 #[cfg(test)]
 mod tests {
-    use super::{Changes, Kind, Misfit};
+    use super::{Changes, Misfit, ValueKind};
 
     fn read(width: u32, written: &str) -> Result<String, Misfit> {
-        let mut changes = Changes::new(Kind::Unsigned, width);
+        let mut changes = Changes::new(ValueKind::Unsigned, width);
         changes.bits(0, written.as_bytes())?;
         Ok(changes.value(0, false).cell())
     }
@@ -287,7 +287,7 @@ mod tests {
         let ones = "1".repeat(128);
         assert_eq!(read(128, &ones).as_deref(), Ok(u128::MAX.to_string().as_str()));
         assert_eq!(read(130, &ones).as_deref(), Ok(format!("00{ones}").as_str()));
-        let mut changes = Changes::new(Kind::Unsigned, 3);
+        let mut changes = Changes::new(ValueKind::Unsigned, 3);
         for (time, digits) in (0..).zip(["1", "001", "x", "XXX", "11", "0z1", "0"]) {
             changes.bits(time, digits.as_bytes()).expect("a value");
         }

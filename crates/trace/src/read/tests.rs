@@ -1,7 +1,7 @@
 mod foreign;
 mod inflated;
 
-use super::{ClockError, Kind, Timescale, Wave, WaveError};
+use super::{ClockError, Timescale, ValueKind, Wave, WaveError};
 use std::fmt::Write;
 
 /// A counter that counts clocks, as a simulator would dump it.
@@ -139,8 +139,8 @@ fn values_read_by_the_kind_of_their_variable() {
     let shown: Vec<String> = (0..8).map(|i| wave.value_at_time(i, 4).expect("a signal").to_string()).collect();
     let wide = format!("{}1", "0".repeat(129));
     assert_eq!(shown, ["0110 (6)", "1110 (-2)", "0.5", "\"GO ON\"", "event no. 2", "00x", &wide, "no value yet"]);
-    let kinds: Vec<Kind> = wave.signals().iter().take(5).map(|signal| signal.kind).collect();
-    assert_eq!(kinds, [Kind::Unsigned, Kind::Signed, Kind::Real, Kind::Text, Kind::Event]);
+    let kinds: Vec<ValueKind> = wave.signals().iter().take(5).map(|signal| signal.kind).collect();
+    assert_eq!(kinds, [ValueKind::Unsigned, ValueKind::Signed, ValueKind::Real, ValueKind::Text, ValueKind::Event]);
     assert_eq!(wave.signals()[0].path, "m.u");
     assert_eq!(wave.timescale(), Some(Timescale { factor: 1, exponent: -9 }));
 }

@@ -5,7 +5,7 @@ mod ids;
 
 use super::names::Names;
 use super::store::{Changes, Misfit};
-use super::{Content, Kind, Timescale, WaveError, limits};
+use super::{Content, Timescale, ValueKind, WaveError, limits};
 use ids::Ids;
 use std::io::{BufRead, Read};
 
@@ -14,7 +14,7 @@ pub(super) fn read(input: &mut impl BufRead, name: &str, length: u64) -> Result<
     let mut vcd = Vcd {
         name,
         line: 0,
-        state: State::Header,
+        state: ParserState::Header,
         command: Command::default(),
         ids: Ids::default(),
         names: Names::new(length),
@@ -46,7 +46,7 @@ pub(super) fn read(input: &mut impl BufRead, name: &str, length: u64) -> Result<
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum State {
+enum ParserState {
     Header,
     /// In a header command.
     Command,
@@ -68,7 +68,7 @@ struct Command {
 #[derive(Clone, Copy)]
 struct Declared {
     line: u64,
-    kind: Kind,
+    kind: ValueKind,
     width: u32,
     /// Its type does not say what its values are: they do.
     open: bool,
@@ -77,7 +77,7 @@ struct Declared {
 struct Vcd<'a> {
     name: &'a str,
     line: u64,
-    state: State,
+    state: ParserState,
     command: Command,
     ids: Ids,
     names: Names,
@@ -98,11 +98,11 @@ impl Vcd<'_> {
 
     fn word(&mut self, word: &[u8]) -> Result<(), WaveError> {
         match (self.state, word) {
-            (State::Header | State::Command, _) => self.header(word)?,
-            (State::Comment, b"$end") => self.state = State::Body,
-            (State::Comment, _) => {}
-            (State::Id, id) => {
-                self.state = State::Body;
+            (ParserState::Header | ParserState::Command, _) => self.header(word)?,
+            (ParserState::Comment, b"$end") => self.state = ParserState::Body,
+            (ParserState::Comment, _) => {}
+            (ParserState::Id, id) => {
+                self.state = ParserState::Body;
                 let value = std::mem::take(&mut self.value);
                 self.change(&value, id)?;
                 self.value = value;
@@ -111,7 +111,7 @@ impl Vcd<'_> {
             (_, [b'b' | b'B' | b'r' | b'R' | b's' | b'S', ..]) => {
                 self.value.clear();
                 self.value.extend_from_slice(word);
-                self.state = State::Id;
+                self.state = ParserState::Id;
             }
             (_, [b'$', ..]) => self.keyword(word)?,
             (_, [state, id @ ..]) if is_state(*state) => self.change(&word[..1], id)?,
@@ -124,7 +124,7 @@ impl Vcd<'_> {
     /// A command among the changes.
     fn keyword(&mut self, word: &[u8]) -> Result<(), WaveError> {
         match word {
-            b"$comment" => self.state = State::Comment,
+            b"$comment" => self.state = ParserState::Comment,
             b"$dumpvars" | b"$dumpall" | b"$dumpon" | b"$dumpoff" | b"$end" => {}
             b"$vcdclose" => return Err(WaveError::Extended { name: self.name.into(), line: self.line }),
             _ if word.starts_with(b"$dumpports") => {
@@ -169,15 +169,15 @@ impl Vcd<'_> {
         let first = value.first().copied().unwrap_or_default().to_ascii_lowercase();
         if declared.open && changes.times().is_empty() {
             match first {
-                b's' => changes.becomes(Kind::Text),
-                b'r' => changes.becomes(Kind::Real),
+                b's' => changes.becomes(ValueKind::Text),
+                b'r' => changes.becomes(ValueKind::Real),
                 _ => {}
             }
         }
         let stored = match (first, changes.kind().0) {
-            (_, Kind::Event) => changes.event(now),
+            (_, ValueKind::Event) => changes.event(now),
             (b's', _) => changes.text(now, &text(&value[1..])),
-            (b'r', Kind::Real) => match std::str::from_utf8(&value[1..]).ok().and_then(|real| real.parse().ok()) {
+            (b'r', ValueKind::Real) => match std::str::from_utf8(&value[1..]).ok().and_then(|real| real.parse().ok()) {
                 Some(real) => changes.real(now, real),
                 None => Err(Misfit::Empty),
             },
@@ -189,17 +189,17 @@ impl Vcd<'_> {
     }
 
     fn misfit(&self, value: &[u8], place: usize, misfit: Misfit) -> WaveError {
-        let (kind, width) = self.stored.get(place).map_or((Kind::Event, 0), Changes::kind);
+        let (kind, width) = self.stored.get(place).map_or((ValueKind::Event, 0), Changes::kind);
         let what = match kind {
-            Kind::Real => "a real".to_owned(),
-            Kind::Text => "a string".to_owned(),
-            Kind::Event => "an event".to_owned(),
+            ValueKind::Real => "a real".to_owned(),
+            ValueKind::Text => "a string".to_owned(),
+            ValueKind::Event => "an event".to_owned(),
             _ if width == 1 => "1 bit".to_owned(),
             _ => format!("{width} bits"),
         };
         let why = match misfit {
             Misfit::Digit(digit) => format!("`{}` is not a state of a bit", char::from(digit).escape_default()),
-            Misfit::Empty if kind == Kind::Real => "it is not a number".to_owned(),
+            Misfit::Empty if kind == ValueKind::Real => "it is not a number".to_owned(),
             Misfit::Empty => "it has no digit".to_owned(),
             Misfit::TooLong => "it has more digits".to_owned(),
             Misfit::NotExtended(digit) => {
@@ -213,9 +213,9 @@ impl Vcd<'_> {
 
     fn finish(self) -> Result<Content, WaveError> {
         let what = match self.state {
-            State::Header | State::Command => "the header",
-            State::Id => "a value",
-            State::Body | State::Comment => {
+            ParserState::Header | ParserState::Command => "the header",
+            ParserState::Id => "a value",
+            ParserState::Body | ParserState::Comment => {
                 let Self { name, names, mut stored, times, timescale, .. } = self;
                 let signals = names.signals(&mut stored).map_err(|reason| WaveError::Refused {
                     name: name.into(),

@@ -11,10 +11,10 @@ const SMALL: usize = 1 << 20;
 
 /// Writes to `W` in a thread, in order, byte by byte the same. An error of the thread comes out of the next call.
 pub struct Background<W: Write + Send + 'static> {
-    state: State<W>,
+    state: Destination<W>,
 }
 
-enum State<W> {
+enum Destination<W> {
     /// The first bytes are written directly: short outputs start no thread.
     Direct {
         out: W,
@@ -36,7 +36,7 @@ impl<W: Write + Send + 'static> Background<W> {
     /// Writes to `out`; a thread starts as soon as the output is large, and only where there is a second core.
     #[must_use]
     pub fn new(out: W) -> Background<W> {
-        Background { state: State::Direct { out, written: 0 } }
+        Background { state: Destination::Direct { out, written: 0 } }
     }
 
     /// Waits until everything is written, and gives the output back.
@@ -44,42 +44,42 @@ impl<W: Write + Send + 'static> Background<W> {
     /// # Errors
     /// The output cannot be written.
     pub fn finish(mut self) -> io::Result<W> {
-        match std::mem::replace(&mut self.state, State::Closed) {
-            State::Direct { mut out, .. } => out.flush().map(|()| out),
-            State::Thread(worker) => worker.join(),
-            State::Closed => Err(closed()),
+        match std::mem::replace(&mut self.state, Destination::Closed) {
+            Destination::Direct { mut out, .. } => out.flush().map(|()| out),
+            Destination::Thread(worker) => worker.join(),
+            Destination::Closed => Err(closed()),
         }
     }
 
     fn part(&mut self, part: &[u8]) -> io::Result<()> {
         match &mut self.state {
-            State::Direct { out, written } => {
+            Destination::Direct { out, written } => {
                 out.write_all(part)?;
                 *written += part.len();
                 if *written < SMALL {
                     return Ok(());
                 }
-                let State::Direct { out, .. } = std::mem::replace(&mut self.state, State::Closed) else {
+                let Destination::Direct { out, .. } = std::mem::replace(&mut self.state, Destination::Closed) else {
                     return Err(closed());
                 };
                 self.state = if thread::available_parallelism().is_ok_and(|cores| cores.get() > 1) {
-                    State::Thread(Worker::start(out)?)
+                    Destination::Thread(Worker::start(out)?)
                 } else {
-                    State::Direct { out, written: 0 }
+                    Destination::Direct { out, written: 0 }
                 };
                 Ok(())
             }
-            State::Thread(worker) => {
+            Destination::Thread(worker) => {
                 if worker.send(part) {
                     return Ok(());
                 }
                 // The thread has ended, which it does only with an error.
-                match std::mem::replace(&mut self.state, State::Closed) {
-                    State::Thread(worker) => Err(worker.join().err().unwrap_or_else(closed)),
+                match std::mem::replace(&mut self.state, Destination::Closed) {
+                    Destination::Thread(worker) => Err(worker.join().err().unwrap_or_else(closed)),
                     _ => Err(closed()),
                 }
             }
-            State::Closed => Err(closed()),
+            Destination::Closed => Err(closed()),
         }
     }
 }
@@ -129,8 +129,8 @@ impl<W: Write + Send + 'static> Write for Background<W> {
     /// What was handed over is written in order; [`Background::finish`] waits for it.
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.state {
-            State::Direct { out, .. } => out.flush(),
-            State::Thread(_) | State::Closed => Ok(()),
+            Destination::Direct { out, .. } => out.flush(),
+            Destination::Thread(_) | Destination::Closed => Ok(()),
         }
     }
 }
@@ -138,7 +138,7 @@ impl<W: Write + Send + 'static> Write for Background<W> {
 /// Waits, so that nothing writes any more when the output's owner removes the file.
 impl<W: Write + Send + 'static> Drop for Background<W> {
     fn drop(&mut self) {
-        if let State::Thread(worker) = std::mem::replace(&mut self.state, State::Closed) {
+        if let Destination::Thread(worker) = std::mem::replace(&mut self.state, Destination::Closed) {
             let _ = worker.join();
         }
     }

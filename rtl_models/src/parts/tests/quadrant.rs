@@ -2,7 +2,7 @@
 
 use stepwave_netlist::cells::Format;
 
-use super::super::{Kind, next_quadrant, quadrant_register, x_grows};
+use super::super::{ArcKind, next_quadrant, quadrant_register, x_grows};
 use super::bench::{Bench, on_every_engine};
 
 /// Point-by-point comparison: the move where F >= 0, towards the centre, and where F < 0, away from it.
@@ -32,7 +32,7 @@ fn for_every_kind(check: impl Fn(&Bench, &str)) {
     on_every_engine(
         |m| {
             let (quadrant, counter_clockwise) = (m.input("quadrant", 2), m.input("ccw", 1));
-            let _ = Kind::decode(m, quadrant, counter_clockwise);
+            let _ = ArcKind::decode(m, quadrant, counter_clockwise);
             m.name("next", next_quadrant(m, quadrant, counter_clockwise));
             m.name("grows", x_grows(quadrant, counter_clockwise));
         },

@@ -2,7 +2,7 @@
 
 use super::super::blocks::Format;
 use super::super::decode;
-use super::{Kind, Timescale, Wave, error, file, wave};
+use super::{Timescale, ValueKind, Wave, error, file, wave};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
@@ -88,8 +88,8 @@ fn enumerations_of_myhdl_are_texts_and_parameters_are_what_their_values_are() {
     assert_eq!(shown(&wave, "m.state", 1), "\"RUN\"");
     assert_eq!((shown(&wave, "m.r", 0), shown(&wave, "m.P", 0)), ("0.5".into(), "2.5".into()));
     assert_eq!(shown(&wave, "m.N", 0), "00000101 (5)");
-    let kinds: Vec<Kind> = wave.signals().iter().map(|signal| signal.kind).collect();
-    assert_eq!(kinds, [Kind::Text, Kind::Real, Kind::Real, Kind::Unsigned]);
+    let kinds: Vec<ValueKind> = wave.signals().iter().map(|signal| signal.kind).collect();
+    assert_eq!(kinds, [ValueKind::Text, ValueKind::Real, ValueKind::Real, ValueKind::Unsigned]);
 }
 
 #[test]

@@ -3,24 +3,24 @@
 use super::super::limits::MAX_WIDTH;
 use super::super::names::Var;
 use super::super::store::Changes;
-use super::super::{Kind, WaveError, timescale};
-use super::{Command, Declared, State, Vcd, quoted};
+use super::super::{ValueKind, WaveError, timescale};
+use super::{Command, Declared, ParserState, Vcd, quoted};
 
 impl Vcd<'_> {
     /// A word of the header.
     pub(super) fn header(&mut self, word: &[u8]) -> Result<(), WaveError> {
-        if self.state == State::Header {
+        if self.state == ParserState::Header {
             let Some(keyword) = word.strip_prefix(b"$") else {
                 let word = quoted(word);
                 return Err(self.refused(format!("`{word}` comes before $enddefinitions, which ends the header")));
             };
             self.command = Command { keyword: quoted(keyword), line: self.line, words: Vec::new() };
-            self.state = State::Command;
+            self.state = ParserState::Command;
             return Ok(());
         }
         // The last word and $end are sometimes written as one.
         if let Some(last) = word.strip_suffix(b"$end") {
-            self.state = State::Header;
+            self.state = ParserState::Header;
             self.push(last)?;
             return self.command();
         }
@@ -47,7 +47,7 @@ impl Vcd<'_> {
         match (keyword.as_str(), words.as_slice()) {
             ("comment" | "date" | "version" | "attrend", _) => Ok(()),
             ("enddefinitions", _) => {
-                self.state = State::Body;
+                self.state = ParserState::Body;
                 Ok(())
             }
             ("scope", [_, name @ ..]) => self.names.scope(&name.join(" ")).map_err(|reason| self.refused(reason)),
@@ -99,31 +99,31 @@ impl Vcd<'_> {
         };
         let mut open = false;
         let (mut kind, width) = match kind {
-            "integer" | "int" | "shortint" | "longint" | "byte" => (Kind::Signed, width),
+            "integer" | "int" | "shortint" | "longint" | "byte" => (ValueKind::Signed, width),
             "wire" | "reg" | "logic" | "bit" | "enum" | "time" | "port" | "sparray" | "supply0" | "supply1" | "tri"
-            | "triand" | "trior" | "trireg" | "tri0" | "tri1" | "wand" | "wor" => (Kind::Unsigned, width),
+            | "triand" | "trior" | "trireg" | "tri0" | "tri1" | "wand" | "wor" => (ValueKind::Unsigned, width),
             // A constant of any type.
             "parameter" => {
                 open = true;
-                (Kind::Unsigned, width)
+                (ValueKind::Unsigned, width)
             }
             // MyHDL declares enumerations as real, too.
             "real" | "realtime" | "shortreal" | "real_parameter" => {
                 open = true;
-                (Kind::Real, width)
+                (ValueKind::Real, width)
             }
-            "string" => (Kind::Text, width),
-            "event" => (Kind::Event, width),
+            "string" => (ValueKind::Text, width),
+            "event" => (ValueKind::Event, width),
             other => return Err(self.refused(format!("`{other}`, the type of `{path}`, is not a type of variables"))),
         };
-        let bits = matches!(kind, Kind::Unsigned | Kind::Signed);
+        let bits = matches!(kind, ValueKind::Unsigned | ValueKind::Signed);
         if bits && width > MAX_WIDTH {
             return Err(WaveError::TooWide { name: self.name.into(), path, width });
         }
         if std::mem::take(&mut self.signed) && bits {
-            kind = Kind::Signed;
+            kind = ValueKind::Signed;
         }
-        let stored_kind = if bits { Kind::Unsigned } else { kind };
+        let stored_kind = if bits { ValueKind::Unsigned } else { kind };
         let declared = Declared { line: self.line, kind: stored_kind, width, open };
         let stored = match self.ids.get(id.as_bytes()) {
             Some(place) => {
@@ -143,13 +143,13 @@ impl Vcd<'_> {
     /// Two variables of one id code share their values.
     fn agree(&self, place: usize, new: &Declared, path: &str, id: &str) -> Result<(), WaveError> {
         let Some(old) = self.declared.get(place) else { return Ok(()) };
-        if (old.kind, old.open) == (new.kind, new.open) && (old.kind != Kind::Unsigned || old.width == new.width) {
+        if (old.kind, old.open) == (new.kind, new.open) && (old.kind != ValueKind::Unsigned || old.width == new.width) {
             return Ok(());
         }
         let of = |declared: &Declared| match declared.kind {
-            Kind::Real => "a real".to_owned(),
-            Kind::Text => "a string".to_owned(),
-            Kind::Event => "an event".to_owned(),
+            ValueKind::Real => "a real".to_owned(),
+            ValueKind::Text => "a string".to_owned(),
+            ValueKind::Event => "an event".to_owned(),
             _ if declared.open => format!("a parameter of {} bits", declared.width),
             _ => format!("{} bits", declared.width),
         };

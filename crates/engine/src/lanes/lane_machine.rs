@@ -5,27 +5,27 @@ use std::mem::swap;
 use fearless_simd::{Level, dispatch};
 
 use super::code::{Code, Do, Operation, Slot};
-use super::lane::{GROUP, GROUPS, Lane, Row};
+use super::lane::{GROUP, GROUPS, Lane, LaneRow};
 use super::watch::root_gap;
 
 /// A machine that runs the same code in every lane.
-pub(super) struct Block<T> {
-    rows: Vec<Box<Row<T>>>,
+pub(super) struct LaneMachine<T> {
+    rows: Vec<Box<LaneRow<T>>>,
     /// Takes the result of an operation, then changes places with the row that it is for.
-    spare: Box<Row<T>>,
+    spare: Box<LaneRow<T>>,
     level: Level,
 }
 
-impl<T: Lane> Block<T> {
-    pub(super) fn new(code: &Code) -> Block<T> {
-        let mut rows = vec![Row::filled(T::default()); code.rows];
+impl<T: Lane> LaneMachine<T> {
+    pub(super) fn new(code: &Code) -> LaneMachine<T> {
+        let mut rows = vec![LaneRow::filled(T::default()); code.rows];
         for &(slot, pattern) in &code.constants {
-            rows[slot] = Row::filled(T::top(pattern));
+            rows[slot] = LaneRow::filled(T::top(pattern));
         }
-        Block { rows, spare: Row::filled(T::default()), level: Level::new() }
+        LaneMachine { rows, spare: LaneRow::filled(T::default()), level: Level::new() }
     }
 
-    pub(super) fn row(&self, slot: Slot) -> &Row<T> {
+    pub(super) fn row(&self, slot: Slot) -> &LaneRow<T> {
         &self.rows[slot]
     }
 
@@ -66,7 +66,7 @@ impl<T: Lane> Block<T> {
 }
 
 #[inline(always)]
-fn edge<T: Lane>(rows: &mut [Box<Row<T>>], code: &Code) {
+fn edge<T: Lane>(rows: &mut [Box<LaneRow<T>>], code: &Code) {
     for register in &code.registers {
         if let Some(next) = register.next {
             rows.swap(register.row, next);
@@ -76,7 +76,7 @@ fn edge<T: Lane>(rows: &mut [Box<Row<T>>], code: &Code) {
 
 /// One of the first lanes is not 0.
 #[inline(always)]
-fn any<T: Lane>(row: &Row<T>, lanes: usize) -> bool {
+fn any<T: Lane>(row: &LaneRow<T>, lanes: usize) -> bool {
     let mut seen = [T::default(); GROUP];
     let whole = (lanes / GROUP).min(GROUPS);
     for group in &row.0[..whole] {
@@ -95,13 +95,13 @@ fn any<T: Lane>(row: &Row<T>, lanes: usize) -> bool {
 /// The rows that operations read. Operands are copied a group at a time: so the compiler knows that writing the result
 /// does not change them: it uses vectors, and keeps the copies in registers.
 struct Operands<'a, T> {
-    rows: &'a [Box<Row<T>>],
+    rows: &'a [Box<LaneRow<T>>],
     groups: usize,
 }
 
 impl<T: Lane> Operands<'_, T> {
     #[inline(always)]
-    fn one(&self, out: &mut Row<T>, a: Slot, of: impl Fn(T) -> T) {
+    fn one(&self, out: &mut LaneRow<T>, a: Slot, of: impl Fn(T) -> T) {
         for (out, a) in out.0.iter_mut().zip(&self.rows[a].0).take(self.groups) {
             let a = *a;
             for lane in 0..GROUP {
@@ -111,7 +111,7 @@ impl<T: Lane> Operands<'_, T> {
     }
 
     #[inline(always)]
-    fn two(&self, out: &mut Row<T>, a: Slot, b: Slot, of: impl Fn(T, T) -> T) {
+    fn two(&self, out: &mut LaneRow<T>, a: Slot, b: Slot, of: impl Fn(T, T) -> T) {
         let operands = self.rows[a].0.iter().zip(&self.rows[b].0);
         for (out, (a, b)) in out.0.iter_mut().zip(operands).take(self.groups) {
             let (a, b) = (*a, *b);
@@ -122,7 +122,7 @@ impl<T: Lane> Operands<'_, T> {
     }
 
     #[inline(always)]
-    fn three(&self, out: &mut Row<T>, [a, b, c]: [Slot; 3], of: impl Fn(T, T, T) -> T) {
+    fn three(&self, out: &mut LaneRow<T>, [a, b, c]: [Slot; 3], of: impl Fn(T, T, T) -> T) {
         let operands = self.rows[a].0.iter().zip(&self.rows[b].0).zip(&self.rows[c].0);
         for (out, ((a, b), c)) in out.0.iter_mut().zip(operands).take(self.groups) {
             let (a, b, c) = (*a, *b, *c);
@@ -133,7 +133,7 @@ impl<T: Lane> Operands<'_, T> {
     }
 
     #[inline(always)]
-    fn four(&self, out: &mut Row<T>, [a, b, c, d]: [Slot; 4], of: impl Fn(T, T, T, T) -> T) {
+    fn four(&self, out: &mut LaneRow<T>, [a, b, c, d]: [Slot; 4], of: impl Fn(T, T, T, T) -> T) {
         let operands = self.rows[a].0.iter().zip(&self.rows[b].0).zip(&self.rows[c].0).zip(&self.rows[d].0);
         for (out, (((a, b), c), d)) in out.0.iter_mut().zip(operands).take(self.groups) {
             let (a, b, c, d) = (*a, *b, *c, *d);
@@ -145,7 +145,7 @@ impl<T: Lane> Operands<'_, T> {
 }
 
 #[inline(always)]
-fn settle<T: Lane>(rows: &mut [Box<Row<T>>], spare: &mut Box<Row<T>>, operations: &[Operation], groups: usize) {
+fn settle<T: Lane>(rows: &mut [Box<LaneRow<T>>], spare: &mut Box<LaneRow<T>>, operations: &[Operation], groups: usize) {
     for operation in operations {
         perform(Operands { rows, groups }, spare, operation.what);
         swap(&mut rows[operation.target], spare);
@@ -154,7 +154,7 @@ fn settle<T: Lane>(rows: &mut [Box<Row<T>>], spare: &mut Box<Row<T>>, operations
 
 /// The meaning of every operation; the loops inside are unrolled and vectorised, none of them branches.
 #[inline(always)]
-fn perform<T: Lane>(on: Operands<'_, T>, out: &mut Row<T>, what: Do<Slot>) {
+fn perform<T: Lane>(on: Operands<'_, T>, out: &mut LaneRow<T>, what: Do<Slot>) {
     let top = T::BITS - 1;
     match what {
         Do::Copy(a) => on.one(out, a, |a| a),

@@ -16,7 +16,7 @@ use crate::testbench::{Lanes, Measured, Testbench};
 const KEPT: usize = 512;
 
 /// One hardware, built when it is needed.
-pub(super) struct Machine {
+pub(super) struct PlannedHardware {
     /// Unlike that of any other.
     pub(super) number: usize,
     hardware: Hardware,
@@ -24,7 +24,7 @@ pub(super) struct Machine {
     lanes: OnceLock<Option<Lanes>>,
 }
 
-impl Machine {
+impl PlannedHardware {
     fn bench(&self, model: &Model) -> Result<&Testbench, &ModelError> {
         self.bench
             .get_or_init(|| Ok(Testbench::of_hardware(model, self.hardware.clone())?.as_hardware_loads()))
@@ -64,10 +64,10 @@ impl Machine {
 }
 
 /// All machines that are known.
-pub(super) struct Machines {
+pub(super) struct HardwareCache {
     model: &'static Model,
 
-    known: RwLock<HashMap<u64, Vec<Arc<Machine>>>>,
+    known: RwLock<HashMap<u64, Vec<Arc<PlannedHardware>>>>,
     made: AtomicUsize,
 }
 
@@ -79,27 +79,29 @@ fn digest(hardware: &Hardware) -> u64 {
     hasher.finish()
 }
 
-impl Machines {
-    pub(super) fn new(model: &'static Model) -> Machines {
-        Machines { model, known: RwLock::default(), made: AtomicUsize::new(0) }
+impl HardwareCache {
+    pub(super) fn new(model: &'static Model) -> HardwareCache {
+        HardwareCache { model, known: RwLock::default(), made: AtomicUsize::new(0) }
     }
 
     /// The machine that a geometry plans with these choices.
     ///
     /// # Errors
     /// The model refuses the geometry or a choice.
-    pub(super) fn plan(&self, curve: &Curve, choices: &Options) -> Result<Arc<Machine>, ModelError> {
+    pub(super) fn plan(&self, curve: &Curve, choices: &Options) -> Result<Arc<PlannedHardware>, ModelError> {
         let hardware = self.model.plan(curve, choices)?;
         let digest = digest(&hardware);
-        let alike =
-            |machines: &Vec<Arc<Machine>>| machines.iter().find(|machine| machine.hardware == hardware).cloned();
+        let alike = |machines: &Vec<Arc<PlannedHardware>>| {
+            machines.iter().find(|machine| machine.hardware == hardware).cloned()
+        };
         // A lock is poisoned only by a panic, which ends the sweep.
         if let Some(machine) = self.known.read().ok().and_then(|known| known.get(&digest).and_then(alike)) {
             return Ok(machine);
         }
         let number = || self.made.fetch_add(1, Ordering::Relaxed);
-        let machine =
-            |hardware| Arc::new(Machine { number: number(), hardware, bench: OnceLock::new(), lanes: OnceLock::new() });
+        let machine = |hardware| {
+            Arc::new(PlannedHardware { number: number(), hardware, bench: OnceLock::new(), lanes: OnceLock::new() })
+        };
         let Ok(mut known) = self.known.write() else { return Ok(machine(hardware)) };
         if let Some(machine) = known.get(&digest).and_then(alike) {
             return Ok(machine);
