@@ -17,8 +17,8 @@ const MOST_THREADS_A_CORE: usize = 8;
 
 /// The program `stepwave` over these models: parses the command line, does what it says, prints an error.
 ///
-/// Exit codes: 0 done and good; 1 the simulated hardware failed a check or a comparison differs; 2 bad input, a model that
-/// does not work, or a file that cannot be read or written.
+/// Exit codes: 0 done and good; 1 the simulated hardware failed a check or a comparison differs; 2 bad input, a model
+/// that does not work, or a file that cannot be read or written.
 ///
 /// ```no_run
 /// # use stepwave::models::Model;
@@ -38,8 +38,8 @@ pub fn main_with(models: Catalogue) -> ExitCode {
     }
 }
 
-/// Does the work of the program. A panic, also one of a thread that it waits for, is a mistake of our own: it ends as any
-/// failure does, with its temporary files taken away, in one sentence with its place.
+/// Does the work of the program. A panic, also one of a thread that it waits for, is a mistake of our own: it ends as
+/// any failure does, with its temporary files removed, in one sentence with its place.
 fn unless_at_fault(work: impl FnOnce() -> Result<(), Error>) -> Result<(), Error> {
     let place = Arc::new(Mutex::new(None));
     let seen = Arc::clone(&place);

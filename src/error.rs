@@ -29,7 +29,7 @@ impl Error {
     }
 }
 
-/// One line without control characters, whatever the words that it quotes hold.
+/// One line without control characters, regardless of the text that it quotes.
 fn one_line(sentence: &str) -> String {
     shown(&sentence.replace(['\n', '\r'], " ")).into_owned()
 }

@@ -20,7 +20,7 @@ pub(crate) use self::identity::is_stream;
 pub(crate) type Sink = BufWriter<Box<dyn Write + Send>>;
 
 /// An open file in which one can go back.
-pub(crate) type SeekSink = BufWriter<Named>;
+pub(crate) type SeekableSink = BufWriter<Named>;
 
 /// Outputs of one command.
 #[derive(Default)]
@@ -67,7 +67,7 @@ impl Outputs {
     ///
     /// # Errors
     /// The file cannot be created, it is not a file, the command reads it, or another output goes there already.
-    pub(crate) fn open_seekable(&mut self, path: &Path) -> Result<SeekSink, Error> {
+    pub(crate) fn open_seekable(&mut self, path: &Path) -> Result<SeekableSink, Error> {
         if is_stream(path) {
             return Err(Error::Invalid(format!(
                 "cannot write {}: FST is written back and forth, which needs a file: name one, or take --vcd",
@@ -251,7 +251,7 @@ fn folds_case(path: &Path) -> bool {
     temporary.path().with_file_name(name).exists()
 }
 
-/// A file whose errors bear its name.
+/// A file whose errors name it.
 pub(crate) struct Named {
     path: PathBuf,
     file: File,

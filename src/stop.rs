@@ -1,5 +1,5 @@
 //! The end of the process that it does not choose: by a signal, or because nobody reads any more. Temporary files go,
-//! and one line says what came to be.
+//! and one line says what was left.
 
 use std::io::{self, IsTerminal, Write};
 
@@ -75,7 +75,7 @@ pub(crate) fn watch_reader() {
     if !out.metadata().is_ok_and(|found| found.file_type().is_fifo() || found.file_type().is_socket()) {
         return;
     }
-    // Where no thread can be had, it is noticed at the next write.
+    // Without a thread it is noticed at the next write.
     let _ = std::thread::Builder::new().spawn(move || {
         loop {
             // An error is reported even if no event is asked for: here, that the reader has left.

@@ -16,7 +16,7 @@ use crate::trace::vcd::{Background, VcdBody, VcdHeader};
 
 use self::limited::Limited;
 use crate::Error;
-use crate::output::{self, Outputs, SeekSink, Sink};
+use crate::output::{self, Outputs, SeekableSink, Sink};
 
 /// Which waves a run writes, of which signals, over which clocks.
 #[derive(Clone, Debug)]
@@ -78,7 +78,7 @@ impl WaveOptions {
 /// Where the waves go.
 pub(crate) struct Sinks<'a> {
     vcd: Option<(&'a Path, Sink)>,
-    fst: Option<(&'a Path, SeekSink)>,
+    fst: Option<(&'a Path, SeekableSink)>,
 }
 
 impl<'a> Sinks<'a> {
@@ -96,7 +96,7 @@ impl<'a> Sinks<'a> {
 /// Waves that are being written: the same samples of the same signals.
 pub(crate) struct Waves<'a> {
     vcd: Option<Wave<'a, VcdBody<Background<Limited<Sink>>>>>,
-    fst: Option<Wave<'a, FstBody<Limited<SeekSink>>>>,
+    fst: Option<Wave<'a, FstBody<Limited<SeekableSink>>>>,
     probes: Vec<Probe>,
     clk: bool,
     time: ClockTime,
@@ -183,7 +183,7 @@ impl<'a> Waves<'a> {
     ) -> Result<(), Error> {
         let (vcd, fst) = (self.vcd.take(), self.fst.take());
         let vcd_stem = vcd.as_ref().and_then(|wave| wave.path.file_stem());
-        // The files next to two waves of one stem would bear the same names.
+        // The files next to two waves of one stem would have the same names.
         let twins = vcd_stem.is_some() && vcd_stem == fst.as_ref().and_then(|wave| wave.path.file_stem());
         if let Some(Wave { path, writer }) = vcd {
             let (written, background) = finish(writer, clocks)?;

@@ -7,7 +7,7 @@
 //! of short runs are compared signal by signal. They take turns, round by round, and medians are reported. One core is
 //! left to each, another one every round, except where more are named; rates count processor time, which other programs
 //! on the machine hardly disturb, of the whole process.
-// Like a test, it stops at whatever is not as it should be.
+// Like a test, it stops at anything unexpected.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[cfg(target_os = "linux")]
@@ -33,7 +33,7 @@ mod unit;
 #[cfg(target_os = "linux")]
 mod verilator;
 
-/// What may fail in any way.
+/// Any failure.
 type Fallible<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 #[cfg(target_os = "linux")]

@@ -70,7 +70,7 @@ impl Case {
 }
 
 /// A curve of about `all - less` clocks in registers that hold less than `all`. Its slope is not a ratio of small
-/// numbers, which would make the pulses go round.
+/// numbers, which would make the pulses cycle.
 fn curve(model: &str, all: i64, less: i64) -> Fallible<Curve> {
     let golden = |value: i64| value * 618_034 / 1_000_000;
     let line = |to: [i64; 2]| Ok(Curve::Line(Line::new(vec![0, 0], to.to_vec())?));

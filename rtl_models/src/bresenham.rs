@@ -16,7 +16,7 @@
 //! N numbers that is none. Every start is one of them for N >= 2. A block of N = 1 starts at 0: unsigned that is right
 //! with
 //! `ge`, while `gt`, the test of early firmware, makes no step at all; signed it is right with `gt`, while with `ge` an
-//! axis steps that has no way to go.
+//! axis steps that has no travel.
 //!
 //! **Widths.** A counter must hold the sum of the ADD clock. It was one of its N numbers, at most N-1 (`gt` at N), and
 //! abs(d) <= N: at most 2N - 1 or 2N. As N < 2^n, n+1 bits hold both. Signed, the sum is at most N, and what TEST

@@ -25,7 +25,7 @@ pub enum Region {
     LinesByLength,
     /// The same, those of either longer axis and those at 45 degrees by themselves.
     LinesByLonger,
-    /// The same, with half of the long way, rounded down.
+    /// The same, with half of the long travel, rounded down.
     LinesHalved,
     /// Every arc about the origin inside one quadrant, with both ends on one circle: from (xs, ys) to (xt, yt),
     /// magnitudes.
@@ -54,7 +54,7 @@ pub struct Claims {
 }
 
 impl Claims {
-    /// Over these geometries; whatever the end counters are, one of them counts at every step.
+    /// Over these geometries; with any end counters, one of them counts at every step.
     #[must_use]
     pub const fn of(geometries: Region) -> Claims {
         Claims {
@@ -75,7 +75,7 @@ impl Claims {
     }
 }
 
-/// What the end counters still have to count, less the step under way.
+/// What the end counters still have to count, less the current step.
 pub(crate) fn steps_left(hardware: &Hardware) -> Option<Formula> {
     match hardware.get(&END_POINT) {
         EndPoint::PerAxis => Some(END.of(0).value() + END.of(1).value() - 1),

@@ -8,20 +8,20 @@
 //!    (fraction)     ▲──────┘
 //! ```
 //!
-//! An iteration turns the circle pair by 1/2^n radian, so z makes J_VZ/2^n = Z/θ of its way per radian, θ being the angle
-//! of the whole helix. The pair is that of `dda-arc`: it corrects J_VX and J_VY by ±1, and the loader splits the helix
-//! where its arc meets the axes. Up to there z makes its share of Z, rounded to the nearest step; an exhausted axis stops
-//! adding, a sector ends when all three are exhausted, and so x, y and z are exact at its end. Where a sector's share was
-//! rounded up, the arc waits for z there.
+//! An iteration turns the circle pair by 1/2^n radian, so z makes J_VZ/2^n = Z/θ of its travel per radian, θ being the
+//! angle of the whole helix. The pair is that of `dda-arc`: it corrects J_VX and J_VY by ±1, and the loader splits the
+//! helix where its arc meets the axes. Up to there z makes its share of Z, rounded to the nearest step; an exhausted
+//! axis stops adding, a sector ends when all three are exhausted, and so x, y and z are exact at its end. Where a
+//! sector's share was rounded up, the arc waits for z there.
 //!
 //! 2^n must be greater than the largest coordinate and than Z/θ. The fraction has the bits that jrz is wider than jrx
-//! (`--width jrz=N`): with f of them z errs by less than θ/2^f BLU.
+//! (`--width jrz=N`): with f of them the error of z is less than θ/2^f BLU.
 //!
 //! Textbooks print in row k of their tables the J_V that step k used; here it is the J_V after step k. `run --textbook`
 //! prints the table as they do.
 //!
-//! Limits are those of `dda-arc`: with a preset of zero or full the motion can stop one pulse before an axis, and then z
-//! still arrives; the default is `half`.
+//! Limits are those of `dda-arc`: with a preset of zero or full the motion can stop one pulse before an axis, and then
+//! z still arrives; the default is `half`.
 //!
 //! A quarter turn from (5, 0, 0) to (0, 5, 3) with `--preset zero`, from the golden file
 //! `waves/dda-helix-quarter.csv`; the wave is next to it:

@@ -32,7 +32,7 @@
 //! ```
 //!
 //! Serial adder: one full adder and a carry flip-flop for each axis, the lowest bit first. J_R is a shift register, J_V
-//! goes round, and an iteration takes n clocks; with its last one the step is completed and all registers stand as
+//! rotates, and an iteration takes n clocks; with its last one the step is completed and all registers stand as
 //! those of the parallel form. In radix 10 one digit adder for each axis takes a digit a clock, k clocks an iteration.
 //! The line (8, 6) in 4 bits, from `waves/dda-line-serial.csv`:
 //!
@@ -106,7 +106,7 @@ fn rank(hardware: &Hardware) -> Option<Formula> {
     }
 }
 
-/// What 2^n iterations have to do with a way that is left.
+/// What 2^n iterations have to do with a travel that is left.
 fn guesses(hardware: &Hardware) -> Vec<Clause> {
     if !matches!(hardware.get(&END_POINT), EndPoint::Total | EndPoint::Longest) {
         return Vec::new();
@@ -131,7 +131,7 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
                     .to_owned(),
         });
     }
-    // End points are counted in binary, whatever the radix.
+    // End points are counted in binary, for every radix.
     let steps = Width::needed_unsigned(modulus(radix, plan.n) - 1);
     let end_point = plan.get(&END_POINT);
     let e = match end_point {

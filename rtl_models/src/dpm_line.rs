@@ -215,7 +215,7 @@ fn check_widths(plan: &Plan, units: Units) -> Result<(), ModelError> {
     odd.map_or(Ok(()), |odd| Err(ModelError::Widths(format!("{NAME}: {odd}: give --width {all}"))))
 }
 
-/// Greatest deviation of an axis from its uniform rate, in pulses, whatever its coefficient of `n` bits.
+/// Greatest deviation of an axis from its uniform rate, in pulses, for every coefficient of `n` bits.
 pub(crate) fn rate_bound(radix: Radix, n: u32) -> f64 {
     match radix {
         Radix::Binary => (3.0 * f64::from(n) + 7.0) / 18.0 + (-0.5_f64).powf(f64::from(n)) / 9.0,

@@ -3,10 +3,10 @@
 use stepwave_netlist::diag::{Code, Diagnostic};
 use stepwave_netlist::{Diagnostics, Width, did_you_mean};
 
-/// A geometry or an option that a model does not take; every message names the value, the limit and the way out.
+/// A geometry or an option that a model does not take; every message names the value, the limit and the remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ModelError {
-    /// No model bears this name.
+    /// No model has this name.
     #[error("there is no model '{name}'{}; the models are {known}", did_you_mean(.name, .known.split(", ")))]
     UnknownModel {
         /// Name asked for.
@@ -14,7 +14,7 @@ pub enum ModelError {
         /// Names that exist, with commas.
         known: String,
     },
-    /// A line was given to a model of arcs, or the other way round.
+    /// A line was given to a model of arcs, or vice versa.
     #[error("{model} interpolates {takes}; {given} was given")]
     Curve {
         /// The model.
@@ -110,8 +110,8 @@ impl ModelError {
 
 impl From<Diagnostics> for ModelError {
     fn from(diagnostics: Diagnostics) -> ModelError {
-        // The widths chosen may lead to one that is too great, such as an exact sum of f in 4 bits and xe in 64; a width of
-        // 0 is that of a register that the model did not plan.
+        // The widths chosen may lead to one that is too great, such as an exact sum of f in 4 bits and xe in 64; a
+        // width of 0 is that of a register that the model did not plan.
         let too_wide = |diagnostic: &&Diagnostic| {
             diagnostic.code == Code::BadWidth && !diagnostic.message.contains("a width of 0 bits")
         };

@@ -22,7 +22,7 @@ pub enum Pace {
     Total,
     /// A step is a pulse of the longest axis.
     Longest,
-    /// Once through all numbers of the register of this name; normalised, through those that the longest way needs.
+    /// Once through all numbers of the register of this name; normalised, through those that the longest travel needs.
     Cycle(Reg),
 }
 

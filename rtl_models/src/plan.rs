@@ -93,7 +93,7 @@ impl Plan {
         self.get(option)
     }
 
-    /// Sets the value of an option, whatever was given.
+    /// Sets the value of an option, overriding what was given.
     pub fn fix<T: Clone + PartialEq + Send + Sync + 'static>(&mut self, option: &'static OptionDef<T>, value: T) {
         self.options.set(option.value(value));
     }

@@ -153,7 +153,7 @@ fn between_steps(m: Scope<'_>, what: &str, [first, second]: [Formula; 2], unless
 fn signs_between_steps(m: Scope<'_>) {
     for (quadrant, [x, y]) in [("q1", [1, 1]), ("q2", [-1, 1]), ("q3", [-1, -1]), ("q4", [1, -1])] {
         let [a, b] = [x * XE.value(), y * YE.value()];
-        // The way of a motion that is not negative may be 0.
+        // The travel of a motion that is not negative may be 0.
         let elsewhere =
             [(x, &a), (y, &b)].map(|(sign, travel)| if sign > 0 { -travel.clone() - 1 } else { -travel.clone() });
         between_steps(m, &format!("f_in_{quadrant}"), if x == y { [a, b] } else { [b, a] }, &elsewhere);

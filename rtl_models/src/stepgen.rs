@@ -13,7 +13,7 @@
 //! that are sent.
 //!
 //! **End of a block.** A block has 2^k accumulations, and rates are loaded that make it exact: d·2^(p-k) is a whole number
-//! as long as k <= p, and 2^k of them are d·2^p, d steps to the bit, whatever the preset. No rate is rounded. (A host
+//! as long as k <= p, and 2^k of them are d·2^p, exactly d steps, for every preset. No rate is rounded. (A host
 //! that chooses its number N of accumulations freely must round, and d·2^p / N up is exact from an accumulator of 0
 //! where N <= 2^p: what it is too much stays below a step.) At most one step is made in an accumulation, so 2^k is at
 //! least the longest abs(d). Without a choice k is n + ceil(log2(length + space)): no step of the fastest axis has to

@@ -9,9 +9,9 @@
 //!
 //! No primary source of the method survives; this is a definition of this project. The octant of the line fixes an axis
 //! vector (x where a >= b, else y) and the diagonal vector; on a line of 45° both are the diagonal. F = a·y - b·x is
-//! the cross product of the line and the way gone: an X pulse takes b off, a Y pulse puts a on. On the line, F = 0, the
-//! axis vector is taken; next to it the one that leads back: the diagonal where x is the axis vector and F < 0, or y is
-//! and F > 0. The path stays below 1 BLU off the line, and F within [1 - max(a, b), max(a, b) - 1].
+//! the cross product of the line and the distance covered: an X pulse takes b off, a Y pulse puts a on. On the line, F
+//! = 0, the axis vector is taken; next to it the one that leads back: the diagonal where x is the axis vector and F <
+//! 0, or y is and F > 0. The path stays below 1 BLU off the line, and F within [1 - max(a, b), max(a, b) - 1].
 //!
 //! The line (5, 3), from the golden file `waves/vector-line-5-3.csv`; the wave is next to it:
 //!

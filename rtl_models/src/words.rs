@@ -77,7 +77,7 @@ pub(crate) fn conic_sector(conic: &Conic, sector: &ConicSector) -> Words {
 }
 
 /// F of comparison-integral at the start of a sector whose point has these interval weights: with `mid` the exact
-/// `deviation` there, turned over where an X step lowers it, and once more where Y is the base axis.
+/// `deviation` there, negated where an X step lowers it, and once more where Y is the base axis.
 pub(crate) fn weighed(rule: Weights, [a, b]: [i128; 2], x_raises: bool, deviation: i128) -> i128 {
     let base_x = a < b;
     match rule {

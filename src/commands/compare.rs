@@ -94,7 +94,7 @@ fn row(
         Err(error) if error.is::<OutOfTime>() => (deadline.steps, deadline.clocks, "given up at --max-seconds"),
         Err(error) => return Err(error.into()),
     };
-    // Positions are as wide as the way, whatever the method.
+    // Positions are as wide as the travel, for every method.
     let hardware = bench.hardware();
     let own = hardware.widths.iter().filter(|(name, _)| !hardware.letters().contains(name));
     let widest = own.max_by_key(|(name, width)| (width.get(), std::cmp::Reverse(*name)));

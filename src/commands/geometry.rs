@@ -14,18 +14,18 @@ use crate::cli::{GeometryArgs, HardwareArgs, Point};
 /// Something is missing, or the model does not interpolate such a curve.
 pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64) -> Result<Curve, Error> {
     let Some(to) = &args.to else {
-        return trouble(format!("the end point is missing: {} takes {}", who, kind.describe()));
+        return invalid(format!("the end point is missing: {} takes {}", who, kind.describe()));
     };
     for (given, option) in superfluous(kind, args) {
         if given {
             let takes = kind.describe();
-            return trouble(format!("{} interpolates {takes}, which have no {option}: leave it out", who));
+            return invalid(format!("{} interpolates {takes}, which have no {option}: leave it out", who));
         }
     }
     let direction = || match (args.cw, args.ccw) {
         (true, _) => Ok(Direction::Clockwise),
         (_, true) => Ok(Direction::CounterClockwise),
-        _ => trouble(format!("the direction of the arc is missing: give {} --cw or --ccw", who)),
+        _ => invalid(format!("the direction of the arc is missing: give {} --cw or --ccw", who)),
     };
     let what = match kind {
         CurveKind::Line { .. } => "a line",
@@ -54,14 +54,14 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
             let (from, to, center) = (point(what, "--from", from)?, point(what, "--to", Some(to))?, center()?);
             match (args.ellipse, args.parabola, args.hyperbola) {
                 (Some(_), ..) if args.opens.is_some() => {
-                    return trouble("an ellipse does not open: leave --opens out".to_owned());
+                    return invalid("an ellipse does not open: leave --opens out".to_owned());
                 }
                 (Some(semi_axes), ..) => Conic::ellipse(semi_axes, from, to, center, direction()?)?,
                 (_, Some(c), _) => Conic::parabola(c, args.opens, from, to, center)?,
                 (.., Some(semi_axes)) => Conic::hyperbola(semi_axes, args.opens, from, to, center)?,
                 (None, None, None) => {
                     let takes = kind.describe();
-                    return trouble(format!("the curve is missing: {} takes {takes}", who));
+                    return invalid(format!("the curve is missing: {} takes {takes}", who));
                 }
             }
             .into()
@@ -98,7 +98,7 @@ fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Resul
     let Some(Point(point)) = given else { return Ok([0; N]) };
     <[i64; N]>::try_from(point.as_slice()).or_else(|_| {
         let form = if N == 2 { "X,Y" } else { "X,Y,Z" };
-        trouble(format!("{name} of {what} has {} coordinates: give {form}", point.len()))
+        invalid(format!("{name} of {what} has {} coordinates: give {form}", point.len()))
     })
 }
 
@@ -127,6 +127,7 @@ pub(crate) fn moved_center(curve: &Curve, args: &GeometryArgs) -> Option<String>
     })
 }
 
-fn trouble<T>(sentence: String) -> Result<T, Error> {
+/// Refuses what a command was given.
+pub(super) fn invalid<T>(sentence: String) -> Result<T, Error> {
     Err(Error::Invalid(sentence))
 }

@@ -71,7 +71,7 @@ impl Progress {
             wake: Condvar::new(),
         });
         let drawn = Arc::clone(&shared);
-        // Where no thread can be had, the work is done all the same.
+        // Without a thread the work is still done.
         let drawer = io::stderr().is_terminal().then(|| thread::Builder::new().spawn(move || drawn.draw()).ok());
         Progress { shared, drawer: drawer.flatten() }
     }

@@ -15,15 +15,15 @@ use crate::waves::probes;
 /// Bytes above which a program reports the size of its wave before it writes it.
 const NOTED: f64 = 1e8;
 
-/// Bytes of VCD that a bit of a vector takes at a step that moves the machine on the average, as measured on machines of
-/// every family.
+/// Bytes of VCD that a bit of a vector takes at a step that moves the machine on the average, as measured on machines
+/// of every family.
 const BIT: f64 = 0.14;
 /// Registers that change with every step, also where it moves nothing.
 const COUNTING: [&str; 6] = ["q", "jrx", "jry", "accx", "accy", "accz"];
 /// Bytes of the three flags that come and go with each step.
 const FLAGS: f64 = 18.0;
-/// Bytes of FST that a clock takes where the pulse source is shown, less where its phase comes round; and what changes at a
-/// step, and counts at every step, as parts of what they take as VCD; all as measured.
+/// Bytes of FST that a clock takes where the pulse source is shown, less where its phase comes round; and what changes
+/// at a step, and counts at every step, as parts of what they take as VCD; all as measured.
 const FST_CLOCK: f64 = 12.0;
 const FST_ROUND: f64 = 0.1;
 const FST_STEP: f64 = 0.25;
@@ -100,7 +100,7 @@ impl Size {
             )));
         }
         if most > NOTED {
-            // Where nobody listens, the wave is written all the same.
+            // If nobody listens, the wave is still written.
             let _ = writeln!(
                 io::stderr(),
                 "stepwave: the wave will have about {size}; --trace-steps, --no-clk, a window or --fst make it small"

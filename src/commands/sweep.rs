@@ -18,6 +18,7 @@ use rayon::prelude::*;
 mod kept;
 
 use self::kept::Kept;
+use super::geometry::invalid;
 use super::progress::Progress;
 use crate::Error;
 use crate::cli::{Point, SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs, known_register};
@@ -57,10 +58,6 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
     if outputs.uses_stdout() { Ok(()) } else { output::print(&text) }
 }
 
-fn trouble<T>(sentence: String) -> Result<T, Error> {
-    Err(Error::Invalid(sentence))
-}
-
 /// All geometries that the options tell.
 fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Error> {
     if let Some(file) = &args.file {
@@ -81,17 +78,17 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
         let count = points.as_ref().map_or(axes.max(least), Vec::len);
         if !(least..=most).contains(&count) || (drawn == Drawn::Line && count != axes) {
             let takes = model.curve().describe();
-            return trouble(format!("{option} has {count} coordinates, but {who} interpolates {takes}"));
+            return invalid(format!("{option} has {count} coordinates, but {who} interpolates {takes}"));
         }
     }
     if drawn == Drawn::Line && to.is_none() {
-        return trouble(format!("the end points are missing: give {who} --to-grid such as 0..255x0..255"));
+        return invalid(format!("the end points are missing: give {who} --to-grid such as 0..255x0..255"));
     }
     if drawn == Drawn::Line {
         from = from.or_else(|| Some(vec![Range::one(0); axes]));
     }
     if matches!(drawn, Drawn::Arc | Drawn::Helix) && from.is_none() && args.radius.is_none() {
-        return trouble(format!("the start points are missing: give {who} --radius, --from or --from-grid"));
+        return invalid(format!("the start points are missing: give {who} --radius, --from or --from-grid"));
     }
     let center = center(args)?;
     let flags = [(args.cw, Direction::Clockwise), (args.ccw, Direction::CounterClockwise)];
@@ -99,7 +96,7 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
     let cells = Cells { drawn, sizes, from, to, center, directions, radii };
     Ok(match args.samples {
         Some(count) if cells.count() <= u128::from(u64::MAX) => Space::Samples { cells, count, seed: args.seed },
-        Some(_) => return trouble(format!("a grid of {} geometries is too large to draw from", cells.count())),
+        Some(_) => return invalid(format!("a grid of {} geometries is too large to draw from", cells.count())),
         None => Space::Cells(cells),
     })
 }
@@ -117,7 +114,7 @@ fn sizes(model: &Model, args: &SpaceArgs, drawn: Drawn) -> Result<Vec<Range>, Er
         _ => usize::from(args.radius.is_some()),
     };
     if sizes.len() != wanted {
-        return trouble(format!(
+        return invalid(format!(
             "{} sizes were given where {who} takes {wanted}: see `stepwave sweep --help`",
             sizes.len()
         ));
@@ -130,7 +127,7 @@ fn center(args: &SpaceArgs) -> Result<[i64; 2], Error> {
         None => Ok([0, 0]),
         Some(Point(point)) => match <[i64; 2]>::try_from(point.as_slice()) {
             Ok(center) => Ok(center),
-            Err(_) => trouble(format!("--center has {} coordinates: give X,Y", point.len())),
+            Err(_) => invalid(format!("--center has {} coordinates: give X,Y", point.len())),
         },
     }
 }
@@ -146,7 +143,7 @@ fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Error> {
             (_, Some(_), _) => Drawn::Parabola(args.opens),
             (.., Some(_)) => Drawn::Hyperbola(args.opens),
             _ => {
-                return trouble(format!(
+                return invalid(format!(
                     "the curves are missing: give {} --ellipse, --parabola or --hyperbola",
                     model.name
                 ));
@@ -166,10 +163,10 @@ fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Error> {
     ];
     if let Some((_, _, option)) = superfluous.into_iter().find(|(given, taken, _)| *given && !taken) {
         let takes = model.curve().describe();
-        return trouble(format!("{} interpolates {takes}, which have no {option}: leave it out", model.name));
+        return invalid(format!("{} interpolates {takes}, which have no {option}: leave it out", model.name));
     }
     if turns && !args.cw && !args.ccw {
-        return trouble(format!("the direction is missing: give {} --cw, --ccw or both", model.name));
+        return invalid(format!("the direction is missing: give {} --cw, --ccw or both", model.name));
     }
     Ok(drawn)
 }
@@ -184,18 +181,18 @@ fn variants(args: &VariantArgs) -> Result<Variants, StudyError> {
     dimensions.collect::<Result<_, _>>().map(Variants)
 }
 
-/// How far the two radii of an arc may differ beyond what rounding makes. As an option of hardware the tolerance stays with
-/// models that have chords.
+/// How far the two radii of an arc may differ beyond what rounding makes. As an option of hardware the tolerance stays
+/// with models that have chords.
 fn radii(model: &Model, variants: &mut Variants) -> Result<Millionths, Error> {
     let is_tolerance = |dimension: &Dimension| dimension.option.name() == TOLERANCE.name;
     let Some(place) = variants.0.iter().position(is_tolerance) else { return Ok(Millionths(0)) };
     if !matches!(model.curve(), CurveKind::Arc | CurveKind::Helix) {
         let takes = model.curve().describe();
-        return trouble(format!("{} interpolates {takes}, which have no --tolerance: leave it out", model.name));
+        return invalid(format!("{} interpolates {takes}, which have no --tolerance: leave it out", model.name));
     }
     let (given, _) = variants.at(0);
     if variants.0[place].len() > 1 {
-        return trouble(
+        return invalid(
             "--tolerance is of the radii of arcs too, and the same for all runs: give one value".to_owned(),
         );
     }
@@ -226,7 +223,7 @@ impl Heat {
             return Err(StudyError::Column { what, known: known.join(", ") }.into());
         }
         let Some((point, ranges)) = sweep.map() else {
-            return trouble("a heat map shows a grid of points: give --to-grid or --from-grid".to_owned());
+            return invalid("a heat map shows a grid of points: give --to-grid or --from-grid".to_owned());
         };
         let names = ["x", "y"].map(|axis| format!("{point}_{axis}"));
         let column = |name: &str| sweep.column(name).unwrap_or(0);
@@ -342,10 +339,10 @@ impl Tables {
 }
 
 /// Tries all outputs before the first run, though some are written at the end only; gives the file of the CSV, if it is
-/// one, and the file next to which the rows are on their way.
+/// one, and the file next to which the rows are gathered.
 fn tried(args: &TableArgs, mut claims: Outputs) -> Result<[Option<PathBuf>; 2], Error> {
     if args.parquet.as_deref().is_some_and(is_stream) {
-        return trouble("Parquet rows are gathered next to their file before they are written: name a file".to_owned());
+        return invalid("Parquet rows are gathered next to their file before they are written: name a file".to_owned());
     }
     let mut claim = |path: &Option<PathBuf>| path.as_deref().map(|path| claims.claim(path)).transpose();
     let csv = claim(&args.csv)?.filter(|_| !args.csv.as_deref().is_some_and(is_stream));
@@ -355,7 +352,7 @@ fn tried(args: &TableArgs, mut claims: Outputs) -> Result<[Option<PathBuf>; 2], 
     match &stage {
         Some(target) => Stage::files(target).iter().try_for_each(|path| claims.keep_free(path))?,
         None if args.resume => {
-            return trouble("--resume goes on next to the final file: give --csv FILE or --parquet FILE".to_owned());
+            return invalid("--resume goes on next to the final file: give --csv FILE or --parquet FILE".to_owned());
         }
         None => {}
     }
@@ -383,7 +380,7 @@ fn write(sweep: &Sweep, args: &TableArgs, claims: Outputs, outputs: &mut Outputs
     let Tables { mut stage, stream, summary, heat } = tables;
     if summary.rows() == 0 && sweep.part() == SweepPart::WHOLE {
         stage.map(Kept::discard).transpose()?;
-        return trouble("no point of the grid lies within 1 BLU of such a curve: give another grid".to_owned());
+        return invalid("no point of the grid lies within 1 BLU of such a curve: give another grid".to_owned());
     }
     let mut text = summary.text(sweep.model(), sweep.columns());
     if let (Some(path), Some(stage)) = (&args.parquet, &mut stage) {

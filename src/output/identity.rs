@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 /// Most links of one path that are followed, as in the system itself.
 const MOST_LINKS: usize = 40;
 
-/// A file, by what tells it from all others.
+/// A file, by what distinguishes it from all others.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(crate) enum Identity {
     /// One that exists: its device and its number there, which its hard links share.
@@ -65,7 +65,7 @@ pub(crate) fn resolved(path: &Path) -> PathBuf {
             _ => break,
         }
     }
-    // `a/..` is not taken apart by its letters: `a` may be a link.
+    // `a/..` is not simplified as text: `a` may be a link.
     match (folder_of(&path).canonicalize(), name_of(&path)) {
         (Ok(folder), Some(name)) => folder.join(name),
         _ => path,
@@ -84,8 +84,8 @@ pub(crate) fn is_stream(path: &Path) -> bool {
     path == Path::new("-") || path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
-/// A device that takes characters and keeps none to be replaced, such as /dev/null or a terminal: several outputs may go
-/// there.
+/// A device that takes characters and keeps none to be replaced, such as /dev/null or a terminal: several outputs may
+/// go there.
 #[cfg(unix)]
 pub(super) fn is_shareable(found: &Metadata) -> bool {
     use std::os::unix::fs::FileTypeExt;

@@ -1,5 +1,5 @@
-//! Temporary files, and other things that go with the process. They are listed, so that a signal can take them away, and locked for as long as their process lives,
-//! so that a later run knows what a killed one has left.
+//! Temporary files, and other things that go with the process. They are listed, so that a signal can take them away,
+//! and locked for as long as their process lives, so that a later run knows what a killed one has left.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
@@ -21,7 +21,7 @@ const LONG: Duration = Duration::from_secs(60);
 
 /// What a signal, or a reader that leaves, has to look after.
 struct Present {
-    /// Files and folders to be taken away.
+    /// Files and folders to be removed.
     temporary: Vec<PathBuf>,
     /// Folders in which what killed runs have left was looked for.
     searched: Vec<PathBuf>,
@@ -50,8 +50,8 @@ pub(crate) fn keep(paths: &[PathBuf], what: Option<String>) {
     present.kept = what;
 }
 
-/// Starts or ends a process, which a signal waits for. What is given is the process that runs from then on: it ends with
-/// ours, with all of its group.
+/// Starts or ends a process, which a signal waits for. What is given is the process that runs from then on: it ends
+/// with ours, with all of its group.
 pub(crate) fn attend(change: &mut dyn FnMut() -> Option<u32>) {
     let mut present = present();
     present.started = change();
@@ -62,7 +62,7 @@ pub(crate) fn kept() -> Option<String> {
     present().kept.clone()
 }
 
-/// Takes all temporary files away, for a process that ends now, which is the last that `end` does. It is given what is
+/// Removes all temporary files, for a process that ends now, which is the last that `end` does. It is given what is
 /// kept.
 pub(crate) fn abandon(end: impl FnOnce(Option<&str>)) {
     let mut present = present();
@@ -105,7 +105,7 @@ impl Temporary {
         }
         let mut present = present();
         let (file, path) = builder.tempfile_in(folder)?.into_parts();
-        // Where files cannot be locked, nothing is taken away that is left.
+        // Where files cannot be locked, nothing that is left is removed.
         let _ = file.try_lock();
         present.temporary.push(path.to_path_buf());
         drop(present);
@@ -221,7 +221,7 @@ impl Drop for Folder {
     }
 }
 
-/// Takes away what killed runs have left in a folder, once.
+/// Removes what killed runs have left in a folder, once.
 fn search(folder: &Path) {
     let mut present = present();
     if present.searched.iter().any(|searched| searched == folder) {
@@ -243,7 +243,7 @@ fn maker(name: &OsStr) -> Option<u32> {
     number.parse().ok().filter(|_| random)
 }
 
-/// Takes a temporary file or folder away if it is this user's and its process is surely gone. One that is still used is
+/// Removes a temporary file or folder if it is this user's and its process is surely gone. One that is still used is
 /// locked, but for the moment after it was made.
 #[cfg(unix)]
 fn remove_if_left(path: &Path, process: u32) {
@@ -265,7 +265,7 @@ fn remove_if_left(path: &Path, process: u32) {
     // The name may mean another file by now.
     let same = path.symlink_metadata().is_ok_and(|now| (now.dev(), now.ino()) == (found.dev(), found.ino()));
     if same && (gone || written || old) {
-        // What stays is no harm.
+        // What stays does no harm.
         let _ = if found.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     }
 }

@@ -3,7 +3,7 @@
 use stepwave_models::ModelError;
 use stepwave_netlist::did_you_mean;
 
-/// Why a sweep cannot be made, gone on with, or joined; every message names the value and the way out.
+/// Why a sweep cannot be made, continued, or joined; every message names the value and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// A word is not a range.
@@ -73,7 +73,7 @@ pub enum StudyError {
     Resume {
         /// The final file.
         file: String,
-        /// Why not, and the way out.
+        /// Why not, and the remedy.
         what: String,
     },
     /// Parts that do not make one sweep.

@@ -169,7 +169,7 @@ impl Source {
     }
 }
 
-/// Joins all parts of a sweep, in whatever order they are given, and writes the rows as Parquet or as CSV; gives their
+/// Joins all parts of a sweep, in any order, and writes the rows as Parquet or as CSV; gives their
 /// number.
 ///
 /// # Errors

@@ -1,5 +1,5 @@
-//! Parts of a sweep as files: a part says in itself what it is part of, whether it is whole, and whether it is as it was
-//! written.
+//! Parts of a sweep as files: a part says in itself what it is part of, whether it is whole, and whether it is as it
+//! was written.
 //!
 //! In CSV a part begins with a line `# part of a stepwave sweep: {…}`; a line `# check of the lines since the last: …`
 //! follows each block of rows, and `# end of the part: N rows, check …` the last. The checks are CRC-32 of the bytes of
@@ -59,7 +59,7 @@ impl PartHead {
         Err(format!("it is a part in form {}, but form {SCHEMA} is needed: make it anew with --shard", head.schema))
     }
 
-    /// A text is one, of whatever version.
+    /// Whether a text is one, of any version.
     pub(super) fn is_one(text: &str) -> bool {
         serde_json::from_str::<PartHead>(text).is_ok()
     }

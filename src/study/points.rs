@@ -11,9 +11,9 @@ use super::StudyError;
 use super::space::{Drawn, Site, Space};
 use super::table::fields;
 
-/// Reads geometries for a model: `to_x,to_y` and whatever else is not as by default: `from_x`, `center_x`, `direction`
-/// (`cw`, `ccw`), and of conics `curve`, `size_a`, `size_b`, `opens`. The two radii of an arc may differ by `radii` BLU
-/// beyond what rounding makes.
+/// Reads geometries for a model: `to_x,to_y` and every other column that is not as by default: `from_x`, `center_x`,
+/// `direction` (`cw`, `ccw`), and of conics `curve`, `size_a`, `size_b`, `opens`. The two radii of an arc may differ by
+/// `radii` BLU beyond what rounding makes.
 ///
 /// # Errors
 /// The file cannot be read, or has a mistake, which is reported with its line.

@@ -13,7 +13,7 @@ pub enum Drawn {
     Line,
     /// Arcs, or full circles.
     Arc,
-    /// Arcs with a way in z.
+    /// Arcs with a travel in z.
     Helix,
     /// Ellipses of two semi-axes.
     Ellipse,

@@ -1,4 +1,4 @@
-//! The rows of a sweep on their way to the final file, so that a sweep that was stopped can go on.
+//! The rows of a sweep before they get to the final file, so that a sweep that was stopped can continue.
 //!
 //! Next to the final `F` are `.F.sweep.part`, the rows so far as CSV, and `.F.sweep.journal`: its first line says which
 //! sweep it is, each further one how far the part was when a chunk had been written whole, and the check of all bytes
@@ -219,15 +219,15 @@ impl Stage {
         self.journal.append(&self.mark)
     }
 
-    /// Takes everything away.
+    /// Removes everything.
     ///
     /// # Errors
-    /// A file cannot be taken away.
+    /// A file cannot be removed.
     pub fn discard(self) -> Result<(), StudyError> {
         self.finish(false)
     }
 
-    /// All rows are there: gives them their final name if they are wanted as CSV, and takes away what is next to it.
+    /// All rows are there: gives them their final name if they are wanted as CSV, and removes what is next to it.
     ///
     /// # Errors
     /// A file cannot be written.

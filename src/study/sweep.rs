@@ -110,7 +110,7 @@ impl Sweep {
         self.columns().iter().position(|column| column.name == name)
     }
 
-    /// All that the rows follow from, whatever the part.
+    /// All that the rows follow from, for every part.
     #[must_use]
     pub fn identity(&self) -> Json {
         let ranges = |ranges: &[super::Range]| ranges.iter().map(super::Range::to_string).collect::<Vec<_>>();

@@ -126,7 +126,7 @@ impl Instruments {
                 vec![(gain[0], -dy?), (gain[1], dx?)]
             }
             (Ideal::Circle { start, square }, Curve::Arc(arc)) => {
-                // So that every position, of whatever bits, is within reach of the centre.
+                // So that every position, of any width, is within reach of the centre.
                 let far = |&c: &i64| c.unsigned_abs() >= 1 << (self.reach - 1);
                 if arc.center().iter().any(far) {
                     return None;

@@ -27,7 +27,7 @@ impl Testbench {
 
     /// The same machine, which takes load words that do not fit as its registers take results that do not fit: with
     /// `--on-overflow wrap` cut, with `saturate` at an end of the range. [`cut_words`](Self::cut_words) lists them. Without
-    /// this such words are refused whatever the hardware, so that no statement about all geometries rests on another
+    /// this such words are refused for all hardware, so that no statement about all geometries rests on another
     /// one.
     #[must_use]
     pub fn as_hardware_loads(self) -> Testbench {

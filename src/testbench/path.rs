@@ -4,7 +4,7 @@ use fearless_simd::{Level, dispatch};
 use serde_json::json;
 use stepwave_engine::Rows;
 use stepwave_models::Port;
-use stepwave_nc::{Curve, Gauge, Screen};
+use stepwave_nc::{BatchGauge, Curve, Gauge};
 use stepwave_netlist::bits::to_signed;
 
 use super::checkpoint::{GREATEST, Memory, recalled};
@@ -36,7 +36,7 @@ pub struct PathWatch<'a> {
     /// A step has many pulses, and each is judged.
     every_pulse: bool,
     /// Sorts out blocks of samples in which no greater error is.
-    screen: Option<Screen>,
+    batch: Option<BatchGauge>,
     level: Level,
     /// The first greatest so far.
     pub worst: Option<WorstError>,
@@ -50,21 +50,21 @@ impl<'a> PathWatch<'a> {
         let tool = Tool::of(bench);
         let gauge = curve.gauge();
         let widest = ports.iter().map(|port| port.width.get()).max().unwrap_or(64);
-        let screen = gauge.screen(1 << (widest - 1)).filter(|_| ports.len() == 2 && tool.is_trusted());
+        let batch = gauge.batch(1 << (widest - 1)).filter(|_| ports.len() == 2 && tool.is_trusted());
         let (columns, level) = (StepColumns::of(bench), Level::new());
         let every_pulse = bench.hardware().sampling.is_some();
-        PathWatch { gauge, every_pulse, columns, ports, rows: 0, tool, moved: false, screen, level, worst: None }
+        PathWatch { gauge, every_pulse, columns, ports, rows: 0, tool, moved: false, batch, level, worst: None }
     }
 
     /// No sample of the block lies farther off than the worst so far.
     fn is_no_worse(&self, rows: &Rows) -> bool {
-        let (Some(screen), Some(worst), [x, y]) = (self.screen, &self.worst, &self.columns.positions[..]) else {
+        let (Some(batch), Some(worst), [x, y]) = (self.batch, &self.worst, &self.columns.positions[..]) else {
             return false;
         };
         let (xs, ys) = (rows.column(*x), rows.column(*y));
         let [wx, wy] = [self.ports[0].width, self.ports[1].width];
         let positions = xs.iter().zip(ys).map(|(x, y)| [to_signed(wx, *x), to_signed(wy, *y)]);
-        let greatest = dispatch!(self.level, _simd => screen.greatest(positions));
+        let greatest = dispatch!(self.level, _simd => batch.greatest(positions));
         greatest <= worst.error
     }
 }

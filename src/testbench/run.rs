@@ -186,7 +186,7 @@ impl<'a, 'o> Run<'a, 'o> {
         Ok(())
     }
 
-    /// One clock, whatever the machine says.
+    /// One clock, regardless of the machine's outputs.
     fn clock(&mut self) -> Result<(), ObserverError> {
         if self.rows.is_full() {
             self.drain()?;

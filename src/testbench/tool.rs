@@ -39,7 +39,7 @@ impl Tool {
         }
     }
 
-    /// The counters of all axes say where the tool is, whatever the run.
+    /// The counters of all axes say where the tool is, in every run.
     pub(super) fn is_trusted(&self) -> bool {
         self.trusted
     }

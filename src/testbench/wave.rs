@@ -38,7 +38,7 @@ pub struct Window {
 impl Window {
     /// The rows of a block that fall between its first and last clock.
     fn rows(&self, rows: &Rows) -> Range<usize> {
-        // A clock beyond the block is after its last row, whatever the size of a usize.
+        // A clock beyond the block is after its last row, for any size of a usize.
         let index = |clock: u64| {
             let index = usize::try_from(clock.saturating_sub(rows.first_clock()));
             index.map_or(rows.len(), |index| index.min(rows.len()))

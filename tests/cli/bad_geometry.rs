@@ -1,4 +1,4 @@
-//! Geometry that cannot be interpolated is refused with the value, the limit and the way out.
+//! Geometry that cannot be interpolated is refused with the value, the limit and the remedy.
 
 use super::{refused, refused_words, run_refused};
 

@@ -111,7 +111,7 @@ fn two_names_of_one_file_are_one_output() {
         assert!(ran.code == 2 && ran.err.contains("two outputs would go to "), "{words}: {ran:?}");
         assert!(contents(&folder) == before, "{words}");
     }
-    // An output may not have the name of the rows on their way to another.
+    // An output may not have the name of the rows that are to become another.
     let ran = folder.run("sweep ppc-line --to-grid 0..5x0..5 --csv q.csv --plot .q.csv.sweep.part");
     assert!(ran.code == 2 && ran.err.contains("two outputs would go to "), "{ran:?}");
     assert!(ran.err.contains(".q.csv.sweep.part"), "{ran:?}");

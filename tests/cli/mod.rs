@@ -87,7 +87,7 @@ impl Folder {
         Ran::new(self.command().args(words).output().expect("the program starts"))
     }
 
-    /// Runs the program and wants a good end with nothing on standard error; gives standard output.
+    /// Runs the program and expects a good end with nothing on standard error; returns standard output.
     pub(crate) fn good(&self, words: &str) -> String {
         let ran = self.run(words);
         assert_eq!((ran.code, ran.err.as_str()), (0, ""), "stepwave {words}");

@@ -1,4 +1,4 @@
-//! A name that nothing bears is refused with the one that was probably meant.
+//! An unknown name is refused with the one that was probably meant.
 
 use super::Folder;
 

@@ -129,7 +129,7 @@ fn without_an_overflow_all_three_choices_give_the_same_run() {
 }
 
 /// With `total` a diagonal step counts two pulses: from an odd count the counter wraps around past 0, and the machine
-/// goes round and round.
+/// cycles.
 const ENDLESS: [&str; 2] = [
     "run vector-arc --from 1,0 --to -2,0 --cw --end-point total --on-overflow wrap",
     "run mindev-arc --from 1,0 --to -2,0 --cw --end-point total --on-overflow wrap",
@@ -257,7 +257,7 @@ fn a_load_word_is_cut_as_hardware_cuts_it_and_the_report_says_so() {
 #[test]
 fn a_machine_whose_cut_words_never_let_it_end_is_given_up() {
     let folder = Folder::new();
-    // 1000 in 9 bits is 488, which the long way never comes to: both counters run round and round.
+    // 1000 in 9 bits is 488, which the long travel never reaches: both counters wrap again and again.
     let ran =
         folder.run("run ppc-arc --from 1000,0 --to 0,1000 --ccw --width xi=9 --on-overflow wrap --max-clocks 100000");
     assert_eq!(ran.code, 1, "{}", ran.out);

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::{Folder, engines, good};
 
-/// The report of a run, whatever it came to.
+/// The report of a run, with any result.
 fn report(words: &str) -> Value {
     let folder = Folder::new();
     folder.run(&format!("run {words} --json r.json"));

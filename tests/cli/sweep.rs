@@ -1,4 +1,4 @@
-//! `sweep`: rows are what single runs report, whatever the threads, parts and interruptions.
+//! `sweep`: rows are what single runs report, for any threads, parts and interruptions.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Native code against the word engine, on machines made for its assumptions: registers that go round, that stand for a
+//! Native code against the word engine, on machines made for its assumptions: registers that cycle, that hold for a
 //! long time and then do something else, and inputs that change once the loop takes them for constants.
 
 use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};

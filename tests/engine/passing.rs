@@ -5,7 +5,7 @@ use stepwave_engine::{Engine, EngineKind, Idle, Rows, Stop, Watch, passing_after
 use stepwave_netlist::dsl::Module;
 use stepwave_netlist::{Design, Net, elaborate};
 
-/// A phase that steps a counter, which goes round and is kept in a copy at every second step; and a flag.
+/// A phase that steps a counter, which wraps and is kept in a copy at every second step; and a flag.
 struct Stepper {
     design: Design,
     rate: Net,

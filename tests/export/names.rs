@@ -1,4 +1,4 @@
-//! Names are kept, whatever they are, and what is added never meets them.
+//! All names are kept, and added names never collide with them.
 
 use stepwave_export::{Options, verilog};
 use stepwave_netlist::cells::Format;

@@ -1,5 +1,5 @@
 //! Load words that do not fit in their registers: refused where overflows trap, cut or held at an end of the range
-//! otherwise, whatever the model and the register; position counters that overflow, and the pulses that do not.
+//! otherwise, for every model and register; position counters that overflow, and the pulses that do not.
 
 use stepwave::testbench::{Ending, PathWatch, Testbench};
 use stepwave_engine::EngineKind;

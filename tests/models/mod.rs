@@ -135,7 +135,7 @@ fn assert_equal(what: &str, ran: &Ran, reference: &Table) {
     assert_eq!(ran.rows.len(), reference.rows.len(), "{what}: number of steps");
 }
 
-/// Runs on one engine, compares with the reference, and wants a clean end.
+/// Runs on one engine, compares with the reference, and expects a clean end.
 fn check(model: &str, curve: &Curve, choices: &Options, engine: EngineKind, reference: &Table) {
     let what = format!("{model} {curve:?} {choices:?} on {}", engine.name());
     let ran = run(model, curve, choices, engine);

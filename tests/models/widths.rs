@@ -1,4 +1,4 @@
-//! Whatever widths are chosen, a model builds, or refuses them with the user's way out: its netlist is never wrong.
+//! With any widths a model builds, or refuses them with a remedy for the user: its netlist is never wrong.
 
 use stepwave_models::options::{
     ADDER, BEATS, CASCADE, COMPARE, END_POINT, FORM, FRACTION, NORMALIZE, ON_OVERFLOW, OVERRIDE, PICK_OFF, RADIX, STEP,

@@ -2,7 +2,7 @@
 
 use stepwave_netlist::{elaborate, text};
 
-/// What is said of a text, line by line, without the code that all of them bear.
+/// What is said of a text, line by line, without the code that all of them have.
 fn said(text: &str) -> Vec<String> {
     let said = text::parse(text).expect_err("a mistake is reported").to_string();
     said.lines().map(|line| line.strip_suffix(" [Syntax]").unwrap().to_owned()).collect()

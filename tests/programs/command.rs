@@ -124,7 +124,7 @@ fn inverse_time_gives_every_family_the_same_time() {
 
 #[test]
 fn normalisation_lets_a_slow_pulse_source_reach_the_feed() {
-    // A long block makes the registers wide; the short one then wants a fast source.
+    // A long block makes the registers wide; the short one then needs a fast source.
     let text = "G00 X100\nG01 Y0.1 F300\n";
     let folder = Folder::new();
     let plain = report(&folder, text, "--method dda --clock-hz 1e5");

@@ -117,7 +117,7 @@ fn a_wave_that_would_be_large_is_reported_before_it_is_written() {
 
 #[test]
 fn the_estimate_is_near_the_wave_that_comes() {
-    // One way a hundred times as long would be too large; its hundredth part is written.
+    // One path a hundred times as long would be too large; its hundredth part is written.
     for options in ["--method ppc", "--method dda", "--method cim --no-clk", "--method mindev --trace phase --trace x"]
     {
         let folder = Folder::new();

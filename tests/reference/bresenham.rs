@@ -12,7 +12,7 @@ use super::{AXES, EndPoint, Form, Table, counter_columns, per_axis_columns};
 /// The columns are `cntx`, `cnty`, …, then `e` (the steps left), then `dx`, `dy`, …, then `x`, `y`, ….
 ///
 /// With `Magnitude` and `strictly_greater` a block of N = 1 makes no pulse at all; with `Signed` and
-/// not `strictly_greater` an axis of no way makes one in it, in the positive direction.
+/// not `strictly_greater` an axis without travel makes one in it, in the positive direction.
 ///
 /// Source: the step counters of open firmware for printers and mills.
 ///

@@ -198,7 +198,7 @@ fn decades_give(digits: u32, word: i64, q: i64) -> bool {
     pulse
 }
 
-/// The axes of a line under way.
+/// The axes of a line in progress.
 struct Line {
     /// The signed lengths; their magnitudes are the coefficients.
     d: Vec<i64>,

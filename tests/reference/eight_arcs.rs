@@ -98,7 +98,7 @@ fn inward_or_outward(arc: &Arc, kind: ArcKind) -> [bool; 2] {
     if (arc.f >= 0) == axis_is_inner { [axis == 0, axis == 1] } else { [true, true] }
 }
 
-/// An arc under way.
+/// An arc in progress.
 struct Arc {
     /// The centre in machine coordinates.
     center: [i64; 2],

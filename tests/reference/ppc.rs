@@ -122,7 +122,7 @@ pub(crate) fn ppc_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise:
     arc.table
 }
 
-/// An arc under way.
+/// An arc in progress.
 struct Arc {
     /// The centre in machine coordinates.
     center: [i64; 2],

@@ -26,8 +26,8 @@ pub(super) fn variables(header: &Header) -> Vec<(String, &Var)> {
     found
 }
 
-/// Reads a wave with the crate `vcd`. On the way: every variable is dumped once in `$dumpvars`, then changes only; values
-/// are as long as their variable is wide.
+/// Reads a wave with the crate `vcd`. It also checks: every variable is dumped once in `$dumpvars`, then changes only;
+/// values are as long as their variable is wide.
 fn read(vcd: &[u8]) -> Shown {
     let mut parser = vcd::Parser::new(vcd);
     let header = parser.parse_header().expect("a header");

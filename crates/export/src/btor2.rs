@@ -116,7 +116,7 @@ impl Model<'_> {
         match (self.lines.get(&net), self.netlist.cell(net).op) {
             (Some(&line), _) => line,
             (None, Op::Const(value)) => self.constant(self.netlist.width(net), value, None),
-            // None: whatever is read is live, and comes in the order of the design.
+            // None: everything that is read is live, and comes in the order of the design.
             (None, _) => 0,
         }
     }

@@ -1,4 +1,4 @@
-//! The ideal curve of a block, whatever its kind.
+//! The ideal curve of a block, of any kind.
 
 use crate::{Arc, Conic, Helix, Line};
 

@@ -87,23 +87,23 @@ impl Gauge<'_> {
 
 /// The greatest deviation of many positions at once.
 #[derive(Clone, Copy, Debug)]
-pub struct Screen(Plane);
+pub struct BatchGauge(Plane);
 
 impl Gauge<'_> {
-    /// A screen for positions of two axes of which every coordinate lies in `-reach..=reach`; `None` where the curve or
-    /// they reach so far that it could err, and for a conic or a helix.
+    /// A gauge for positions of two axes of which every coordinate lies in `-reach..=reach`; `None` where the curve or
+    /// they reach so far that it could be wrong, and for a conic or a helix.
     #[must_use]
-    pub fn screen(&self, reach: u64) -> Option<Screen> {
+    pub fn batch(&self, reach: u64) -> Option<BatchGauge> {
         let plane = self.plane?;
         let (Plane::Line { from: [x, y], .. } | Plane::Circle { center: [x, y], .. }) = plane;
         let farthest = x.unsigned_abs().max(y.unsigned_abs()).checked_add(reach)?;
-        (farthest < NEAR.unsigned_abs()).then_some(Screen(plane))
+        (farthest < NEAR.unsigned_abs()).then_some(BatchGauge(plane))
     }
 }
 
-impl Screen {
+impl BatchGauge {
     /// The greatest deviation of some positions, in BLU; 0 without a position. Branchless, for hot loops: within the
-    /// reach that the screen was made for no product and no sum leaves `i64`, so that none of them is checked.
+    /// reach that the gauge was made for no product and no sum leaves `i64`, so that none of them is checked.
     #[inline(always)]
     #[must_use]
     pub fn greatest(&self, positions: impl Iterator<Item = [i64; 2]>) -> f64 {
@@ -154,22 +154,22 @@ mod tests {
     }
 
     #[test]
-    fn a_screen_gives_the_greatest_deviation_and_refuses_what_it_cannot() -> Result<(), GeometryError> {
+    fn a_batch_gauge_gives_the_greatest_deviation_and_refuses_what_it_cannot() -> Result<(), GeometryError> {
         let line: Curve = Line::new(vec![3, -2], vec![90, 71])?.into();
         let circle: Curve = Arc::new([30, 40], [30, 40], [-5, 6], Direction::Clockwise)?.into();
         let far: Curve = Line::new(vec![1 << 30, 0], vec![(1 << 30) + 9, 5])?.into();
         for curve in [line, circle] {
-            let (gauge, screen) = (curve.gauge(), curve.gauge().screen(1000).expect("a screen"));
+            let (gauge, batch) = (curve.gauge(), curve.gauge().batch(1000).expect("a batch gauge"));
             let some = || (0..500_i64).map(|step| [step * 37 % 200 - 99, step * 53 % 150 - 80]);
             // Divided, they lie inside the circle, where the nearest to its centre is the worst.
             for (count, divided) in [0, 1, 2, 17, 500].into_iter().flat_map(|count| [(count, 1), (count, 9)]) {
                 let positions = || some().take(count).map(|position| position.map(|offset| offset / divided));
                 let each = positions().map(|position| gauge.deviation(&position));
-                assert_eq!(screen.greatest(positions()), each.fold(0.0, f64::max), "{curve:?}");
+                assert_eq!(batch.greatest(positions()), each.fold(0.0, f64::max), "{curve:?}");
             }
-            assert!(gauge.screen(1 << 31).is_none() && gauge.screen(u64::MAX).is_none());
+            assert!(gauge.batch(1 << 31).is_none() && gauge.batch(u64::MAX).is_none());
         }
-        assert!(far.gauge().screen(1 << 29).is_some() && far.gauge().screen(1 << 30).is_none());
+        assert!(far.gauge().batch(1 << 29).is_some() && far.gauge().batch(1 << 30).is_none());
         Ok(())
     }
 

@@ -43,7 +43,7 @@ pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
 pub use contour::{Cause, Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove};
 pub use curve::{Curve, OUTLINE_LIMIT};
 pub use error::{End, GeometryError};
-pub use gauge::{Gauge, Screen};
+pub use gauge::{BatchGauge, Gauge};
 pub use helix::{Helix, HelixSector};
 pub use limit::{AXES_MAX, AXES_MIN, AXIS_LETTERS, CONIC_LIMIT, COORDINATE_LIMIT, PARABOLA_LIMIT};
 pub use line::Line;

@@ -162,7 +162,7 @@ impl Rounder {
 
 /// The nearest whole point.
 fn rounded(point: Point) -> Result<[i64; 3], GeometryError> {
-    // Beyond the limit whatever is not finite or does not fit: the cast saturates.
+    // Beyond the limit if it is not finite or does not fit: the cast saturates.
     #[allow(clippy::cast_possible_truncation)]
     let whole = point.map(|c| if c.is_nan() { i64::MAX } else { c.round() as i64 });
     crate::limit::check_coordinates(&whole)?;

@@ -110,7 +110,7 @@ impl Bits {
     #[must_use]
     pub fn exact(width: Width, value: i128, signed: bool) -> Option<Bits> {
         let (least, greatest) = width.range(signed);
-        // The low 64 bits of the two's complement are the value's bits, whatever its sign.
+        // The low 64 bits of the two's complement are the value's bits, for either sign.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let low = value as u64;
         (least..=greatest).contains(&value).then(|| Bits::truncated(width, low))

@@ -164,7 +164,7 @@ pub struct ScopeId(
 );
 
 impl ScopeId {
-    /// The top scope, which bears the netlist's own name.
+    /// The top scope, which has the netlist's own name.
     pub const TOP: ScopeId = ScopeId(0);
 
     /// Index into [`Netlist::scopes`].
@@ -403,7 +403,7 @@ impl Netlist {
         self.names.iter().find(|named| named.net == net)
     }
 
-    /// The net that bears this name, given as leaf name or as dotted path.
+    /// The net of this name, given as leaf name or as dotted path.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<&NamedNet> {
         self.names.iter().find(|named| named.name == name || self.path(named) == name)

@@ -21,7 +21,7 @@ pub enum Code {
     UndrivenRegister,
     /// A register was given a next value twice.
     DrivenTwice,
-    /// Two signals of one scope, or two scopes, bear the same name.
+    /// Two signals of one scope, or two scopes, have the same name.
     DuplicateName,
     /// A name that wave files cannot carry.
     BadName,

@@ -97,7 +97,7 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
     let nowhere = |named: &&NamedNet| named.net.index() >= count || named.scope.index() >= netlist.scopes.len();
     let ghosts: Vec<Diagnostic> = netlist.names.iter().filter(nowhere).map(ghost).collect();
     if !ghosts.is_empty() {
-        // The messages below describe nets by their names, which would lead nowhere.
+        // The messages below look nets up by their names, which would fail.
         return ghosts;
     }
     let mut found = Vec::new();

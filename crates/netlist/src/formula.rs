@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A polynomial with whole coefficients of named numbers: registers by their names, and whatever else the reader of the
+/// A polynomial with whole coefficients of named numbers: registers by their names, and what else the reader of the
 /// formula knows by a name.
 ///
 /// ```

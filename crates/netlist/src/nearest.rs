@@ -3,7 +3,7 @@
 /// Longer names are not compared.
 const LONGEST: usize = 100;
 
-/// ` (did you mean 'NAME'?)` with the known name that differs from the one given by a slip of the pen; nothing where none
+/// ` (did you mean 'NAME'?)` with the known name that differs from the one given by a typing error; nothing where none
 /// does. Capitals do not count, nor whether words are joined by `-` or `_`.
 ///
 /// ```

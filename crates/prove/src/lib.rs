@@ -4,7 +4,7 @@
 //! certificate that is checked without a search; it is the one to try first. [`bitwise`] follows the bits of *one
 //! width*, clock by clock, for machines whose counters run by themselves.
 //!
-//! A down-counter of two bits, from netlist to certificate: whatever is loaded, it never counts below 0 and it ends.
+//! A down-counter of two bits, from netlist to certificate: for every load it never counts below 0 and it ends.
 //!
 //! ```
 //! use stepwave_netlist::formula::{Symbol, name, number};

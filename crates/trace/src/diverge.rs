@@ -76,7 +76,7 @@ pub enum CompareError {
     /// Not a pattern.
     #[error("`{pattern}` is not a glob: {reason}")]
     BadGlob { pattern: String, reason: String },
-    /// A rule of the map without effect is a slip of the pen.
+    /// A rule of the map without effect is a typing mistake.
     #[error("the map renames `{from}`, but the first wave has no such signal or scope{hint}")]
     UnusedMap { from: String, hint: String },
     /// Two signals of A would be compared with one of B.

@@ -201,7 +201,7 @@ impl Wave {
     /// says; a file without a clock is an error only when cycles are asked for.
     ///
     /// # Errors
-    /// [`WaveError`], whatever is wrong with the file.
+    /// [`WaveError`], if anything is wrong with the file.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, WaveError> {
         let path = path.as_ref();
         let name = path.display().to_string();

@@ -20,8 +20,8 @@ pub(super) const LONG: &[&str] = &[", x long", ", y long"];
 /// Those of either longer axis, and those at 45 degrees.
 pub(super) const LONGER: &[&str] = &[", x longer", ", y longer", ", 45 degrees"];
 
-/// The lines of each quadrant, those of each of the `lengths` by themselves; if wanted, with half of the long way, rounded
-/// down, as a number of its own.
+/// The lines of each quadrant, those of each of the `lengths` by themselves; if wanted, with half of the long travel,
+/// rounded down, as a number of its own.
 pub(super) fn kinds(lengths: &[&str], halved: bool) -> Vec<Kind> {
     let (a, b) = (|| name("|dx|"), || name("|dy|"));
     let mut kinds = Vec::new();

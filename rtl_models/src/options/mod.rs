@@ -61,7 +61,7 @@ pub enum Values<T: 'static> {
     },
 }
 
-/// What the values of an option are like: by it, a list of them is taken apart.
+/// The shape of an option's values, by which a list of them is split.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Shape {
     /// Words.
@@ -97,7 +97,7 @@ pub enum Shape {
     Commas,
 }
 
-/// An option, whatever the type of its values.
+/// An option, with values of any type.
 pub trait AnyOption: Sync {
     /// Name on the command line, without its dashes.
     fn name(&self) -> &'static str;

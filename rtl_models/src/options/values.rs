@@ -72,7 +72,7 @@ pub enum Preset {
     Value(u64),
 }
 
-/// A length in millionths of a BLU, or whatever else is written with up to six decimals.
+/// A length in millionths of a BLU, or another number with up to six decimals.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub struct Millionths(pub u64);
 

@@ -19,7 +19,7 @@ pub const JR: PerAxis = Reg::each(per_axis!("jr"), N, "remainder J_R of each axi
 ///
 /// Added in parallel, the carry comes with the sum, in radix 10 from BCD digit adders. A serial integrator adds the
 /// lowest digits of J_V and J_R and the carry that it kept (`carry`, 1 bit); J_R shifts right and takes in the digit of
-/// the sum. J_V, as wide as J_R, must [go round](rotated) meanwhile. After the last digit J_R is the sum, and the carry
+/// the sum. J_V, as wide as J_R, must [rotate](rotated) meanwhile. After the last digit J_R is the sum, and the carry
 /// the pulse.
 pub fn integrator<'m>(
     m: Scope<'m>,

@@ -45,7 +45,7 @@ pub enum Task<'m> {
     Root(Signal<'m>),
     /// Nothing, until this is 1 (1 bit).
     Wait(Signal<'m>),
-    /// Nothing. At an edge with 1 (1 bit) the row applies in whatever state it is.
+    /// Nothing. At an edge with 1 (1 bit) the row applies in every state.
     Start(Signal<'m>),
 }
 

@@ -59,10 +59,10 @@ impl Kept {
         self.stage.as_mut().map_or(Ok(()), |stage| stage.replay(each))
     }
 
-    /// Takes everything away.
+    /// Removes everything.
     ///
     /// # Errors
-    /// A file cannot be taken away.
+    /// A file cannot be removed.
     pub(super) fn discard(self) -> Result<(), StudyError> {
         self.finish(false)
     }

@@ -6,7 +6,8 @@ use stepwave_nc::{Curve, Helix};
 
 use super::sizes;
 
-/// The arcs inside a quadrant of k-bit coordinates, each with every way in z that has k bits; or the extreme ones of both.
+/// The arcs inside a quadrant of k-bit coordinates, each with every travel in z that has k bits; or the extreme ones of
+/// both.
 pub(super) fn helices(k: u32, all: bool) -> Vec<Curve> {
     let region = Region::QuadrantArcs;
     let kinds = region.kinds();

@@ -71,7 +71,7 @@ impl Journal {
                 // Where files cannot be locked, two sweeps of one name are the user's to avoid.
                 Err(TryLockError::Error(_)) | Ok(()) => {}
             }
-            // Another sweep may have ended and taken it away.
+            // Another sweep may have ended and removed it.
             if !left::is_at(&file, path)? {
                 continue;
             }

@@ -22,7 +22,7 @@ fn models(kind: fn(&CurveKind) -> bool) -> impl Iterator<Item = &'static Model> 
 }
 
 /// Runs all curves of one hardware in lanes, and wants of each what it comes to alone; gives how many had to be run
-/// alone all the same.
+/// alone anyway.
 fn assert_measured_as_alone(model: &Model, curves: &[Curve], choices: &Options, limit: u64) -> usize {
     let Ok(hardware) = model.plan(&curves[0], choices) else { return 0 };
     let bench = Testbench::of_hardware(model, hardware).unwrap();

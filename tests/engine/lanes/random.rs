@@ -10,7 +10,7 @@ use super::assert_each_as_alone;
 use crate::engine::random::config;
 use crate::engine::random::recipe::{build, recipe, value};
 
-/// Numbers that pick nets of whatever netlist there is.
+/// Numbers that pick nets of any netlist.
 #[derive(Clone, Debug)]
 struct Plan {
     done: u16,
@@ -64,7 +64,7 @@ fn watch(design: &Design, plan: &Plan) -> LaneWatch {
     let observe = nets.iter().enumerate().flat_map(|(index, &net)| {
         let signed = index % 2 == 0;
         let counted = nets[index..].iter().copied().take(1 + index % 3).collect();
-        // Sums that 32 bits hold, whatever the clocks, so that narrow lanes are tried too.
+        // Sums that 32 bits hold, for any number of clocks, so that narrow lanes are tried too.
         let bits = netlist.width(net).get();
         let sum = (bits <= 16).then_some(Observe::Sum { net, bits: 32 });
         let gaps = (bits <= 16).then_some(Observe::RootGaps { base: net, offset: nets[index / 2], bits: 32 });

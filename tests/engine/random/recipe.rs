@@ -271,7 +271,7 @@ impl<'m> Kitchen<'m> {
             Operator::SaturatingAdd => left.saturating_add(self.addend(left, b)),
             Operator::SaturatingSub => left.saturating_sub(self.addend(left, b)),
             Operator::StrictAdd | Operator::StrictSub => {
-                // A net of its own, so that no other strict operator bears its name.
+                // A net of its own, so that no other strict operator has its name.
                 let left = self.scope(usize::from(c)).name(&format!("s{index}"), !left);
                 let (right, enable) = (self.addend(left, b), self.flag(c));
                 let adds = matches!(operator, Operator::StrictAdd);

@@ -176,7 +176,7 @@ fn every_quarter_ellipse_lands_exactly_by_every_method() {
                         }
                     }
                     if clockwise {
-                        // The other way round is this one with a and b exchanged.
+                        // The reverse direction is this one with a and b exchanged.
                         continue;
                     }
                     let errors = table.path().into_iter().map(|point| ellipse_distance([a, b], point));
@@ -189,7 +189,7 @@ fn every_quarter_ellipse_lands_exactly_by_every_method() {
     assert!(worst[..3].iter().all(|&worst| worst > 0.99 && worst < 1.0 + 1e-6), "{worst:?}");
     assert!(worst[2] < 0.9995 && worst[3] > 1.66 && worst[4] > 1.99, "{worst:?}");
     assert!(worst[5] > 2.1 && worst[6] < 1.2, "{worst:?}");
-    // Only the full preset lets X run out before Y is there, or the other way round.
+    // Only the full preset lets X run out before Y is there, or vice versa.
     assert_eq!(hung[..7], [0; 7]);
     assert!(hung[7] > 0, "{hung:?}");
 }

@@ -198,7 +198,7 @@ fn check_counters([dx, dy]: [i64; 2], length: i64, form: Form, strictly_greater:
         let end = match form {
             // A block of one step does not move.
             Form::Magnitude => [1, 9],
-            // An axis of no way steps.
+            // An axis without travel steps.
             Form::Signed => [1 + if dx == 0 { 1 } else { dx }, 9 + if dy == 0 { 1 } else { dy }],
         };
         assert_eq!(end_of(&table), end);

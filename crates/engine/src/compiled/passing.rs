@@ -1,7 +1,7 @@
 //! Code generation: a loop that passes over the samples in which a machine is idle.
 //!
 //! Most clocks of a machine driven by a pulse source do no more than add to its phase. The inner loop computes nothing
-//! but the running registers and whether anything else wakes; all other registers stay in it, so that whatever depends
+//! but the running registers and whether anything else wakes; all other registers stay in it, so that all that depends
 //! on them alone is computed outside.
 //!
 //! ```text

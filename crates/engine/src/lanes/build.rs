@@ -3,13 +3,13 @@
 
 use std::collections::HashMap;
 
-use super::code::{Code, Do, Operation, RegisterRow, Slot};
+use super::code::{Code, LaneOp, Operation, RegisterRow, Slot};
 use super::lower::{Lowering, Node, Value};
 use super::watch::Reduce;
 use stepwave_netlist::cells::{Net, Netlist, Op};
 
 /// What a machine is to compute; all nets are of `netlist`.
-pub(super) struct Wanted<'a> {
+pub(super) struct LaneRequest<'a> {
     /// A netlist as `passes::simplify` gives it.
     pub(super) netlist: &'a Netlist,
     /// Its inputs; one that is fixed is a constant here.
@@ -24,7 +24,7 @@ pub(super) struct Wanted<'a> {
     pub(super) any: &'a [Net],
 }
 
-impl Wanted<'_> {
+impl LaneRequest<'_> {
     /// The code.
     pub(super) fn build(&self) -> Code {
         let mut lowering = Lowering::new(self.netlist);
@@ -37,7 +37,7 @@ impl Wanted<'_> {
         let next: Vec<Option<Value>> =
             self.registers.iter().zip(&registers).map(|(&net, &own)| self.next(&mut lowering, net, own)).collect();
         let next = unshare(&mut lowering, next, &outputs);
-        let accumulators: Vec<(Value, Do<Value>)> = self
+        let accumulators: Vec<(Value, LaneOp<Value>)> = self
             .accumulators
             .iter()
             .enumerate()
@@ -58,7 +58,7 @@ impl Wanted<'_> {
                     code.inputs.extend(self.inputs.iter().position(|&input| input == net).map(|index| (index, row)));
                 }
                 Node::Register(_) | Node::Accumulator(_) => {}
-                Node::Do(what) => {
+                Node::Operation(what) => {
                     let operation = rows.place(value, what);
                     code.operations.push(operation);
                 }
@@ -94,51 +94,51 @@ impl Wanted<'_> {
 fn unshare(lowering: &mut Lowering, next: Vec<Option<Value>>, outputs: &[Value]) -> Vec<Option<Value>> {
     let mut taken: Vec<Value> = outputs.to_vec();
     let mut own = |value: Value| {
-        if matches!(lowering.nodes[value.0], Node::Do(_)) && !taken.contains(&value) {
+        if matches!(lowering.nodes[value.0], Node::Operation(_)) && !taken.contains(&value) {
             taken.push(value);
             value
         } else {
-            lowering.unshared(Node::Do(Do::Copy(value)))
+            lowering.unshared(Node::Operation(LaneOp::Copy(value)))
         }
     };
     next.into_iter().map(|value| value.map(&mut own)).collect()
 }
 
 /// The row of an accumulator and the operation that updates it.
-fn accumulate(lowering: &mut Lowering, index: usize, reduce: Reduce, nets: &[Net]) -> (Value, Do<Value>) {
+fn accumulate(lowering: &mut Lowering, index: usize, reduce: Reduce, nets: &[Net]) -> (Value, LaneOp<Value>) {
     let own = lowering.leaf(Node::Accumulator(index));
     let what = match reduce {
         Reduce::Count => {
             let any = lowering.any_set(nets);
-            Do::Count(own, any)
+            LaneOp::Count(own, any)
         }
         Reduce::Idle => {
             let half = nets.len() / 2;
             let (a, b) = (lowering.any_set(&nets[..half]), lowering.any_set(&nets[half..]));
-            Do::Idle(own, a, b)
+            LaneOp::Idle(own, a, b)
         }
         Reduce::Least { signed } | Reduce::Greatest { signed } => {
             let value = lowering.net(nets[0]);
             match (reduce, signed) {
-                (Reduce::Least { .. }, false) => Do::Least(own, value),
-                (Reduce::Least { .. }, true) => Do::LeastSigned(own, value),
-                (_, false) => Do::Greatest(own, value),
-                (_, true) => Do::GreatestSigned(own, value),
+                (Reduce::Least { .. }, false) => LaneOp::Least(own, value),
+                (Reduce::Least { .. }, true) => LaneOp::LeastSigned(own, value),
+                (_, false) => LaneOp::Greatest(own, value),
+                (_, true) => LaneOp::GreatestSigned(own, value),
             }
         }
         Reduce::Sum => {
             let [(value, bits)] = numbers(lowering, [nets[0]]);
-            Do::Sum(own, value, bits)
+            LaneOp::Sum(own, value, bits)
         }
-        Reduce::RootGaps => Do::RootGaps(own, numbers(lowering, [nets[0], nets[1]])),
+        Reduce::RootGaps => LaneOp::RootGaps(own, numbers(lowering, [nets[0], nets[1]])),
         Reduce::LeastGap { since } | Reduce::GreatestGap { since } => {
             let (since, at) = (lowering.leaf(Node::Accumulator(since)), lowering.net(nets[0]));
             match reduce {
-                Reduce::LeastGap { .. } => Do::LeastWhere(own, since, at),
-                _ => Do::GreatestWhere(own, since, at),
+                Reduce::LeastGap { .. } => LaneOp::LeastWhere(own, since, at),
+                _ => LaneOp::GreatestWhere(own, since, at),
             }
         }
-        Reduce::Since => Do::Since(own, lowering.net(nets[0])),
+        Reduce::Since => LaneOp::Since(own, lowering.net(nets[0])),
     };
     (own, what)
 }
@@ -160,7 +160,7 @@ struct Rows {
 const END: usize = usize::MAX;
 
 impl Rows {
-    fn new(lowering: &Lowering, mut roots: Vec<Value>, accumulators: &[(Value, Do<Value>)]) -> Rows {
+    fn new(lowering: &Lowering, mut roots: Vec<Value>, accumulators: &[(Value, LaneOp<Value>)]) -> Rows {
         for (_, what) in accumulators {
             what.map(|value| roots.push(value));
         }
@@ -168,7 +168,7 @@ impl Rows {
         roots.iter().for_each(|root| last_use[root.0] = Some(END));
         // Operands come before their users, so that one walk from the end reaches all that is needed.
         for index in (0..lowering.nodes.len()).rev() {
-            if let (Some(_), Node::Do(what)) = (last_use[index], lowering.nodes[index]) {
+            if let (Some(_), Node::Operation(what)) = (last_use[index], lowering.nodes[index]) {
                 what.map(|operand| {
                     let last = &mut last_use[operand.0];
                     *last = Some(last.map_or(index, |last| last.max(index)));
@@ -196,7 +196,7 @@ impl Rows {
     }
 
     /// The operation with its rows. An operand read for the last time gives its row to the result.
-    fn place(&mut self, value: Value, what: Do<Value>) -> Operation {
+    fn place(&mut self, value: Value, what: LaneOp<Value>) -> Operation {
         let mut ended = Vec::new();
         let what = what.map(|operand| {
             if self.last_use[operand.0] == Some(value.0) && !ended.contains(&operand) {

@@ -6,7 +6,7 @@ use stepwave_netlist::bits::Width;
 ///
 /// Patterns are 64-bit, of which a lane takes the top bits; a 1-bit value fills its word (see [`super::lane`]).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) enum Do<V> {
+pub(super) enum LaneOp<V> {
     /// a
     Copy(V),
     /// a ^ pattern
@@ -107,74 +107,78 @@ pub(super) enum Do<V> {
     Since(V, V),
 }
 
-impl<V: Copy> Do<V> {
+impl<V: Copy> LaneOp<V> {
     /// The same operation on other values: the only list of operands.
-    pub(super) fn map<W>(self, mut go: impl FnMut(V) -> W) -> Do<W> {
+    pub(super) fn map<W>(self, mut go: impl FnMut(V) -> W) -> LaneOp<W> {
         match self {
-            Do::Copy(a) => Do::Copy(go(a)),
-            Do::Invert(a, p) => Do::Invert(go(a), p),
-            Do::Mask(a, p) => Do::Mask(go(a), p),
-            Do::And(a, b) => Do::And(go(a), go(b)),
-            Do::AndNot(a, b) => Do::AndNot(go(a), go(b)),
-            Do::Or(a, b) => Do::Or(go(a), go(b)),
-            Do::Xor(a, b) => Do::Xor(go(a), go(b)),
-            Do::Select(a, b, c) => Do::Select(go(a), go(b), go(c)),
-            Do::Add(a, b) => Do::Add(go(a), go(b)),
-            Do::Sub(a, b) => Do::Sub(go(a), go(b)),
-            Do::AddWhere(a, b, p) => Do::AddWhere(go(a), go(b), p),
-            Do::AddEither(a, b, p, c, q) => Do::AddEither(go(a), go(b), p, go(c), q),
-            Do::AddIf(a, b, c) => Do::AddIf(go(a), go(b), go(c)),
-            Do::SubIf(a, b, c) => Do::SubIf(go(a), go(b), go(c)),
-            Do::Mul(a, b, bits) => Do::Mul(go(a), go(b), bits),
-            Do::Div(a, b, bits) => Do::Div(go(a), go(b), bits),
-            Do::Rem(a, b) => Do::Rem(go(a), go(b)),
-            Do::ShiftLeft(a, b, bits) => Do::ShiftLeft(go(a), go(b), bits),
-            Do::ShiftRight(a, b, bits, p) => Do::ShiftRight(go(a), go(b), bits, p),
-            Do::ShiftArithmetic(a, b, bits, p) => Do::ShiftArithmetic(go(a), go(b), bits, p),
-            Do::Carry(a, b) => Do::Carry(go(a), go(b)),
-            Do::Less(a, b) => Do::Less(go(a), go(b)),
-            Do::LessSigned(a, b) => Do::LessSigned(go(a), go(b)),
-            Do::LessIf(a, b, c) => Do::LessIf(go(a), go(b), go(c)),
-            Do::Equal(a, b) => Do::Equal(go(a), go(b)),
-            Do::EqualTo(a, p) => Do::EqualTo(go(a), p),
-            Do::EqualIf(a, p, b) => Do::EqualIf(go(a), p, go(b)),
-            Do::EqualIfOr(a, p, b, c) => Do::EqualIfOr(go(a), p, go(b), go(c)),
-            Do::EqualEitherOr(a, [(p, b), (q, c)], d) => Do::EqualEitherOr(go(a), [(p, go(b)), (q, go(c))], go(d)),
-            Do::AddOverflow(a, b) => Do::AddOverflow(go(a), go(b)),
-            Do::SubOverflow(a, b) => Do::SubOverflow(go(a), go(b)),
-            Do::Left(a, by, p) => Do::Left(go(a), by, p),
-            Do::Right(a, by) => Do::Right(go(a), by),
-            Do::RightSigned(a, by) => Do::RightSigned(go(a), by),
-            Do::Bit(a, by) => Do::Bit(go(a), by),
-            Do::Concat(a, b, by, p, q) => Do::Concat(go(a), go(b), by, p, q),
-            Do::Fits(a, by) => Do::Fits(go(a), by),
-            Do::UnfitIfOr(a, by, b, c) => Do::UnfitIfOr(go(a), by, go(b), go(c)),
-            Do::Count(a, b) => Do::Count(go(a), go(b)),
-            Do::Idle(a, b, c) => Do::Idle(go(a), go(b), go(c)),
-            Do::Least(a, b) => Do::Least(go(a), go(b)),
-            Do::Greatest(a, b) => Do::Greatest(go(a), go(b)),
-            Do::LeastSigned(a, b) => Do::LeastSigned(go(a), go(b)),
-            Do::GreatestSigned(a, b) => Do::GreatestSigned(go(a), go(b)),
-            Do::Sum(a, b, bits) => Do::Sum(go(a), go(b), bits),
-            Do::RootGaps(a, [(b, p), (c, q)]) => Do::RootGaps(go(a), [(go(b), p), (go(c), q)]),
-            Do::LeastWhere(a, b, c) => Do::LeastWhere(go(a), go(b), go(c)),
-            Do::GreatestWhere(a, b, c) => Do::GreatestWhere(go(a), go(b), go(c)),
-            Do::Since(a, b) => Do::Since(go(a), go(b)),
+            LaneOp::Copy(a) => LaneOp::Copy(go(a)),
+            LaneOp::Invert(a, p) => LaneOp::Invert(go(a), p),
+            LaneOp::Mask(a, p) => LaneOp::Mask(go(a), p),
+            LaneOp::And(a, b) => LaneOp::And(go(a), go(b)),
+            LaneOp::AndNot(a, b) => LaneOp::AndNot(go(a), go(b)),
+            LaneOp::Or(a, b) => LaneOp::Or(go(a), go(b)),
+            LaneOp::Xor(a, b) => LaneOp::Xor(go(a), go(b)),
+            LaneOp::Select(a, b, c) => LaneOp::Select(go(a), go(b), go(c)),
+            LaneOp::Add(a, b) => LaneOp::Add(go(a), go(b)),
+            LaneOp::Sub(a, b) => LaneOp::Sub(go(a), go(b)),
+            LaneOp::AddWhere(a, b, p) => LaneOp::AddWhere(go(a), go(b), p),
+            LaneOp::AddEither(a, b, p, c, q) => LaneOp::AddEither(go(a), go(b), p, go(c), q),
+            LaneOp::AddIf(a, b, c) => LaneOp::AddIf(go(a), go(b), go(c)),
+            LaneOp::SubIf(a, b, c) => LaneOp::SubIf(go(a), go(b), go(c)),
+            LaneOp::Mul(a, b, bits) => LaneOp::Mul(go(a), go(b), bits),
+            LaneOp::Div(a, b, bits) => LaneOp::Div(go(a), go(b), bits),
+            LaneOp::Rem(a, b) => LaneOp::Rem(go(a), go(b)),
+            LaneOp::ShiftLeft(a, b, bits) => LaneOp::ShiftLeft(go(a), go(b), bits),
+            LaneOp::ShiftRight(a, b, bits, p) => LaneOp::ShiftRight(go(a), go(b), bits, p),
+            LaneOp::ShiftArithmetic(a, b, bits, p) => LaneOp::ShiftArithmetic(go(a), go(b), bits, p),
+            LaneOp::Carry(a, b) => LaneOp::Carry(go(a), go(b)),
+            LaneOp::Less(a, b) => LaneOp::Less(go(a), go(b)),
+            LaneOp::LessSigned(a, b) => LaneOp::LessSigned(go(a), go(b)),
+            LaneOp::LessIf(a, b, c) => LaneOp::LessIf(go(a), go(b), go(c)),
+            LaneOp::Equal(a, b) => LaneOp::Equal(go(a), go(b)),
+            LaneOp::EqualTo(a, p) => LaneOp::EqualTo(go(a), p),
+            LaneOp::EqualIf(a, p, b) => LaneOp::EqualIf(go(a), p, go(b)),
+            LaneOp::EqualIfOr(a, p, b, c) => LaneOp::EqualIfOr(go(a), p, go(b), go(c)),
+            LaneOp::EqualEitherOr(a, [(p, b), (q, c)], d) => LaneOp::EqualEitherOr(go(a), [(p, go(b)), (q, go(c))], go(d)),
+            LaneOp::AddOverflow(a, b) => LaneOp::AddOverflow(go(a), go(b)),
+            LaneOp::SubOverflow(a, b) => LaneOp::SubOverflow(go(a), go(b)),
+            LaneOp::Left(a, by, p) => LaneOp::Left(go(a), by, p),
+            LaneOp::Right(a, by) => LaneOp::Right(go(a), by),
+            LaneOp::RightSigned(a, by) => LaneOp::RightSigned(go(a), by),
+            LaneOp::Bit(a, by) => LaneOp::Bit(go(a), by),
+            LaneOp::Concat(a, b, by, p, q) => LaneOp::Concat(go(a), go(b), by, p, q),
+            LaneOp::Fits(a, by) => LaneOp::Fits(go(a), by),
+            LaneOp::UnfitIfOr(a, by, b, c) => LaneOp::UnfitIfOr(go(a), by, go(b), go(c)),
+            LaneOp::Count(a, b) => LaneOp::Count(go(a), go(b)),
+            LaneOp::Idle(a, b, c) => LaneOp::Idle(go(a), go(b), go(c)),
+            LaneOp::Least(a, b) => LaneOp::Least(go(a), go(b)),
+            LaneOp::Greatest(a, b) => LaneOp::Greatest(go(a), go(b)),
+            LaneOp::LeastSigned(a, b) => LaneOp::LeastSigned(go(a), go(b)),
+            LaneOp::GreatestSigned(a, b) => LaneOp::GreatestSigned(go(a), go(b)),
+            LaneOp::Sum(a, b, bits) => LaneOp::Sum(go(a), go(b), bits),
+            LaneOp::RootGaps(a, [(b, p), (c, q)]) => LaneOp::RootGaps(go(a), [(go(b), p), (go(c), q)]),
+            LaneOp::LeastWhere(a, b, c) => LaneOp::LeastWhere(go(a), go(b), go(c)),
+            LaneOp::GreatestWhere(a, b, c) => LaneOp::GreatestWhere(go(a), go(b), go(c)),
+            LaneOp::Since(a, b) => LaneOp::Since(go(a), go(b)),
         }
     }
 }
 
-impl<V> Do<V> {
+impl<V> LaneOp<V> {
     /// The result is all ones or all zeros, given which operands are.
     pub(super) fn gives_single(self, of: impl Fn(V) -> bool) -> bool {
         match self {
-            Do::Carry(..) | Do::Less(..) | Do::LessSigned(..) | Do::LessIf(..) => true,
-            Do::Equal(..) | Do::EqualTo(..) | Do::Fits(..) | Do::Bit(..) => true,
-            Do::AddOverflow(..) | Do::SubOverflow(..) => true,
-            Do::Copy(a) | Do::Invert(a, u64::MAX) | Do::EqualIf(_, _, a) => of(a),
-            Do::And(a, b) | Do::AndNot(a, b) | Do::Or(a, b) | Do::Xor(a, b) | Do::Select(_, a, b) => of(a) && of(b),
-            Do::EqualIfOr(_, _, a, b) | Do::UnfitIfOr(_, _, a, b) => of(a) && of(b),
-            Do::EqualEitherOr(_, [(_, a), (_, b)], c) => of(a) && of(b) && of(c),
+            LaneOp::Carry(..) | LaneOp::Less(..) | LaneOp::LessSigned(..) | LaneOp::LessIf(..) => true,
+            LaneOp::Equal(..) | LaneOp::EqualTo(..) | LaneOp::Fits(..) | LaneOp::Bit(..) => true,
+            LaneOp::AddOverflow(..) | LaneOp::SubOverflow(..) => true,
+            LaneOp::Copy(a) | LaneOp::Invert(a, u64::MAX) | LaneOp::EqualIf(_, _, a) => of(a),
+            LaneOp::And(a, b)
+            | LaneOp::AndNot(a, b)
+            | LaneOp::Or(a, b)
+            | LaneOp::Xor(a, b)
+            | LaneOp::Select(_, a, b) => of(a) && of(b),
+            LaneOp::EqualIfOr(_, _, a, b) | LaneOp::UnfitIfOr(_, _, a, b) => of(a) && of(b),
+            LaneOp::EqualEitherOr(_, [(_, a), (_, b)], c) => of(a) && of(b) && of(c),
             _ => false,
         }
     }
@@ -187,7 +191,7 @@ pub(super) type Slot = usize;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Operation {
     pub(super) target: Slot,
-    pub(super) what: Do<Slot>,
+    pub(super) what: LaneOp<Slot>,
 }
 
 /// A register of the machine, and the row that holds its next value after the operations; none if it keeps its value.

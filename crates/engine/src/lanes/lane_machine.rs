@@ -4,7 +4,7 @@ use std::mem::swap;
 
 use fearless_simd::{Level, dispatch};
 
-use super::code::{Code, Do, Operation, Slot};
+use super::code::{Code, LaneOp, Operation, Slot};
 use super::lane::{GROUP, GROUPS, Lane, LaneRow};
 use super::watch::root_gap;
 
@@ -154,125 +154,125 @@ fn settle<T: Lane>(rows: &mut [Box<LaneRow<T>>], spare: &mut Box<LaneRow<T>>, op
 
 /// The meaning of every operation; the loops inside are unrolled and vectorised, none of them branches.
 #[inline(always)]
-fn perform<T: Lane>(on: Operands<'_, T>, out: &mut LaneRow<T>, what: Do<Slot>) {
+fn perform<T: Lane>(on: Operands<'_, T>, out: &mut LaneRow<T>, what: LaneOp<Slot>) {
     let top = T::BITS - 1;
     match what {
-        Do::Copy(a) => on.one(out, a, |a| a),
-        Do::Invert(a, p) => {
+        LaneOp::Copy(a) => on.one(out, a, |a| a),
+        LaneOp::Invert(a, p) => {
             let p = T::top(p);
             on.one(out, a, |a| a.xor(p));
         }
-        Do::Mask(a, p) => {
+        LaneOp::Mask(a, p) => {
             let p = T::top(p);
             on.one(out, a, |a| a.and(p));
         }
-        Do::And(a, b) => on.two(out, a, b, T::and),
-        Do::AndNot(a, b) => on.two(out, a, b, |a, b| a.and(b.not())),
-        Do::Or(a, b) => on.two(out, a, b, T::or),
-        Do::Xor(a, b) => on.two(out, a, b, T::xor),
-        Do::Select(select, high, low) => {
+        LaneOp::And(a, b) => on.two(out, a, b, T::and),
+        LaneOp::AndNot(a, b) => on.two(out, a, b, |a, b| a.and(b.not())),
+        LaneOp::Or(a, b) => on.two(out, a, b, T::or),
+        LaneOp::Xor(a, b) => on.two(out, a, b, T::xor),
+        LaneOp::Select(select, high, low) => {
             on.three(out, [select, high, low], |select, high, low| high.and(select).or(low.and(select.not())));
         }
-        Do::Add(a, b) => on.two(out, a, b, T::add),
-        Do::Sub(a, b) => on.two(out, a, b, T::sub),
-        Do::AddWhere(a, condition, p) => {
+        LaneOp::Add(a, b) => on.two(out, a, b, T::add),
+        LaneOp::Sub(a, b) => on.two(out, a, b, T::sub),
+        LaneOp::AddWhere(a, condition, p) => {
             let p = T::top(p);
             on.two(out, a, condition, |a, condition| a.add(condition.and(p)));
         }
-        Do::AddEither(a, b, p, c, q) => {
+        LaneOp::AddEither(a, b, p, c, q) => {
             let (p, q) = (T::top(p), T::top(q));
             on.three(out, [a, b, c], |a, b, c| a.add(b.and(p)).add(c.and(q)));
         }
-        Do::AddIf(a, b, condition) => on.three(out, [a, b, condition], |a, b, condition| a.add(b.and(condition))),
-        Do::SubIf(a, b, condition) => on.three(out, [a, b, condition], |a, b, condition| a.sub(b.and(condition))),
-        Do::Mul(a, b, bits) => on.two(out, a, b, |a, b| a.mul(b.right(T::BITS - bits))),
-        Do::Div(a, b, bits) => on.two(out, a, b, |a, b| a.div(b).left(T::BITS - bits)),
-        Do::Rem(a, b) => on.two(out, a, b, T::rem),
-        Do::ShiftLeft(a, by, bits) => on.two(out, a, by, |a, by| {
+        LaneOp::AddIf(a, b, condition) => on.three(out, [a, b, condition], |a, b, condition| a.add(b.and(condition))),
+        LaneOp::SubIf(a, b, condition) => on.three(out, [a, b, condition], |a, b, condition| a.sub(b.and(condition))),
+        LaneOp::Mul(a, b, bits) => on.two(out, a, b, |a, b| a.mul(b.right(T::BITS - bits))),
+        LaneOp::Div(a, b, bits) => on.two(out, a, b, |a, b| a.div(b).left(T::BITS - bits)),
+        LaneOp::Rem(a, b) => on.two(out, a, b, T::rem),
+        LaneOp::ShiftLeft(a, by, bits) => on.two(out, a, by, |a, by| {
             let by = by.amount(bits, T::BITS);
             if by < T::BITS { a.left(by) } else { T::default() }
         }),
-        Do::ShiftRight(a, by, bits, p) => {
+        LaneOp::ShiftRight(a, by, bits, p) => {
             let p = T::top(p);
             on.two(out, a, by, |a, by| {
                 let by = by.amount(bits, T::BITS);
                 if by < T::BITS { a.right(by).and(p) } else { T::default() }
             });
         }
-        Do::ShiftArithmetic(a, by, bits, p) => {
+        LaneOp::ShiftArithmetic(a, by, bits, p) => {
             let p = T::top(p);
             on.two(out, a, by, |a, by| a.right_signed(by.amount(bits, top)).and(p));
         }
-        Do::Carry(a, b) => on.two(out, a, b, |a, b| T::mask(a.add(b) < a)),
-        Do::Less(a, b) => on.two(out, a, b, |a, b| T::mask(a < b)),
-        Do::LessSigned(a, b) => on.two(out, a, b, |a, b| T::mask(a.less_signed(b))),
-        Do::LessIf(a, b, condition) => {
+        LaneOp::Carry(a, b) => on.two(out, a, b, |a, b| T::mask(a.add(b) < a)),
+        LaneOp::Less(a, b) => on.two(out, a, b, |a, b| T::mask(a < b)),
+        LaneOp::LessSigned(a, b) => on.two(out, a, b, |a, b| T::mask(a.less_signed(b))),
+        LaneOp::LessIf(a, b, condition) => {
             on.three(out, [a, b, condition], |a, b, condition| T::mask(a < b.and(condition)));
         }
-        Do::Equal(a, b) => on.two(out, a, b, |a, b| T::mask(a == b)),
-        Do::EqualTo(a, p) => {
+        LaneOp::Equal(a, b) => on.two(out, a, b, |a, b| T::mask(a == b)),
+        LaneOp::EqualTo(a, p) => {
             let p = T::top(p);
             on.one(out, a, |a| T::mask(a == p));
         }
-        Do::EqualIf(a, p, condition) => {
+        LaneOp::EqualIf(a, p, condition) => {
             let p = T::top(p);
             on.two(out, a, condition, |a, condition| T::mask(a == p).and(condition));
         }
-        Do::EqualIfOr(a, p, condition, or) => {
+        LaneOp::EqualIfOr(a, p, condition, or) => {
             let p = T::top(p);
             on.three(out, [a, condition, or], |a, condition, or| T::mask(a == p).and(condition).or(or));
         }
-        Do::EqualEitherOr(a, [(p, first), (q, second)], or) => {
+        LaneOp::EqualEitherOr(a, [(p, first), (q, second)], or) => {
             let (p, q) = (T::top(p), T::top(q));
             on.four(out, [a, first, second, or], |a, first, second, or| {
                 T::mask(a == p).and(first).or(T::mask(a == q).and(second)).or(or)
             });
         }
-        Do::AddOverflow(a, b) => on.two(out, a, b, |a, b| {
+        LaneOp::AddOverflow(a, b) => on.two(out, a, b, |a, b| {
             let sum = a.add(b);
             a.xor(sum).and(b.xor(sum)).right_signed(top)
         }),
-        Do::SubOverflow(a, b) => {
+        LaneOp::SubOverflow(a, b) => {
             on.two(out, a, b, |a, b| a.xor(b).and(a.xor(a.sub(b))).right_signed(top));
         }
-        Do::Left(a, by, p) => {
+        LaneOp::Left(a, by, p) => {
             let p = T::top(p);
             on.one(out, a, |a| a.left(by).and(p));
         }
-        Do::Right(a, by) => on.one(out, a, |a| a.right(by)),
-        Do::RightSigned(a, by) => on.one(out, a, |a| a.right_signed(by)),
-        Do::Bit(a, by) => on.one(out, a, |a| a.left(by).right_signed(top)),
-        Do::Concat(high, low, by, p, q) => {
+        LaneOp::Right(a, by) => on.one(out, a, |a| a.right(by)),
+        LaneOp::RightSigned(a, by) => on.one(out, a, |a| a.right_signed(by)),
+        LaneOp::Bit(a, by) => on.one(out, a, |a| a.left(by).right_signed(top)),
+        LaneOp::Concat(high, low, by, p, q) => {
             let (p, q) = (T::top(p), T::top(q));
             on.two(out, high, low, |high, low| high.and(p).or(low.right(by).and(q)));
         }
-        Do::Fits(a, by) => on.one(out, a, |a| T::mask(a.left(by).right_signed(by) == a)),
-        Do::UnfitIfOr(a, by, condition, or) => on.three(out, [a, condition, or], |a, condition, or| {
+        LaneOp::Fits(a, by) => on.one(out, a, |a| T::mask(a.left(by).right_signed(by) == a)),
+        LaneOp::UnfitIfOr(a, by, condition, or) => on.three(out, [a, condition, or], |a, condition, or| {
             T::mask(a.left(by).right_signed(by) != a).and(condition).or(or)
         }),
-        Do::Count(sum, a) => on.two(out, sum, a, |sum, a| sum.sub(T::mask(a != T::default()))),
-        Do::Idle(clocks, a, b) => {
+        LaneOp::Count(sum, a) => on.two(out, sum, a, |sum, a| sum.sub(T::mask(a != T::default()))),
+        LaneOp::Idle(clocks, a, b) => {
             let (zero, one) = (T::default(), T::number(1));
             on.three(out, [clocks, a, b], |clocks, a, b| clocks.add(one).and(T::mask(a.or(b) == zero)));
         }
-        Do::Least(a, b) => on.two(out, a, b, |a, b| if b < a { b } else { a }),
-        Do::Greatest(a, b) => on.two(out, a, b, |a, b| if a < b { b } else { a }),
-        Do::LeastSigned(a, b) => on.two(out, a, b, |a, b| if b.less_signed(a) { b } else { a }),
-        Do::GreatestSigned(a, b) => on.two(out, a, b, |a, b| if a.less_signed(b) { b } else { a }),
-        Do::Sum(sum, a, bits) => on.two(out, sum, a, |sum, a| sum.add(a.right(T::BITS - bits))),
-        Do::RootGaps(sum, [(base, p), (offset, q)]) => on.three(out, [sum, base, offset], |sum, base, offset| {
+        LaneOp::Least(a, b) => on.two(out, a, b, |a, b| if b < a { b } else { a }),
+        LaneOp::Greatest(a, b) => on.two(out, a, b, |a, b| if a < b { b } else { a }),
+        LaneOp::LeastSigned(a, b) => on.two(out, a, b, |a, b| if b.less_signed(a) { b } else { a }),
+        LaneOp::GreatestSigned(a, b) => on.two(out, a, b, |a, b| if a.less_signed(b) { b } else { a }),
+        LaneOp::Sum(sum, a, bits) => on.two(out, sum, a, |sum, a| sum.add(a.right(T::BITS - bits))),
+        LaneOp::RootGaps(sum, [(base, p), (offset, q)]) => on.three(out, [sum, base, offset], |sum, base, offset| {
             let (base, offset) = (base.right(T::BITS - p).real(), offset.right_signed(T::BITS - q).real_signed());
             sum.add(T::number(root_gap(base, offset)))
         }),
-        Do::LeastWhere(least, a, at) => on.three(out, [least, a, at], |least, a, at| {
+        LaneOp::LeastWhere(least, a, at) => on.three(out, [least, a, at], |least, a, at| {
             let a = a.or(T::mask(at == T::default()));
             if a < least { a } else { least }
         }),
-        Do::GreatestWhere(greatest, a, at) => on.three(out, [greatest, a, at], |greatest, a, at| {
+        LaneOp::GreatestWhere(greatest, a, at) => on.three(out, [greatest, a, at], |greatest, a, at| {
             let a = a.and(T::mask(at != T::default()));
             if greatest.less_signed(a) { a } else { greatest }
         }),
-        Do::Since(since, a) => {
+        LaneOp::Since(since, a) => {
             let one = T::number(1);
             on.two(out, since, a, |since, a| since.and(T::mask(a == T::default())).add(one));
         }

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::code::Do;
+use super::code::LaneOp;
 use super::fuse;
 use super::lane::pattern;
 use stepwave_netlist::bits::Width;
@@ -25,7 +25,7 @@ pub(super) enum Node {
     /// An accumulator, by its index.
     Accumulator(usize),
     /// An operation.
-    Do(Do<Value>),
+    Operation(LaneOp<Value>),
 }
 
 /// Lowers nets of one netlist; equal operations become one.
@@ -84,7 +84,7 @@ impl<'n> Lowering<'n> {
     pub(super) fn any(&mut self, values: impl IntoIterator<Item = Value>) -> Value {
         let mut any = self.leaf(Node::Constant(0));
         for value in values {
-            any = self.make(Do::Or(any, value));
+            any = self.make(LaneOp::Or(any, value));
         }
         any
     }
@@ -105,7 +105,7 @@ impl<'n> Lowering<'n> {
             Node::Constant(pattern) => pattern == 0 || pattern == u64::MAX,
             Node::Input(net) | Node::Register(net) => self.netlist.width(net) == Width::ONE,
             Node::Accumulator(_) => false,
-            Node::Do(what) => what.gives_single(|value| self.is_single(value)),
+            Node::Operation(what) => what.gives_single(|value| self.is_single(value)),
         });
         self.nodes.push(node);
         Value(self.nodes.len() - 1)
@@ -117,18 +117,18 @@ impl<'n> Lowering<'n> {
     }
 
     /// The result of an operation, in its simplest form.
-    pub(super) fn make(&mut self, what: Do<Value>) -> Value {
-        match fuse::simpler(self, what) {
-            Some(fuse::Simpler::Same(value)) => value,
-            Some(fuse::Simpler::As(what)) => self.make(what),
-            None => self.leaf(Node::Do(what)),
+    pub(super) fn make(&mut self, what: LaneOp<Value>) -> Value {
+        match fuse::rewrite(self, what) {
+            Some(fuse::Rewrite::Same(value)) => value,
+            Some(fuse::Rewrite::As(what)) => self.make(what),
+            None => self.leaf(Node::Operation(what)),
         }
     }
 
     /// The operation that computes a value, if there is one.
-    pub(super) fn what(&self, value: Value) -> Option<Do<Value>> {
+    pub(super) fn what(&self, value: Value) -> Option<LaneOp<Value>> {
         match self.nodes[value.0] {
-            Node::Do(what) => Some(what),
+            Node::Operation(what) => Some(what),
             _ => None,
         }
     }
@@ -156,16 +156,16 @@ impl<'n> Lowering<'n> {
             Op::Input => return self.leaf(Node::Input(net)),
             Op::Register { .. } => return self.leaf(Node::Register(net)),
             Op::Const(value) => return self.leaf(Node::Constant(pattern(width, value))),
-            Op::Not(a) => Do::Invert(v(a), ones(width)),
-            Op::And(a, b) => Do::And(v(a), v(b)),
-            Op::Or(a, b) => Do::Or(v(a), v(b)),
-            Op::Xor(a, b) => Do::Xor(v(a), v(b)),
-            Op::Mux { select, high, low } => Do::Select(v(select), v(high), v(low)),
+            Op::Not(a) => LaneOp::Invert(v(a), ones(width)),
+            Op::And(a, b) => LaneOp::And(v(a), v(b)),
+            Op::Or(a, b) => LaneOp::Or(v(a), v(b)),
+            Op::Xor(a, b) => LaneOp::Xor(v(a), v(b)),
+            Op::Mux { select, high, low } => LaneOp::Select(v(select), v(high), v(low)),
             // One bit fills its word, so that arithmetic on it is logic.
-            Op::Add(a, b) | Op::Sub(a, b) if single(a) => Do::Xor(v(a), v(b)),
-            Op::Carry(a, b) | Op::AddOverflow(a, b) if single(a) => Do::And(v(a), v(b)),
-            Op::Borrow(a, b) | Op::SubOverflow(a, b) if single(a) => Do::AndNot(v(b), v(a)),
-            Op::LessSigned(a, b) if single(a) => Do::AndNot(v(a), v(b)),
+            Op::Add(a, b) | Op::Sub(a, b) if single(a) => LaneOp::Xor(v(a), v(b)),
+            Op::Carry(a, b) | Op::AddOverflow(a, b) if single(a) => LaneOp::And(v(a), v(b)),
+            Op::Borrow(a, b) | Op::SubOverflow(a, b) if single(a) => LaneOp::AndNot(v(b), v(a)),
+            Op::LessSigned(a, b) if single(a) => LaneOp::AndNot(v(a), v(b)),
             // Counting by one leaves the range at its end only.
             Op::Carry(a, b) | Op::AddOverflow(a, b) | Op::Borrow(a, b) | Op::SubOverflow(a, b)
                 if self.constant(v(b)) == Some(pattern(of(b), 1)) =>
@@ -176,32 +176,32 @@ impl<'n> Lowering<'n> {
                     Op::AddOverflow(..) => of(a).mask() >> 1,
                     _ => of(a).sign_bit(),
                 };
-                Do::EqualTo(v(a), pattern(of(a), last))
+                LaneOp::EqualTo(v(a), pattern(of(a), last))
             }
-            Op::Add(a, b) => Do::Add(v(a), v(b)),
-            Op::Sub(a, b) => Do::Sub(v(a), v(b)),
-            Op::Mul(a, b) | Op::Div(a, b) if single(a) => Do::And(v(a), v(b)),
+            Op::Add(a, b) => LaneOp::Add(v(a), v(b)),
+            Op::Sub(a, b) => LaneOp::Sub(v(a), v(b)),
+            Op::Mul(a, b) | Op::Div(a, b) if single(a) => LaneOp::And(v(a), v(b)),
             Op::Rem(a, _) if single(a) => return self.leaf(Node::Constant(0)),
-            Op::ShiftLeft(a, by) | Op::ShiftRight(a, by) if single(a) => Do::EqualIf(v(by), 0, v(a)),
+            Op::ShiftLeft(a, by) | Op::ShiftRight(a, by) if single(a) => LaneOp::EqualIf(v(by), 0, v(a)),
             Op::ShiftArithmetic(a, _) if single(a) => return v(a),
-            Op::Mul(a, b) => Do::Mul(v(a), v(b), width.get()),
-            Op::Div(a, b) => Do::Div(v(a), v(b), width.get()),
-            Op::Rem(a, b) => Do::Rem(v(a), v(b)),
-            Op::ShiftLeft(a, by) => Do::ShiftLeft(v(a), v(by), of(by).get()),
-            Op::ShiftRight(a, by) => Do::ShiftRight(v(a), v(by), of(by).get(), ones(width)),
-            Op::ShiftArithmetic(a, by) => Do::ShiftArithmetic(v(a), v(by), of(by).get(), ones(width)),
-            Op::Carry(a, b) => Do::Carry(v(a), v(b)),
-            Op::Borrow(a, b) => Do::Less(v(a), v(b)),
-            Op::AddOverflow(a, b) => Do::AddOverflow(v(a), v(b)),
-            Op::SubOverflow(a, b) => Do::SubOverflow(v(a), v(b)),
-            Op::Equal(a, b) => Do::Equal(v(a), v(b)),
-            Op::LessSigned(a, b) => Do::LessSigned(v(a), v(b)),
+            Op::Mul(a, b) => LaneOp::Mul(v(a), v(b), width.get()),
+            Op::Div(a, b) => LaneOp::Div(v(a), v(b), width.get()),
+            Op::Rem(a, b) => LaneOp::Rem(v(a), v(b)),
+            Op::ShiftLeft(a, by) => LaneOp::ShiftLeft(v(a), v(by), of(by).get()),
+            Op::ShiftRight(a, by) => LaneOp::ShiftRight(v(a), v(by), of(by).get(), ones(width)),
+            Op::ShiftArithmetic(a, by) => LaneOp::ShiftArithmetic(v(a), v(by), of(by).get(), ones(width)),
+            Op::Carry(a, b) => LaneOp::Carry(v(a), v(b)),
+            Op::Borrow(a, b) => LaneOp::Less(v(a), v(b)),
+            Op::AddOverflow(a, b) => LaneOp::AddOverflow(v(a), v(b)),
+            Op::SubOverflow(a, b) => LaneOp::SubOverflow(v(a), v(b)),
+            Op::Equal(a, b) => LaneOp::Equal(v(a), v(b)),
+            Op::LessSigned(a, b) => LaneOp::LessSigned(v(a), v(b)),
             Op::Slice { of: a, .. } if single(a) => return v(a),
             Op::Slice { of: a, low } => {
                 let left = of(a).get() - u32::from(low) - width.get();
                 // Below the lowest bit of a net there is nothing to clear.
                 let mask = if low == 0 { u64::MAX } else { ones(width) };
-                if width == Width::ONE { Do::Bit(v(a), left) } else { Do::Left(v(a), left, mask) }
+                if width == Width::ONE { LaneOp::Bit(v(a), left) } else { LaneOp::Left(v(a), left, mask) }
             }
             Op::Concat { high, low } => {
                 let (high_width, low_width) = (of(high), of(low));
@@ -209,13 +209,13 @@ impl<'n> Lowering<'n> {
                 let (right, low_part) =
                     if single(low) { (0, 1 << (63 - high_width.get())) } else { (high_width.get(), u64::MAX) };
                 debug_assert_eq!(high_width.get() + low_width.get(), width.get());
-                Do::Concat(v(high), v(low), right, high_part, low_part)
+                LaneOp::Concat(v(high), v(low), right, high_part, low_part)
             }
             Op::ZeroExtend(a) | Op::SignExtend(a) if of(a) == width => return v(a),
-            Op::ZeroExtend(a) if single(a) => Do::Mask(v(a), pattern(width, 1)),
-            Op::SignExtend(a) if single(a) => Do::Mask(v(a), ones(width)),
-            Op::ZeroExtend(a) => Do::Right(v(a), width.get() - of(a).get()),
-            Op::SignExtend(a) => Do::RightSigned(v(a), width.get() - of(a).get()),
+            Op::ZeroExtend(a) if single(a) => LaneOp::Mask(v(a), pattern(width, 1)),
+            Op::SignExtend(a) if single(a) => LaneOp::Mask(v(a), ones(width)),
+            Op::ZeroExtend(a) => LaneOp::Right(v(a), width.get() - of(a).get()),
+            Op::SignExtend(a) => LaneOp::RightSigned(v(a), width.get() - of(a).get()),
         };
         self.make(what)
     }

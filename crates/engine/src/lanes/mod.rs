@@ -7,8 +7,8 @@
 //! 1. The inputs of the job's first block are set, and the machine is reset: sample 0.
 //! 2. The inputs [`LaneWatch::rest`] take their values after the next edge, and the job runs, at least one clock, until
 //!    `done` or a trap is 1 in a sample, the limit is reached, or nothing happens any more.
-//! 3. If it was `done` and there is a further block, its inputs change after the next edge, one clock is done whatever
-//!    the sample says, and 2. follows.
+//! 3. If it was `done` and there is a further block, its inputs change after the next edge, one clock is done
+//!    regardless of the sample, and 2. follows.
 //!
 //! What is loaded only while the inputs do not rest is folded away from the code that runs the lanes (`lower`,
 //! `fuse`, `build`); a second code for the whole design loads blocks and reads the last sample (`worker`).
@@ -25,7 +25,7 @@ mod worker;
 
 use std::collections::HashMap;
 
-use build::Wanted;
+use build::LaneRequest;
 use code::Code;
 use feed::Feed;
 use stepwave_netlist::Design;
@@ -70,7 +70,7 @@ impl LaneProgram {
             let simple = simplify(netlist, fixed);
             let go = |nets: &[Net]| nets.iter().map(|&net| simple.net(net)).collect::<Vec<_>>();
             let accumulators: Vec<_> = accumulators.iter().map(|(reduce, nets)| (*reduce, go(nets))).collect();
-            Wanted {
+            LaneRequest {
                 netlist: &simple.netlist,
                 inputs: &go(design.inputs()),
                 registers: &go(&registers),

@@ -20,7 +20,7 @@ struct Busy {
     inputs: Vec<u64>,
     /// The tick at which its clock was 0, modulo 2^64.
     start: u64,
-    /// The tick at which it is to be looked at, whatever its nets say.
+    /// The tick at which it is examined, regardless of its nets.
     due: u64,
 }
 

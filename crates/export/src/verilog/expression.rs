@@ -124,7 +124,7 @@ impl Writer<'_> {
                     return self.names.wide(wide.of) + &range(all + 1, low, width);
                 }
                 _ if width == all => return self.read(net, place).text,
-                // The layout declares whatever is cut.
+                // The layout declares every net that is cut.
                 _ => {}
             }
         }

@@ -30,7 +30,7 @@ pub(super) fn class(leaving: Vector, entering: Vector, side: f64) -> Class {
         () if q.abs() <= PARALLEL && p < 0.0 => Class::StraightOn,
         () if q.abs() <= PARALLEL => Class::Reversal,
         () if q < 0.0 => Class::Shortening,
-        // A right angle is an extension, whichever way its cosine is rounded.
+        // A right angle is an extension, however its cosine is rounded.
         () if p <= PARALLEL => Class::Extension,
         () => Class::Insertion,
     }

@@ -23,7 +23,7 @@ const GAP: f64 = 1e-3;
 ///
 /// let line = |line, from, to, side| Move {
 ///     place: Place { line, number: None },
-///     segment: Segment { from, to, way: SegmentShape::Line },
+///     segment: Segment { from, to, shape: SegmentShape::Line },
 ///     feed: Feed::PerMinute(100.0),
 ///     plane: Plane::Xy,
 ///     side,

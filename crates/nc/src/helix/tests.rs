@@ -120,7 +120,7 @@ fn any_position_has_a_deviation_and_a_gauge_the_same() -> Outcome {
     ] {
         let curve: Curve = helix.into();
         let gauge = curve.gauge();
-        assert!(gauge.screen(10).is_none());
+        assert!(gauge.batch(10).is_none());
         for [x, y] in values.into_iter().flat_map(|x| values.map(|y| [x, y])) {
             for z in values {
                 let found = helix.deviation(&[x, y, z]);

@@ -316,7 +316,7 @@ impl<'m> Scope<'m> {
         Signal::new(self, self.module.push(op, bits), signed)
     }
 
-    /// A signal that is declared with a name and a width: where no register can have it, the mistake bears the name.
+    /// A signal that is declared with a name and a width: where no register can have it, the diagnostic has the name.
     #[track_caller]
     fn of_width(self, name: &str, op: Op, bits: u32, signed: bool) -> Signal<'m> {
         match Width::new(u64::from(bits)) {

@@ -5,7 +5,7 @@ use crate::bits::Width;
 use crate::cells::{Net, Op};
 
 /// What a cell is better written as.
-pub(super) enum Simpler {
+pub(super) enum Rewrite {
     /// An existing net.
     Same(Net),
     /// A constant of the cell's width.
@@ -14,10 +14,10 @@ pub(super) enum Simpler {
     As(Op),
 }
 
-use Simpler::{As, Constant, Same};
+use Rewrite::{As, Constant, Same};
 
 /// A simpler form of a cell, if there is one.
-pub(super) fn simpler(builder: &mut Builder, op: Op, width: Width) -> Option<Simpler> {
+pub(super) fn rewrite(builder: &mut Builder, op: Op, width: Width) -> Option<Rewrite> {
     let ones = width.mask();
     let known = |builder: &Builder, net: Net| builder.known(net);
     match op {
@@ -109,7 +109,7 @@ fn complements(builder: &Builder, a: Net, b: Net) -> bool {
     builder.op(a) == Op::Not(b) || builder.op(b) == Op::Not(a)
 }
 
-fn mux(builder: &mut Builder, select: Net, high: Net, low: Net, width: Width) -> Option<Simpler> {
+fn mux(builder: &mut Builder, select: Net, high: Net, low: Net, width: Width) -> Option<Rewrite> {
     match builder.known(select) {
         Some(1) => return Some(Same(high)),
         Some(_) => return Some(Same(low)),
@@ -160,7 +160,7 @@ fn mux(builder: &mut Builder, select: Net, high: Net, low: Net, width: Width) ->
     }
 }
 
-fn slice(builder: &mut Builder, of: Net, low: u8, width: Width) -> Option<Simpler> {
+fn slice(builder: &mut Builder, of: Net, low: u8, width: Width) -> Option<Rewrite> {
     if low == 0 && builder.width(of) == width {
         return Some(Same(of));
     }

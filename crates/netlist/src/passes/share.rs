@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::constant;
-use super::identity::{self, Simpler};
+use super::identity::{self, Rewrite};
 use crate::bits::Width;
 use crate::cells::{Cell, Net, Op};
 
@@ -52,10 +52,10 @@ impl Builder {
         if let Some(value) = constant::value(op, width, known) {
             return self.constant(value, width);
         }
-        match identity::simpler(self, op, width) {
-            Some(Simpler::Same(net)) => net,
-            Some(Simpler::Constant(value)) => self.constant(value, width),
-            Some(Simpler::As(op)) => self.make(op, width),
+        match identity::rewrite(self, op, width) {
+            Some(Rewrite::Same(net)) => net,
+            Some(Rewrite::Constant(value)) => self.constant(value, width),
+            Some(Rewrite::As(op)) => self.make(op, width),
             None => self.shared(Cell { op: ordered(op), width }),
         }
     }

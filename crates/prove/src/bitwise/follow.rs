@@ -2,8 +2,8 @@
 //! whose counters run by themselves.
 //!
 //! Registers hold anything when the block is loaded. From then on every net is known, an unknown bit, or a sum of
-//! unknown bits with whole factors; any other value counts as unknown. So what is found of a net holds whatever
-//! the unknown bits are, and the only condition on the netlist is that its clocks do not depend on them.
+//! unknown bits with whole factors; any other value counts as unknown. So what is found of a net holds for all values
+//! of the unknown bits, and the only condition on the netlist is that its clocks do not depend on them.
 
 use std::rc::Rc;
 
@@ -302,7 +302,7 @@ impl Follower<'_> {
         Some(self.sum(values, a)?.plus(&self.sum(values, b)?, sign))
     }
 
-    /// The sum, if it lies in the range of the operands whatever the unknown bits are.
+    /// The sum, if it lies in the range of the operands for all values of the unknown bits.
     fn count(&self, a: Net, b: Net, sign: i128, values: &[Value]) -> Value {
         let (least, most) = self.netlist.width(a).range(true);
         let sum = self.exact(a, b, sign, values).filter(|sum| least <= sum.range().0 && sum.range().1 <= most);
@@ -335,7 +335,7 @@ fn complement(value: &Value) -> Value {
     }
 }
 
-/// And, or: `wins` decides whatever the other is, `yields` leaves the other as it is.
+/// And, or: `wins` decides regardless of the other, `yields` leaves the other as it is.
 fn gate(a: &Value, b: &Value, wins: u64, yields: u64) -> Value {
     match (a, b) {
         (Value::Known(own), other) | (other, Value::Known(own)) => {

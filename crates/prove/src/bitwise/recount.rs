@@ -4,7 +4,7 @@
 //! It shares nothing with `follow` but the question. The netlist runs in three-valued logic (`three_valued`): with all
 //! coefficients unknown, which shows when the block ends and which pulses are sure to come or to stay away; and once
 //! more for each bit of a coefficient, with that bit 0 and with it 1, all others unknown. A pulse that is absent in one
-//! case and present in the other is that bit's, whatever the others are. Last, the counter of each axis is cut out
+//! case and present in the other is that bit's, regardless of the others. Last, the counter of each axis is cut out
 //! after its pulse: from every place that the pulses so far can lead to, it must count one pulse as one, and nothing
 //! may overflow.
 
@@ -34,7 +34,7 @@ const NONE: u64 = 1 << 63;
 enum Cause {
     /// It is not there.
     Never,
-    /// It comes whatever the coefficients are.
+    /// It comes for all coefficients.
     Always(i8),
     /// It comes where this unknown bit is 1.
     Bit(usize, i8),
@@ -115,7 +115,7 @@ struct Recount<'b> {
     strobes: Strobes,
     words: &'b [(Net, LoadWord)],
     nets: &'b [AxisNets],
-    /// Claims that are not known to hold, whatever the places of the axes.
+    /// Claims that are not known to hold for all places of the axes.
     open: Vec<bool>,
     /// What registers may hold in any sample after the load.
     seen: Option<ThreeValued<'b>>,

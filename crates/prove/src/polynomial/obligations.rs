@@ -61,7 +61,7 @@ pub(crate) fn check(system: &System<'_>, all: &[Invariants], oracle: &mut dyn Or
     findings
 }
 
-/// The edge that loads the block, whatever the registers held.
+/// The edge that loads the block, for all previous contents of the registers.
 fn load(system: &System<'_>, all: &[Invariants], oracle: &mut dyn Oracle, findings: &mut Findings) {
     let first = first_state(system, None);
     let later = [(system.strobes.load, 0), (system.strobes.preset_position, 0)];
@@ -83,7 +83,7 @@ fn step(system: &System<'_>, all: &[Invariants], place: usize, oracle: &mut dyn 
     let first = first_state(system, Some(&all[place]));
     let later = [(system.strobes.load, 0), (system.strobes.preset_position, 0)];
     let known = |var: Var| all[place].equalities.iter().find(|(other, _)| *other == var).map(|(_, poly)| poly);
-    // A register lies in its range, whatever it equals.
+    // A register lies in its range, even if it equals something else.
     let mut premises: Vec<Vec<Poly>> = Vec::new();
     for (var, poly) in &all[place].equalities {
         let ranges = system.variables.ranges([*var].into_iter());

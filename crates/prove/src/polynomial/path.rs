@@ -3,7 +3,7 @@
 //!
 //! A net of w bits is held as a polynomial that equals its bits modulo 2^w. Where an operator needs the number itself
 //! (a carry, a comparison, a sign), the path decides where the polynomial lies; where both are possible, the path
-//! forks. So multiplexers are taken apart, and what is left is linear as long as the hardware is.
+//! forks. So multiplexers are resolved, and the rest is linear as long as the hardware is.
 //!
 //! Nets are worked out on demand, through registers back to the first clock: what nobody asks for decides nothing.
 
@@ -203,7 +203,7 @@ impl<'p, 'o> Path<'p, 'o> {
         self.fresh("bits", greatest)
     }
 
-    /// Bits from the middle of a net: the number is taken apart into what lies above, in and below.
+    /// Bits from the middle of a net: the number is split into what lies above, in and below.
     fn slice(&mut self, net: Net, of: Net, clock: usize) -> Result<Poly, Stop> {
         let number = self.unsigned(of, clock)?;
         let (low, width) = (self.family.low(net), self.family.width(net));
@@ -249,7 +249,7 @@ impl<'p, 'o> Path<'p, 'o> {
     fn within(&mut self, number: Poly, least: &Poly, modulus: &Poly) -> Result<Poly, Stop> {
         let beyond = least.plus(modulus);
         let mut number = number;
-        // Sums of a few numbers of the width go round a few times at most.
+        // Sums of a few numbers of the width wrap a few times at most.
         for _ in 0..4 {
             if !self.at_least_zero(&number.minus(least))? {
                 number = number.plus(modulus);

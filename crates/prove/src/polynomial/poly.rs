@@ -111,7 +111,7 @@ impl Poly {
         &self.terms
     }
 
-    /// The number that it is whatever the variables; `None` if it depends on them.
+    /// The number that it is for all values of the variables; `None` if it depends on them.
     #[must_use]
     pub fn constant(&self) -> Option<i128> {
         match self.terms[..] {

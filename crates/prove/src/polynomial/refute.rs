@@ -23,7 +23,7 @@ pub(crate) enum Effort {
 const MOST_PRODUCTS: usize = 1400;
 /// Sums of products that are looked for to show one contradiction.
 const MOST_SUMS: usize = 300;
-/// Clauses that are taken apart one inside another.
+/// Depth to which clauses are split one inside another.
 const DEEPEST: usize = 5;
 
 /// A contradiction in `rows`, all 0 or more, of which those from `own` on are what matters most, and clauses of which
@@ -50,7 +50,7 @@ pub(crate) fn refute(
     found
 }
 
-/// Sums, then products, then one clause after another taken apart.
+/// Sums, then products, then one clause after another split.
 fn cases(
     rows: &mut Vec<Poly>,
     own: usize,

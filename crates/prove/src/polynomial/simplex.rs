@@ -11,7 +11,7 @@ const TINY: f64 = 1e-9;
 /// `height` many. `None` if there are none, or if the arithmetic was not good enough to find them.
 ///
 /// The simplex algorithm, phase one: every row begins with a column of its own, which must go. Only row 0 wants
-/// something, so that nearly every step would gain nothing and could go round forever: so each row demands a little of
+/// something, so that nearly every step would gain nothing and could cycle forever: so each row demands a little of
 /// its own in addition, infinitely less than anything in the columns, by which every step gains.
 pub(crate) fn support(columns: &Columns, height: usize) -> Option<Vec<usize>> {
     let width = columns.len() + 2;

@@ -98,7 +98,7 @@ impl Variables {
         (least, greatest)
     }
 
-    /// A polynomial of the scale alone is 0 or more, whatever the scale.
+    /// A polynomial of the scale alone is 0 or more, for every scale.
     fn never_negative(&self, poly: &Poly) -> bool {
         let shifted = Poly::from(Family::SCALE).plus_number(self.least_scale);
         let poly = poly.replaced(|var| (var == Family::SCALE).then_some(&shifted));

@@ -30,7 +30,7 @@ pub enum ClockError {
         /// The 1-bit signals with the most rising edges, best first, and how many.
         candidates: Vec<(String, usize)>,
     },
-    /// A slip of the pen.
+    /// A typing mistake.
     #[error("{name}: no signal `{wanted}` to use as the clock; --by time needs none")]
     Unknown { name: String, wanted: String },
     /// A vector, real or text.

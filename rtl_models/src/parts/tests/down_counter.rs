@@ -31,7 +31,7 @@ fn a_counter_runs_from_its_word_to_zero_and_marks_the_last_count() {
             bench.play(&[("load", "0100_0000_00"), ("e_in", "3333_3333_33"), ("count", "0001_0110_00")]);
             assert_eq!(bench.row("e"), "0033_2210_00");
             assert_eq!(bench.row("running"), "0011_1110_00");
-            // At the load the register takes its word, whatever it would have counted to.
+            // At the load the register takes its word, not the next count.
             assert_eq!(bench.row("zero"), "1000_0011_11");
             assert_eq!(bench.row("e_sub_overflow"), "0000_0000_00");
         },

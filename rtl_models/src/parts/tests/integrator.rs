@@ -31,7 +31,7 @@ fn axis(m: Scope<'_>, hardware: &Hardware) {
     m.name("pulse", integrator(m, &block, hardware, 0, jv, step));
 }
 
-/// The same, serial: the integrand `jv` goes round.
+/// The same, serial: the integrand `jv` rotates.
 fn serial_axis(m: Scope<'_>, hardware: &Hardware) {
     let block = loader(m);
     let jv = m.reg("jv", hardware.bits(JV.of(0))).shown(digits(hardware));

@@ -130,7 +130,7 @@ fn any_position_has_a_deviation_and_a_gauge_the_same() -> Outcome {
     for conic in curves {
         let curve: crate::Curve = conic.into();
         let gauge = curve.gauge();
-        assert!(gauge.screen(10).is_none());
+        assert!(gauge.batch(10).is_none());
         for [x, y] in values.into_iter().flat_map(|x| values.map(|y| [x, y])) {
             let found = conic.deviation(&[x, y]);
             assert!(found.is_finite() && found >= 0.0, "{conic:?} {x} {y}: {found}");
