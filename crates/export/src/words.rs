@@ -83,7 +83,8 @@ pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
     // Both languages make all ones of a division by 0.
     let guarded = |divisor: Net| {
         let none = Term::Apply(EQUAL, 1, vec![Term::Net(divisor), Term::Zero(width)], vec![]);
-        let result = |word: OperatorName| Term::Apply(MUX, width, vec![none, Term::Zero(width), apply(word, vec![])], vec![]);
+        let result =
+            |word: OperatorName| Term::Apply(MUX, width, vec![none, Term::Zero(width), apply(word, vec![])], vec![]);
         result
     };
     // Both operands are as wide as the wider one.

@@ -139,7 +139,9 @@ impl<V: Copy> LaneOp<V> {
             LaneOp::EqualTo(a, p) => LaneOp::EqualTo(go(a), p),
             LaneOp::EqualIf(a, p, b) => LaneOp::EqualIf(go(a), p, go(b)),
             LaneOp::EqualIfOr(a, p, b, c) => LaneOp::EqualIfOr(go(a), p, go(b), go(c)),
-            LaneOp::EqualEitherOr(a, [(p, b), (q, c)], d) => LaneOp::EqualEitherOr(go(a), [(p, go(b)), (q, go(c))], go(d)),
+            LaneOp::EqualEitherOr(a, [(p, b), (q, c)], d) => {
+                LaneOp::EqualEitherOr(go(a), [(p, go(b)), (q, go(c))], go(d))
+            }
             LaneOp::AddOverflow(a, b) => LaneOp::AddOverflow(go(a), go(b)),
             LaneOp::SubOverflow(a, b) => LaneOp::SubOverflow(go(a), go(b)),
             LaneOp::Left(a, by, p) => LaneOp::Left(go(a), by, p),
