@@ -5,7 +5,7 @@ use stepwave_models::options::WIDTH;
 use stepwave_models::{Hardware, Model, ModelError, Options};
 
 use super::boxes::{Extent, Geometries};
-use super::proof::{Block, Narrower, ProofError, Subject, Way, blocks, choices_at};
+use super::proof::{Block, CountMethod, Narrower, ProofError, Subject, blocks, choices_at};
 use super::widths::least_seen;
 
 /// The k whose geometries are all simulated to find how wide registers must be; the first at which a choice, such as a
@@ -67,7 +67,7 @@ impl KForm {
         if self.counted {
             let exact = |block: &Block| block.is_exact();
             let followed = k <= MOST_FOLLOWED
-                && blocks(self.model, &claims, &self.choices, &self.narrower, k, Way::Follow)
+                && blocks(self.model, &claims, &self.choices, &self.narrower, k, CountMethod::Follow)
                     .is_ok_and(|blocks| blocks.iter().all(exact));
             if !followed {
                 return Ok(None);

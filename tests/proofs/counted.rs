@@ -1,6 +1,6 @@
 //! Proofs at one width at a time, of machines whose clocks do not depend on their coefficients.
 
-use stepwave::study::proof::{Narrower, Way, blocks, strobes};
+use stepwave::study::proof::{CountMethod, Narrower, blocks, strobes};
 use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_models::options::{CASCADE, OVERRIDE, WIDTH};
 use stepwave_models::{Machine, Options, find};
@@ -21,8 +21,8 @@ fn machine(k: u32, choices: &Options) -> Machine {
 #[test]
 fn every_coefficient_is_counted_bit_by_bit_at_every_width() {
     let model = find("dpm-line").unwrap();
-    for (k, way) in (1..=10).flat_map(|k| [(k, Way::Follow), (k, Way::Recount)]) {
-        let found = blocks(model, &model.claims.unwrap(), &Options::default(), &Narrower::new(), k, way).unwrap();
+    for (k, method) in (1..=10).flat_map(|k| [(k, CountMethod::Follow), (k, CountMethod::Recount)]) {
+        let found = blocks(model, &model.claims.unwrap(), &Options::default(), &Narrower::new(), k, method).unwrap();
         assert_eq!(found.len(), 4);
         for block in found {
             assert!(block.is_exact(), "{block}");
@@ -108,11 +108,15 @@ fn what_is_said_of_every_net_is_what_the_engine_has() {
 fn a_position_that_is_too_narrow_is_not_proved_and_an_end_that_depends_is_not_followed() {
     let model = find("dpm-line").unwrap();
     let narrower = Narrower::from([("x".to_owned(), 2)]);
-    for way in [Way::Follow, Way::Recount] {
-        let lost = blocks(model, &model.claims.unwrap(), &Options::default(), &narrower, 5, way).unwrap_err();
+    for method in [CountMethod::Follow, CountMethod::Recount] {
+        let lost = blocks(model, &model.claims.unwrap(), &Options::default(), &narrower, 5, method).unwrap_err();
         let lost = lost.to_string();
         // A counter that is too narrow does not count every pulse as one.
-        let word = if way == Way::Follow { "dpm_line.axis_x.x may overflow at clock " } else { "dpm_line.axis_x.x" };
+        let word = if method == CountMethod::Follow {
+            "dpm_line.axis_x.x may overflow at clock "
+        } else {
+            "dpm_line.axis_x.x"
+        };
         assert!(lost.contains(word), "{lost}");
     }
     // Loaded at clock 1, x of 5 bits can have come to 15 at clock 16, and to -16 at clock 17: a pulse more does not

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::verdict::{Attempt, Scope, Verdict};
-use super::{Block, CertificateFile, Effort, FileError, ProofError, Proposition, Way};
+use super::{Block, CertificateFile, CountMethod, Effort, FileError, ProofError, Proposition};
 
 /// Why a text proves nothing.
 #[derive(Debug, thiserror::Error)]
@@ -56,7 +56,7 @@ fn check_blocks(proposition: &Proposition, file: &CertificateFile, effort: &Effo
         return Err(CheckError::Blocks);
     }
     // What does not even say that every axis ends where it should is not worth it.
-    let wanted = match proposition.followed(effort, ks.clone(), Way::Wanted) {
+    let wanted = match proposition.followed(effort, ks.clone(), CountMethod::Wanted) {
         Ok(wanted) => wanted,
         Err(error) => return Ok(proposition.unfollowed(error)?),
     };
@@ -70,7 +70,7 @@ fn check_blocks(proposition: &Proposition, file: &CertificateFile, effort: &Effo
     if !wanted.iter().zip(&file.counted).all(as_wanted) {
         return Err(CheckError::Blocks);
     }
-    let blocks = match proposition.followed(effort, ks, Way::Recount) {
+    let blocks = match proposition.followed(effort, ks, CountMethod::Recount) {
         Ok(blocks) => blocks,
         Err(error) => return Ok(proposition.unfollowed(error)?),
     };
@@ -80,7 +80,7 @@ fn check_blocks(proposition: &Proposition, file: &CertificateFile, effort: &Effo
     let scope = match proposition.bounds() {
         Some(extent) => {
             let fixed = proposition.fixed(extent)?;
-            if blocks.iter().any(|block| block.k != fixed.k()) || fixed.blocks(Way::Recount).is_none() {
+            if blocks.iter().any(|block| block.k != fixed.k()) || fixed.blocks(CountMethod::Recount).is_none() {
                 return Err(CheckError::Blocks);
             }
             Scope::of_fixed(proposition, &fixed)

@@ -60,7 +60,7 @@ impl fmt::Display for Block {
 
 /// How a block is gone through. The first two share nothing but the question.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Way {
+pub enum CountMethod {
     /// By sums of unknown bits: [`follow`].
     Follow,
     /// Pulse by pulse, gate by gate: [`recount`].
@@ -79,10 +79,10 @@ pub fn blocks(
     choices: &Options,
     narrower: &Narrower,
     k: u32,
-    way: Way,
+    method: CountMethod,
 ) -> Result<Vec<Block>, ProofError> {
     let kinds = claims.geometries.kinds();
-    kinds.into_par_iter().map(|kind| block(model, claims, choices, narrower, (k, &kind), way)).collect()
+    kinds.into_par_iter().map(|kind| block(model, claims, choices, narrower, (k, &kind), method)).collect()
 }
 
 fn block(
@@ -91,7 +91,7 @@ fn block(
     choices: &Options,
     narrower: &Narrower,
     (k, kind): (u32, &Kind),
-    way: Way,
+    method: CountMethod,
 ) -> Result<Block, ProofError> {
     let hardware = model.plan(&largest(claims, k)?, &choices_at(model, claims, choices, narrower, k)?)?;
     let machine = model.machine(&hardware)?;
@@ -101,7 +101,7 @@ fn block(
     let first = own.first().ok_or_else(|| ProofError::NoCurves { kind: kind.name.clone() })?;
     let wrong = |register: &str| ProofError::Counted { register: register.to_owned() };
 
-    // Counted registers hold the way of their axis, all others the same for every curve.
+    // Counted registers hold the travel of their axis, all others the same for every curve.
     let words = |curve: &Curve| model.words(&hardware, curve).into_iter().next().unwrap_or_default();
     let common = words(first);
     for curve in &own {
@@ -136,10 +136,10 @@ fn block(
     let ends: Vec<_> = machine.positions.iter().map(|port| port.net).collect();
     let axes = machine.pulses.iter().zip(&ends).map(|(pulse, end)| AxisNets { pulse: pulse.net, position: *end });
     let wanted = wanted(&own, &bounds, names.len());
-    let followed = match way {
-        Way::Wanted => Ok(Followed { clocks: 0, ends: wanted.iter().cloned().map(Some).collect() }),
-        Way::Follow => follow(design, strobes, &given, &ends, limit, |_, _| {}),
-        Way::Recount => recount(design, strobes, &given, &axes.collect::<Vec<_>>(), limit),
+    let followed = match method {
+        CountMethod::Wanted => Ok(Followed { clocks: 0, ends: wanted.iter().cloned().map(Some).collect() }),
+        CountMethod::Follow => follow(design, strobes, &given, &ends, limit, |_, _| {}),
+        CountMethod::Recount => recount(design, strobes, &given, &axes.collect::<Vec<_>>(), limit),
     };
     let followed = followed.map_err(|lost| ProofError::Lost { model: model.name, k, kind: kind.name.clone(), lost })?;
     Ok(Block { k, kind: kind.name.clone(), clocks: followed.clocks, ends: followed.ends, wanted, names })

@@ -8,7 +8,9 @@ use stepwave_models::options::PRESET;
 use stepwave_models::{Options, Preset};
 
 use super::verdict::{Attempt, Claim, Evidence, Scope, Verdict, names, unproved};
-use super::{Block, Counterexample, Fault, Fixed, ProofError, Proposition, Subject, Survey, Tried, Way, blocks};
+use super::{
+    Block, CountMethod, Counterexample, Fault, Fixed, ProofError, Proposition, Subject, Survey, Tried, blocks,
+};
 use super::{narrowing_ks, search};
 use crate::study::Extent;
 
@@ -111,7 +113,12 @@ impl Proposition {
     }
 
     /// Every kind of geometry at each of these widths.
-    pub(super) fn followed(&self, effort: &Effort<'_>, ks: Vec<u32>, way: Way) -> Result<Vec<Block>, ProofError> {
+    pub(super) fn followed(
+        &self,
+        effort: &Effort<'_>,
+        ks: Vec<u32>,
+        way: CountMethod,
+    ) -> Result<Vec<Block>, ProofError> {
         let claims = self.claims()?;
         let each = effort.each("widths", ks, |k| blocks(self.model, &claims, &self.options, &self.narrower, k, way))?;
         Ok(each.concat())
@@ -154,14 +161,14 @@ impl Proposition {
     /// One width at a time, block by block.
     fn width_by_width(&self, effort: &Effort<'_>) -> Result<Verdict, ProofError> {
         let ks: Vec<u32> = effort.bits.map_or(PROVED, |k| k..=k).collect();
-        let found = self.followed(effort, ks.clone(), Way::Follow);
+        let found = self.followed(effort, ks.clone(), CountMethod::Follow);
         if !found.as_ref().is_ok_and(|blocks| blocks.iter().all(Block::is_exact))
             && let Some(example) = self.search(&self.options, effort.bits.map_or(SEARCHED, |k| k..=k))?.found
         {
             return Ok(self.refuted(example));
         }
         // They are not believed: what counts is what the second way comes to.
-        match found.and_then(|blocks| Ok((self.followed(effort, ks, Way::Recount)? == blocks, blocks))) {
+        match found.and_then(|blocks| Ok((self.followed(effort, ks, CountMethod::Recount)? == blocks, blocks))) {
             Ok((true, blocks)) => {
                 let scope = Scope::of_blocks(self, self.claims()?.geometries.describe(), &blocks);
                 Ok(self.by_blocks(scope, blocks))
@@ -196,7 +203,7 @@ impl Proposition {
                 },
             }
         } else {
-            match (fixed.blocks(Way::Follow), fixed.blocks(Way::Recount)) {
+            match (fixed.blocks(CountMethod::Follow), fixed.blocks(CountMethod::Recount)) {
                 (Some(Ok(blocks)), Some(Ok(again))) if blocks == again && blocks.iter().all(Block::is_exact) => {
                     return Ok(self.by_blocks(scope, blocks));
                 }

@@ -10,7 +10,7 @@ use stepwave_netlist::Width;
 
 use super::counter::try_all;
 use super::members::{Offsets, choices_with, largest, registers_named};
-use super::{Block, Counterexample, Narrower, ProofError, Subject, Tried, Way, blocks};
+use super::{Block, CountMethod, Counterexample, Narrower, ProofError, Subject, Tried, blocks};
 use crate::study::{Extent, Geometries, Grid, Range};
 use crate::testbench::Testbench;
 
@@ -122,9 +122,9 @@ impl Fixed {
     ///
     /// # Errors
     /// They cannot be followed.
-    pub fn blocks(&self, way: Way) -> Option<Result<Vec<Block>, ProofError>> {
+    pub fn blocks(&self, method: CountMethod) -> Option<Result<Vec<Block>, ProofError>> {
         let fits = self.bits <= self.k && self.k <= MOST_FOLLOWED;
-        fits.then(|| blocks(self.model, &self.claims, &self.choices, &Narrower::new(), self.k, way))
+        fits.then(|| blocks(self.model, &self.claims, &self.choices, &Narrower::new(), self.k, method))
     }
 
     /// Simulates geometries of the box, all if their clocks are not more than about `clocks`; or, of large boxes, a `few`

@@ -21,7 +21,7 @@ use stepwave_models::ModelError;
 use stepwave_prove::{CaseError, FamilyError, Lost};
 
 pub use check::{CheckError, check, check_with};
-pub use counted::{Block, Way, blocks};
+pub use counted::{Block, CountMethod, blocks};
 pub use counter::{Counterexample, Fault, Survey, Tried, search};
 pub use decide::{Effort, SEARCHED, Watcher};
 pub use file::{CertificateFile, FileError, MOST_BYTES};

@@ -285,14 +285,16 @@ pub(super) fn least_seen(model: &'static Model, set: &Geometries) -> Result<Vec<
 /// Marks what a proof for every k, or for this one, shows: the widths needed here, as bits less than by default,
 /// are enough.
 fn mark_proved(model: &'static Model, claims: &Claims, choices: &Options, k: u32, registers: &mut [RegisterWidth]) {
-    use super::proof::{Block, Way, blocks};
+    use super::proof::{Block, CountMethod, blocks};
     debug_assert_eq!(model.claims.map(|own| own.geometries), Some(claims.geometries));
     let less = |register: &RegisterWidth| register.given.saturating_sub(register.needed);
     let narrower: Narrower =
         registers.iter().filter(|register| less(register) > 0).map(|r| (r.name.clone(), less(r))).collect();
     if !claims.counted.is_empty() {
         let exact = |block: &Block| block.is_exact();
-        if blocks(model, claims, choices, &narrower, k, Way::Follow).is_ok_and(|blocks| blocks.iter().all(exact)) {
+        if blocks(model, claims, choices, &narrower, k, CountMethod::Follow)
+            .is_ok_and(|blocks| blocks.iter().all(exact))
+        {
             registers.iter_mut().for_each(|register| register.known = Known::ProvedHere);
         }
         return;
