@@ -20,6 +20,8 @@ pub struct Arc {
     direction: Direction,
 }
 
+crate::ends::ends!(Arc, "centre");
+
 impl Arc {
     /// The arc between two points about a centre, all in BLU and in machine coordinates.
     ///
@@ -92,40 +94,10 @@ impl Arc {
         crate::pulses::arc_between(from, to, center, direction).ok_or(refused)
     }
 
-    /// The start point in machine coordinates, in BLU.
-    #[must_use]
-    pub fn from(&self) -> [i64; 2] {
-        self.from
-    }
-
-    /// The end point in machine coordinates, in BLU.
-    #[must_use]
-    pub fn to(&self) -> [i64; 2] {
-        self.to
-    }
-
-    /// The centre in machine coordinates, in BLU.
-    #[must_use]
-    pub fn center(&self) -> [i64; 2] {
-        self.center
-    }
-
     /// The direction of rotation.
     #[must_use]
     pub fn direction(&self) -> Direction {
         self.direction
-    }
-
-    /// The start point relative to the centre, in BLU.
-    #[must_use]
-    pub fn start(&self) -> [i64; 2] {
-        self.relative(self.from)
-    }
-
-    /// The end point relative to the centre, in BLU.
-    #[must_use]
-    pub fn end(&self) -> [i64; 2] {
-        self.relative(self.to)
     }
 
     /// The square of the distance of the start point from the centre, in BLU², exact.
@@ -295,10 +267,6 @@ impl Arc {
         };
         let angle = turned.atan2(sx * x + sy * y);
         if angle < 0.0 { angle + TAU } else { angle }
-    }
-
-    fn relative(&self, [x, y]: [i64; 2]) -> [i64; 2] {
-        [x - self.center[0], y - self.center[1]]
     }
 }
 

@@ -31,6 +31,8 @@ pub struct Conic {
     direction: Direction,
 }
 
+crate::ends::ends!(Conic, "centre of an ellipse or hyperbola, or vertex of a parabola");
+
 impl Conic {
     /// The arc of an ellipse with these semi-axes along x and y about a centre; points in machine coordinates, all in
     /// BLU.
@@ -132,40 +134,10 @@ impl Conic {
         self.shape.opens()
     }
 
-    /// The start point in machine coordinates, in BLU.
-    #[must_use]
-    pub fn from(&self) -> [i64; 2] {
-        self.from
-    }
-
-    /// The end point in machine coordinates, in BLU.
-    #[must_use]
-    pub fn to(&self) -> [i64; 2] {
-        self.to
-    }
-
-    /// The centre of an ellipse or hyperbola or the vertex of a parabola, in machine coordinates, in BLU.
-    #[must_use]
-    pub fn center(&self) -> [i64; 2] {
-        self.center
-    }
-
     /// The direction of rotation of an ellipse; an open curve leads from its start to its end.
     #[must_use]
     pub fn direction(&self) -> Option<Direction> {
         matches!(self.shape, Shape::Ellipse { .. }).then_some(self.direction)
-    }
-
-    /// The start point relative to the centre or vertex, in BLU.
-    #[must_use]
-    pub fn start(&self) -> [i64; 2] {
-        self.relative(self.from)
-    }
-
-    /// The end point relative to the centre or vertex, in BLU.
-    #[must_use]
-    pub fn end(&self) -> [i64; 2] {
-        self.relative(self.to)
     }
 
     /// Whether both ends lie on the curve exactly.
@@ -289,10 +261,6 @@ impl Conic {
     /// The motion about the centre of an ellipse.
     fn turn(&self) -> Turn {
         Turn { start: self.start(), end: self.end(), direction: self.direction }
-    }
-
-    fn relative(&self, [x, y]: [i64; 2]) -> [i64; 2] {
-        [x - self.center[0], y - self.center[1]]
     }
 
     /// The curve if it is one, and how far the farther of its ends lies off it, in BLU.

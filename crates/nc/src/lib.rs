@@ -25,6 +25,7 @@ mod compensation;
 mod conic;
 mod contour;
 mod curve;
+mod ends;
 mod error;
 mod exact;
 mod gauge;
