@@ -1,6 +1,5 @@
 //! Comparison-integral.
 
-use proptest::prelude::*;
 use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, WEIGHTS};
 use stepwave_models::{Beats, Options, Weights};
@@ -14,14 +13,21 @@ const RULES: [(Weights, reference::Weights); 3] = [
     (Weights::Post, reference::Weights::Post),
 ];
 
-fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
+pub(super) fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
     for (weights, _) in RULES {
         let choices = Options::default().with(&WEIGHTS, weights).with(&BEATS, beats);
         check("cim-line", &line(&from, &to), &choices, engine, &cim_line(from, to));
     }
 }
 
-fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, beats: Beats, engine: EngineKind) {
+pub(super) fn check_arc(
+    from: [i64; 2],
+    to: [i64; 2],
+    center: [i64; 2],
+    clockwise: bool,
+    beats: Beats,
+    engine: EngineKind,
+) {
     for (weights, rule) in RULES {
         let choices = Options::default().with(&WEIGHTS, weights).with(&BEATS, beats);
         let table = cim_arc(from, to, center, clockwise, rule);
@@ -81,21 +87,5 @@ fn an_end_point_off_the_circle_is_reached() {
         for to in [[0, 6], [4, 4], [-3, 5], [-6, 0], [-4, -4], [2, -5], [6, 0], [5, 2]] {
             check_arc([5, 1], to, [0, 0], clockwise, Beats::One, EngineKind::Word);
         }
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-
-    #[test]
-    fn lines_of_any_size(from in prop::array::uniform2(-100_000i64..100_000), d in prop::array::uniform2(-3000i64..3000)) {
-        prop_assume!(d != [0, 0]);
-        check_line(from, [from[0] + d[0], from[1] + d[1]], Beats::One, EngineKind::Word);
-    }
-
-    #[test]
-    fn full_circles_of_any_size(start in prop::array::uniform2(-400i64..400), clockwise: bool) {
-        prop_assume!(start != [0, 0]);
-        check_arc(start, start, [0, 0], clockwise, Beats::Four, EngineKind::Word);
     }
 }

@@ -1,6 +1,5 @@
 //! Minimum deviation and vector discrimination.
 
-use proptest::prelude::*;
 use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, END_POINT};
 use stepwave_models::{Beats, EndPoint, Options};
@@ -16,14 +15,21 @@ const ARCS: [(&str, ArcTable); 2] = [("mindev-arc", mindev_arc), ("vector-arc", 
 const ENDS: [(EndPoint, reference::EndPoint); 2] =
     [(EndPoint::Total, reference::EndPoint::Total), (EndPoint::PerAxis, reference::EndPoint::PerAxis)];
 
-fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
+pub(super) fn check_line(from: [i64; 2], to: [i64; 2], beats: Beats, engine: EngineKind) {
     for (model, table) in LINES {
         let choices = Options::default().with(&BEATS, beats);
         check(model, &line(&from, &to), &choices, engine, &table(from, to));
     }
 }
 
-fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, beats: Beats, engine: EngineKind) {
+pub(super) fn check_arc(
+    from: [i64; 2],
+    to: [i64; 2],
+    center: [i64; 2],
+    clockwise: bool,
+    beats: Beats,
+    engine: EngineKind,
+) {
     for (model, table) in ARCS {
         for (end_point, end_reference) in ENDS {
             let choices = Options::default().with(&END_POINT, end_point).with(&BEATS, beats);
@@ -68,21 +74,5 @@ fn an_end_point_off_the_circle_is_reached_with_a_counter_for_each_axis() {
                 check(model, &arc([5, 1], to, [0, 0], clockwise), &choices, EngineKind::Word, &table);
             }
         }
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-
-    #[test]
-    fn lines_of_any_size(from in prop::array::uniform2(-100_000i64..100_000), d in prop::array::uniform2(-3000i64..3000)) {
-        prop_assume!(d != [0, 0]);
-        check_line(from, [from[0] + d[0], from[1] + d[1]], Beats::One, EngineKind::Word);
-    }
-
-    #[test]
-    fn full_circles_of_any_size(start in prop::array::uniform2(-400i64..400), clockwise: bool) {
-        prop_assume!(start != [0, 0]);
-        check_arc(start, start, [0, 0], clockwise, Beats::Four, EngineKind::Word);
     }
 }

@@ -1,5 +1,6 @@
 //! Every register of every model at every step, compared with the recurrences in `reference`.
 
+mod any_size;
 mod bounds;
 mod cim;
 mod conics;
