@@ -8,40 +8,99 @@
 //! ```
 //!
 //! `cases.toml` in the folder lists the cases; the help of the command says how. Recorded are the wave `NAME.vcd` with its
-//! viewer files, and the step table `NAME.csv`.
+//! viewer files, and the step table `NAME.csv`. [`check_cases`] takes cases as values, without `cases.toml`.
 
-mod cases;
+#[cfg(feature = "cli")]
+pub(crate) mod cases;
 mod differences;
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fmt, fs};
 
 use crate::engine::EngineKind;
-use clap::Parser;
-
-use self::cases::Case;
-use crate::Error;
-use crate::cli::{self, Cli, Command};
-use crate::commands::{program, run};
 use crate::output::{Outputs, temporary};
+use crate::{Error, Simulation};
 
-/// Checks every case of a folder on every engine; gives their number.
+/// Simulates on an engine, with the wave and the step table in these files; gives what is wrong with the hardware.
+type Run = dyn Fn(EngineKind, [PathBuf; 2]) -> Result<Vec<String>, Error>;
+
+/// A run whose wave and step table are recorded.
+#[must_use]
+pub struct Case {
+    name: String,
+    exit: u8,
+    /// Files that it reads, which no output may replace.
+    inputs: Vec<PathBuf>,
+    run: Box<Run>,
+}
+
+impl Case {
+    /// A run that passes every check. The name is that of its files: letters, digits, `-`, `_` and `.`.
+    pub fn new(name: impl Into<String>, simulation: Simulation) -> Case {
+        let run = move |engine, [vcd, steps]: [PathBuf; 2]| {
+            Ok(simulation.clone().engine(engine).vcd(vcd).steps(steps).run()?.failures())
+        };
+        Case { name: name.into(), exit: 0, inputs: Vec::new(), run: Box::new(run) }
+    }
+
+    /// With this exit code of the run: 1 where the hardware fails a check.
+    pub fn exit(self, exit: u8) -> Case {
+        Case { exit, ..self }
+    }
+}
+
+impl fmt::Debug for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Case").field("name", &self.name).field("exit", &self.exit).finish_non_exhaustive()
+    }
+}
+
+/// Checks every case that `cases.toml` of a folder lists, on every engine; gives their number.
 ///
 /// # Errors
 /// [`Error::Check`] with every difference, or a case or its files cannot be read.
+#[cfg(feature = "cli")]
 pub fn check(folder: impl AsRef<Path>) -> Result<usize, Error> {
-    let report = all_of(folder.as_ref(), &[], false, &mut |_, _| {})?;
+    check_cases(&folder, &cases::read(folder.as_ref())?)
+}
+
+/// Records every case that `cases.toml` of a folder lists; gives what has changed, a line for each.
+///
+/// # Errors
+/// [`Error::Check`] where a case does not end as it says, or engines differ; a case cannot be read, or a file not written.
+#[cfg(feature = "cli")]
+pub fn record(folder: impl AsRef<Path>) -> Result<String, Error> {
+    record_cases(&folder, &cases::read(folder.as_ref())?)
+}
+
+/// Checks these cases, whose files are in a folder, on every engine; gives their number.
+///
+/// ```
+/// use stepwave::golden::{Case, check_cases, record_cases};
+/// use stepwave::{Simulation, models::find, nc::Line};
+///
+/// let folder = tempfile::tempdir()?;
+/// let line = Simulation::new(find("dda-line")?, Line::new(vec![0, 0], vec![8, 6])?.into());
+/// let cases = [Case::new("line", line)];
+/// record_cases(&folder, &cases)?; // once: line.vcd, line.csv, and files for GTKWave
+/// assert_eq!(check_cases(&folder, &cases)?, 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Check`] with every difference; a name cannot be that of files, or a file cannot be read.
+pub fn check_cases(folder: impl AsRef<Path>, cases: &[Case]) -> Result<usize, Error> {
+    let report = all_of(folder.as_ref(), cases, None, false, &mut |_, _| {})?;
     report.differences.is_empty().then_some(report.cases).ok_or(Error::Check(report.differences))
 }
 
-/// Records every case of a folder; gives what has changed, a line for each.
+/// Records these cases in a folder; gives what has changed, a line for each.
 ///
 /// # Errors
-/// [`Error::Check`] where a case does not end as it says, or engines differ; a case cannot be read, or a file not
-/// written.
-pub fn record(folder: impl AsRef<Path>) -> Result<String, Error> {
-    let report = all_of(folder.as_ref(), &[], true, &mut |_, _| {})?;
+/// [`Error::Check`] where a case does not end as it says, or engines differ; a file cannot be written.
+pub fn record_cases(folder: impl AsRef<Path>, cases: &[Case]) -> Result<String, Error> {
+    let report = all_of(folder.as_ref(), cases, None, true, &mut |_, _| {})?;
     report.differences.is_empty().then_some(report.text).ok_or(Error::Check(report.differences))
 }
 
@@ -56,33 +115,49 @@ pub(crate) struct Report {
     pub(crate) differences: Vec<String>,
 }
 
-/// Checks or records the cases of these names, or every case where none are given. `done` gets how many of how many
-/// are.
+/// Checks or records those that are chosen, or every case. `done` gets how many of how many are.
 pub(crate) fn all_of(
     dir: &Path,
-    names: &[&String],
+    all: &[Case],
+    chosen: Option<Vec<&Case>>,
     record: bool,
     done: &mut dyn FnMut(usize, usize),
 ) -> Result<Report, Error> {
-    let all = cases::read(dir)?;
-    let chosen = cases::chosen(&all, names, dir)?;
+    names_fit(all)?;
+    let whole = chosen.is_none();
+    let chosen = chosen.unwrap_or_else(|| all.iter().collect());
     let mut report = Report { cases: chosen.len(), ..Report::default() };
     done(0, chosen.len());
     for (index, case) in chosen.iter().enumerate() {
-        one(case, &all, dir, record, &mut report)?;
+        one(case, all, dir, record, &mut report)?;
         done(index + 1, chosen.len());
     }
-    if names.is_empty() {
-        orphans(dir, &all, &mut report.differences)?;
+    if whole {
+        orphans(dir, all, &mut report.differences)?;
     }
     Ok(report)
+}
+
+/// Refuses names that cannot be those of files of one folder, on any system.
+fn names_fit(cases: &[Case]) -> Result<(), Error> {
+    for (index, Case { name, .. }) in cases.iter().enumerate() {
+        let is_stem = name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c));
+        if !is_stem || name.starts_with(['.', '-']) || name.is_empty() {
+            let rule = "give letters, digits, '-', '_' and '.', not first '.' or '-'";
+            return Err(Error::Invalid(format!("'{name}' cannot name files: {rule}")));
+        }
+        if cases[..index].iter().any(|other| other.name == *name) {
+            return Err(Error::Invalid(format!("two cases are named '{name}'")));
+        }
+    }
+    Ok(())
 }
 
 /// Checks or records a case.
 fn one(case: &Case, all: &[Case], dir: &Path, record: bool, report: &mut Report) -> Result<(), Error> {
     let mut reported = None;
     for engine in EngineKind::ALL {
-        let made = match simulate(case, dir, engine) {
+        let made = match simulate(case, engine) {
             Ok(made) => made,
             Err(Error::Check(sentences)) => {
                 report.differences.extend(sentences);
@@ -110,33 +185,16 @@ fn one(case: &Case, all: &[Case], dir: &Path, record: bool, report: &mut Report)
 type Files = BTreeMap<String, Vec<u8>>;
 
 /// Runs a case as its user would, in a folder of its own.
-fn simulate(case: &Case, folder: &Path, engine: EngineKind) -> Result<Files, Error> {
-    let wrong = |what: String| Error::Invalid(format!("case {}: {what}", case.name));
+fn simulate(case: &Case, engine: EngineKind) -> Result<Files, Error> {
     let dir = temporary::Folder::new()?;
-    let file = |extension: &str| dir.path().join(format!("{}.{extension}", case.name)).into_os_string();
-    let mut words: Vec<std::ffi::OsString> = vec!["stepwave".into()];
-    match &case.program {
-        Some(name) => words.extend(["program".into(), folder.join(name).into_os_string()]),
-        None => words.push("run".into()),
-    }
-    words.extend(case.args.iter().map(Into::into));
-    words.extend(["--engine".into(), engine.name().into(), "--vcd".into(), file("vcd"), "--steps".into(), file("csv")]);
-    let in_words = |failure: Error| match failure {
-        Error::Invalid(sentence) => wrong(sentence),
+    let file = |extension: &str| dir.path().join(format!("{}.{extension}", case.name));
+    let failures = (case.run)(engine, [file("vcd"), file("csv")]).map_err(|failure| match failure {
+        Error::Invalid(sentence) => Error::Invalid(format!("case {}: {sentence}", case.name)),
         other => other,
-    };
-    let cli = Cli::try_parse_from(words).map_err(|error| in_words(cli::usage(&error)))?;
-    let mut outputs = Outputs::default();
-    let finished = match &cli.command {
-        Command::Program(args) => program::simulate(args, &mut outputs),
-        Command::Run(args) => run::simulate(args, &mut outputs),
-        _ => return Err(wrong("is neither a run nor a program".to_owned())),
-    };
-    let finished = finished.map_err(in_words)?;
-    outputs.commit()?;
-    let exit = u8::from(!finished.failures.is_empty());
+    })?;
+    let exit = u8::from(!failures.is_empty());
     if exit != case.exit {
-        let said = match finished.failures.join("; ") {
+        let said = match failures.join("; ") {
             none if none.is_empty() => "it passes every check".to_owned(),
             said => said,
         };
@@ -171,12 +229,10 @@ fn stale(case: &Case, all: &[Case], dir: &Path, made: &Files) -> Result<Vec<Stri
 
 /// Records the files of a case; gives what has changed.
 fn write(case: &Case, all: &[Case], dir: &Path, files: &Files, stale: &[String]) -> Result<String, Error> {
-    let programs = all.iter().filter_map(|case| case.program.as_ref()).map(|program| dir.join(program));
-    let inputs: Vec<PathBuf> = programs.chain([cases::list_of(dir)]).collect();
-    let mut outputs = Outputs::reading(&inputs);
+    let mut outputs = Outputs::reading(all.iter().flat_map(|case| &case.inputs));
     let mut kinds: BTreeMap<usize, Vec<&str>> = BTreeMap::new();
     for (name, content) in files {
-        let path = cases::recorded(dir, name)?;
+        let path = recorded(dir, name)?;
         let kind = match fs::read(&path) {
             Ok(recorded) if recorded == *content => 3,
             Ok(_) => 1,
@@ -204,7 +260,7 @@ fn compare(
     differences: &mut Vec<String>,
 ) -> Result<(), Error> {
     for (name, content) in made {
-        let path = cases::recorded(dir, name)?;
+        let path = recorded(dir, name)?;
         let recorded = fs::read(&path).map_err(|error| {
             let remedy = "`stepwave golden record` writes it";
             Error::Invalid(format!("cannot read {}: {error}: {remedy}", path.display()))
@@ -228,4 +284,17 @@ fn orphans(dir: &Path, cases: &[Case], differences: &mut Vec<String>) -> Result<
         }
     }
     Ok(())
+}
+
+/// A file that is recorded, in its folder.
+///
+/// # Errors
+/// It is a link.
+fn recorded(dir: &Path, name: &str) -> Result<PathBuf, Error> {
+    let path = dir.join(name);
+    if path.is_symlink() {
+        let message = format!("{} is a link, which may lead out of the folder: delete it", path.display());
+        return Err(Error::Invalid(message));
+    }
+    Ok(path)
 }

@@ -42,7 +42,6 @@ mod cli;
 #[cfg(feature = "cli")]
 mod commands;
 mod error;
-#[cfg(feature = "cli")]
 pub mod golden;
 pub mod guide;
 #[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]

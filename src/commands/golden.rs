@@ -4,7 +4,7 @@ use super::progress::Progress;
 use crate::Error;
 use crate::cli::GoldenCommand;
 use crate::engine::EngineKind;
-use crate::golden::all_of;
+use crate::golden::{all_of, cases};
 use crate::output;
 
 /// Checks or records every case, or those that are named.
@@ -15,7 +15,9 @@ pub(crate) fn run(command: &GoldenCommand) -> Result<(), Error> {
     };
     let names: Vec<&String> = args.cases.iter().chain(&args.case).collect();
     let mut progress = None;
-    let mut report = all_of(&args.dir, &names, record, &mut |done, all| {
+    let all = cases::read(&args.dir)?;
+    let chosen = cases::chosen(&all, &names, &args.dir)?;
+    let mut report = all_of(&args.dir, &all, chosen, record, &mut |done, all| {
         progress.get_or_insert_with(|| Progress::of(all as u64, "cases")).add(u64::from(done > 0));
     })?;
     if let Some(progress) = progress {

@@ -1,40 +1,76 @@
 //! The cases of a folder: `cases.toml`, and that no case leaves its folder.
 
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use clap::CommandFactory;
+use clap::{CommandFactory, Parser};
 use serde::Deserialize;
 
+use super::{Case, names_fit};
 use crate::Error;
-use crate::cli::Cli;
+use crate::cli::{Cli, Command, usage};
+use crate::commands::{program, run};
+use crate::engine::EngineKind;
+use crate::output::Outputs;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Cases {
-    case: Vec<Case>,
+    case: Vec<Listed>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Case {
+struct Listed {
     /// Name of its files.
-    pub(super) name: String,
+    name: String,
     /// Where the example comes from; for people.
     #[allow(dead_code)]
     #[serde(default)]
     source: String,
     /// File of the program in the folder, where it is one.
-    pub(super) program: Option<PathBuf>,
+    program: Option<PathBuf>,
     /// Arguments of `stepwave run` or `stepwave program`.
-    pub(super) args: Vec<String>,
+    args: Vec<String>,
     /// Exit code that the run has.
     #[serde(default)]
-    pub(super) exit: u8,
+    exit: u8,
+}
+
+impl Listed {
+    /// Runs the command that it is.
+    fn run(&self, folder: &Path, engine: EngineKind, [vcd, steps]: [PathBuf; 2]) -> Result<Vec<String>, Error> {
+        let mut words: Vec<OsString> = vec!["stepwave".into()];
+        match &self.program {
+            Some(name) => words.extend(["program".into(), folder.join(name).into_os_string()]),
+            None => words.push("run".into()),
+        }
+        words.extend(self.args.iter().map(Into::into));
+        let files = ["--vcd".into(), vcd.into_os_string(), "--steps".into(), steps.into_os_string()];
+        words.extend(["--engine".into(), engine.name().into()].into_iter().chain(files));
+        let cli = Cli::try_parse_from(words).map_err(|error| usage(&error))?;
+        let mut outputs = Outputs::default();
+        let finished = match &cli.command {
+            Command::Program(args) => program::simulate(args, &mut outputs),
+            Command::Run(args) => run::simulate(args, &mut outputs),
+            _ => return Err(Error::Invalid("is neither a run nor a program".to_owned())),
+        }?;
+        outputs.commit()?;
+        Ok(finished.failures)
+    }
+
+    /// The same as a value.
+    fn case(self, dir: &Path) -> Case {
+        let (name, exit, folder) = (self.name.clone(), self.exit, dir.to_owned());
+        let program = self.program.as_ref().map(|program| dir.join(program));
+        let inputs = program.into_iter().chain([list_of(dir)]).collect();
+        Case { name, exit, inputs, run: Box::new(move |engine, files| self.run(&folder, engine, files)) }
+    }
 }
 
 /// The file that lists the cases.
-pub(super) fn list_of(dir: &Path) -> PathBuf {
+fn list_of(dir: &Path) -> PathBuf {
     dir.join("cases.toml")
 }
 
@@ -42,24 +78,17 @@ pub(super) fn list_of(dir: &Path) -> PathBuf {
 ///
 /// # Errors
 /// The list cannot be read, names files that it may not, or names two cases alike.
-pub(super) fn read(dir: &Path) -> Result<Vec<Case>, Error> {
+pub(crate) fn read(dir: &Path) -> Result<Vec<Case>, Error> {
     let path = list_of(dir);
-    let refused = |what: String| Err(Error::Invalid(format!("{}: {what}", path.display())));
+    let refused = |what: String| Err::<Vec<Case>, _>(Error::Invalid(format!("{}: {what}", path.display())));
     let cannot = |error: &dyn std::fmt::Display| Error::Invalid(format!("cannot read {}: {error}", path.display()));
     let text = fs::read_to_string(&path).map_err(|error| cannot(&error))?;
     let cases: Cases = toml::from_str(&text).map_err(|error: toml::de::Error| {
         // TOML shows the line and points at the place in it.
         Error::Extract(format!("cannot read {}: {}", path.display(), error.to_string().trim_end()))
     })?;
-    for (index, case) in cases.case.iter().enumerate() {
+    for case in &cases.case {
         let name = &case.name;
-        if !is_file_stem(name) {
-            let rule = "give letters, digits, '-', '_' and '.', not first '.' or '-'";
-            return refused(format!("'{name}' cannot name files: {rule}"));
-        }
-        if cases.case[..index].iter().any(|other| other.name == *name) {
-            return refused(format!("two cases are named '{name}'"));
-        }
         if let Some(option) = file_option(case) {
             let rest = "leave out --fst, --checkpoints, --json and --plot";
             return refused(format!(
@@ -70,28 +99,28 @@ pub(super) fn read(dir: &Path) -> Result<Vec<Case>, Error> {
             stays_in(dir, program).map_err(|what| Error::Invalid(format!("case {name}: {what}")))?;
         }
     }
-    Ok(cases.case)
+    let cases: Vec<Case> = cases.case.into_iter().map(|case| case.case(dir)).collect();
+    names_fit(&cases).map(|()| cases).or_else(|error| match error {
+        Error::Invalid(what) => refused(what),
+        other => Err(other),
+    })
 }
 
-/// The cases of these names, or all where none are given.
+/// The cases of these names; `None` where none are given.
 ///
 /// # Errors
 /// There is no such case.
-pub(super) fn chosen<'c>(cases: &'c [Case], names: &[&String], dir: &Path) -> Result<Vec<&'c Case>, Error> {
+pub(crate) fn chosen<'c>(cases: &'c [Case], names: &[&String], dir: &Path) -> Result<Option<Vec<&'c Case>>, Error> {
+    if names.is_empty() {
+        return Ok(None);
+    }
     if let Some(unknown) = names.iter().find(|name| !cases.iter().any(|case| case.name == ***name)) {
         let known: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
         let list = list_of(dir);
         let known = known.join(", ");
         return Err(Error::Invalid(format!("{} has no case '{unknown}': its cases are {known}", list.display())));
     }
-    Ok(cases.iter().filter(|case| names.is_empty() || names.contains(&&case.name)).collect())
-}
-
-/// Names files of this very folder, on any system.
-fn is_file_stem(name: &str) -> bool {
-    name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
-        && !name.starts_with(['.', '-'])
-        && !name.is_empty()
+    Ok(Some(cases.iter().filter(|case| names.contains(&&case.name)).collect()))
 }
 
 /// A file below the folder, to which no link leads from elsewhere.
@@ -110,21 +139,8 @@ fn stays_in(dir: &Path, file: &Path) -> Result<(), String> {
     }
 }
 
-/// A file that is recorded, in its folder.
-///
-/// # Errors
-/// It is a link.
-pub(super) fn recorded(dir: &Path, name: &str) -> Result<PathBuf, Error> {
-    let path = dir.join(name);
-    if path.is_symlink() {
-        let message = format!("{} is a link, which may lead out of the folder: delete it", path.display());
-        return Err(Error::Invalid(message));
-    }
-    Ok(path)
-}
-
 /// The first argument that names a file.
-fn file_option(case: &Case) -> Option<&str> {
+fn file_option(case: &Listed) -> Option<&str> {
     let program = Cli::command();
     let command = program.find_subcommand(if case.program.is_some() { "program" } else { "run" })?;
     let files = command.get_arguments().filter(|argument| {

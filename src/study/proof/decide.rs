@@ -152,7 +152,7 @@ impl Proposition {
             }
             let failed = attempts.iter().filter(|(_, proof, _)| Claim::may_fail_induction(proof));
             let failed: Vec<_> = failed.map(|(kind, _, certificate)| (kind, certificate)).collect();
-            induction = Some(subject.counterexample_to_induction(&failed)?);
+            induction = Some(Box::new(subject.counterexample_to_induction(&failed)?));
         }
         let scope = Scope::of_family(self, &subject);
         Ok(self.verdict(scope, Evidence::Steps { attempts, below, induction }))

@@ -32,7 +32,7 @@ pub enum Evidence {
         /// What was simulated of bits of coordinates below those of the proof.
         below: Vec<Tried>,
         /// Where something is open: steps that could show why.
-        induction: Option<InductionSearch>,
+        induction: Option<Box<InductionSearch>>,
     },
     /// Blocks that were followed with coefficients of unknown bits, each exact and counted a second time.
     Blocks(Vec<Block>),
