@@ -1,5 +1,8 @@
 //! The text form: what is refused, and that a line which cannot be read does not spoil those after it.
 
+use std::collections::HashMap;
+
+use stepwave_netlist::passes::simplify;
 use stepwave_netlist::{elaborate, text};
 
 /// What is said of a text, line by line, without the code that all of them have.
@@ -82,6 +85,31 @@ fn the_first_line_names_the_netlist() {
     assert_eq!(said("netlist\n%0:1 = input\n"), ["line 1: expected more words in 'netlist'"]);
     // Empty lines are no lines.
     assert!(text::parse("\n  \nnetlist m\n").is_ok());
+}
+
+#[test]
+fn the_source_line_of_a_cell_is_printed_parsed_and_reported() {
+    let lines = [
+        "netlist m",
+        r#"%0:4 = input at "my \"adder\".v" 3 17"#,
+        r#"%1:4 = register reset 0x0 next %2 at "dda.v" 12 0"#,
+        r#"%2:4 = add %0 %1 at "dda.v" 14 9"#,
+        "%3:4 = not %2",
+    ];
+    let netlist = text::parse(&lines.join("\n")).unwrap();
+    assert_eq!(text::print(&netlist), lines.join("\n") + "\n");
+    assert_eq!(netlist.sources[2].as_ref().unwrap().to_string(), "dda.v:14");
+    let simplified = simplify(&netlist, &HashMap::new());
+    assert_eq!(simplified.netlist.sources, netlist.sources);
+
+    let wrong = text::parse("netlist m\n%0:4 = register reset 0x0 at \"dda.v\" 7 1\n").unwrap();
+    let message = elaborate(wrong).unwrap_err().to_string();
+    assert_eq!(message, "dda.v:7: register %0 never gets a next value [UndrivenRegister]");
+
+    for line in ["%0:4 = input on", "%0:4 = input at dda.v 1 2", "%0:4 = input at \"dda.v\" 1", "%0:4 = input at \"d\" 1 2 3"] {
+        let said = said(&format!("netlist m\n{line}\n"));
+        assert!(said.len() == 1 && said[0].starts_with("line 2: "), "{line}: {said:?}");
+    }
 }
 
 #[test]

@@ -232,7 +232,9 @@ impl<'a> Loader<'a> {
         for property in &mut properties {
             move_property(property, go);
         }
-        let sources = vec![None; self.cells.len()];
+        let mut sources = vec![None; shift];
+        sources.extend(old.sources.iter().cloned());
+        sources.resize(self.cells.len(), None);
         Netlist { cells: self.cells, scopes, names, properties, invariants: Vec::new(), sources }
     }
 }

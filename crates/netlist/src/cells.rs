@@ -5,11 +5,12 @@
 //! lists the operands of each operator.
 
 mod check;
-
-use std::panic::Location;
+mod source;
 
 use crate::bits::{Reading, Width};
 use crate::formula::Clause;
+
+pub use source::Source;
 
 /// A net, named by the cell that drives it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -303,10 +304,10 @@ pub struct Netlist {
     /// hardware comes of it.
     pub invariants: Vec<Clause>,
     /// Source line of each cell, where it is known; same index as `cells`.
-    pub sources: Vec<Option<&'static Location<'static>>>,
+    pub sources: Vec<Option<Source>>,
 }
 
-/// Equal in all but source lines, which the text form does not carry.
+/// Equal in all but source lines, of which the text form carries those of files alone.
 impl PartialEq for Netlist {
     fn eq(&self, other: &Netlist) -> bool {
         self.cells == other.cells

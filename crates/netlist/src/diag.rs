@@ -2,7 +2,8 @@
 //! one build reports all mistakes.
 
 use std::fmt;
-use std::panic::Location;
+
+use crate::cells::Source;
 
 /// The kind of a mistake, stable for tests and for people who search for it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -38,8 +39,8 @@ pub enum Code {
 /// Where a mistake was made: a line of the model's source, of a netlist text, or just a component.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Place {
-    /// Source line of the model.
-    Source(&'static Location<'static>),
+    /// Source line of the model, or of the file that it was imported from.
+    Source(Source),
     /// Line of a netlist text, from 1.
     Line(usize),
     /// A component by its path.
@@ -49,7 +50,7 @@ pub enum Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Source(location) => write!(f, "{}:{}", location.file(), location.line()),
+            Place::Source(source) => source.fmt(f),
             Place::Line(line) => write!(f, "line {line}"),
             Place::Component(path) => f.write_str(path),
         }

@@ -112,7 +112,7 @@ fn check(netlist: &Netlist) -> Vec<Diagnostic> {
 fn check_cells(netlist: &Netlist, report: &mut impl FnMut(Code, Place, String)) {
     let count = netlist.cells.len();
     let place = |net: Net| match netlist.sources.get(net.index()) {
-        Some(Some(location)) => Place::Source(location),
+        Some(Some(source)) => Place::Source(source.clone()),
         _ => Place::Component(format!("net %{}", net.index())),
     };
     for (net, cell) in netlist.nets().zip(&netlist.cells) {

@@ -1,5 +1,5 @@
-//! The text form of a netlist, for tests and for people: one cell a line, printed and parsed without loss (source
-//! lines excepted).
+//! The text form of a netlist, for tests and for people: one cell a line, printed and parsed without loss (lines
+//! of Rust source excepted).
 //!
 //! ```text
 //! netlist counter
@@ -8,22 +8,23 @@
 //! %1:4 = register reset 0x0 next %3
 //! %2:4 = const 0x1
 //! %3:4 = add %1 %2
-//! %4:1 = carry %1 %2
+//! %4:1 = carry %1 %2 at "counter.v" 12 5
 //! name %1 in 1 "count" unsigned
 //! property "counter.x.count" never %4 add %1 unsigned %2 unsigned
 //! between-steps "counter.x.even" count - 2 | -count
 //! ```
 //!
-//! `name` ends in the format: `unsigned`, `signed`, `analog`, `binary` or `states 0x1 "JUDGE" 0x2 "FEED"`. `property`
+//! `at` gives file, line and column of a cell's source. `name` ends in the format: `unsigned`, `signed`, `analog`, `binary` or `states 0x1 "JUDGE" 0x2 "FEED"`. `property`
 //! ends in `invariant` or in the strict operation with its operands, `between-steps` in formulas with `|` between them.
 //! Text in quotes is escaped as in Rust.
 
 use std::fmt::{self, Write as _};
 use std::str::CharIndices;
+use std::sync::Arc;
 
 use crate::bits::Width;
 use crate::cells::{
-    Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Operand, Property, ScopeData, ScopeId,
+    Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Operand, Property, ScopeData, ScopeId, Source,
 };
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::formula::{Clause, Formula};
@@ -111,7 +112,11 @@ impl fmt::Display for Netlist {
             }
         }
         for (net, cell) in self.nets().zip(&self.cells) {
-            writeln!(f, "{net}:{} = {}", cell.width.get(), cell.op)?;
+            write!(f, "{net}:{} = {}", cell.width.get(), cell.op)?;
+            if let Some(Some(Source::File { file, line, column })) = self.sources.get(net.index()) {
+                write!(f, " at {file:?} {line} {column}")?;
+            }
+            writeln!(f)?;
         }
         for named in &self.names {
             writeln!(f, "name {} in {} {:?} {}", named.net, named.scope.0, named.name, named.format)?;
@@ -143,7 +148,7 @@ impl fmt::Display for Netlist {
 /// # Errors
 /// Every line that cannot be read, once.
 pub fn parse(text: &str) -> Result<Netlist, Diagnostics> {
-    let mut parser = Parser { netlist: Netlist::new(""), named: false, next_net: Some(0), next_scope: Some(1) };
+    let mut parser = Parser { netlist: Netlist::new(""), named: false, next_net: Some(0), next_scope: Some(1), file: "".into() };
     let mut diagnostics = Vec::new();
     let mut report = |line: usize, message: String| {
         diagnostics.push(Diagnostic { code: Code::Syntax, place: Place::Line(line), message });
@@ -180,6 +185,8 @@ struct Parser {
     next_net: Option<u32>,
     /// The number that the next scope must have, if it is known.
     next_scope: Option<u32>,
+    /// The file named last, so that it is kept once.
+    file: Arc<str>,
 }
 
 impl Parser {
@@ -260,8 +267,23 @@ impl Parser {
         words.rest = rest.trim_start();
         let op = words.op()?;
         self.netlist.cells.push(Cell { op, width });
-        self.netlist.sources.push(None);
+        let source = if words.rest.is_empty() { None } else { Some(self.source(words)?) };
+        self.netlist.sources.push(source);
         words.end()
+    }
+}
+
+impl Parser {
+    /// The source of a cell, at the end of its line.
+    fn source(&mut self, words: &mut Words<'_>) -> Result<Source, Expected> {
+        if words.keyword("at").is_err() {
+            return Err("the end of the line, or 'at' and a source".to_owned());
+        }
+        let file = words.quoted()?;
+        if *self.file != *file {
+            self.file = file.into();
+        }
+        Ok(Source::File { file: Arc::clone(&self.file), line: words.number()?, column: words.number()? })
     }
 }
 
@@ -310,7 +332,7 @@ impl<'a> Words<'a> {
             "register" => {
                 self.keyword("reset")?;
                 let reset = self.value()?;
-                let next = if self.rest.is_empty() {
+                let next = if self.rest.is_empty() || self.rest.starts_with("at ") {
                     None
                 } else {
                     self.keyword("next")?;

@@ -16,10 +16,9 @@ mod strict;
 
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
-use std::panic::Location;
 
 use crate::bits::{Bits, Width};
-use crate::cells::{Cell, Claim, Format, NamedNet, Net, Netlist, OnOverflow, Op, Property, ScopeData, ScopeId};
+use crate::cells::{Cell, Claim, Format, NamedNet, Net, Netlist, OnOverflow, Op, Property, ScopeData, ScopeId, Source};
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::formula::{Clause, Formula};
 
@@ -138,7 +137,7 @@ impl Module {
         // More than 2^32 cells do not fit in memory.
         let net = Net(u32::try_from(netlist.cells.len()).unwrap_or(u32::MAX));
         netlist.cells.push(cell);
-        netlist.sources.push(Some(Location::caller()));
+        netlist.sources.push(Some(Source::here()));
         net
     }
 
@@ -156,7 +155,7 @@ impl Module {
 
     #[track_caller]
     fn report(&self, code: Code, message: String) {
-        let place = Place::Source(Location::caller());
+        let place = Place::Source(Source::here());
         self.state.borrow_mut().diagnostics.push(Diagnostic { code, place, message });
     }
 
@@ -171,7 +170,7 @@ impl Module {
 
 fn place_of(netlist: &Netlist, net: Net) -> Place {
     match netlist.sources.get(net.index()) {
-        Some(Some(location)) => Place::Source(location),
+        Some(Some(source)) => Place::Source(source.clone()),
         _ => Place::Component(netlist.describe(net)),
     }
 }
@@ -344,7 +343,7 @@ impl<'m> Scope<'m> {
     #[track_caller]
     fn claim_name(self, name: &str) {
         self.module.check_name(name);
-        let here = Place::Source(Location::caller());
+        let here = Place::Source(Source::here());
         let before = self.module.state.borrow().used_names.get(&(self.id, name.to_owned())).cloned();
         if let Some(first) = before {
             let scope = self.module.state.borrow().netlist.scope_path(self.id);

@@ -1,9 +1,7 @@
 //! Registers and their next-value chains.
 
-use std::panic::Location;
-
 use super::Signal;
-use crate::cells::{Format, Op};
+use crate::cells::{Format, Op, Source};
 use crate::diag::{Code, Place};
 
 /// A clocked register. Its output is `q`; a chain of [`when`](Register::when)s says what it takes at the edge.
@@ -34,7 +32,7 @@ impl<'m> Register<'m> {
             module.report(Code::DrivenTwice, format!("register {name} has a next value already{first}"));
             return;
         }
-        module.state.borrow_mut().driven.insert(net, Place::Source(Location::caller()));
+        module.state.borrow_mut().driven.insert(net, Place::Source(Source::here()));
         let value = self.q.own(value);
         cell.op = Op::Register { next: Some(value.net()), reset };
         let checked = module.state.borrow().netlist.check_cell(&cell);

@@ -62,6 +62,13 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
         sources: Vec::new(),
     };
     new.sources = vec![None; new.cells.len()];
+    // The first of cells that became one.
+    for (source, &new_net) in netlist.sources.iter().zip(&map) {
+        let place = &mut new.sources[new_net.index()];
+        if place.is_none() {
+            place.clone_from(source);
+        }
+    }
     for (old, cell) in netlist.nets().zip(&netlist.cells) {
         if let Op::Register { next: Some(next), reset } = cell.op
             && !fixed.contains_key(&old)
