@@ -72,6 +72,7 @@ invalid_by!(
     crate::models::ModelError,
     crate::nc::GeometryError,
     crate::netlist::Diagnostics,
+    crate::netlist::HasMemories,
     crate::program::ProgramFailure,
     crate::study::StudyError,
     crate::study::proof::ProofError,

@@ -1,7 +1,7 @@
 //! Why a model cannot be built or loaded for a geometry.
 
 use stepwave_netlist::diag::{Code, Diagnostic};
-use stepwave_netlist::{Diagnostics, Width, did_you_mean};
+use stepwave_netlist::{Diagnostics, HasMemories, Width, did_you_mean};
 
 /// A geometry or an option that a model does not take; every message names the value, the limit and the remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -97,6 +97,9 @@ pub enum ModelError {
     /// A model describes a netlist that does not elaborate: a defect of the model.
     #[error("the model's netlist is wrong; please report this:\n{0}")]
     Netlist(Diagnostics),
+    /// The netlist has a memory, and what is asked for takes none.
+    #[error(transparent)]
+    Memories(#[from] HasMemories),
     /// A model lacks a port that every machine has: a defect of the model.
     #[error("the model has no net named {0}; please report this")]
     MissingPort(String),

@@ -57,7 +57,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let (design, held) = driven(&bench, &stimulus, &args.any_geometry)?;
     let checking = Checking { comment: &comment, held: &held };
     if let Some(path) = &args.btor2 {
-        files.write(path, &export::btor2(&design, &checking))?;
+        files.write(path, &export::btor2(&design, &checking)?)?;
     }
     if let Some(path) = &args.smt2 {
         let run = || match &prepared {
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
             Some(depth) => depth,
             None => run()?.unwrap_or(DEEPEST),
         };
-        files.write(path, &export::smt2(&design, &checking, depth))?;
+        files.write(path, &export::smt2(&design, &checking, depth)?)?;
         notes += &format!("asked is whether a property is violated in one of the clocks 0 to {depth}\n");
     }
     let quiet = files.uses_stdout();

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use stepwave_engine::Engine;
+use stepwave_engine::{Engine, contents};
 use stepwave_netlist::Net;
 use stepwave_netlist::text;
 
@@ -42,6 +42,9 @@ pub struct Checkpoint {
     pub(super) registers: Vec<u64>,
     /// Values of the design's inputs, in its order.
     pub(super) inputs: Vec<u64>,
+    /// Words of the design's memories, in its order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) memories: Vec<Vec<u64>>,
     /// What the observers have gathered.
     pub(super) memory: Memory,
 }
@@ -55,6 +58,7 @@ impl Checkpoint {
             block,
             registers: values(design.registers()),
             inputs: values(design.inputs()),
+            memories: contents(engine, design),
             memory,
         }
     }

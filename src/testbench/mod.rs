@@ -295,7 +295,7 @@ impl Testbench {
         let watch = Watch { columns: self.columns.nets().to_vec(), stops: Vec::new() };
         let mut engine = EngineKind::Word.build(self.design(), &watch);
         let mut rows = Rows::new(watch.columns.len(), CHUNK);
-        engine.restore(0, &start.registers, &start.inputs);
+        engine.restore(0, &start.registers, &start.inputs, &[]);
         rows.push(0, |column| engine.value(watch.columns[column]));
         loop {
             engine.run(clocks.saturating_sub(engine.clock()), &mut rows);

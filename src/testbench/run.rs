@@ -91,7 +91,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// The same run from a state on, whose block is loaded and running.
     pub(super) fn from(mut self, state: &Checkpoint) -> Self {
-        self.engine.restore(state.clock, &state.registers, &state.inputs);
+        self.engine.restore(state.clock, &state.registers, &state.inputs, &state.memories);
         self.steps.recall(&state.memory);
         for observer in self.observers.iter_mut() {
             observer.recall(&state.memory);

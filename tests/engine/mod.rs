@@ -4,6 +4,7 @@
 #![cfg(test)]
 
 mod lanes;
+mod memories;
 mod native;
 mod operators;
 mod passing;

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, HashMap};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngSeed, TestRunner};
-use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after};
+use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after, contents};
 use stepwave_netlist::cells::Op;
 use stepwave_netlist::passes::simplify;
 use stepwave_netlist::{Design, Net, elaborate, text};
@@ -58,6 +58,7 @@ struct Seen {
     clock: u64,
     rows: Vec<(u64, Vec<u64>)>,
     values: Vec<u64>,
+    memories: Vec<Vec<u64>>,
 }
 
 /// The nets that something depends on, in creation order: those in the design's order, and in any case what names,
@@ -67,6 +68,7 @@ fn live(design: &Design) -> Vec<Net> {
     let mut live = [design.inputs(), design.registers(), design.order()].concat();
     live.extend(netlist.names.iter().map(|named| named.net));
     live.extend(netlist.properties.iter().map(|property| property.never));
+    live.extend(netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()));
     live.extend(design.registers().iter().filter_map(|&register| match netlist.cell(register).op {
         Op::Register { next, .. } => next,
         _ => None,
@@ -109,7 +111,8 @@ fn play_on(design: &Design, engine: impl Fn(&Watch) -> Box<dyn Engine>, script: 
                 rows.clear();
                 if let Some(earlier) = seen.get(usize::from(index) % seen.len().max(1)) {
                     let of = |nets: &[Net]| nets.iter().map(|net| earlier.values[net.index()]).collect::<Vec<_>>();
-                    engine.restore(earlier.clock, &of(design.registers()), &of(design.inputs()));
+                    let (registers, inputs) = (of(design.registers()), of(design.inputs()));
+                    engine.restore(earlier.clock, &registers, &inputs, &earlier.memories);
                 }
             }
         }
@@ -118,6 +121,7 @@ fn play_on(design: &Design, engine: impl Fn(&Watch) -> Box<dyn Engine>, script: 
             clock: engine.clock(),
             rows: rows.iter().map(|(clock, row)| (clock, row.to_vec())).collect(),
             values: columns.iter().map(|&net| engine.value(net)).collect(),
+            memories: contents(engine.as_ref(), design),
         });
         if clear_after {
             rows.clear();
@@ -270,6 +274,7 @@ fn the_random_netlists_use_every_operator_where_an_engine_has_to_evaluate_it() {
         "concat",
         "zero-extend",
         "sign-extend",
+        "read",
     ];
     for operator in all {
         assert!(used.get(operator).is_some_and(|&count| count >= 20), "'{operator}' is rare: {used:?}");

@@ -26,9 +26,9 @@ fn a_small_machine_in_btor2() {
                     6 state 1 m.r\n7 init 1 6 5\n8 add 1 6 2\n9 sort bitvec 5\n10 uext 9 6 1\n11 uext 9 2 1\n\
                     12 add 9 10 11\n13 slice 3 12 4 4 m.c\n14 ite 1 4 8 6\n15 output 13 m.part.carry\n\
                     16 next 1 6 14\n17 next 3 4 4\n18 bad 13 never.m.c\n";
-    assert_eq!(btor2(&design, &Checking { comment: &comment, held: &held }), expected);
+    assert_eq!(btor2(&design, &Checking { comment: &comment, held: &held }).unwrap(), expected);
     // Not held, it is an input as any other.
-    let open = btor2(&design, &Checking::default());
+    let open = btor2(&design, &Checking::default()).unwrap();
     assert!(open.contains("\n4 input 3 m.go\n") && !open.contains("next 3"), "{open}");
 }
 
@@ -36,10 +36,10 @@ fn a_small_machine_in_btor2() {
 fn a_small_machine_in_smt_lib() {
     let design = adder();
     let (comment, held) = (["an adder".to_owned()], [design.inputs()[1]]);
-    let written = smt2(&design, &Checking { comment: &comment, held: &held }, 1);
+    let written = smt2(&design, &Checking { comment: &comment, held: &held }, 1).unwrap();
     assert_eq!(written, include_str!("adder.smt2"), "\n{written}");
     // Not held, it is a constant of each clock.
-    let open = smt2(&design, &Checking::default(), 0);
+    let open = smt2(&design, &Checking::default(), 0).unwrap();
     assert!(open.contains("(declare-const m.go@0 (_ BitVec 1))") && open.contains("(settled m.a@0 m.go@0 "), "{open}");
 }
 
@@ -86,11 +86,11 @@ fn every_operator_is_written_in_both_languages() {
              name %0 in 0 \"a\" unsigned\nname %1 in 0 \"b\" unsigned\nname %2 in 0 \"s\" unsigned\n\
              name %3 in 0 \"out\" unsigned\n"
         ));
-        let model = btor2(&design, &Checking::default());
+        let model = btor2(&design, &Checking::default()).unwrap();
         let inputs = "1 sort bitvec 4\n2 input 1 m.a\n3 input 1 m.b\n4 sort bitvec 1\n5 input 4 m.s\n";
         let lines = model.strip_prefix(inputs).unwrap_or_else(|| panic!("{model}"));
         assert_eq!(lines.trim_end().replace('\n', "|"), expected_btor2, "{operator}");
-        let script = smt2(&design, &Checking::default(), 0);
+        let script = smt2(&design, &Checking::default(), 0).unwrap();
         assert!(script.contains(&format!("\n  (= m.out {expected_smt2}))\n")), "{operator}: {script}");
     }
 }
@@ -101,10 +101,10 @@ fn constants_are_written_where_they_are_read_and_named_ones_bear_their_names() {
         "netlist m\n%0:3 = input\n%1:3 = const 0x5\n%2:3 = const 0x5\n%3:3 = add %0 %1\n%4:3 = sub %3 %2\n\
          name %0 in 0 \"a\" unsigned\nname %2 in 0 \"five\" unsigned\nname %4 in 0 \"out\" unsigned\n",
     );
-    let model = btor2(&design, &Checking::default());
+    let model = btor2(&design, &Checking::default()).unwrap();
     let expected = "1 sort bitvec 3\n2 input 1 m.a\n3 constd 1 5 m.five\n4 add 1 2 3\n5 sub 1 4 3 m.out\n";
     assert_eq!(model, expected);
-    let script = smt2(&design, &Checking::default(), 0);
+    let script = smt2(&design, &Checking::default(), 0).unwrap();
     let settled = "    (= m.five #b101)\n    (= n3 (bvadd m.a #b101))\n    (= m.out (bvsub n3 m.five))))\n";
     assert!(script.contains(settled), "{script}");
 }
@@ -115,9 +115,9 @@ fn a_property_in_words_has_a_name_of_its_own_that_every_tool_takes() {
         "netlist m\n%0:1 = input\n%1:1 = not %0\n%2:1 = not %1\nname %0 in 0 \"a\" unsigned\n\
          property \"m.it; is\\n|so|\" never %1 invariant\nproperty \"m.it; is\\n|so|\" never %2 invariant\n",
     );
-    let model = btor2(&design, &Checking::default());
+    let model = btor2(&design, &Checking::default()).unwrap();
     assert!(model.ends_with("5 bad 3 never.m.it__is__so_\n6 bad 4 never.m.it__is__so__1\n"), "{model}");
-    let script = smt2(&design, &Checking::default(), 0);
+    let script = smt2(&design, &Checking::default(), 0).unwrap();
     let violated = "  (or\n    (= n1 #b1) ; never.m.it__is__so_\n    (= n2 #b1) ; never.m.it__is__so__1\n  ))\n";
     assert!(script.contains(violated), "{script}");
 }
@@ -125,8 +125,17 @@ fn a_property_in_words_has_a_name_of_its_own_that_every_tool_takes() {
 #[test]
 fn without_registers_or_properties_nothing_is_ever_violated() {
     let design = parsed("netlist m\n%0:1 = input\nname %0 in 0 \"a\" unsigned\n");
-    assert_eq!(btor2(&design, &Checking::default()), "1 sort bitvec 1\n2 input 1 m.a\n");
-    let script = smt2(&design, &Checking::default(), 2);
+    assert_eq!(btor2(&design, &Checking::default()).unwrap(), "1 sort bitvec 1\n2 input 1 m.a\n");
+    let script = smt2(&design, &Checking::default(), 2).unwrap();
     assert!(script.contains("(assert init)\n(assert (settled m.a@0))\n"), "{script}");
     assert!(script.ends_with("\n; The question.\n(assert (or violated violated violated))\n(check-sat)\n"), "{script}");
+}
+
+#[test]
+fn a_memory_is_refused_by_its_name() {
+    let design = parsed("netlist m\nmemory 0 in 0 \"ram\" width 4 words 8\n%0:3 = input\n%1:4 = read 0 %0\n");
+    let said = btor2(&design, &Checking::default()).unwrap_err().to_string();
+    assert_eq!(said, "model checkers cannot take the memory m.ram: give a design without memories");
+    let said = smt2(&design, &Checking::default(), 1).unwrap_err().to_string();
+    assert_eq!(said, "solvers cannot take the memory m.ram: give a design without memories");
 }

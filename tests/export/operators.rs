@@ -70,6 +70,31 @@ fn every_operator_is_written_in_exactly_its_width() {
 }
 
 #[test]
+fn a_memory_is_an_array_with_its_first_words_and_ports() {
+    let text = text(&design("m", |m| {
+        let ram = m.scope("core").memory("ram", 2, 5).initial([0, 3]);
+        let [enable, address, data] = [("we", 1), ("a", 3), ("d", 2)].map(|(name, bits)| m.input(name, bits));
+        m.name("out", ram.read(address));
+        ram.write(enable, address, data, None);
+        ram.write(enable & data.bit(0), m.lit(64, 4), !data, Some(data));
+    }));
+    assert!(text.contains("    reg [1:0] core_ram [0:4];\n"), "{text}");
+    assert_eq!(value(&text, "out"), "{a < 3'd5 ? core_ram[a] : 2'd0};");
+    let initial = "    initial begin\n        for (i = 0; i < 5; i = i + 1) core_ram[i] = 2'd0;\n        core_ram[1] = 2'd3;\n    end\n";
+    assert!(text.contains(initial), "{text}");
+    let ports = "    always @(posedge clk)
+        if (!rst) begin
+            if ((we) && a < 3'd5) core_ram[a] <= d;
+            if ((we & d[0]) && 64'd4 < 64'd5) begin
+                if (d[0]) core_ram[64'd4][0] <= _n7[0];
+                if (d[1]) core_ram[64'd4][1] <= _n7[1];
+            end
+        end
+";
+    assert!(text.contains(ports), "{text}");
+}
+
+#[test]
 fn full_width_constants_and_carries_have_all_their_bits() {
     let text = text(&design("m", |m| {
         let a = m.input("a", 64);

@@ -5,6 +5,7 @@
 
 mod diagnostics;
 mod files;
+mod memories;
 mod mistakes;
 mod one_mistake;
 mod simplified;

@@ -106,7 +106,9 @@ fn the_source_line_of_a_cell_is_printed_parsed_and_reported() {
     let message = elaborate(wrong).unwrap_err().to_string();
     assert_eq!(message, "dda.v:7: register %0 never gets a next value [UndrivenRegister]");
 
-    for line in ["%0:4 = input on", "%0:4 = input at dda.v 1 2", "%0:4 = input at \"dda.v\" 1", "%0:4 = input at \"d\" 1 2 3"] {
+    for line in
+        ["%0:4 = input on", "%0:4 = input at dda.v 1 2", "%0:4 = input at \"dda.v\" 1", "%0:4 = input at \"d\" 1 2 3"]
+    {
         let said = said(&format!("netlist m\n{line}\n"));
         assert!(said.len() == 1 && said[0].starts_with("line 2: "), "{line}: {said:?}");
     }

@@ -26,7 +26,7 @@ fn machine(model: &str, k: u32, narrower: &Narrower) -> Machine {
 /// The judge of engines, put in a state.
 fn gates(machine: &Machine, start: &Start) -> Box<dyn Engine> {
     let mut engine = EngineKind::Gates.build(&machine.design, &Watch::default());
-    engine.restore(0, &start.registers, &start.inputs);
+    engine.restore(0, &start.registers, &start.inputs, &[]);
     engine
 }
 

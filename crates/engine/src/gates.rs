@@ -107,6 +107,8 @@ pub(super) struct Gates {
     /// Index of each net's bits in `state`.
     place: Vec<Range<usize>>,
     state: BitVec<u64>,
+    /// Words of each memory, one after another.
+    memories: Vec<BitVec<u64>>,
     /// Inputs as the test bench wants them from after the next edge on; same index as the design's inputs.
     pending: Vec<u64>,
 }
@@ -126,6 +128,7 @@ impl Gates {
             clock: 0,
             place,
             state: BitVec::repeat(false, total),
+            memories: Vec::new(),
             pending: vec![0; design.inputs().len()],
         };
         gates.reset(&mut Rows::new(0, 0));
@@ -188,6 +191,10 @@ impl Gates {
             }
             Op::ZeroExtend(a) => extended(at(a), width, false),
             Op::SignExtend(a) => extended(at(a), width, at(a)[width_of(at(a)) - 1]),
+            Op::Read { memory, address } => match self.place_in(memory as usize, self.value(address)) {
+                Some(place) => self.memories[memory as usize][place].to_bitvec(),
+                None => BitVec::repeat(false, width),
+            },
         })
     }
 
@@ -206,6 +213,7 @@ impl Gates {
     }
 
     fn edge(&mut self) {
+        self.write_memories();
         let old = self.state.clone();
         let design = self.design.clone();
         for &register in design.registers() {
@@ -216,9 +224,50 @@ impl Gates {
         self.clock += 1;
     }
 
+    /// Where the bits of a word are in its memory; nowhere outside of it.
+    fn place_in(&self, memory: usize, address: u64) -> Option<Range<usize>> {
+        let width = self.design.netlist().memories[memory].width.get() as usize;
+        let first = usize::try_from(address).ok()?.checked_mul(width)?;
+        (first < self.memories[memory].len()).then(|| first..first + width)
+    }
+
+    /// All ports write, one after another, what their nets were before the edge.
+    fn write_memories(&mut self) {
+        let design = self.design.clone();
+        for (index, memory) in design.netlist().memories.iter().enumerate() {
+            for port in &memory.writes {
+                let place = self.place_in(index, self.value(port.address)).filter(|_| self.bits(port.enable)[0]);
+                for (bit, target) in place.into_iter().flatten().enumerate() {
+                    if port.mask.is_none_or(|mask| self.bits(mask)[bit]) {
+                        let data = self.bits(port.data)[bit];
+                        self.memories[index].set(target, data);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The memories take these contents, and where there are none their first words.
+    fn fill_memories(&mut self, contents: &[Vec<u64>]) {
+        let design = self.design.clone();
+        let memories = design.netlist().memories.iter().enumerate();
+        let filled = memories.map(|(index, memory)| {
+            let width = memory.width.get() as usize;
+            let words = contents.get(index).unwrap_or(&memory.initial);
+            let mut bits: BitVec<u64> = words.iter().flat_map(|&value| word(value, width)).collect();
+            bits.resize(usize::try_from(memory.size).unwrap_or(usize::MAX).saturating_mul(width), false);
+            bits
+        });
+        self.memories = filled.collect();
+    }
+
     fn record(&self, rows: &mut Rows) {
         rows.push(self.clock, |column| self.value(self.watch.columns[column]));
     }
+}
+
+fn number(bits: &Slice) -> u64 {
+    bits.iter().by_vals().rev().fold(0, |value, bit| value << 1 | u64::from(bit))
 }
 
 fn width_of(bits: &Slice) -> usize {
@@ -242,17 +291,19 @@ impl Engine for Gates {
                 self.put(register, &bits);
             }
         }
+        self.fill_memories(&[]);
         self.settle();
         self.record(rows);
     }
 
-    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]) {
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64], memories: &[Vec<u64>]) {
         let design = self.design.clone();
         assert_eq!((registers.len(), inputs.len()), (design.registers().len(), design.inputs().len()));
         for (&register, &value) in design.registers().iter().zip(registers) {
             let bits = word(value, self.bits(register).len());
             self.put(register, &bits);
         }
+        self.fill_memories(memories);
         self.pending.copy_from_slice(inputs);
         self.clock = clock;
         self.settle();
@@ -278,6 +329,10 @@ impl Engine for Gates {
     }
 
     fn value(&self, net: Net) -> u64 {
-        self.bits(net).iter().by_vals().rev().fold(0, |value, bit| value << 1 | u64::from(bit))
+        number(self.bits(net))
+    }
+
+    fn word(&self, memory: usize, address: u64) -> u64 {
+        self.place_in(memory, address).map_or(0, |place| number(&self.memories[memory][place]))
     }
 }

@@ -35,7 +35,7 @@ pub mod lanes;
 mod word;
 
 use stepwave_netlist::Design;
-use stepwave_netlist::cells::{Net, Op};
+use stepwave_netlist::cells::{Memory, Net, Op};
 
 pub use stepwave_netlist::{Extremes, Rows};
 
@@ -81,11 +81,12 @@ pub trait Engine: Send {
     fn reset(&mut self, rows: &mut Rows);
 
     /// Takes the state that an engine of the same design had in the sample of `clock`: the values of all registers and
-    /// of all inputs, in the order of the design. Records nothing.
+    /// of all inputs, and the [`contents`] of all memories, in the order of the design; memories that are missing have
+    /// their first words. Records nothing.
     ///
     /// # Panics
     /// If there are not as many values.
-    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]);
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64], memories: &[Vec<u64>]);
 
     /// Runs until `clocks` clocks are done, `rows` is full, or a stop net is 1 in a sample; at least one clock is done
     /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded that is not passed over; what
@@ -97,15 +98,35 @@ pub trait Engine: Send {
 
     /// Value of any net in the present sample, watched or not, named or not.
     fn value(&self, net: Net) -> u64;
+
+    /// A word of a memory, by its index in the netlist, in the present sample; 0 outside of the memory.
+    fn word(&self, memory: usize, address: u64) -> u64;
 }
 
-/// No register will change any more, as long as no input does: the present sample is how it stays.
+/// All words of all memories in the present sample.
+#[must_use]
+pub fn contents(engine: &dyn Engine, design: &Design) -> Vec<Vec<u64>> {
+    let memories = design.netlist().memories.iter().enumerate();
+    memories.map(|(index, memory)| (0..memory.size).map(|address| engine.word(index, address)).collect()).collect()
+}
+
+/// No register and no word of a memory will change any more, as long as no input does: the present sample is how it stays.
 #[must_use]
 pub fn at_rest(engine: &dyn Engine, design: &Design) -> bool {
-    design.registers().iter().all(|&register| match design.netlist().cell(register).op {
+    let holds = |&register: &Net| match design.netlist().cell(register).op {
         Op::Register { next: Some(next), .. } => engine.value(next) == engine.value(register),
         _ => true,
-    })
+    };
+    let kept = |(index, memory): (usize, &Memory)| {
+        memory.writes.iter().all(|port| {
+            let address = engine.value(port.address);
+            let old = engine.word(index, address);
+            engine.value(port.enable) == 0
+                || address >= memory.size
+                || port.written(old, |net| engine.value(net)) == old
+        })
+    };
+    design.registers().iter().all(holds) && design.netlist().memories.iter().enumerate().all(kept)
 }
 
 /// The engines, for a choice at run time.

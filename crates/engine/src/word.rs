@@ -39,12 +39,16 @@ enum WordOp {
     Concat(u32, u32, u8),
     Copy(u32),
     SignExtend(u32, Width),
+    /// Memory and address.
+    Read(u32, u32),
 }
 
 pub(super) struct WordEngine {
     design: Design,
     clock: u64,
     values: Vec<u64>,
+    /// Words of each memory.
+    memories: Vec<Vec<u64>>,
     /// Of every cell, so that any net can be watched.
     operations: Vec<Operation>,
     /// Each register and the net of its next value.
@@ -89,6 +93,7 @@ fn lower(design: &Design, net: Net) -> Option<Operation> {
         }
         Op::ZeroExtend(a) => (WordOp::Copy(a.0), cell.width),
         Op::SignExtend(a) => (WordOp::SignExtend(a.0, of(a)), cell.width),
+        Op::Read { memory, address } => (WordOp::Read(memory, address.0), cell.width),
     };
     Some(Operation { target: net.0, width, kind })
 }
@@ -119,6 +124,7 @@ impl WordEngine {
             design: design.clone(),
             clock: 0,
             values,
+            memories: Vec::new(),
             operations: order.filter_map(|net| lower(design, net)).collect(),
             next: vec![0; registers.len()],
             registers,
@@ -166,6 +172,7 @@ impl WordEngine {
                 WordOp::Concat(high, low, shift) => at(high) << shift | at(low),
                 WordOp::Copy(a) => at(a),
                 WordOp::SignExtend(a, from) => bits::sign_extend(from, w, at(a)),
+                WordOp::Read(memory, address) => word(&self.memories[memory as usize], at(address)),
             };
             v[*target as usize] = result;
         }
@@ -173,6 +180,15 @@ impl WordEngine {
 
     #[inline]
     fn edge(&mut self) {
+        for (words, memory) in self.memories.iter_mut().zip(&self.design.netlist().memories) {
+            let value = |net: Net| self.values[net.index()];
+            for port in memory.writes.iter().filter(|port| value(port.enable) == 1) {
+                let index = usize::try_from(value(port.address)).unwrap_or(usize::MAX);
+                if let Some(word) = words.get_mut(index) {
+                    *word = port.written(*word, value);
+                }
+            }
+        }
         for (next, &(_, source)) in self.next.iter_mut().zip(&self.registers) {
             *next = self.values[source as usize];
         }
@@ -221,6 +237,14 @@ impl WordEngine {
 }
 
 impl WordEngine {
+    /// The memories take these contents, and where there are none their first words.
+    fn fill_memories(&mut self, contents: &[Vec<u64>]) {
+        let memories = self.design.netlist().memories.iter().enumerate();
+        self.memories = memories
+            .map(|(index, memory)| contents.get(index).cloned().unwrap_or_else(|| memory.first_contents()))
+            .collect();
+    }
+
     /// The stop net that is 1 in the present sample.
     pub(super) fn stopped(&self) -> Option<Stop> {
         self.stops.iter().position(|&net| self.values[net as usize] == 1).map(Stop::Net)
@@ -243,17 +267,19 @@ impl Engine for WordEngine {
                 self.values[register as usize] = reset;
             }
         }
+        self.fill_memories(&[]);
         self.apply_inputs();
         self.settle();
         self.record(rows);
     }
 
-    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]) {
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64], memories: &[Vec<u64>]) {
         let design = self.design.clone();
         assert_eq!((registers.len(), inputs.len()), (design.registers().len(), design.inputs().len()));
         for (&net, &value) in design.registers().iter().chain(design.inputs()).zip(registers.iter().chain(inputs)) {
             self.values[net.index()] = value;
         }
+        self.fill_memories(memories);
         self.pending.clear();
         self.clock = clock;
         self.settle();
@@ -283,4 +309,14 @@ impl Engine for WordEngine {
     fn value(&self, net: Net) -> u64 {
         self.values[net.index()]
     }
+
+    fn word(&self, memory: usize, address: u64) -> u64 {
+        word(&self.memories[memory], address)
+    }
+}
+
+/// The word at an address; 0 outside.
+#[inline]
+fn word(words: &[u64], address: u64) -> u64 {
+    usize::try_from(address).ok().and_then(|address| words.get(address)).copied().unwrap_or(0)
 }

@@ -9,14 +9,17 @@ use std::fmt::Write as _;
 
 use super::words::{Symbols, Term, leaves, term};
 use super::{Checking, comment};
-use stepwave_netlist::Design;
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Net, Netlist, Op};
+use stepwave_netlist::{Design, HasMemories};
 
 /// The design as a BTOR2 model. An input that is held is a state without a first value. The same design gives the same
 /// text.
-#[must_use]
-pub fn btor2(design: &Design, checking: &Checking<'_>) -> String {
+///
+/// # Errors
+/// The design has a memory.
+pub fn btor2(design: &Design, checking: &Checking<'_>) -> Result<String, HasMemories> {
+    design.without_memories("model checkers")?;
     let netlist = design.netlist();
     let symbols = Symbols::new(netlist);
     let mut model =
@@ -68,7 +71,7 @@ pub fn btor2(design: &Design, checking: &Checking<'_>) -> String {
         let never = model.net(property.never);
         model.line(&format!("bad {never}"), Some(name));
     }
-    model.text
+    Ok(model.text)
 }
 
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.

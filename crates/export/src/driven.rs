@@ -235,6 +235,10 @@ impl<'a> Loader<'a> {
         let mut sources = vec![None; shift];
         sources.extend(old.sources.iter().cloned());
         sources.resize(self.cells.len(), None);
-        Netlist { cells: self.cells, scopes, names, properties, invariants: Vec::new(), sources }
+        let mut memories = old.memories.clone();
+        for port in memories.iter_mut().flat_map(|memory| &mut memory.writes) {
+            *port = port.map(go);
+        }
+        Netlist { cells: self.cells, memories, scopes, names, properties, invariants: Vec::new(), sources }
     }
 }

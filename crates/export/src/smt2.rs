@@ -11,27 +11,32 @@ use std::fmt::Write as _;
 
 use super::words::{Symbols, Term, leaves, term};
 use super::{Checking, comment};
-use stepwave_netlist::Design;
 use stepwave_netlist::bits::{Bits, Width};
 use stepwave_netlist::cells::{Net, Netlist, Op};
+use stepwave_netlist::{Design, HasMemories};
 
 /// The design as an SMT-LIB 2 script that asks whether a property is violated in one of the clocks 0 to `depth`: `sat`
 /// if one is. The last two lines are the question. An input that is held is one constant for all clocks. The same
 /// design gives the same text.
-#[must_use]
-pub fn smt2(design: &Design, checking: &Checking<'_>, depth: u64) -> String {
+///
+/// # Errors
+/// The design has a memory.
+pub fn smt2(design: &Design, checking: &Checking<'_>, depth: u64) -> Result<String, HasMemories> {
     smt2_asking(design, checking, depth, |violated, _| format!("(assert {violated})\n(check-sat)\n"))
 }
 
 /// As [`smt2`], with another question in its place: `ask` gets the term for a violated property, and a function that
 /// gives the name of a net at a clock, or of one that is held (no clock).
-#[must_use]
+///
+/// # Errors
+/// The design has a memory.
 pub fn smt2_asking(
     design: &Design,
     checking: &Checking<'_>,
     depth: u64,
     ask: impl FnOnce(&str, &dyn Fn(Net, Option<u64>) -> String) -> String,
-) -> String {
+) -> Result<String, HasMemories> {
+    design.without_memories("solvers")?;
     let script = Script::new(design, checking);
     let mut text = comment(checking.comment, "; ");
     _ = writeln!(
@@ -52,7 +57,7 @@ pub fn smt2_asking(
     let violated = (0..=depth).map(|clock| call("violated", script.flags.iter().map(|&net| script.at(net, clock))));
     let violated = joined("or", "false", violated.collect());
     let name = |net: Net, clock: Option<u64>| clock.map_or_else(|| script.name(net), |clock| script.at(net, clock));
-    text + "\n; The question.\n" + &ask(&violated, &name)
+    Ok(text + "\n; The question.\n" + &ask(&violated, &name))
 }
 
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.

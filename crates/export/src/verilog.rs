@@ -7,6 +7,7 @@
 
 mod expression;
 mod layout;
+mod memory;
 pub(super) mod names;
 
 use std::cell::RefCell;
@@ -60,7 +61,7 @@ pub fn verilog(design: &Design, options: &Options<'_>) -> String {
         let vector = vector(netlist.width(net), netlist.names[entry].format.is_signed());
         _ = writeln!(text, "    wire {vector}{} = {path};", names.unnamed(net));
     }
-    text + &body + "endmodule\n"
+    text + &module.arrays() + &body + "endmodule\n"
 }
 
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.
@@ -142,6 +143,7 @@ impl Module<'_> {
         text += &self.further_names(scope, depth);
         text += &self.joined_ports(scope, depth);
         text += &self.clocked(&registers, scope, depth);
+        text += &self.memories(scope, depth);
         text + &self.inner_scopes(scope, depth)
     }
 

@@ -98,7 +98,8 @@ pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
         if wide == width { shifted } else { shifted.slice(width - 1, 0) }
     };
     match op {
-        Op::Input | Op::Const(_) | Op::Register { .. } => Term::Net(net),
+        // Designs with memories are refused.
+        Op::Input | Op::Const(_) | Op::Register { .. } | Op::Read { .. } => Term::Net(net),
         Op::Not(_) => apply(NOT, vec![]),
         Op::And(..) => apply(AND, vec![]),
         Op::Or(..) => apply(OR, vec![]),

@@ -5,11 +5,13 @@
 //! lists the operands of each operator.
 
 mod check;
+mod memory;
 mod source;
 
 use crate::bits::{Reading, Width};
 use crate::formula::Clause;
 
+pub use memory::{HasMemories, Memory, WritePort};
 pub use source::Source;
 
 /// A net, named by the cell that drives it.
@@ -104,6 +106,13 @@ pub enum Op {
     ZeroExtend(Net),
     /// The sign bit repeated above a net that is at most as wide.
     SignExtend(Net),
+    /// The word of a memory at an address; 0 outside of it.
+    Read {
+        /// Index into [`Netlist::memories`].
+        memory: u32,
+        /// Unsigned, of any width.
+        address: Net,
+    },
 }
 
 impl Op {
@@ -136,6 +145,7 @@ impl Op {
             Op::Concat { high, low } => Op::Concat { high: go(high), low: go(low) },
             Op::ZeroExtend(a) => Op::ZeroExtend(go(a)),
             Op::SignExtend(a) => Op::SignExtend(go(a)),
+            Op::Read { memory, address } => Op::Read { memory, address: go(address) },
         }
     }
 
@@ -296,6 +306,8 @@ pub struct Netlist {
     pub cells: Vec<Cell>,
     /// The hierarchy; index 0 is the top.
     pub scopes: Vec<ScopeData>,
+    /// All memories, in creation order.
+    pub memories: Vec<Memory>,
     /// Names of nets, in the order in which a wave shows them.
     pub names: Vec<NamedNet>,
     /// What must never happen.
@@ -312,6 +324,7 @@ impl PartialEq for Netlist {
     fn eq(&self, other: &Netlist) -> bool {
         self.cells == other.cells
             && self.scopes == other.scopes
+            && self.memories == other.memories
             && self.names == other.names
             && self.properties == other.properties
             && self.invariants == other.invariants
@@ -396,6 +409,12 @@ impl Netlist {
     #[must_use]
     pub fn path(&self, named: &NamedNet) -> String {
         format!("{}.{}", self.scope_path(named.scope), named.name)
+    }
+
+    /// Dotted path of a memory.
+    #[must_use]
+    pub fn memory_path(&self, memory: &Memory) -> String {
+        format!("{}.{}", self.scope_path(memory.scope), memory.name)
     }
 
     /// The first name given to a net.

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::bits::Width;
-use crate::cells::{Claim, NamedNet, Net, Netlist, Op, ScopeId};
+use crate::cells::{Claim, HasMemories, NamedNet, Net, Netlist, Op, ScopeId};
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::dsl::is_identifier;
 
@@ -39,6 +39,16 @@ impl Design {
     #[must_use]
     pub fn registers(&self) -> &[Net] {
         &self.inner.registers
+    }
+
+    /// Nothing, where the design has no memory.
+    ///
+    /// # Errors
+    /// It has one; `tool`, in the plural, cannot take it.
+    pub fn without_memories(&self, tool: &'static str) -> Result<(), HasMemories> {
+        let netlist = self.netlist();
+        let first = netlist.memories.first().map(|memory| netlist.memory_path(memory));
+        first.map_or(Ok(()), |memory| Err(HasMemories { tool, memory }))
     }
 
     /// All inputs in creation order.
@@ -95,7 +105,14 @@ pub fn elaborate(netlist: Netlist) -> Result<Design, Diagnostics> {
 fn check(netlist: &Netlist) -> Vec<Diagnostic> {
     let count = netlist.cells.len();
     let nowhere = |named: &&NamedNet| named.net.index() >= count || named.scope.index() >= netlist.scopes.len();
-    let ghosts: Vec<Diagnostic> = netlist.names.iter().filter(nowhere).map(ghost).collect();
+    let mut ghosts: Vec<Diagnostic> = netlist.names.iter().filter(nowhere).map(ghost).collect();
+    for memory in &netlist.memories {
+        let mut nets = memory.writes.iter().flat_map(|port| port.nets());
+        if memory.scope.index() >= netlist.scopes.len() || nets.any(|net| net.index() >= count) {
+            let message = format!("the memory '{}' is in a scope or written by a net that does not exist", memory.name);
+            ghosts.push(Diagnostic { code: Code::Order, place: Place::Component(memory.name.clone()), message });
+        }
+    }
     if !ghosts.is_empty() {
         // The messages below look nets up by their names, which would fail.
         return ghosts;
@@ -131,17 +148,25 @@ fn check_cells(netlist: &Netlist, report: &mut impl FnMut(Code, Place, String)) 
             report(code, place(net), message);
         }
     }
+    for memory in &netlist.memories {
+        for (code, message) in netlist.memory_mistakes(memory) {
+            report(code, Place::Component(netlist.memory_path(memory)), message);
+        }
+    }
 }
 
 /// Every name is an identifier, and is given once in its scope.
 fn check_names(netlist: &Netlist, report: &mut impl FnMut(Code, Place, String)) {
+    let memories = netlist.memories.iter().enumerate();
+    let memories =
+        memories.map(|(index, memory)| (Some(memory.scope), memory.name.as_str(), format!("memory {index}")));
     let scopes = netlist.scopes.iter().enumerate();
     let scopes = scopes.map(|(index, scope)| (scope.parent, scope.name.as_str(), format!("scope {index}")));
     let nets = netlist.names.iter();
     let nets = nets.map(|named| (Some(named.scope), named.name.as_str(), format!("net {}", named.net)));
     // The scope or net of each name.
     let mut used: HashMap<(Option<ScopeId>, &str), String> = HashMap::new();
-    for (scope, name, bearer) in scopes.chain(nets) {
+    for (scope, name, bearer) in scopes.chain(nets).chain(memories) {
         let place = Place::Component(name.to_owned());
         if !is_identifier(name) {
             report(Code::BadName, place.clone(), format!("invalid name for a wave '{name}'"));
@@ -178,11 +203,12 @@ fn ghost(named: &NamedNet) -> Diagnostic {
     Diagnostic { code: Code::Order, place: Place::Component(named.name.clone()), message }
 }
 
-/// Marks what a register, a property or a name depends on.
+/// Marks what a register, a memory, a property or a name depends on.
 fn live_cells(netlist: &Netlist) -> Vec<bool> {
     let mut live = vec![false; netlist.cells.len()];
     let mut pending: Vec<Net> = netlist.names.iter().map(|named| named.net).collect();
     pending.extend(netlist.properties.iter().map(|property| property.never));
+    pending.extend(netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()));
     for cell in &netlist.cells {
         if let Op::Register { next: Some(next), .. } = cell.op {
             pending.push(next);

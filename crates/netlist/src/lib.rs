@@ -37,7 +37,7 @@ mod rows;
 pub mod text;
 
 pub use bits::{Bits, Width, WidthError};
-pub use cells::{Net, Netlist, OnOverflow};
+pub use cells::{HasMemories, Net, Netlist, OnOverflow};
 pub use diag::{Code, Diagnostic, Diagnostics, Place};
 pub use elaborate::{Design, elaborate};
 pub use nearest::did_you_mean;

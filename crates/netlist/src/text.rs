@@ -15,19 +15,22 @@
 //! ```
 //!
 //! `at` gives file, line and column of a cell's source. `name` ends in the format: `unsigned`, `signed`, `analog`, `binary` or `states 0x1 "JUDGE" 0x2 "FEED"`. `property`
+//! `memory 0 in 1 "ram" width 8 words 16` comes before the cells `read 0 %4`, followed by `initial 0 0x12 0x0*15`, its
+//! first words, and `write 0 enable %1 address %2 data %3 mask %4`, its ports; a mask may be missing. `property`
 //! ends in `invariant` or in the strict operation with its operands, `between-steps` in formulas with `|` between them.
 //! Text in quotes is escaped as in Rust.
 
+mod memory;
+mod words;
+
 use std::fmt::{self, Write as _};
-use std::str::CharIndices;
 use std::sync::Arc;
 
 use crate::bits::Width;
-use crate::cells::{
-    Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Operand, Property, ScopeData, ScopeId, Source,
-};
+use crate::cells::{Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Property, ScopeData, ScopeId, Source};
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::formula::{Clause, Formula};
+use words::{Words, digits};
 
 /// Makes a two-operand operator.
 type Make = fn(Net, Net) -> Op;
@@ -72,6 +75,7 @@ impl fmt::Display for Op {
             Op::Concat { high, low } => write!(f, "concat {high} {low}"),
             Op::ZeroExtend(a) => write!(f, "zero-extend {a}"),
             Op::SignExtend(a) => write!(f, "sign-extend {a}"),
+            Op::Read { memory, address } => write!(f, "read {memory} {address}"),
             binary => {
                 let mut operands = Vec::with_capacity(2);
                 binary.visit_inputs(|net| operands.push(net));
@@ -111,6 +115,9 @@ impl fmt::Display for Netlist {
                 Some(parent) => writeln!(f, "scope {index} in {} {:?}", parent.0, scope.name)?,
             }
         }
+        for (index, memory) in self.memories.iter().enumerate() {
+            memory::print(index, memory, f)?;
+        }
         for (net, cell) in self.nets().zip(&self.cells) {
             write!(f, "{net}:{} = {}", cell.width.get(), cell.op)?;
             if let Some(Some(Source::File { file, line, column })) = self.sources.get(net.index()) {
@@ -148,7 +155,8 @@ impl fmt::Display for Netlist {
 /// # Errors
 /// Every line that cannot be read, once.
 pub fn parse(text: &str) -> Result<Netlist, Diagnostics> {
-    let mut parser = Parser { netlist: Netlist::new(""), named: false, next_net: Some(0), next_scope: Some(1), file: "".into() };
+    let mut parser =
+        Parser { netlist: Netlist::new(""), named: false, next_net: Some(0), next_scope: Some(1), file: "".into() };
     let mut diagnostics = Vec::new();
     let mut report = |line: usize, message: String| {
         diagnostics.push(Diagnostic { code: Code::Syntax, place: Place::Line(line), message });
@@ -216,6 +224,9 @@ impl Parser {
                 }
                 self.netlist.scopes.push(ScopeData { parent: Some(ScopeId(parent)), name: words.quoted()? });
             }
+            "memory" => self.memory(words)?,
+            "initial" => self.initial(words)?,
+            "write" => self.write(words)?,
             "name" => {
                 let net = words.net()?;
                 words.keyword("in")?;
@@ -246,7 +257,8 @@ impl Parser {
                 // It may have been meant for a cell or a scope.
                 (self.next_net, self.next_scope) = (None, None);
                 return Err(
-                    "a cell, 'netlist' (once, first), 'scope', 'name', 'property' or 'between-steps'".to_owned()
+                    "a cell, 'netlist' (once, first), 'scope', 'memory', 'initial', 'write', 'name', 'property' or 'between-steps'"
+                        .to_owned()
                 );
             }
         }
@@ -285,143 +297,6 @@ impl Parser {
         }
         Ok(Source::File { file: Arc::clone(&self.file), line: words.number()?, column: words.number()? })
     }
-}
-
-/// A number, written in digits and nothing else.
-fn digits(word: &str, radix: u32) -> Option<u64> {
-    let all = word.chars().all(|c| c.is_digit(radix));
-    u64::from_str_radix(word, radix).ok().filter(|_| all)
-}
-
-/// The rest of a line, taken word by word.
-struct Words<'a> {
-    rest: &'a str,
-}
-
-impl<'a> Words<'a> {
-    fn word(&mut self) -> Result<&'a str, Expected> {
-        let (word, rest) = self.rest.split_once(' ').unwrap_or((self.rest, ""));
-        self.rest = rest.trim_start();
-        if word.is_empty() { Err("more words".to_owned()) } else { Ok(word) }
-    }
-
-    fn keyword(&mut self, keyword: &str) -> Result<(), Expected> {
-        if self.word()? == keyword { Ok(()) } else { Err(format!("'{keyword}'")) }
-    }
-
-    fn number<T: TryFrom<u64>>(&mut self) -> Result<T, Expected> {
-        let number = digits(self.word()?, 10).and_then(|number| T::try_from(number).ok());
-        number.ok_or_else(|| "a number".to_owned())
-    }
-
-    fn value(&mut self) -> Result<u64, Expected> {
-        let word = self.word()?;
-        let value = word.strip_prefix("0x").ok_or("a value that begins with 0x")?;
-        digits(value, 16).ok_or_else(|| "a hexadecimal value of at most 64 bits".to_owned())
-    }
-
-    fn net(&mut self) -> Result<Net, Expected> {
-        let number = self.word()?.strip_prefix('%').and_then(|number| digits(number, 10));
-        number.and_then(|number| u32::try_from(number).ok()).map(Net).ok_or_else(|| "a net such as %4".to_owned())
-    }
-
-    fn op(&mut self) -> Result<Op, Expected> {
-        Ok(match self.word()? {
-            "input" => Op::Input,
-            "const" => Op::Const(self.value()?),
-            "register" => {
-                self.keyword("reset")?;
-                let reset = self.value()?;
-                let next = if self.rest.is_empty() || self.rest.starts_with("at ") {
-                    None
-                } else {
-                    self.keyword("next")?;
-                    Some(self.net()?)
-                };
-                Op::Register { next, reset }
-            }
-            "not" => Op::Not(self.net()?),
-            "mux" => Op::Mux { select: self.net()?, high: self.net()?, low: self.net()? },
-            "slice" => Op::Slice { of: self.net()?, low: self.number()? },
-            "concat" => Op::Concat { high: self.net()?, low: self.net()? },
-            "zero-extend" => Op::ZeroExtend(self.net()?),
-            "sign-extend" => Op::SignExtend(self.net()?),
-            word => {
-                let (_, make) = BINARY.iter().find(|(known, _)| *known == word).ok_or("an operator")?;
-                make(self.net()?, self.net()?)
-            }
-        })
-    }
-
-    fn quoted(&mut self) -> Result<String, Expected> {
-        let inner = self.rest.strip_prefix('"').ok_or("a name in quotes")?;
-        let mut name = String::new();
-        let mut chars = inner.char_indices();
-        while let Some((index, c)) = chars.next() {
-            match c {
-                '"' => {
-                    self.rest = inner[index + 1..].trim_start();
-                    return Ok(name);
-                }
-                '\\' => name.push(escaped(&mut chars).ok_or("an escape of Rust's strings, and the end of the quotes")?),
-                c => name.push(c),
-            }
-        }
-        Err("the end of the quotes".to_owned())
-    }
-
-    fn signed(&mut self) -> Result<bool, Expected> {
-        match self.word()? {
-            "signed" => Ok(true),
-            "unsigned" => Ok(false),
-            _ => Err("'signed' or 'unsigned'".to_owned()),
-        }
-    }
-
-    fn strict(&mut self, operation: Arithmetic) -> Result<Claim, Expected> {
-        let left = Operand { net: self.net()?, signed: self.signed()? };
-        let right = Operand { net: self.net()?, signed: self.signed()? };
-        Ok(Claim::NoOverflow { operation, left, right })
-    }
-
-    fn format(&mut self) -> Result<Format, Expected> {
-        Ok(match self.word()? {
-            "unsigned" => Format::Unsigned,
-            "signed" => Format::Signed,
-            "analog" => Format::Analog,
-            "binary" => Format::Binary,
-            "decimal" => Format::Decimal,
-            "states" => {
-                let mut states = Vec::new();
-                while !self.rest.is_empty() {
-                    states.push((self.value()?, self.quoted()?));
-                }
-                Format::States(states)
-            }
-            _ => return Err("a format".to_owned()),
-        })
-    }
-
-    fn end(&self) -> Result<(), Expected> {
-        if self.rest.is_empty() { Ok(()) } else { Err("the end of the line".to_owned()) }
-    }
-}
-
-/// The character after a backslash: those escapes that the `Debug` form of a string uses.
-fn escaped(chars: &mut CharIndices<'_>) -> Option<char> {
-    Some(match chars.next()?.1 {
-        'n' => '\n',
-        'r' => '\r',
-        't' => '\t',
-        '0' => '\0',
-        'u' => {
-            let (_, '{') = chars.next()? else { return None };
-            let code: String = chars.map(|(_, c)| c).take_while(|&c| c != '}').collect();
-            char::from_u32(u32::try_from(digits(&code, 16)?).ok()?)?
-        }
-        c @ ('"' | '\\' | '\'') => c,
-        _ => return None,
-    })
 }
 
 /// The text form, as a string.

@@ -164,7 +164,7 @@ impl<'m> Stepper<'m> {
     /// One step; `None` where the state is not one between two steps.
     fn step(&mut self, registers: &[i128]) -> Option<Stepped> {
         let start = self.start(registers);
-        self.engine.restore(0, &start.registers, &start.inputs);
+        self.engine.restore(0, &start.registers, &start.inputs, &[]);
         let wrong =
             |clocks, wrong: String| Some(Stepped { clocks, after: Vec::new(), done: false, wrong: Some(wrong) });
         if self.engine.value(self.machine.done.net) == 1 {

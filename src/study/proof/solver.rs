@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use stepwave_export::{Checking, smt2_asking};
-use stepwave_models::{Claims, Model, Options};
+use stepwave_models::{Claims, Model, ModelError, Options};
 use stepwave_netlist::{Net, Width};
 
 use super::{Narrower, ProofError, choices_at, largest};
@@ -159,6 +159,7 @@ pub fn question(
         }
         text + "))\n(check-sat)\n"
     });
+    let script = script.map_err(ModelError::from)?;
     Ok(Question { script, geometries, clocks })
 }
 

@@ -167,7 +167,7 @@ impl ByKey for u64 {}
 
 /// Runs all jobs in lanes and each alone, and wants the same of both.
 fn assert_each_as_alone(design: &Design, watch: &LaneWatch, jobs: &[Job], kind: EngineKind) -> Vec<LaneEnd> {
-    let together = LaneProgram::new(design, watch).run_all(jobs.to_vec());
+    let together = LaneProgram::new(design, watch).unwrap().run_all(jobs.to_vec());
     assert_eq!(together.len(), jobs.len());
     for (index, (job, end)) in jobs.iter().zip(&together).enumerate() {
         let alone = Alone::new(design, watch, kind).run(job);

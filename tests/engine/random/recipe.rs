@@ -5,7 +5,7 @@
 
 use proptest::prelude::*;
 use stepwave_netlist::cells::Format;
-use stepwave_netlist::dsl::{Module, Register, Scope, Signal};
+use stepwave_netlist::dsl::{Memory, Module, Register, Scope, Signal};
 use stepwave_netlist::{Netlist, OnOverflow};
 
 /// A random netlist.
@@ -14,6 +14,7 @@ pub(crate) struct Recipe {
     on_overflow: OnOverflow,
     inputs: Vec<Shape>,
     registers: Vec<RegisterRecipe>,
+    memories: Vec<MemoryRecipe>,
     cells: Vec<CellRecipe>,
     invariants: Vec<u16>,
 }
@@ -33,6 +34,15 @@ struct RegisterRecipe {
     arms: Vec<(u16, u16)>,
     /// The value where no arm is taken; `None` holds.
     otherwise: Option<u16>,
+}
+
+#[derive(Clone, Debug)]
+struct MemoryRecipe {
+    bits: u32,
+    words: u64,
+    initial: Vec<u64>,
+    /// Ports: enable, address, data, mask.
+    ports: Vec<(u16, u16, u16, Option<u16>)>,
 }
 
 #[derive(Clone, Debug)]
@@ -73,9 +83,10 @@ enum Operator {
     Extend,
     Reread,
     Literal,
+    Read,
 }
 
-const OPERATORS: [Operator; 27] = [
+const OPERATORS: [Operator; 28] = [
     Operator::Not,
     Operator::And,
     Operator::Or,
@@ -103,6 +114,7 @@ const OPERATORS: [Operator; 27] = [
     Operator::Extend,
     Operator::Reread,
     Operator::Literal,
+    Operator::Read,
 ];
 
 /// Names that a text form must escape.
@@ -136,6 +148,13 @@ fn register() -> impl Strategy<Value = RegisterRecipe> {
         .prop_map(|(shape, reset, format, arms, otherwise)| RegisterRecipe { shape, reset, format, arms, otherwise })
 }
 
+fn memory() -> impl Strategy<Value = MemoryRecipe> {
+    let port = any::<(u16, u16, u16, Option<u16>)>();
+    let words = prop_oneof![1u64..=5, Just(8u64), Just(16u64)];
+    (bits(), words, prop::collection::vec(value(), 0..5), prop::collection::vec(port, 0..4))
+        .prop_map(|(bits, words, initial, ports)| MemoryRecipe { bits, words, initial, ports })
+}
+
 fn cell() -> impl Strategy<Value = CellRecipe> {
     (prop::sample::select(&OPERATORS[..]), any::<[u16; 3]>(), value(), prop::bool::weighted(0.4))
         .prop_map(|(operator, operands, parameter, named)| CellRecipe { operator, operands, parameter, named })
@@ -147,13 +166,15 @@ pub(crate) fn recipe() -> impl Strategy<Value = Recipe> {
         prop::sample::select(&[OnOverflow::Trap, OnOverflow::Saturate, OnOverflow::Wrap][..]),
         prop::collection::vec(shape(), 1..4),
         prop::collection::vec(register(), 1..5),
+        prop_oneof![3 => Just(Vec::new()), 2 => prop::collection::vec(memory(), 1..3)],
         prop::collection::vec(cell(), 1..40),
         prop::collection::vec(any::<u16>(), 0..3),
     )
-        .prop_map(|(on_overflow, inputs, registers, cells, invariants)| Recipe {
+        .prop_map(|(on_overflow, inputs, registers, memories, cells, invariants)| Recipe {
             on_overflow,
             inputs,
             registers,
+            memories,
             cells,
             invariants,
         })
@@ -164,7 +185,7 @@ pub(crate) fn build(recipe: &Recipe) -> Netlist {
     let module = Module::with_overflow("random", recipe.on_overflow);
     let top = module.top();
     let outer = top.scope("outer");
-    let mut kitchen = Kitchen { scopes: [top, outer, outer.scope("inner")], pool: Vec::new() };
+    let mut kitchen = Kitchen { scopes: [top, outer, outer.scope("inner")], memories: Vec::new(), pool: Vec::new() };
     for (index, shape) in recipe.inputs.iter().enumerate() {
         let (scope, name) = (kitchen.scope(index), format!("in{index}"));
         let Shape { bits, signed } = *shape;
@@ -172,6 +193,11 @@ pub(crate) fn build(recipe: &Recipe) -> Netlist {
     }
     let registers: Vec<Register<'_>> =
         recipe.registers.iter().enumerate().map(|(i, r)| kitchen.register(i, r)).collect();
+    for (index, memory) in recipe.memories.iter().enumerate() {
+        let made = kitchen.scope(index).memory(&format!("m{index}"), memory.bits, memory.words);
+        let words = memory.initial.iter().map(|word| word & (u64::MAX >> (64 - memory.bits)));
+        kitchen.memories.push((made.initial(words.take(usize::try_from(memory.words).unwrap())), memory.bits));
+    }
     for (index, cell) in recipe.cells.iter().enumerate() {
         let made = kitchen.cook(index, cell);
         if cell.named {
@@ -182,6 +208,12 @@ pub(crate) fn build(recipe: &Recipe) -> Netlist {
     for (register, recipe) in registers.into_iter().zip(&recipe.registers) {
         kitchen.close(register, recipe);
     }
+    for ((memory, bits), recipe) in kitchen.memories.iter().zip(&recipe.memories) {
+        for &(enable, address, data, mask) in &recipe.ports {
+            let mask = mask.map(|mask| kitchen.fit(mask, *bits));
+            memory.write(kitchen.flag(enable), kitchen.address(address), kitchen.fit(data, *bits), mask);
+        }
+    }
     for (index, &holds) in recipe.invariants.iter().enumerate() {
         kitchen.scope(index).invariant(ODD_NAMES[usize::from(holds) % ODD_NAMES.len()], kitchen.flag(holds));
     }
@@ -191,6 +223,8 @@ pub(crate) fn build(recipe: &Recipe) -> Netlist {
 /// Signals made so far, and the scopes that they are spread over.
 struct Kitchen<'m> {
     scopes: [Scope<'m>; 3],
+    /// With the width of a word.
+    memories: Vec<(Memory<'m>, u32)>,
     pool: Vec<Signal<'m>>,
 }
 
@@ -207,6 +241,11 @@ impl<'m> Kitchen<'m> {
     fn flag(&self, index: u16) -> Signal<'m> {
         let signal = self.pick(index);
         signal.bit(u32::from(index >> 8) % signal.bits())
+    }
+
+    /// Mostly of few bits, as the memories are small.
+    fn address(&self, index: u16) -> Signal<'m> {
+        if index % 4 == 0 { self.pick(index) } else { narrowed(self.pick(index), 1 + u32::from(index % 5)) }
     }
 
     /// A signal cut or extended to a width.
@@ -248,6 +287,10 @@ impl<'m> Kitchen<'m> {
         let below = |limit: u32| u32::try_from(parameter % u64::from(limit)).unwrap();
         match operator {
             Operator::Not => !left,
+            Operator::Read => match self.memories.get(usize::from(c) % self.memories.len().max(1)) {
+                Some((memory, _)) => memory.read(self.address(a)),
+                None => left,
+            },
             Operator::And => left & right,
             Operator::Or => left | right,
             Operator::Xor => left ^ right,

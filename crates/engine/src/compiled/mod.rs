@@ -68,7 +68,7 @@ pub(super) struct Compiled {
     /// Inputs have changed since a loop was left, and there is one for them.
     known: bool,
     variants: Vec<Variant>,
-    /// No code generator for this machine.
+    /// No code generator for this machine or this design.
     unavailable: bool,
     state: Vec<u64>,
 }
@@ -101,7 +101,8 @@ impl Compiled {
             quiet: 0,
             known: false,
             variants: Vec::new(),
-            unavailable: false,
+            // The word engine runs designs with memories.
+            unavailable: !netlist.memories.is_empty(),
             state: vec![0; words],
         }
     }
@@ -257,10 +258,10 @@ impl Engine for Compiled {
         self.word.reset(rows);
     }
 
-    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64]) {
+    fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64], memories: &[Vec<u64>]) {
         (self.quiet, self.known) = (0, false);
         self.history.clear();
-        self.word.restore(clock, registers, inputs);
+        self.word.restore(clock, registers, inputs, memories);
     }
 
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop {
@@ -302,6 +303,10 @@ impl Engine for Compiled {
 
     fn value(&self, net: Net) -> u64 {
         self.word.value(net)
+    }
+
+    fn word(&self, memory: usize, address: u64) -> u64 {
+        self.word.word(memory, address)
     }
 }
 

@@ -17,7 +17,8 @@ impl Generator<'_, '_> {
         let width = cell.width;
         match cell.op {
             // Inputs and registers are given before; nothing else is without operands but a constant.
-            Op::Input | Op::Register { .. } => self.f.ins().iconst(kind(width), 0),
+            // A design with memories is not compiled.
+            Op::Input | Op::Register { .. } | Op::Read { .. } => self.f.ins().iconst(kind(width), 0),
             Op::Const(value) => self.f.ins().iconst(kind(width), immediate(value)),
             Op::Not(a) if width == Width::ONE => match netlist.cell(a).op {
                 Op::Equal(a, b) => self.f.ins().icmp(IntCC::NotEqual, at(a), at(b)),

@@ -28,10 +28,10 @@ use std::collections::HashMap;
 use build::LaneRequest;
 use code::Code;
 use feed::Feed;
-use stepwave_netlist::Design;
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Net, Op};
 use stepwave_netlist::passes::simplify;
+use stepwave_netlist::{Design, HasMemories};
 use watch::Reduce;
 pub use watch::{Job, LaneEnd, LaneStop, LaneWatch, Observe, Quiet, ROOT_GAP_UNIT, root_gap};
 use worker::Worker;
@@ -56,10 +56,13 @@ pub struct LaneProgram {
 impl LaneProgram {
     /// Code for a design.
     ///
+    /// # Errors
+    /// The design has a memory, of which every lane would need a copy.
+    ///
     /// # Panics
     /// If a net of the watch is not in the design.
-    #[must_use]
-    pub fn new(design: &Design, watch: &LaneWatch) -> LaneProgram {
+    pub fn new(design: &Design, watch: &LaneWatch) -> Result<LaneProgram, HasMemories> {
+        design.without_memories("many geometries in lanes")?;
         let netlist = design.netlist();
         let ends: Vec<Net> = [watch.done].into_iter().chain(watch.traps.iter().copied()).collect();
         let (accumulators, last) = accumulators(watch);
@@ -87,7 +90,7 @@ impl LaneProgram {
             Observe::Last(net) | Observe::Min { net, .. } | Observe::Max { net, .. } => netlist.width(*net),
             _ => Width::MAX,
         };
-        LaneProgram {
+        Ok(LaneProgram {
             widths: watch.observe.iter().map(width).collect(),
             inputs: design.inputs().iter().map(|&net| (net, netlist.width(net))).collect(),
             reduce: accumulators.iter().map(|(reduce, _)| *reduce).collect(),
@@ -97,7 +100,7 @@ impl LaneProgram {
             watch: watch.clone(),
             running,
             whole,
-        }
+        })
     }
 
     /// Runs jobs on all threads of the present `rayon` pool. `prepare` makes a job of an item, in parallel; `sink` gets

@@ -110,7 +110,7 @@ impl Writer<'_> {
     }
 
     /// Some bits of a net that is declared or a part of something declared.
-    fn part(&self, net: Net, low: u32, width: u32, place: ScopeId) -> String {
+    pub(super) fn part(&self, net: Net, low: u32, width: u32, place: ScopeId) -> String {
         let inner = |of: Net, below: u32| self.part(of, low + below, width, place);
         let all = self.netlist.width(net).get();
         if let Some(value) = self.layout.known(net) {
@@ -216,9 +216,28 @@ impl Writer<'_> {
                 let signs = if more == 1 { sign } else { format!("{{{more}{{{sign}}}}}") };
                 Expression::atom(format!("{{{signs}, {value}}}"))
             }
+            Op::Read { memory, address } => {
+                let word = self.word(memory as usize, address, place);
+                Expression::atom(match self.inside(memory as usize, address, place) {
+                    Some(inside) => format!("{{{inside} ? {word} : {}}}", literal(cell.width, 0)),
+                    None => word,
+                })
+            }
             // Always parts of a widened adder.
             Op::Carry(..) | Op::AddOverflow(..) | Op::SubOverflow(..) => Expression::atom(self.names.unnamed(net)),
         }
+    }
+
+    /// A word of a memory.
+    pub(super) fn word(&self, memory: usize, address: Net, place: ScopeId) -> String {
+        format!("{}[{}]", self.names.memories[memory], self.read(address, place).into_unsigned().text)
+    }
+
+    /// The address is one of the memory; none where it always is.
+    pub(super) fn inside(&self, memory: usize, address: Net, place: ScopeId) -> Option<String> {
+        let (size, width) = (self.netlist.memories[memory].size, self.netlist.width(address));
+        let address = self.read(address, place).into_unsigned().within(Binding::Shift);
+        (size <= width.mask()).then(|| format!("{address} < {}", literal(width, size)))
     }
 
     /// The complement, without a second one in front of a first.

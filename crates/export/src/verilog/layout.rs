@@ -128,6 +128,11 @@ impl Layout {
             return;
         }
         // A divisor is also compared with 0.
+        if let Op::Read { address, .. } = cell.op {
+            // Also compared with the size.
+            visit(address, true);
+            return;
+        }
         if let Op::Div(a, b) | Op::Rem(a, b) = cell.op {
             visit(a, false);
             visit(b, true);
@@ -188,6 +193,10 @@ impl Layout {
                 uses[next.index()] += 1;
             }
         }
+        for net in netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()) {
+            uses[net.index()] += 1;
+            cut[net.index()] |= netlist.width(net).get() > 1;
+        }
         // Users come after what they use, so that all uses of a net are known when it is its turn.
         for net in netlist.nets().collect::<Vec<_>>().into_iter().rev() {
             let index = net.index();
@@ -230,6 +239,9 @@ impl Layout {
             if let Op::Register { next: Some(next), .. } = cell.op {
                 join(&mut places[next.index()], own(net).unwrap_or(ScopeId::TOP));
             }
+        }
+        for net in netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()) {
+            join(&mut places[net.index()], ScopeId::TOP);
         }
         for port in &names.outputs {
             join(&mut places[port.net.index()], ScopeId::TOP);

@@ -37,6 +37,10 @@ pub(crate) struct Names {
     prefix: String,
     /// Names that occur in each scope.
     taken: Vec<HashSet<String>>,
+    /// Of each memory, in the top scope.
+    pub(super) memories: Vec<String>,
+    /// The variable of loops over a memory.
+    pub(super) index: String,
 }
 
 /// The name, escaped where it is reserved. An escaped name ends at a blank.
@@ -92,6 +96,10 @@ impl Names {
         let mut seen = HashSet::new();
         let outputs = options.outputs.iter().filter(|&&net| seen.insert(net));
         let outputs = outputs.map(|&net| port(net, !is_input(net))).collect();
+        let inner = |path: &str| path.split_once('.').map_or(path, |(_, inner)| inner).to_owned();
+        let paths = netlist.memories.iter().map(|memory| inner(&netlist.memory_path(memory)));
+        let memories = paths.map(|path| claim(&mut everywhere, &path)).collect();
+        let index = claim(&mut everywhere, "i");
         let parents = netlist.scopes.iter().map(|scope| scope.parent).collect();
         let all_escaped = |names: Vec<String>| names.iter().map(|name| escaped(name)).collect();
         let mut names = Names {
@@ -106,6 +114,8 @@ impl Names {
             first,
             prefix,
             taken,
+            memories: all_escaped(memories),
+            index,
         };
         for port in names.inputs.iter_mut().chain(&mut names.outputs) {
             port.name = escaped(&port.name);

@@ -1,6 +1,6 @@
 //! The rule of widths, and nets in the words of a message.
 
-use super::{Cell, Net, Netlist, Op};
+use super::{Cell, Memory, Net, Netlist, Op};
 use crate::bits::Width;
 use crate::diag::Code;
 
@@ -86,6 +86,14 @@ impl Netlist {
                     Err((Code::WidthMismatch, format!("{parts} do not make {}", cell.width)))
                 }
             }
+            Op::Read { memory, .. } => match self.memories.get(memory as usize) {
+                None => Err((Code::OutOfRange, format!("there is no memory {memory}"))),
+                Some(memory) if memory.width == cell.width => Ok(()),
+                Some(memory) => {
+                    let path = self.memory_path(memory);
+                    Err((Code::WidthMismatch, format!("a word of {path} has {}, not {}", memory.width, cell.width)))
+                }
+            },
             Op::ZeroExtend(a) | Op::SignExtend(a) => {
                 if w(a) <= cell.width {
                     Ok(())
@@ -95,6 +103,39 @@ impl Netlist {
                 }
             }
         }
+    }
+
+    /// What is wrong with a memory whose nets and scope exist: its size, its first words, the widths of its ports.
+    #[must_use]
+    pub fn memory_mistakes(&self, memory: &Memory) -> Vec<(Code, String)> {
+        let path = self.memory_path(memory);
+        let mut found = Vec::new();
+        let (size, most) = (memory.size, Memory::MOST_WORDS);
+        if !(1..=most).contains(&size) {
+            found.push((Code::OutOfRange, format!("the memory {path} of {size} words is not possible: 1 to {most}")));
+        }
+        let given = memory.initial.len();
+        if given as u64 > size {
+            found.push((Code::OutOfRange, format!("{given} words are given to the memory {path} of {size}")));
+        }
+        if let Some(word) = memory.initial.iter().find(|word| **word > memory.width.mask()) {
+            let message = format!("the word {word} does not fit in the {} of the memory {path}", memory.width);
+            found.push((Code::ValueTooWide, message));
+        }
+        for port in &memory.writes {
+            if self.width(port.enable) != Width::ONE {
+                let message = format!("{} enables a write of {path}, so it must be 1 bit", self.describe(port.enable));
+                found.push((Code::NotOneBit, message));
+            }
+            for net in [Some(port.data), port.mask].into_iter().flatten() {
+                if self.width(net) != memory.width {
+                    let message =
+                        format!("{} is written to {path}, whose words have {}", self.describe(net), memory.width);
+                    found.push((Code::WidthMismatch, message));
+                }
+            }
+        }
+        found
     }
 
     /// A net in words: path and width.

@@ -10,6 +10,7 @@
 //! reported: a cell that breaks a rule is replaced by a constant of the width asked for; where that width is the
 //! mistake, the constant is a *guess*, and what is made from a guess is one too, without a further diagnostic.
 
+mod memory;
 mod register;
 mod signal;
 mod strict;
@@ -22,6 +23,7 @@ use crate::cells::{Cell, Claim, Format, NamedNet, Net, Netlist, OnOverflow, Op, 
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::formula::{Clause, Formula};
 
+pub use memory::Memory;
 pub use register::{Chain, Register};
 pub use signal::Signal;
 

@@ -12,7 +12,7 @@ pub fn value(op: Op, width: Width, value: impl Fn(Net) -> Option<(u64, Width)>) 
         Some(u64::from(of(width, a, b)))
     };
     match op {
-        Op::Input | Op::Register { .. } => None,
+        Op::Input | Op::Register { .. } | Op::Read { .. } => None,
         Op::Const(constant) => Some(constant),
         Op::Not(a) => one(a).map(|a| !a & width.mask()),
         Op::And(a, b) => two(a, b).map(|(a, b)| a & b),

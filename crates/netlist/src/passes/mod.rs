@@ -56,6 +56,7 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
     let mut new = Netlist {
         cells: builder.into_cells(),
         scopes: netlist.scopes.clone(),
+        memories: netlist.memories.clone(),
         names: netlist.names.clone(),
         properties: netlist.properties.clone(),
         invariants: netlist.invariants.clone(),
@@ -76,6 +77,9 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
             let op = Op::Register { next: Some(map[next.index()]), reset };
             new.cells[map[old.index()].index()] = Cell { op, width: cell.width };
         }
+    }
+    for port in new.memories.iter_mut().flat_map(|memory| &mut memory.writes) {
+        *port = port.map(|net| map[net.index()]);
     }
     for named in &mut new.names {
         named.net = map[named.net.index()];

@@ -208,6 +208,7 @@ fn work_out<'b>(op: Op, own: &mut [Bit], held: impl Fn(Net) -> &'b [Bit]) {
     };
     match op {
         Op::Input | Op::Register { .. } => {}
+        Op::Read { .. } => own.fill(Bit::X),
         Op::And(a, b) => gate(a, b, Bit::and),
         Op::Or(a, b) => gate(a, b, Bit::or),
         Op::Xor(a, b) => gate(a, b, Bit::xor),

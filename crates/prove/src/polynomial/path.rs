@@ -118,6 +118,7 @@ impl<'p, 'o> Path<'p, 'o> {
             Op::Concat { .. } => Err(Stop::Unsupported("a concatenation of one bit".to_owned())),
             Op::Div(..) | Op::Rem(..) => Err(divided()),
             Op::ShiftLeft(..) | Op::ShiftRight(..) | Op::ShiftArithmetic(..) => Err(shifted()),
+            Op::Read { .. } => Err(Stop::Unsupported("a word of a memory".to_owned())),
         }
     }
 
@@ -164,6 +165,7 @@ impl<'p, 'o> Path<'p, 'o> {
             Op::Mul(a, b) => Ok(self.residue(a, clock)?.times(&self.residue(b, clock)?)),
             Op::Div(..) | Op::Rem(..) => Err(divided()),
             Op::ShiftLeft(..) | Op::ShiftRight(..) | Op::ShiftArithmetic(..) => Err(shifted()),
+            Op::Read { .. } => Err(Stop::Unsupported("a word of a memory".to_owned())),
             Op::Mux { select, high, low } => {
                 let taken = if self.truth(select, clock)? { high } else { low };
                 self.residue(taken, clock)

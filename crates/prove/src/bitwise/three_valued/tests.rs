@@ -34,7 +34,7 @@ fn known_bits_give_what_the_engine_has_and_unknown_ones_never_leave_it_out() {
             .iter()
             .map(|held| {
                 let mut engine = EngineKind::Gates.build(&design, &Watch::default());
-                engine.restore(0, held, &[]);
+                engine.restore(0, held, &[], &[]);
                 engine
             })
             .collect();

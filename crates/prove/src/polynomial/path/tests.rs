@@ -68,7 +68,7 @@ fn what_the_walk_says_of_every_net_is_what_the_engine_has_a_clock_later_too() {
         }
         let watch = Watch::default();
         let mut engine = EngineKind::Gates.build(&design, &watch);
-        engine.restore(0, &held, &[]);
+        engine.restore(0, &held, &[], &[]);
         for clock in 0..2 {
             for net in netlist.nets() {
                 let wanted = i128::from(engine.value(net));

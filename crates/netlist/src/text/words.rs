@@ -1,0 +1,144 @@
+//! A line of the text form, taken word by word.
+
+use std::str::CharIndices;
+
+use super::{BINARY, Expected};
+use crate::cells::{Arithmetic, Claim, Format, Net, Op, Operand};
+
+/// A number, written in digits and nothing else.
+pub(super) fn digits(word: &str, radix: u32) -> Option<u64> {
+    let all = word.chars().all(|c| c.is_digit(radix));
+    u64::from_str_radix(word, radix).ok().filter(|_| all)
+}
+
+/// The rest of a line, taken word by word.
+pub(super) struct Words<'a> {
+    pub(super) rest: &'a str,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn word(&mut self) -> Result<&'a str, Expected> {
+        let (word, rest) = self.rest.split_once(' ').unwrap_or((self.rest, ""));
+        self.rest = rest.trim_start();
+        if word.is_empty() { Err("more words".to_owned()) } else { Ok(word) }
+    }
+
+    pub(super) fn keyword(&mut self, keyword: &str) -> Result<(), Expected> {
+        if self.word()? == keyword { Ok(()) } else { Err(format!("'{keyword}'")) }
+    }
+
+    pub(super) fn number<T: TryFrom<u64>>(&mut self) -> Result<T, Expected> {
+        let number = digits(self.word()?, 10).and_then(|number| T::try_from(number).ok());
+        number.ok_or_else(|| "a number".to_owned())
+    }
+
+    pub(super) fn value(&mut self) -> Result<u64, Expected> {
+        let word = self.word()?;
+        let value = word.strip_prefix("0x").ok_or("a value that begins with 0x")?;
+        digits(value, 16).ok_or_else(|| "a hexadecimal value of at most 64 bits".to_owned())
+    }
+
+    pub(super) fn net(&mut self) -> Result<Net, Expected> {
+        let number = self.word()?.strip_prefix('%').and_then(|number| digits(number, 10));
+        number.and_then(|number| u32::try_from(number).ok()).map(Net).ok_or_else(|| "a net such as %4".to_owned())
+    }
+
+    pub(super) fn op(&mut self) -> Result<Op, Expected> {
+        Ok(match self.word()? {
+            "input" => Op::Input,
+            "const" => Op::Const(self.value()?),
+            "register" => {
+                self.keyword("reset")?;
+                let reset = self.value()?;
+                let next = if self.rest.is_empty() || self.rest.starts_with("at ") {
+                    None
+                } else {
+                    self.keyword("next")?;
+                    Some(self.net()?)
+                };
+                Op::Register { next, reset }
+            }
+            "not" => Op::Not(self.net()?),
+            "mux" => Op::Mux { select: self.net()?, high: self.net()?, low: self.net()? },
+            "slice" => Op::Slice { of: self.net()?, low: self.number()? },
+            "concat" => Op::Concat { high: self.net()?, low: self.net()? },
+            "zero-extend" => Op::ZeroExtend(self.net()?),
+            "sign-extend" => Op::SignExtend(self.net()?),
+            "read" => Op::Read { memory: self.number()?, address: self.net()? },
+            word => {
+                let (_, make) = BINARY.iter().find(|(known, _)| *known == word).ok_or("an operator")?;
+                make(self.net()?, self.net()?)
+            }
+        })
+    }
+
+    pub(super) fn quoted(&mut self) -> Result<String, Expected> {
+        let inner = self.rest.strip_prefix('"').ok_or("a name in quotes")?;
+        let mut name = String::new();
+        let mut chars = inner.char_indices();
+        while let Some((index, c)) = chars.next() {
+            match c {
+                '"' => {
+                    self.rest = inner[index + 1..].trim_start();
+                    return Ok(name);
+                }
+                '\\' => name.push(escaped(&mut chars).ok_or("an escape of Rust's strings, and the end of the quotes")?),
+                c => name.push(c),
+            }
+        }
+        Err("the end of the quotes".to_owned())
+    }
+
+    pub(super) fn signed(&mut self) -> Result<bool, Expected> {
+        match self.word()? {
+            "signed" => Ok(true),
+            "unsigned" => Ok(false),
+            _ => Err("'signed' or 'unsigned'".to_owned()),
+        }
+    }
+
+    pub(super) fn strict(&mut self, operation: Arithmetic) -> Result<Claim, Expected> {
+        let left = Operand { net: self.net()?, signed: self.signed()? };
+        let right = Operand { net: self.net()?, signed: self.signed()? };
+        Ok(Claim::NoOverflow { operation, left, right })
+    }
+
+    pub(super) fn format(&mut self) -> Result<Format, Expected> {
+        Ok(match self.word()? {
+            "unsigned" => Format::Unsigned,
+            "signed" => Format::Signed,
+            "analog" => Format::Analog,
+            "binary" => Format::Binary,
+            "decimal" => Format::Decimal,
+            "states" => {
+                let mut states = Vec::new();
+                while !self.rest.is_empty() {
+                    states.push((self.value()?, self.quoted()?));
+                }
+                Format::States(states)
+            }
+            _ => return Err("a format".to_owned()),
+        })
+    }
+
+    pub(super) fn end(&self) -> Result<(), Expected> {
+        if self.rest.is_empty() { Ok(()) } else { Err("the end of the line".to_owned()) }
+    }
+}
+
+/// The character after a backslash: those escapes that the `Debug` form of a string uses.
+fn escaped(chars: &mut CharIndices<'_>) -> Option<char> {
+    Some(match chars.next()?.1 {
+        'n' => '\n',
+        'r' => '\r',
+        't' => '\t',
+        '0' => '\0',
+        'u' => {
+            let (_, '{') = chars.next()? else { return None };
+            let code: String = chars.map(|(_, c)| c).take_while(|&c| c != '}').collect();
+            char::from_u32(u32::try_from(digits(&code, 16)?).ok()?)?
+        }
+        c @ ('"' | '\\' | '\'') => c,
+        _ => return None,
+    })
+}
