@@ -81,11 +81,9 @@ pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
         Term::Apply(XOR, 1, vec![sign(bits(a)), sign(bits(a) - 1)], vec![])
     };
     // Both languages make all ones of a division by 0.
-    let guarded = |divisor: Net| {
+    let guarded = |word: OperatorName, divisor: Net| {
         let none = Term::Apply(EQUAL, 1, vec![Term::Net(divisor), Term::Zero(width)], vec![]);
-        let result =
-            |word: OperatorName| Term::Apply(MUX, width, vec![none, Term::Zero(width), apply(word, vec![])], vec![]);
-        result
+        Term::Apply(MUX, width, vec![none, Term::Zero(width), apply(word, vec![])], vec![])
     };
     // Both operands are as wide as the wider one.
     let shift = |word: OperatorName, extend: OperatorName, a: Net, by: Net| {
@@ -108,8 +106,8 @@ pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
         Op::Add(..) => apply(ADD, vec![]),
         Op::Sub(..) => apply(SUB, vec![]),
         Op::Mul(..) => apply(MUL, vec![]),
-        Op::Div(_, b) => guarded(b)(DIV),
-        Op::Rem(_, b) => guarded(b)(REM),
+        Op::Div(_, b) => guarded(DIV, b),
+        Op::Rem(_, b) => guarded(REM, b),
         Op::ShiftLeft(a, by) => shift(SHIFT_LEFT, ZERO_EXTEND, a, by),
         Op::ShiftRight(a, by) => shift(SHIFT_RIGHT, ZERO_EXTEND, a, by),
         Op::ShiftArithmetic(a, by) => shift(SHIFT_ARITHMETIC, SIGN_EXTEND, a, by),
