@@ -115,7 +115,7 @@ fn stimulus(design: &Design, count: usize, runner: &mut TestRunner) -> Result<St
         }
         steps.push(Step { set, clocks: Some(draw(&(1u64..4), runner)?) });
     }
-    Ok(Stimulus { steps, done: Vec::new(), never: Vec::new(), stall: None })
+    Ok(Stimulus { steps, done: Vec::new(), never: Vec::new(), always: false, stall: None })
 }
 
 fn wave(design: &Design, stimulus: &Stimulus, time: ClockTime, out: File) -> Result<(), Box<dyn Error>> {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::models::Millionths;
-use crate::models::program::Family;
+use crate::models::Model;
 use crate::nc::Opens;
 use clap::builder::StringValueParser;
 use clap::{Args, Parser, Subcommand};
@@ -25,7 +25,7 @@ pub(crate) use endings::{Format, file_of};
 pub(crate) use hardware::HardwareArgs;
 pub(crate) use names::{Registers, known_register, registers};
 use names::{all_registers, listed, model_name};
-use program::families;
+use program::machines;
 pub(crate) use program::{ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
@@ -200,8 +200,8 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "FILE", requires = "method", conflicts_with_all = ["model", "any_geometry"])]
     pub(crate) program: Option<PathBuf>,
     /// Family of the machine that runs the program
-    #[arg(long, requires = "program", value_parser = values::one_of(&families()))]
-    pub(crate) method: Option<&'static Family>,
+    #[arg(long, requires = "program", value_parser = values::one_of(&machines()))]
+    pub(crate) method: Option<&'static Model>,
     #[command(flatten)]
     pub(crate) text: TextArgs,
     #[command(flatten)]

@@ -64,6 +64,11 @@ impl Catalogue {
         self.models.iter().copied()
     }
 
+    /// Those that run programs, in the order of the list.
+    pub fn machines(&self) -> impl Iterator<Item = &'static Model> + '_ {
+        self.iter().filter(|model| model.moves().is_ok())
+    }
+
     /// Number of models.
     #[must_use]
     #[allow(clippy::len_without_is_empty, reason = "there are always those of this crate")]
@@ -99,7 +104,7 @@ fn sample(kind: CurveKind) -> Option<Curve> {
     let turn = Direction::CounterClockwise;
     match kind {
         CurveKind::Line { .. } => Line::new(vec![0, 0], vec![8, 6]).ok().map(Curve::Line),
-        CurveKind::Arc => Arc::new([5, 0], [0, 5], [0, 0], turn).ok().map(Curve::Arc),
+        CurveKind::Arc | CurveKind::Move => Arc::new([5, 0], [0, 5], [0, 0], turn).ok().map(Curve::Arc),
         CurveKind::Conic => Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], turn).ok().map(Curve::Conic),
         CurveKind::Helix => Helix::new([5, 0, 0], [0, 5, 3], [0, 0], turn).ok().map(Curve::Helix),
     }

@@ -30,6 +30,8 @@ pub enum Region {
     /// Every arc about the origin inside one quadrant, with both ends on one circle: from (xs, ys) to (xt, yt),
     /// magnitudes.
     QuadrantArcs,
+    /// Every line from the origin, and every such arc.
+    LinesAndArcs,
 }
 
 /// What a model claims over a box of geometries.
@@ -109,6 +111,23 @@ impl Region {
             Region::QuadrantArcs => {
                 "every arc about the origin inside a quadrant, with coordinates of k bits and both ends on the circle"
             }
+            Region::LinesAndArcs => {
+                "every line from the origin, and every arc about it inside a quadrant with both ends on the circle, to \
+                 coordinates of k bits"
+            }
+        }
+    }
+
+    /// The regions of one kind of curve that it is made of.
+    #[must_use]
+    pub fn parts(self) -> &'static [Region] {
+        match self {
+            Region::Lines => &[Region::Lines],
+            Region::LinesByLength => &[Region::LinesByLength],
+            Region::LinesByLonger => &[Region::LinesByLonger],
+            Region::LinesHalved => &[Region::LinesHalved],
+            Region::QuadrantArcs => &[Region::QuadrantArcs],
+            Region::LinesAndArcs => &[Region::Lines, Region::QuadrantArcs],
         }
     }
 
@@ -116,6 +135,7 @@ impl Region {
     #[must_use]
     pub fn kinds(self) -> Vec<Kind> {
         match self {
+            Region::LinesAndArcs => self.parts().iter().flat_map(|part| part.kinds()).collect(),
             Region::Lines => line::kinds(line::ANY, false),
             Region::LinesByLength => line::kinds(line::LONG, false),
             Region::LinesByLonger => line::kinds(line::LONGER, false),
@@ -128,6 +148,9 @@ impl Region {
     #[must_use]
     pub fn symbols(self, kind: &Kind, curve: &Curve) -> Option<Vec<i128>> {
         let symbols = match self {
+            Region::LinesAndArcs => {
+                return self.parts().iter().find_map(|part| part.symbols(kind, curve));
+            }
             Region::Lines | Region::LinesByLength | Region::LinesByLonger => line::symbols(&kind.name, curve, false),
             Region::LinesHalved => line::symbols(&kind.name, curve, true),
             Region::QuadrantArcs => arc::symbols(&kind.name, curve),
@@ -147,7 +170,7 @@ impl Region {
             Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => {
                 line::to([most, most])
             }
-            Region::QuadrantArcs => arc::quarter(most),
+            Region::QuadrantArcs | Region::LinesAndArcs => arc::quarter(most),
         }
     }
 
@@ -157,6 +180,7 @@ impl Region {
         match self {
             Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => k <= line::WHOLE,
             Region::QuadrantArcs => k <= arc::WHOLE,
+            Region::LinesAndArcs => self.parts().iter().all(|part| part.is_whole(k)),
         }
     }
 
@@ -168,6 +192,10 @@ impl Region {
                 line::curves(k, most)
             }
             Region::QuadrantArcs => arc::curves(k, most),
+            Region::LinesAndArcs => {
+                let all = self.parts().iter().flat_map(|part| part.curves(k, most)).collect();
+                spread(all, most)
+            }
         }
     }
 }

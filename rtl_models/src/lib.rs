@@ -62,6 +62,13 @@ static MODELS: &[&Model] = &[
     &sampled_arc::MODEL,
     &stepgen::MODEL,
     &bresenham::MODEL,
+    &program::ppc::MODEL,
+    &program::dda::MODEL,
+    &program::dpm::MODEL,
+    &program::cim::MODEL,
+    &program::mindev::MODEL,
+    &program::stepgen::MODEL,
+    &program::bresenham::MODEL,
 ];
 
 mod catalogue;

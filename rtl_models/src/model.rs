@@ -9,6 +9,7 @@ use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
 use crate::options::{AnyOption, ON_OVERFLOW, Options, Takes, chosen, taken};
 use crate::plan::Plan;
+use crate::program::Moves;
 use crate::registers::{RegisterGroup, Registers, rows};
 
 /// What a model interpolates.
@@ -25,6 +26,8 @@ pub enum CurveKind {
     Conic,
     /// Circular arcs in the plane with a way in z.
     Helix,
+    /// What a program is made of: lines of 2 or 3 axes, circular arcs in the plane, and helices.
+    Move,
 }
 
 impl CurveKind {
@@ -33,12 +36,16 @@ impl CurveKind {
     pub fn describe(self) -> &'static str {
         match self {
             CurveKind::Line { max_axes: 2 } => "lines of 2 axes (--from X,Y --to X,Y)",
+            CurveKind::Line { max_axes: 3 } => "lines of 2 or 3 axes (--from X,Y[,Z] --to X,Y[,Z])",
             CurveKind::Line { .. } => "lines of 2 to 6 axes (--from X,Y,… --to X,Y,…)",
             CurveKind::Arc => "arcs (--from X,Y --to X,Y --center X,Y --cw|--ccw)",
             CurveKind::Conic => {
                 "conics (--ellipse A,B --cw|--ccw, --parabola C or --hyperbola A,B; --from X,Y --to X,Y --center X,Y)"
             }
             CurveKind::Helix => "helices (--from X,Y,Z --to X,Y,Z --center X,Y --cw|--ccw)",
+            CurveKind::Move => {
+                "lines of 2 or 3 axes, arcs and helices (--from X,Y[,Z] --to X,Y[,Z], of arcs --center X,Y --cw|--ccw)"
+            }
         }
     }
 
@@ -48,19 +55,29 @@ impl CurveKind {
         match self {
             CurveKind::Line { max_axes } => max_axes,
             CurveKind::Arc | CurveKind::Conic => 2,
-            CurveKind::Helix => 3,
+            CurveKind::Helix | CurveKind::Move => 3,
+        }
+    }
+
+    /// The kind of a curve, that of a line with its own axes.
+    #[must_use]
+    pub fn of(curve: &Curve) -> CurveKind {
+        match curve {
+            Curve::Line(line) => CurveKind::Line { max_axes: line.axes() },
+            Curve::Arc(_) => CurveKind::Arc,
+            Curve::Conic(_) => CurveKind::Conic,
+            Curve::Helix(_) => CurveKind::Helix,
         }
     }
 
     /// The curve is of this kind.
     #[must_use]
     pub fn fits(self, curve: &Curve) -> bool {
-        match (self, curve) {
-            (CurveKind::Line { max_axes }, Curve::Line(line)) => line.axes() <= max_axes,
-            (CurveKind::Arc, Curve::Arc(_))
-            | (CurveKind::Conic, Curve::Conic(_))
-            | (CurveKind::Helix, Curve::Helix(_)) => true,
-            _ => false,
+        match (self, CurveKind::of(curve)) {
+            (CurveKind::Line { max_axes }, CurveKind::Line { max_axes: axes }) => axes <= max_axes,
+            (CurveKind::Move, CurveKind::Line { max_axes: axes }) => axes <= self.max_axes(),
+            (CurveKind::Move, kind) => kind != CurveKind::Conic,
+            (own, kind) => own == kind,
         }
     }
 }
@@ -88,6 +105,8 @@ pub enum Interpolates {
     Conics(Method<Conic>),
     /// Circular arcs in the plane with a displacement in z.
     Helices(Method<Helix>),
+    /// The moves of a program, or one of them alone.
+    Moves(Moves),
 }
 
 /// An interpolator: its documentation, and how it is planned, wired and loaded.
@@ -122,6 +141,8 @@ impl Model {
             Interpolates::Arcs(_) => CurveKind::Arc,
             Interpolates::Conics(_) => CurveKind::Conic,
             Interpolates::Helices(_) => CurveKind::Helix,
+            Interpolates::Moves(moves) if moves.arcs => CurveKind::Move,
+            Interpolates::Moves(_) => CurveKind::Line { max_axes: 3 },
         }
     }
 
@@ -153,6 +174,11 @@ impl Model {
             chosen(self.name, self.options, options)
                 .map(|options| Plan::new(self.name, curve.axes(), self.registers, options))
         };
+        if let Interpolates::Moves(moves) = &self.interpolates
+            && let Some(block) = moves.block(curve)
+        {
+            return self.plan_alone(moves, &block, new()?);
+        }
         let plan = match (&self.interpolates, curve) {
             (Interpolates::Lines(most, method), Curve::Line(line)) if line.axes() <= *most => {
                 method.planned(line, new()?)
@@ -191,6 +217,7 @@ impl Model {
             (Interpolates::Arcs(method), Curve::Arc(arc)) => (method.load)(arc, hardware),
             (Interpolates::Conics(method), Curve::Conic(conic)) => (method.load)(conic, hardware),
             (Interpolates::Helices(method), Curve::Helix(helix)) => (method.load)(helix, hardware),
+            (Interpolates::Moves(moves), _) => moves.words_alone(hardware, curve),
             _ => Vec::new(),
         }
     }

@@ -100,13 +100,18 @@ fn log2_up(value: u64) -> u32 {
 
 fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
     let accumulations = registers(plan, sizes::longest(line), sizes::end_positions(line))?;
-    // An axis of one step may make it at the end, after all delays.
-    let timing = plan.get(&TIMING);
-    let delays = 2 * (timing.length + timing.space + timing.setup + timing.hold);
-    plan.stall_clocks = accumulations.saturating_add(delays).saturating_add(16);
+    plan.stall_clocks = stall_clocks(plan, accumulations);
     let off = axis_bound(&plan.presets()?);
     plan.error_bound = (plan.axes() == 2).then_some(if off < 1.0 { FRAC_1_SQRT_2 } else { SQRT_2 });
     Ok(())
+}
+
+/// Clocks without a pulse after which none will come, where accumulations alone take `clocks`: an axis of one step may make
+/// it at the end, after all delays.
+pub(crate) fn stall_clocks(plan: &Plan, clocks: u64) -> u64 {
+    let timing = plan.get(&TIMING);
+    let delays = 2 * (timing.length + timing.space + timing.setup + timing.hold);
+    clocks.saturating_add(delays).saturating_add(16)
 }
 
 /// How far an axis is from its ideal place at most, in BLU.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::models::program::{FAMILIES, Family};
+use crate::models::{Model, installed};
 use crate::nc::{Corner, Integers, Scheme};
 use clap::Args;
 
@@ -65,9 +65,9 @@ fn parse_chords(text: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("invalid distance of a chord from its arc '{text}': give BLU from 0.01 on, such as 0.5"))
 }
 
-/// A family by its name.
-pub(super) fn families() -> Vec<(&'static str, &'static Family)> {
-    FAMILIES.into_iter().map(|family| (family.name, family)).collect()
+/// Every machine that runs programs, by the name of its method.
+pub(super) fn machines() -> Vec<(&'static str, &'static Model)> {
+    installed().machines().map(|model| (model.method_name(), model)).collect()
 }
 
 /// How the text of a program becomes blocks.
@@ -113,8 +113,8 @@ pub(crate) struct ProgramArgs {
     #[arg(id = "program", value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Family of the machine
-    #[arg(long, value_parser = one_of(&families()))]
-    pub(crate) method: &'static Family,
+    #[arg(long, value_parser = one_of(&machines()))]
+    pub(crate) method: &'static Model,
     #[command(flatten)]
     pub(crate) text: TextArgs,
     #[command(flatten)]

@@ -16,15 +16,12 @@ use crate::output;
 /// Prints one row for each model that takes the curve, by default and in its other common forms.
 pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     let geometry = &args.geometry;
-    let axes = geometry.to.as_ref().map_or(2, |to| to.0.len());
     let kind = if geometry.ellipse.is_some() || geometry.parabola.is_some() || geometry.hyperbola.is_some() {
         CurveKind::Conic
-    } else if !(geometry.cw || geometry.ccw) {
-        CurveKind::Line { max_axes: axes }
-    } else if axes == 3 {
-        CurveKind::Helix
+    } else if geometry.cw || geometry.ccw {
+        CurveKind::Move
     } else {
-        CurveKind::Arc
+        CurveKind::Line { max_axes: 6 }
     };
     let curve = geometry::curve("compare", kind, geometry, args.tolerance.map_or(0.0, Millionths::units))?;
     let mut rows = vec![HEADING.map(str::to_owned)];

@@ -33,9 +33,9 @@ struct Subject {
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
-    let prepared = args.program.as_deref().zip(args.method).map(|(file, family)| {
+    let prepared = args.program.as_deref().zip(args.method).map(|(file, model)| {
         let ExportArgs { text, hardware, clock, .. } = args;
-        Source { file, family, text, hardware, clock_hz: clock.clock_hz }.machine()
+        Source { file, model, text, hardware, clock_hz: clock.clock_hz }.machine()
     });
     let prepared = prepared.transpose()?;
     let Subject { bench, title, widths_by, stimulus, text: mut notes } = match &prepared {

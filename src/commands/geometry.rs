@@ -13,6 +13,7 @@ use crate::cli::{GeometryArgs, HardwareArgs, Point};
 /// # Errors
 /// Something is missing, or the model does not interpolate such a curve.
 pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64) -> Result<Curve, Error> {
+    let kind = if kind == CurveKind::Move { move_kind(args) } else { kind };
     let Some(to) = &args.to else {
         return invalid(format!("the end point is missing: {} takes {}", who, kind.describe()));
     };
@@ -28,7 +29,7 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
         _ => invalid(format!("the direction of the arc is missing: give {} --cw or --ccw", who)),
     };
     let what = match kind {
-        CurveKind::Line { .. } => "a line",
+        CurveKind::Line { .. } | CurveKind::Move => "a line",
         CurveKind::Arc => "an arc",
         CurveKind::Conic => "a conic",
         CurveKind::Helix => "a helix",
@@ -36,7 +37,7 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
     let from = args.from.as_ref();
     let center = || point::<2>(what, "--center", args.center.as_ref());
     Ok(match kind {
-        CurveKind::Line { .. } => {
+        CurveKind::Line { .. } | CurveKind::Move => {
             let from = from.map_or_else(|| vec![0; to.0.len()], |from| from.0.clone());
             Line::new(from, to.0.clone())?.into()
         }
@@ -67,6 +68,16 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
             .into()
         }
     })
+}
+
+/// The kind of move that the options give: an arc or a helix where there is a centre or a direction, else a line.
+pub(super) fn move_kind(args: &GeometryArgs) -> CurveKind {
+    let axes = args.to.as_ref().map_or(2, |to| to.0.len());
+    match args.cw || args.ccw || args.center.is_some() {
+        false => CurveKind::Line { max_axes: axes },
+        true if axes == 3 => CurveKind::Helix,
+        true => CurveKind::Arc,
+    }
 }
 
 /// The options that have no meaning for such curves: whether each is given, and its name.

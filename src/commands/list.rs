@@ -89,6 +89,7 @@ fn as_json(model: &Model) -> Value {
         CurveKind::Arc => "arc",
         CurveKind::Conic => "conic",
         CurveKind::Helix => "helix",
+        CurveKind::Move => "move",
     };
     let registers = model.rows().map(|row| {
         let (label, rule) = (row.label(model.curve().max_axes()), row.declaration.rule.to_string());

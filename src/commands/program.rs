@@ -6,8 +6,8 @@ use std::io::{BufReader, Write};
 use std::path::Path;
 
 use crate::engine::EngineKind;
+use crate::models::Model;
 use crate::models::options::TOLERANCE;
-use crate::models::program::Family;
 use crate::nc::Reading;
 use crate::program::{Control, Estimate, Pace, Preparation, Stream, Survey, Totals};
 use crate::report::{CsvTable, ProgramHead, ProgramJson, ProgramTable, ProgramTail, Workpiece};
@@ -63,7 +63,7 @@ fn tools(given: &[Tool]) -> Result<BTreeMap<u64, f64>, Error> {
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) file: &'a Path,
-    pub(super) family: &'static Family,
+    pub(super) model: &'static Model,
     pub(super) text: &'a TextArgs,
     pub(super) hardware: &'a HardwareArgs,
     pub(super) clock_hz: f64,
@@ -72,7 +72,7 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     pub(super) fn of(args: &'a ProgramArgs) -> Source<'a> {
         let ProgramArgs { file, method, text, hardware, clock, .. } = args;
-        Source { file, family: method, text, hardware, clock_hz: clock.clock_hz }
+        Source { file, model: method, text, hardware, clock_hz: clock.clock_hz }
     }
 
     /// How the options want the program prepared.
@@ -100,12 +100,12 @@ impl<'a> Source<'a> {
     /// # Errors
     /// The program is wrong, or the machine cannot be as the options want it.
     pub(super) fn machine(self) -> Result<Prepared<'a>, Error> {
-        let (family, preparation) = (self.family, self.preparation()?);
-        let survey = Survey::of(open(self.file)?, family, &preparation).map_err(|error| self.told(&error))?;
+        let (model, preparation) = (self.model, self.preparation()?);
+        let survey = Survey::of(open(self.file)?, model.moves()?, &preparation).map_err(|error| self.told(&error))?;
         // How far the radii of an arc may differ is not the machine's concern.
         let choices = self.hardware.choices().without(&TOLERANCE);
-        let hardware = family.plan(&survey.size, &choices).map_err(|error| self.hardware.explain(error))?;
-        let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware)?).as_hardware_loads();
+        let hardware = model.plan_program(&survey.size, &choices).map_err(|error| self.hardware.explain(error))?;
+        let bench = Testbench::of_machine(hardware.clone(), model.machine(&hardware)?).as_hardware_loads();
         let pace = Pace { clock_hz: self.clock_hz, blu_mm: self.hardware.blu, rapid: self.text.rapid };
         Ok(Prepared { source: self, preparation, survey, bench, pace, name: self.file.display().to_string() })
     }
@@ -127,8 +127,8 @@ pub(super) struct Prepared<'a> {
 
 impl Prepared<'_> {
     pub(super) fn head(&self, engine: EngineKind) -> ProgramHead<'_> {
-        let (family, pace) = (self.source.family, self.pace);
-        ProgramHead { file: &self.name, family, hardware: self.bench.hardware(), engine, pace }
+        let (model, pace) = (self.source.model, self.pace);
+        ProgramHead { file: &self.name, model, hardware: self.bench.hardware(), engine, pace }
     }
 
     /// Reads the program anew, and feeds its machine.
@@ -137,9 +137,10 @@ impl Prepared<'_> {
     /// It can no longer be read.
     pub(super) fn control(&self) -> Result<Control<'_, BufReader<File>>, Error> {
         let source = self.source;
-        let stream = Stream::new(open(source.file)?, source.family, &self.preparation);
+        let moves = source.model.moves()?;
+        let stream = Stream::new(open(source.file)?, moves, &self.preparation);
         let stream = stream.map_err(|error| source.told(&error))?;
-        Ok(Control::new(stream, source.family, &self.bench, self.pace))
+        Ok(Control::new(stream, moves, &self.bench, self.pace))
     }
 
     /// What a run of it comes to.
@@ -148,7 +149,7 @@ impl Prepared<'_> {
     /// The program is wrong.
     fn estimate(&self) -> Result<Estimate, Error> {
         let (source, hardware) = (self.source, self.bench.hardware());
-        let estimate = Estimate::of(open(source.file)?, source.family, &self.preparation, hardware, self.pace);
+        let estimate = Estimate::of(open(source.file)?, source.model.moves()?, &self.preparation, hardware, self.pace);
         estimate.map_err(|error| source.told(&error))
     }
 }

@@ -58,6 +58,7 @@ fn proposition(args: &ProveArgs) -> Result<Proposition, Error> {
 fn check_options(args: &ProveArgs, proposition: &Proposition) -> Result<(), Error> {
     let counted = !proposition.claims()?.counted.is_empty();
     let ProveArgs { narrower, solver, bits, any_preset, .. } = args;
+    let buffered = proposition.model.moves().is_ok();
     let given = [
         (!narrower.is_empty(), "--narrower"),
         (solver.is_some(), "--solver"),
@@ -66,7 +67,7 @@ fn check_options(args: &ProveArgs, proposition: &Proposition) -> Result<(), Erro
     ];
     match given.into_iter().find(|(given, _)| *given) {
         Some((_, option)) if proposition.is_fixed() => Err(ProofError::ForEveryK { option }.into()),
-        _ if bits.is_some() && !counted && solver.is_none() && !proposition.is_fixed() => {
+        _ if bits.is_some() && !counted && solver.is_none() && !proposition.is_fixed() && !buffered => {
             let model = proposition.model.name;
             Err(Error::Invalid(format!("{model} is proved for all k at once: leave --bits out")))
         }
@@ -142,6 +143,14 @@ fn attempt(args: &ProveArgs) -> Result<(), Error> {
     let proposition = proposition(args)?;
     check_options(args, &proposition)?;
     let second = args.solver.as_deref().map(|command| asked(args, &proposition, command)).transpose()?.flatten();
+    match second {
+        // Of a machine with a buffer the solver's is the only answer for every geometry of some bits.
+        Some(Answer::Unsat) if proposition.model.moves().is_ok() => return Ok(()),
+        Some(Answer::Sat) if proposition.model.moves().is_ok() => {
+            return Err(Error::Check(vec![format!("{} is refuted by the solver", proposition.model.name)]));
+        }
+        _ => {}
+    }
     let certificate = CertificateOutput::open(args)?;
     let bars = Bars::default();
     let progress = |what, done, all| bars.show(what, done, all);

@@ -132,12 +132,21 @@ fn center(args: &SpaceArgs) -> Result<[i64; 2], Error> {
     }
 }
 
+/// Axes of the end points, if any are given.
+fn to_axes(args: &SpaceArgs) -> Option<usize> {
+    let one = args.to.as_ref().map(|Point(point)| point.len());
+    one.or_else(|| args.to_grid.as_ref().map(|Grid(ranges)| ranges.len()))
+}
+
 /// What the model interpolates, if nothing was given that it has not.
 fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Error> {
     let drawn = match model.curve() {
         CurveKind::Line { .. } => Drawn::Line,
         CurveKind::Arc => Drawn::Arc,
         CurveKind::Helix => Drawn::Helix,
+        CurveKind::Move if !(args.cw || args.ccw || args.center.is_some() || args.radius.is_some()) => Drawn::Line,
+        CurveKind::Move if args.height.is_some() || to_axes(args) == Some(3) => Drawn::Helix,
+        CurveKind::Move => Drawn::Arc,
         CurveKind::Conic => match (&args.ellipse, &args.parabola, &args.hyperbola) {
             (Some(_), ..) => Drawn::Ellipse,
             (_, Some(_), _) => Drawn::Parabola(args.opens),
@@ -186,7 +195,7 @@ fn variants(args: &VariantArgs) -> Result<Variants, StudyError> {
 fn radii(model: &Model, variants: &mut Variants) -> Result<Millionths, Error> {
     let is_tolerance = |dimension: &Dimension| dimension.option.name() == TOLERANCE.name;
     let Some(place) = variants.0.iter().position(is_tolerance) else { return Ok(Millionths(0)) };
-    if !matches!(model.curve(), CurveKind::Arc | CurveKind::Helix) {
+    if !matches!(model.curve(), CurveKind::Arc | CurveKind::Helix | CurveKind::Move) {
         let takes = model.curve().describe();
         return invalid(format!("{} interpolates {takes}, which have no --tolerance: leave it out", model.name));
     }

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::BufRead;
 
 use stepwave_models::parts::PULSE_RATE;
-use stepwave_models::program::{Family, PROGRAM_WORDS};
+use stepwave_models::program::{Moves, PROGRAM_WORDS};
 use stepwave_nc::{PulseBlock, ToolMove};
 
 use super::feed::{Pace, commanded, frequency, rate, shown_feed};
@@ -15,7 +15,7 @@ use crate::testbench::{Feeder, Next, ObserverError, Part, Testbench};
 /// The control of a machine that runs a program.
 pub struct Control<'a, R> {
     stream: Stream<R>,
-    family: &'static Family,
+    machine: &'static Moves,
     bench: &'a Testbench,
     pace: Pace,
     /// What waits to be asked for.
@@ -29,9 +29,9 @@ pub struct Control<'a, R> {
 impl<'a, R: BufRead> Control<'a, R> {
     /// A control that reads its blocks from a stream.
     #[must_use]
-    pub fn new(stream: Stream<R>, family: &'static Family, bench: &'a Testbench, pace: Pace) -> Control<'a, R> {
+    pub fn new(stream: Stream<R>, machine: &'static Moves, bench: &'a Testbench, pace: Pace) -> Control<'a, R> {
         let (ready, losses) = (VecDeque::new(), Losses::default());
-        Control { stream, family, bench, pace, ready, speed: None, moves: 0, losses }
+        Control { stream, machine, bench, pace, ready, speed: None, moves: 0, losses }
     }
 
     /// Makes the words of the next move.
@@ -59,8 +59,8 @@ impl<'a, R: BufRead> Control<'a, R> {
         }
         for block in blocks {
             let mut length = block.curve.length();
-            for part in self.family.words(self.bench.hardware(), &block) {
-                let rate = rate(self.pace, self.family, &block, &part, self.speed);
+            for part in self.machine.words(self.bench.hardware(), &block) {
+                let rate = rate(self.pace, self.machine, &block, &part, self.speed);
                 let source_hz = frequency(self.pace, rate.word);
                 let feed = shown_feed(self.pace, self.speed, &part, source_hz);
                 let number = of.place.number.unwrap_or(of.place.line);
@@ -73,7 +73,7 @@ impl<'a, R: BufRead> Control<'a, R> {
                     commanded: self.speed,
                     source_hz,
                     limited: rate.limited,
-                    promise: self.family.promise(self.bench.hardware(), &block),
+                    promise: self.machine.promise(self.bench.hardware(), &block),
                     chords: self.stream.chord_limit(),
                     ..Part::new(self.moves, block.clone())
                 };

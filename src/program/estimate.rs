@@ -3,7 +3,7 @@
 use std::io::BufRead;
 
 use stepwave_models::Hardware;
-use stepwave_models::program::Family;
+use stepwave_models::program::Moves;
 
 use super::ProgramFailure;
 use super::feed::{Pace, commanded, frequency, rate};
@@ -32,14 +32,14 @@ impl Estimate {
     /// The program is wrong.
     pub fn of<R: BufRead>(
         text: R,
-        family: &'static Family,
+        moves: &'static Moves,
         preparation: &Preparation,
         hardware: &Hardware,
         pace: Pace,
     ) -> Result<Estimate, ProgramFailure> {
         let mut estimate = Estimate::default();
         let mut speed = None;
-        for item in Stream::new(text, family, preparation)? {
+        for item in Stream::new(text, moves, preparation)? {
             match item? {
                 Item::Dwell(_, seconds) => estimate.clocks += (seconds * pace.clock_hz).round(),
                 Item::Stop(_) | Item::LeftOut(..) => {}
@@ -49,8 +49,8 @@ impl Estimate {
                         speed = commanded(pace, first, whole, speed);
                     }
                     for block in &blocks {
-                        for part in family.words(hardware, block) {
-                            let word = rate(pace, family, block, &part, speed).word;
+                        for part in moves.words(hardware, block) {
+                            let word = rate(pace, moves, block, &part, speed).word;
                             let source_hz = frequency(pace, word);
                             estimate.steps += part.steps;
                             estimate.moving += part.steps.min(part.length * PULSES);

@@ -1,7 +1,7 @@
 //! Feeds: from F to the rate of the pulse source.
 
-use stepwave_models::parts::RATE_BITS;
-use stepwave_models::program::{Family, HardwareBlock};
+use stepwave_models::parts::{FASTEST_RATE, RATE_BITS};
+use stepwave_models::program::{HardwareBlock, Moves};
 use stepwave_nc::{Cause, Feed, PulseBlock};
 
 /// The clock and the scale of a machine.
@@ -39,19 +39,18 @@ pub(super) fn commanded(pace: Pace, block: &PulseBlock, length: f64, before: Opt
 
 /// The rate of the pulse source for a block of the machine at this speed, in BLU per second.
 ///
-/// f_g = v where the family takes F as it is (60·δ·f_g is the feed along an axis), but with G93 and for feed rate numbers
+/// f_g = v where the machine takes F as it is (60·δ·f_g is the feed along an axis), but with G93 and for feed rate numbers
 /// f_g = v · steps / length, so that the block takes the time that is wanted.
 #[must_use]
-pub(super) fn rate(pace: Pace, family: &Family, block: &PulseBlock, part: &HardwareBlock, speed: Option<f64>) -> Rate {
-    let most = 1u64 << (RATE_BITS - 1);
-    let Some(speed) = speed else { return Rate { word: most, limited: false } };
-    let timed = !family.direct || matches!(block.feed(), Feed::Inverse(_));
+pub(super) fn rate(pace: Pace, moves: &Moves, block: &PulseBlock, part: &HardwareBlock, speed: Option<f64>) -> Rate {
+    let Some(speed) = speed else { return Rate { word: FASTEST_RATE, limited: false } };
+    let timed = !moves.direct || matches!(block.feed(), Feed::Inverse(_));
     let hertz = if timed { speed * part.steps / part.length } else { speed };
     let word = (hertz / pace.clock_hz * 2f64.powi(RATE_BITS.cast_signed())).round();
     // 0 for what is no number.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let wanted = word as u64;
-    Rate { word: wanted.clamp(1, most), limited: wanted > most || wanted == 0 }
+    Rate { word: wanted.clamp(1, FASTEST_RATE), limited: wanted > FASTEST_RATE || wanted == 0 }
 }
 
 /// The frequency that a rate gives, in Hz.

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::BufRead;
 
-use stepwave_models::program::Family;
+use stepwave_models::program::Moves;
 use stepwave_nc::{Compensator, Corner, Event, Place, Program, PulseBlock, Reading, Rounder, Scheme, ToolMove};
 
 use super::ProgramFailure;
@@ -39,7 +39,7 @@ pub struct Stream<R> {
     program: Program<R>,
     compensator: Compensator,
     rounder: Rounder,
-    family: &'static Family,
+    machine: &'static Moves,
     chords: f64,
     moves: Vec<ToolMove>,
     items: VecDeque<Item>,
@@ -47,17 +47,17 @@ pub struct Stream<R> {
 }
 
 impl<R: BufRead> Stream<R> {
-    /// The blocks of the program in `text` for a machine of this family.
+    /// The blocks of the program in `text` for this machine.
     ///
     /// # Errors
     /// The BLU or a tool is no length.
-    pub fn new(text: R, family: &'static Family, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
-        let chords = (!family.arcs).then_some(preparation.chords);
+    pub fn new(text: R, machine: &'static Moves, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
+        let chords = (!machine.arcs).then_some(preparation.chords);
         Ok(Stream {
             program: Program::new(text, preparation.reading.clone())?,
             compensator: Compensator::new(preparation.scheme, preparation.corner),
             rounder: Rounder::new(chords),
-            family,
+            machine,
             chords: preparation.chords,
             moves: Vec::new(),
             items: VecDeque::new(),
@@ -108,7 +108,7 @@ impl<R: BufRead> Stream<R> {
             let told = |error| ProgramFailure::Geometry { line, error };
             let before = self.rounder.clone();
             let mut apart = self.rounder.blocks(&of, &mut blocks).map_err(told)?;
-            if blocks.iter().any(|block| self.family.too_steep(block)) {
+            if blocks.iter().any(|block| self.machine.too_steep(block)) {
                 self.rounder = before;
                 blocks.clear();
                 apart = self.rounder.chords(&of, self.chords, &mut blocks).map_err(told)?;

@@ -2,7 +2,7 @@
 
 use std::io::BufRead;
 
-use stepwave_models::program::{Family, Size};
+use stepwave_models::program::{Moves, Size};
 
 use super::ProgramFailure;
 use super::stream::{Item, Preparation, Stream};
@@ -21,17 +21,13 @@ impl Survey {
     ///
     /// # Errors
     /// The program is wrong, or nothing in it moves the machine.
-    pub fn of<R: BufRead>(
-        text: R,
-        family: &'static Family,
-        preparation: &Preparation,
-    ) -> Result<Survey, ProgramFailure> {
+    pub fn of<R: BufRead>(text: R, moves: &'static Moves, preparation: &Preparation) -> Result<Survey, ProgramFailure> {
         let mut survey = Survey::default();
-        for item in Stream::new(text, family, preparation)? {
+        for item in Stream::new(text, moves, preparation)? {
             let Item::Move(_, blocks) = item? else { continue };
             survey.moves += 1;
             for block in &blocks {
-                survey.size.add(family, block);
+                survey.size.add(moves.crossing, block);
             }
         }
         if survey.moves == 0 { Err(ProgramFailure::NoPulses) } else { Ok(survey) }

@@ -146,7 +146,7 @@ mod tests {
 
     use super::*;
     use crate::program::stream::{Item, Preparation, Stream};
-    use stepwave_models::program::FAMILIES;
+    use stepwave_models::find;
     use stepwave_nc::{Corner, Integers, Reading, Scheme};
 
     #[test]
@@ -155,7 +155,8 @@ mod tests {
             Reading { blu: 0.01, integers: Integers::Units, tools: BTreeMap::new(), tolerance: 0.0, home: None };
         let preparation = Preparation { reading, scheme: Scheme::B, corner: Corner::Straight, chords: 0.5 };
         let text = "G21 G90 G1 X1 F100\n".as_bytes();
-        let mut stream = Stream::new(text, FAMILIES[0], &preparation).expect("a program");
+        let moves = find("ppc-machine").and_then(|model| model.moves()).expect("a machine");
+        let mut stream = Stream::new(text, moves, &preparation).expect("a program");
         let Some(Ok(Item::Move(of, _))) = stream.next() else { panic!("no move") };
         let mut totals = Totals::default();
         let report = BlockReport { contour_bound: Some(1.5), off_compensated: 1.5, ..BlockReport::new(of, 0, [0; 3]) };

@@ -6,8 +6,7 @@ use std::io::{self, Write};
 use serde_json::{Map, Value, json};
 use stepwave_engine::EngineKind;
 use stepwave_models::options::WIDTH;
-use stepwave_models::program::Family;
-use stepwave_models::{Hardware, Promise};
+use stepwave_models::{Hardware, Model, Promise};
 use stepwave_nc::Side;
 
 use super::json::{cut_word, event, number, tally};
@@ -28,8 +27,8 @@ const SHOWN_CUTS: usize = 8;
 pub struct ProgramHead<'a> {
     /// Name of the file.
     pub file: &'a str,
-    /// The family of the machine.
-    pub family: &'static Family,
+    /// The model of the machine.
+    pub model: &'static Model,
     /// The hardware, with every choice made.
     pub hardware: &'a Hardware,
     /// What simulates it.
@@ -62,13 +61,13 @@ impl ProgramHead<'_> {
         let widths = self.hardware.widths.iter().map(|(name, width)| format!("{name}={}", width.get()));
         let widths = widths.collect::<Vec<_>>().join(",");
         let file: String = self.file_name().chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect();
-        format!("program {file}; method {}; width {widths}", self.family.name)
+        format!("program {file}; method {}; width {widths}", self.model.method_name())
     }
 
-    /// Name of the file and family, for people.
+    /// Name of the file and method, for people.
     #[must_use]
     pub fn headline(&self) -> String {
-        format!("{} by {}", self.file_name(), self.family.title.to_lowercase())
+        format!("{} by {}", self.file_name(), self.model.title.to_lowercase())
     }
 
     fn file_name(&self) -> String {
@@ -81,7 +80,7 @@ impl ProgramHead<'_> {
     }
 
     fn choices(&self) -> Map<String, Value> {
-        let named = self.family.options.iter().filter(|takes| takes.name() != WIDTH.name).map(|takes| {
+        let named = self.model.options.iter().filter(|takes| takes.name() != WIDTH.name).map(|takes| {
             let value = match self.hardware.text(takes.option()).as_str() {
                 "yes" => json!(true),
                 "no" => json!(false),
@@ -111,7 +110,7 @@ impl<'a, W: Write> ProgramJson<'a, W> {
         let fields = json!({
             "schema": SCHEMA,
             "program": head.file,
-            "method": head.family.name,
+            "method": head.model.method_name(),
             "choices": head.choices(),
             "widths": widths,
             "engine": head.engine.name(),
@@ -298,7 +297,11 @@ impl<'a> ProgramTable<'a> {
         let _ = writeln!(
             text,
             "\n{} by {}: {} moves, {} steps in {} clocks ({seconds:.3} s); pulses x {x}, y {y}, z {z}",
-            self.head.file, self.head.family.name, totals.moves, totals.steps, outcome.clocks,
+            self.head.file,
+            self.head.model.method_name(),
+            totals.moves,
+            totals.steps,
+            outcome.clocks,
         );
         let exact = if totals.missed == 0 {
             "every end point reached exactly".to_owned()

@@ -18,12 +18,12 @@ pub struct CsvTable<W: Write> {
 }
 
 impl<W: Write> CsvTable<W> {
-    /// Writes the heading.
+    /// Writes the heading. A bench without blocks of its own is one of a program.
     ///
     /// # Errors
     /// The output cannot be written.
     pub fn new(bench: &Testbench, mut out: W) -> std::io::Result<CsvTable<W>> {
-        let front = if bench.machine().buffer.is_some() { "block," } else { "" };
+        let front = if bench.blocks() == 0 { "block," } else { "" };
         let letters = bench.hardware().letters();
         let mut names = vec!["step".to_owned(), "clock".to_owned()];
         names.extend(bench.machine().table.iter().map(|(name, _)| (*name).to_owned()));

@@ -102,6 +102,10 @@ impl Line<'_> {
             (CurveKind::Line { .. }, _) => Drawn::Line,
             (CurveKind::Arc, _) => Drawn::Arc,
             (CurveKind::Helix, _) => Drawn::Helix,
+            // All lines of a file are of one kind: arcs where it has a column for their direction.
+            (CurveKind::Move, _) if self.heading.iter().all(|name| name != "direction") => Drawn::Line,
+            (CurveKind::Move, _) if self.axes == 3 => Drawn::Helix,
+            (CurveKind::Move, _) => Drawn::Arc,
             (CurveKind::Conic, Some("ellipse")) => Drawn::Ellipse,
             (CurveKind::Conic, Some("parabola")) => Drawn::Parabola(opens),
             (CurveKind::Conic, Some("hyperbola")) => Drawn::Hyperbola(opens),

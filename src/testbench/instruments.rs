@@ -74,7 +74,7 @@ impl Instruments {
         let (ideal, deviation, seen) = match kind {
             CurveKind::Line { .. } => line(m, bits, steps),
             CurveKind::Arc => circle(m, bits, steps, loads),
-            CurveKind::Conic | CurveKind::Helix => return None,
+            CurveKind::Conic | CurveKind::Helix | CurveKind::Move => return None,
         };
         let every = bench.hardware().sampling.is_some().then(|| seen.net());
         let seen = stepped.mux(seen, m.lit(bits, 0)).net();

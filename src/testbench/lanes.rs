@@ -1,5 +1,7 @@
 //! Many geometries of one hardware at once.
 
+use rayon::prelude::*;
+use stepwave_engine::EngineKind;
 use stepwave_engine::lanes::{Job, LaneEnd, LaneProgram, LaneStop, LaneWatch, Observe, Quiet};
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_models::{Loaded, Machine, Model, ModelError, find};
@@ -9,7 +11,7 @@ use stepwave_netlist::{Net, OnOverflow};
 
 use super::instruments::Instruments;
 use super::measure::Measured;
-use super::{CHUNK, Ending, Testbench};
+use super::{CHUNK, Ending, Outcome, OverflowWatch, Testbench};
 
 /// What one geometry came to.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,7 +59,8 @@ impl Testbench {
     /// # Errors
     /// The hardware is of no known model.
     pub fn measuring_lanes(&self, limit: u64) -> Result<Option<Lanes>, ModelError> {
-        let instruments = find(self.hardware.model).map(|model| Instruments::new(self, model.curve()))?;
+        let model = find(self.hardware.model)?;
+        let instruments = if self.machine.buffer.is_some() { None } else { Instruments::new(self, model.curve()) };
         instruments.map(|instruments| self.lanes_with(limit, Some(instruments))).transpose()
     }
 
@@ -99,9 +102,32 @@ impl Testbench {
     /// # Errors
     /// The hardware is of no known model; and for each geometry, that the hardware does not take it.
     pub fn run_many(&self, curves: &[Curve], limit: u64) -> Result<Vec<Result<LaneOutcome, ModelError>>, ModelError> {
+        if self.machine.buffer.is_some() {
+            let model = find(self.hardware.model)?;
+            return Ok(curves.par_iter().map(|curve| self.run_alone(model, curve, limit)).collect());
+        }
         let mut outcomes = Vec::with_capacity(curves.len());
         self.lanes(limit)?.run(curves.iter(), |outcome| outcomes.push(outcome));
         Ok(outcomes)
+    }
+
+    /// What one geometry came to in a run of its own.
+    fn run_alone(&self, model: &Model, curve: &Curve, limit: u64) -> Result<LaneOutcome, ModelError> {
+        let bench = self.of(model, curve)?.limited(limit);
+        let mut overflow = OverflowWatch::new(&bench);
+        // Nothing in it can fail.
+        let outcome = bench.run(EngineKind::Word, &mut [&mut overflow]).ok();
+        let ended = outcome.filter(|outcome| !matches!(outcome.ending, Ending::Limit | Ending::Endless { .. }));
+        Ok(match ended {
+            Some(Outcome { ending, clocks, steps, pulses, reached, .. }) => {
+                LaneOutcome { ending: Some(ending), clocks, steps, pulses, reached, overflows: overflow.count }
+            }
+            None => {
+                let axes = self.hardware.axes;
+                let (pulses, reached) = (vec![0; axes], vec![0; axes]);
+                LaneOutcome { ending: None, clocks: limit, steps: 0, pulses, reached, overflows: overflow.count }
+            }
+        })
     }
 }
 

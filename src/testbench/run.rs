@@ -32,6 +32,8 @@ pub(super) struct Run<'a, 'o> {
     wants_steps: bool,
     /// Blocks loaded so far.
     loaded: usize,
+    /// They are of one geometry, and not of a program.
+    alone: bool,
     /// A sample of the block that runs, not before half of its clocks.
     anchor: Option<Anchor>,
     /// Takes states of the run.
@@ -44,6 +46,8 @@ pub(super) struct Run<'a, 'o> {
 
 /// Index among the stop nets of that by which a machine takes a block: `call`, or `done` without a buffer.
 const READY: usize = 0;
+/// Clocks from reset until a machine with a buffer runs its first block.
+const BUFFER_CLOCKS: u64 = 4;
 
 impl<'a, 'o> Run<'a, 'o> {
     pub(super) fn new(
@@ -77,6 +81,7 @@ impl<'a, 'o> Run<'a, 'o> {
             account: Account::default(),
             wants_steps: true,
             loaded: 0,
+            alone: true,
             anchor: None,
             states: None,
             limit: bench.limit,
@@ -106,9 +111,12 @@ impl<'a, 'o> Run<'a, 'o> {
         let ending = self.blocks()?;
         self.drain()?;
         self.account.end(self.observers)?;
-        // One clock from reset to the first block, and two for each block after another; a buffer loads while blocks
-        // run.
-        let load_clocks = if self.is_buffered() { 0 } else { (2 * self.loaded as u64).saturating_sub(1) };
+        // One clock from reset to the first block, and two for each block after another; a buffer loads while blocks run.
+        let load_clocks = match (self.is_buffered(), self.alone) {
+            (false, _) => (2 * self.loaded as u64).saturating_sub(1),
+            (true, true) => BUFFER_CLOCKS,
+            (true, false) => 0,
+        };
         Ok(self.steps.outcome(ending, self.engine.clock(), load_clocks))
     }
 
@@ -119,7 +127,7 @@ impl<'a, 'o> Run<'a, 'o> {
     fn blocks(&mut self) -> Result<Ending, ObserverError> {
         let over = usize::from(self.is_buffered());
         let mut next = self.ask()?;
-        if self.is_buffered() {
+        if self.is_buffered() && self.loaded == 0 {
             self.engine.reset(&mut self.rows);
         }
         loop {
@@ -128,7 +136,12 @@ impl<'a, 'o> Run<'a, 'o> {
                     if let Some(ending) = self.until(READY)? {
                         return Ok(ending);
                     }
+                    self.alone = part.is_none();
                     self.load(&words)?;
+                    // The block before runs on while a buffer takes the next.
+                    if self.is_buffered() && self.trapped() {
+                        return Ok(Ending::Trapped);
+                    }
                     self.account.give(part);
                     next = self.ask()?;
                     // The edge that loads; `done` of the block before falls with it.
@@ -165,17 +178,19 @@ impl<'a, 'o> Run<'a, 'o> {
         Ok(next)
     }
 
-    /// Puts a block on the inputs for a clock. A machine without a buffer is loaded from its reset on.
+    /// Puts a block on the inputs for a clock. A machine without a buffer is loaded from its reset on. The first block of a
+    /// geometry presets the position counters.
     fn load(&mut self, words: &[(Net, u64)]) -> Result<(), ObserverError> {
         let machine = self.bench.machine();
         self.anchor = None;
         for &(input, value) in words {
             self.engine.set_input(input, value);
         }
-        let first = self.loaded == 0 && !self.is_buffered();
+        let first = self.loaded == 0;
         self.engine.set_input(machine.load.net, 1);
-        self.engine.set_input(machine.preset_position.net, u64::from(first));
-        if first {
+        // A program begins at the origin, where reset puts the counters.
+        self.engine.set_input(machine.preset_position.net, u64::from(first && self.alone));
+        if first && !self.is_buffered() {
             self.engine.reset(&mut self.rows);
         } else {
             self.clock()?;
@@ -217,8 +232,8 @@ impl<'a, 'o> Run<'a, 'o> {
                 Stop::Net(_) if !self.rows.is_full() => continue,
                 Stop::Net(_) | Stop::RowsFull | Stop::Clocks => self.drain()?,
             }
-            // A machine of programs waits for its pulse source, or for a dwell to pass.
-            if let Some(ending) = if buffered { None } else { self.hangs() } {
+            // A program waits for its pulse source, or for a dwell to pass.
+            if let Some(ending) = if self.alone { self.hangs() } else { None } {
                 return Ok(Some(ending));
             }
             self.keep_state();

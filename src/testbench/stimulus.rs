@@ -15,7 +15,7 @@ impl Testbench {
     #[must_use]
     pub fn stimulus(&self) -> Stimulus {
         // The blocks of a geometry cannot fail.
-        self.stimulus_fed(&mut self.geometry(0)).unwrap_or_else(|_| self.sequence(Vec::new()))
+        self.stimulus_fed(&mut self.geometry(0)).unwrap_or_else(|_| self.sequence(Vec::new(), true))
     }
 
     /// What [`run_fed`](Testbench::run_fed) does to the machine with these blocks.
@@ -33,11 +33,14 @@ impl Testbench {
         // What comes before the next block: a machine without a buffer takes the first at once.
         let mut wait = more(&next).map(|more| Step { set: vec![more], clocks: None });
         let mut first = true;
+        let mut alone = true;
         loop {
             steps.extend(wait.take());
             match next {
-                Next::Block(mut words, _) => {
-                    let preset = |first| machine.buffer.is_none().then_some((machine.preset_position.net, first));
+                Next::Block(mut words, part) => {
+                    // A program begins at the origin, where reset puts the counters.
+                    alone = part.is_none();
+                    let preset = |first| alone.then_some((machine.preset_position.net, first));
                     words.push((machine.load.net, 1));
                     words.extend(preset(u64::from(std::mem::take(&mut first))));
                     steps.push(Step { set: words, clocks: Some(1) });
@@ -51,23 +54,19 @@ impl Testbench {
                     // Nothing runs: what is waited for is there at the next clock.
                     wait = Some(Step { set: more(&next).into_iter().collect(), clocks: Some(1) });
                 }
-                Next::End => return Ok(self.sequence(steps)),
+                Next::End => return Ok(self.sequence(steps, alone)),
             }
         }
     }
 
-    /// These steps, and what ends one of them and a run of this machine.
-    fn sequence(&self, steps: Vec<Step>) -> Stimulus {
+    /// These steps, and what ends one of them and a run of this machine, `alone` if it is of one geometry.
+    fn sequence(&self, steps: Vec<Step>, alone: bool) -> Stimulus {
         let machine = &self.machine;
         let never = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap { self.properties() } else { Vec::new() };
-        let (done, stall) = match machine.buffer {
-            Some(ports) => (vec![ports.call, ports.at_end], None),
-            None => {
-                let nets = machine.pulses.iter().map(|port| port.net).collect();
-                (vec![machine.done.net], Some(Stall { nets, clocks: self.hardware.stall_clocks }))
-            }
-        };
-        Stimulus { steps, done, never, stall }
+        let done = machine.buffer.map_or(vec![machine.done.net], |ports| vec![ports.call, ports.at_end]);
+        let nets = machine.pulses.iter().map(|port| port.net).collect();
+        let stall = alone.then_some(Stall { nets, clocks: self.hardware.stall_clocks });
+        Stimulus { steps, done, never, always: machine.buffer.is_some(), stall }
     }
 
     /// The machine with a loader next to it, which loads each block as [`run`](Testbench::run) does: without inputs.
@@ -104,7 +103,9 @@ impl Testbench {
         };
         let words = registers.iter().map(port).collect::<Result<Vec<Net>, ModelError>>()?;
         let mut stimulus = self.stimulus();
-        stimulus.steps.truncate(2);
+        // Up to the end of the first block.
+        let load = stimulus.steps.iter().position(|step| step.clocks.is_some());
+        stimulus.steps.truncate(load.map_or(0, |load| load + 2));
         let driven = driven(self.design(), &stimulus, &words)?;
         let words = words.into_iter().map(|word| driven.net(word)).collect();
         Ok((driven, words))

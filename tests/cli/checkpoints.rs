@@ -5,12 +5,14 @@ use serde_json::{Value, json};
 use super::{Folder, engines};
 
 /// Runs of more than 2^17 clocks: a state is kept every 2^16.
-const LONG: [&str; 5] = [
+const LONG: [&str; 6] = [
     "dda-line --to 120000,-90000 --width 18",
     "ppc-line --to -30000,20000 --from 5,7",
     "dpm-line --to 120000,-43691 --override 70",
     // Loaded anew in every quadrant.
     "dda-arc --from 30000,0 --to 30000,0 --ccw --preset half --width 16",
+    // The same through a buffer.
+    "mindev-machine --from 30000,0 --to 30000,0 --ccw",
     // More overflows than are reported in full.
     "ppc-line --to 30000,20000 --width f=8 --on-overflow wrap",
 ];

@@ -106,7 +106,9 @@ fn rows_of_every_model_are_what_single_runs_report() {
         let name = model.name;
         let geometries = match model.curve() {
             CurveKind::Line { .. } => "--from -3,4 --to-grid -40..40x-40..40 --samples 12 --seed 5",
-            CurveKind::Arc => "--from-grid 2..17x-9..9 --to-grid -15..19x-19..19 --center 1,-1 --cw --ccw --samples 12",
+            CurveKind::Arc | CurveKind::Move => {
+                "--from-grid 2..17x-9..9 --to-grid -15..19x-19..19 --center 1,-1 --cw --ccw --samples 12"
+            }
             CurveKind::Conic => "--ellipse 3..9,2..9 --to-grid -9..9x-9..9 --cw --ccw --samples 12",
             CurveKind::Helix => "--radius 3..9 --height -20..20/5 --cw --ccw --samples 12",
         };

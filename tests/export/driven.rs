@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use stepwave::models::program::FAMILIES;
-use stepwave::models::{Options, find};
+use stepwave::models::{Options, catalogue, find};
 use stepwave::nc::{Arc, Corner, Curve, Direction, Integers, Line, Reading, Scheme};
 use stepwave::program::{Control, Pace, Preparation, Stream, Survey};
 use stepwave::testbench::{Ending, Observer, ObserverError, Testbench};
@@ -37,7 +36,10 @@ fn a_machine_with_a_loader_runs_as_on_the_bench() {
     let line = Curve::Line(Line::new(vec![1, 2], vec![-7, 5]).unwrap());
     // Three quadrants: three blocks, one after another.
     let arc = Curve::Arc(Arc::new([5, -3], [-5, 3], [0, 0], Direction::CounterClockwise).unwrap());
-    for (model, curve) in [("ppc-line", &line), ("dda-line", &line), ("ppc-arc", &arc), ("dda-arc", &arc)] {
+    let models = ["ppc-line", "dda-line", "stepgen-machine", "bresenham-machine", "dpm-machine", "cim-machine"];
+    let lines = models.map(|model| (model, &line));
+    let arcs = ["ppc-arc", "dda-arc", "ppc-machine", "dda-machine", "mindev-machine"].map(|model| (model, &arc));
+    for (model, curve) in lines.into_iter().chain(arcs) {
         let bench = Testbench::new(find(model).unwrap(), curve, &Options::default()).unwrap();
         let mut seen = Samples(Vec::new());
         bench.run(EngineKind::Gates, &mut [&mut seen]).unwrap();
@@ -68,16 +70,17 @@ fn a_machine_of_a_program_with_a_loader_runs_as_on_the_bench() {
     let reading = Reading { blu: 0.01, integers: Integers::Units, tools: BTreeMap::new(), tolerance: 0.0, home: None };
     let preparation = Preparation { reading, scheme: Scheme::C, corner: Corner::Straight, chords: 0.5 };
     let pace = Pace { clock_hz: 20_000.0, blu_mm: 0.01, rapid: None };
-    for family in FAMILIES {
-        let survey = Survey::of(text, family, &preparation).unwrap();
-        let hardware = family.plan(&survey.size, &Options::default()).unwrap();
-        let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware).unwrap());
-        let control = || Control::new(Stream::new(text, family, &preparation).unwrap(), family, &bench, pace);
+    for model in catalogue().machines() {
+        let moves = model.moves().unwrap();
+        let survey = Survey::of(text, moves, &preparation).unwrap();
+        let hardware = model.plan_program(&survey.size, &Options::default()).unwrap();
+        let bench = Testbench::of_machine(hardware.clone(), model.machine(&hardware).unwrap());
+        let control = || Control::new(Stream::new(text, moves, &preparation).unwrap(), moves, &bench, pace);
         let mut seen = Samples(Vec::new());
         let outcome = bench.run_fed(EngineKind::Word, &mut control(), &mut [&mut seen]).unwrap();
-        assert_eq!((outcome.ending, outcome.reached), (Ending::Done, vec![30, 0, 3]), "{}", family.name);
+        assert_eq!((outcome.ending, outcome.reached), (Ending::Done, vec![30, 0, 3]), "{}", model.name);
         let driven = bench.driven_by(&bench.stimulus_fed(&mut control()).unwrap()).unwrap();
-        as_on_the_bench(family.name, &bench, &driven, &seen);
+        as_on_the_bench(model.name, &bench, &driven, &seen);
     }
 }
 
@@ -95,7 +98,7 @@ fn steps_last_as_long_as_they_are_to_and_done_counts_from_their_second_sample_on
     let step = |value, clocks| Step { set: vec![(a, value)], clocks };
     // Done in the first sample of the second step already, which does not end it; the last step has no end.
     let steps = vec![step(3, Some(2)), step(9, None), step(1, Some(1))];
-    let stimulus = Stimulus { steps, done: vec![done], never: Vec::new(), stall: None };
+    let stimulus = Stimulus { steps, done: vec![done], never: Vec::new(), always: false, stall: None };
     let driven = driven(&design, &stimulus, &[b]).unwrap();
     let rows = samples(&driven.design, vec![driven.net(a), driven.net(r)], 7);
     assert_eq!(rows.iter().map(|row| row[0]).collect::<Vec<_>>(), [3, 3, 9, 9, 1, 1, 1]);
@@ -108,7 +111,7 @@ fn steps_last_as_long_as_they_are_to_and_done_counts_from_their_second_sample_on
 #[test]
 fn without_steps_all_inputs_are_0() {
     let design = design("m", |m| _ = m.input("a", 4));
-    let stimulus = Stimulus { steps: Vec::new(), done: Vec::new(), never: Vec::new(), stall: None };
+    let stimulus = Stimulus { steps: Vec::new(), done: Vec::new(), never: Vec::new(), always: false, stall: None };
     let driven = driven(&design, &stimulus, &[]).unwrap();
     let a = driven.net(design.inputs()[0]);
     assert_eq!(samples(&driven.design, vec![a], 3), [[0], [0], [0]]);

@@ -19,7 +19,7 @@ fn curve(kind: CurveKind) -> Curve {
     let ccw = Direction::CounterClockwise;
     match kind {
         CurveKind::Line { .. } => line(&[5, -2], &[42, 21]),
-        CurveKind::Arc => Arc::new([25, 0], [-7, 24], [0, 0], ccw).unwrap().into(),
+        CurveKind::Arc | CurveKind::Move => Arc::new([25, 0], [-7, 24], [0, 0], ccw).unwrap().into(),
         CurveKind::Conic => Conic::ellipse([12, 7], [12, 0], [-12, 0], [0, 0], ccw).unwrap().into(),
         CurveKind::Helix => Helix::new([25, 0, 3], [-7, 24, -9], [0, 0], ccw).unwrap().into(),
     }

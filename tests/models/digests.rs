@@ -10,7 +10,7 @@ use std::path::Path;
 use stepwave::report::{run_command, title};
 use stepwave::study::{Dimension, Variants};
 use stepwave_models::options::AnyOption;
-use stepwave_models::program::{FAMILIES, Size};
+use stepwave_models::program::Size;
 use stepwave_models::{CurveKind, Model, catalogue};
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
 use stepwave_netlist::text;
@@ -47,6 +47,10 @@ fn curves(model: &Model) -> [Curve; 2] {
     let arc = |from, to, center, direction| Arc::new(from, to, center, direction).unwrap();
     let (cw, ccw) = (Direction::Clockwise, Direction::CounterClockwise);
     match model.curve() {
+        CurveKind::Move => [
+            Curve::Arc(arc([5, 0], [0, 5], [0, 0], ccw)),
+            Curve::Helix(Helix::new([17, -4, 9], [-17, 4, -11], [0, 0], cw).unwrap()),
+        ],
         CurveKind::Line { max_axes: 2 } => [line(&[0, 0], &[8, 6]), line(&[5, -3], &[-95, 0])],
         CurveKind::Line { .. } => [line(&[0, 0], &[8, 6]), line(&[5, -3, 2], &[-95, -3, 77])],
         CurveKind::Arc => [
@@ -124,15 +128,15 @@ fn all() -> String {
             writeln!(text, "  pairs {:08x}", crc(&pairs)).unwrap();
         }
     }
-    for family in FAMILIES {
-        writeln!(text, "program {}", family.name).unwrap();
-        let options = family.options.iter().map(|takes| takes.option());
+    for model in catalogue().machines() {
+        writeln!(text, "program {}", model.method_name()).unwrap();
+        let options = model.options.iter().map(|takes| takes.option());
         let given = options.flat_map(|option| values(option).iter().map(move |text| (option, text)));
         let size = Size { magnitude: 300, positions: [[-20, 300], [0, 200], [-5, 0]] };
         for (option, value) in given {
             let variants = Variants(vec![Dimension::parse(option, value).unwrap()]);
-            let netlist = family.plan(&size, &variants.at(0).0).and_then(|hardware| {
-                Ok((format!("{:?}{:?}", hardware.widths, hardware.table), family.machine(&hardware)?))
+            let netlist = model.plan_program(&size, &variants.at(0).0).and_then(|hardware| {
+                Ok((format!("{:?}{:?}", hardware.widths, hardware.table), model.machine(&hardware)?))
             });
             let digest = match netlist {
                 Ok((plan, machine)) => {

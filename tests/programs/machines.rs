@@ -8,8 +8,8 @@ use stepwave::testbench::{
 use stepwave_engine::EngineKind;
 use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
 use stepwave_models::parts::PULSE_RATE;
-use stepwave_models::program::{FAMILIES, Family, Size};
-use stepwave_models::{Hardware, OnOverflow, Options, Preset, Promise, Words};
+use stepwave_models::program::{Moves, Size};
+use stepwave_models::{Hardware, Model, OnOverflow, Options, Preset, Promise, Words, catalogue};
 use stepwave_nc::{
     Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, SegmentShape, Side, ToolMove,
 };
@@ -66,9 +66,9 @@ impl Observer for Keep {
 }
 
 /// The blocks of the machine for these of a program.
-fn of_machine(family: &Family, hardware: &Hardware, blocks: &[PulseBlock]) -> Vec<(PulseBlock, Words)> {
+fn of_machine(moves: &Moves, hardware: &Hardware, blocks: &[PulseBlock]) -> Vec<(PulseBlock, Words)> {
     let parts = |block: &PulseBlock| {
-        family.words(hardware, block).into_iter().map(|part| (block.clone(), part.words)).collect::<Vec<_>>()
+        moves.words(hardware, block).into_iter().map(|part| (block.clone(), part.words)).collect::<Vec<_>>()
     };
     blocks.iter().flat_map(parts).collect()
 }
@@ -84,27 +84,27 @@ struct Ran {
     bits: u32,
 }
 
-fn family(name: &str) -> &'static Family {
-    FAMILIES.into_iter().find(|family| family.name == name).unwrap()
+fn machine(name: &str) -> &'static Model {
+    catalogue().machines().find(|model| model.method_name() == name).unwrap()
 }
 
-fn run(family: &Family, moves: &[ToolMove], choices: &Options, engine: EngineKind) -> Ran {
-    let mut rounder = Rounder::new((!family.arcs).then_some(0.5));
+fn run(model: &Model, moves: &[ToolMove], choices: &Options, engine: EngineKind) -> Ran {
+    let mut rounder = Rounder::new((!model.moves().unwrap().arcs).then_some(0.5));
     let mut blocks = Vec::new();
     moves.iter().for_each(|of| {
         rounder.blocks(of, &mut blocks).unwrap();
     });
-    run_blocks(family, blocks, choices, engine)
+    run_blocks(model, blocks, choices, engine)
 }
 
-fn run_blocks(family: &Family, blocks: Vec<PulseBlock>, choices: &Options, engine: EngineKind) -> Ran {
+fn run_blocks(model: &Model, blocks: Vec<PulseBlock>, choices: &Options, engine: EngineKind) -> Ran {
     let mut size = Size::default();
-    blocks.iter().for_each(|block| size.add(family, block));
-    let hardware = family.plan(&size, choices).unwrap();
-    let machine = family.machine(&hardware).unwrap();
+    blocks.iter().for_each(|block| size.add(model.moves().unwrap().crossing, block));
+    let hardware = model.plan_program(&size, choices).unwrap();
+    let machine = model.machine(&hardware).unwrap();
     let bench = Testbench::of_machine(hardware, machine).limited(1 << 20);
-    let words: Vec<_> = blocks.iter().map(|block| family.words(bench.hardware(), block)).collect();
-    let all = of_machine(family, bench.hardware(), &blocks);
+    let words: Vec<_> = blocks.iter().map(|block| model.moves().unwrap().words(bench.hardware(), block)).collect();
+    let all = of_machine(model.moves().unwrap(), bench.hardware(), &blocks);
     let mut control = Control { bench: &bench, blocks: all.into_iter(), rate: 1 << 31, given: 0 };
     let mut keep = Keep::default();
     let outcome = bench.run_fed(engine, &mut control, &mut [&mut keep]).unwrap();
@@ -125,7 +125,7 @@ fn stepgen_path(from: [i64; 2], to: [i64; 2], accumulations: usize) -> Vec<[i64;
 }
 
 /// The path of a block by the recurrences of the method, without its start.
-fn reference(family: &str, block: &PulseBlock, bits: u32, normalize: bool, steps: usize) -> Vec<[i64; 2]> {
+pub(super) fn reference(family: &str, block: &PulseBlock, bits: u32, normalize: bool, steps: usize) -> Vec<[i64; 2]> {
     let [from, to] = [block.from, block.to].map(|[x, y, _]| [x, y]);
     let half = [1 << (bits - 1); 2];
     let table = match &block.curve {
@@ -193,17 +193,17 @@ struct Reports {
 }
 
 /// Runs a machine with a pulse every 2^`slow` clocks, and looks at every sample or not.
-fn reports(family: &Family, moves: &[ToolMove], choices: &Options, slow: u32, every_sample: bool) -> Reports {
+fn reports(model: &Model, moves: &[ToolMove], choices: &Options, slow: u32, every_sample: bool) -> Reports {
     let (mut rounder, mut blocks, mut size) =
-        (Rounder::new((!family.arcs).then_some(0.5)), Vec::new(), Size::default());
+        (Rounder::new((!model.moves().unwrap().arcs).then_some(0.5)), Vec::new(), Size::default());
     moves.iter().for_each(|of| {
         rounder.blocks(of, &mut blocks).unwrap();
     });
-    blocks.iter().for_each(|block| size.add(family, block));
-    let hardware = family.plan(&size, choices).unwrap();
-    let bench = Testbench::of_machine(hardware.clone(), family.machine(&hardware).unwrap()).limited(1 << 20);
+    blocks.iter().for_each(|block| size.add(model.moves().unwrap().crossing, block));
+    let hardware = model.plan_program(&size, choices).unwrap();
+    let bench = Testbench::of_machine(hardware.clone(), model.machine(&hardware).unwrap()).limited(1 << 20);
     let bench = if every_sample { bench } else { bench.without_wave() };
-    let (blocks, rate) = (of_machine(family, &hardware, &blocks).into_iter(), 1 << (32 - slow));
+    let (blocks, rate) = (of_machine(model.moves().unwrap(), &hardware, &blocks).into_iter(), 1 << (32 - slow));
     let (mut control, mut keep) = (Control { bench: &bench, blocks, rate, given: 0 }, Keep::default());
     let (mut overflow, mut ranges) = (OverflowWatch::new(&bench), RangeWatch::new(&bench));
     let engine = if every_sample { EngineKind::Word } else { EngineKind::Compiled };
@@ -220,39 +220,39 @@ proptest! {
 
     #[test]
     fn every_machine_steps_as_its_method_does(moves in moves(), normalize: bool) {
-        for family in FAMILIES {
-            let normalize = normalize && family.name == "dda";
-            let ran = run(family, &moves, &choices(normalize), EngineKind::Word);
-            prop_assert_eq!(ran.outcome.ending, Ending::Done, "{}", family.name);
+        for model in catalogue().machines() {
+            let normalize = normalize && model.method_name() == "dda";
+            let ran = run(model, &moves, &choices(normalize), EngineKind::Word);
+            prop_assert_eq!(ran.outcome.ending, Ending::Done, "{}", model.method_name());
             prop_assert_eq!(ran.blocks.len(), ran.paths.len());
             for (block, path) in ran.blocks.iter().zip(&ran.paths) {
-                let wanted = reference(family.name, block, ran.bits, normalize, path.len());
+                let wanted = reference(model.method_name(), block, ran.bits, normalize, path.len());
                 let path: Vec<[i64; 2]> = path.iter().map(|&[x, y, _]| [x, y]).collect();
-                prop_assert_eq!(&path, &wanted, "{} {:?}", family.name, block.curve);
+                prop_assert_eq!(&path, &wanted, "{} {:?}", model.method_name(), block.curve);
             }
         }
     }
 
     #[test]
     fn pulses_keep_their_distance_across_blocks_and_no_clock_is_lost(moves in moves()) {
-        for family in FAMILIES {
-            let ran = run(family, &moves, &choices(false), EngineKind::Word);
+        for model in catalogue().machines() {
+            let ran = run(model, &moves, &choices(false), EngineKind::Word);
             // An interpolator that is not ready for every pulse holds its source between two blocks.
-            if ["stepgen", "bresenham"].contains(&family.name) {
+            if ["stepgen", "bresenham"].contains(&model.method_name()) {
                 continue;
             }
             // After a block of one step the next may not be in the buffer yet.
             if ran.paths.iter().all(|path| path.len() > 3) && ran.blocks.iter().all(|b| matches!(b.curve, Curve::Line(_))) {
-                prop_assert!(ran.clocks.windows(2).all(|pair| pair[1] - pair[0] == 2), "{}", family.name);
+                prop_assert!(ran.clocks.windows(2).all(|pair| pair[1] - pair[0] == 2), "{}", model.method_name());
             }
         }
     }
 
     #[test]
     fn all_engines_agree(moves in moves()) {
-        for family in FAMILIES {
+        for model in catalogue().machines() {
             let [word, compiled, gates] = [EngineKind::Word, EngineKind::Compiled, EngineKind::Gates]
-                .map(|engine| run(family, &moves, &choices(false), engine));
+                .map(|engine| run(model, &moves, &choices(false), engine));
             prop_assert_eq!(&word.clocks, &compiled.clocks);
             prop_assert_eq!(&word.paths, &compiled.paths);
             prop_assert_eq!(&word.clocks, &gates.clocks);
@@ -262,8 +262,8 @@ proptest! {
 
     #[test]
     fn the_other_planes_do_the_same_with_other_axes(moves in moves()) {
-        for family in FAMILIES {
-            let flat = run(family, &moves, &choices(false), EngineKind::Word);
+        for model in catalogue().machines() {
+            let flat = run(model, &moves, &choices(false), EngineKind::Word);
             for plane in [Plane::Zx, Plane::Yz] {
                 let turned: Vec<ToolMove> = moves.iter().map(|of| {
                     let turn = |point: [f64; 3]| plane.point(point);
@@ -273,14 +273,14 @@ proptest! {
                     };
                     tool_move(turn(of.segment.from), turn(of.segment.to), shape)
                 }).collect();
-                let ran = run(family, &turned, &choices(false), EngineKind::Word);
+                let ran = run(model, &turned, &choices(false), EngineKind::Word);
                 let back: Vec<Vec<[i64; 3]>> = ran.paths.iter()
                     .map(|path| path.iter().map(|at| plane.axes().map(|axis| at[axis])).collect()).collect();
                 // A line along one axis lies in two planes, so that only its ends need be the same.
                 prop_assert_eq!(back.iter().map(|path| path.last().copied()).collect::<Vec<_>>(),
                     flat.paths.iter().map(|path| path.last().copied()).collect::<Vec<_>>());
                 if moves.iter().all(|of| of.segment.shape != SegmentShape::Line) {
-                    prop_assert_eq!(&back, &flat.paths, "{}", family.name);
+                    prop_assert_eq!(&back, &flat.paths, "{}", model.method_name());
                 }
             }
         }
@@ -299,15 +299,15 @@ proptest! {
             tool_move([0.0; 3], [x, y, z], SegmentShape::Line),
             tool_move([x, y, z], end, SegmentShape::Arc { plane: Plane::Xy, center, direction }),
         ];
-        for family in FAMILIES {
-            let ran = run(family, &moves, &choices(false), EngineKind::Word);
+        for model in catalogue().machines() {
+            let ran = run(model, &moves, &choices(false), EngineKind::Word);
             prop_assert_eq!(ran.outcome.ending, Ending::Done);
             let reached: Vec<f64> = ran.outcome.reached.iter().map(|&c| c as f64).collect();
-            prop_assert_eq!(reached, end.to_vec(), "{}", family.name);
+            prop_assert_eq!(reached, end.to_vec(), "{}", model.method_name());
             for (block, path) in ran.blocks.iter().zip(&ran.paths) {
                 let worst = path.iter().map(|&at| block.deviation(at)).fold(0.0, f64::max);
-                let bound = family.promise(&ran.hardware, block).map_or(2.5, Promise::bound);
-                prop_assert!(worst <= bound, "{}: {} off {:?}", family.name, worst, block.curve);
+                let bound = model.moves().unwrap().promise(&ran.hardware, block).map_or(2.5, Promise::bound);
+                prop_assert!(worst <= bound, "{}: {} off {:?}", model.method_name(), worst, block.curve);
             }
         }
     }
@@ -327,7 +327,7 @@ fn an_integrator_that_would_be_off_an_axis_steps_at_once() {
     for preset in [Preset::Half, Preset::Zero, Preset::Full] {
         let width = Some(stepwave_netlist::Width::new(8).unwrap());
         let choices = choices(false).with_all(&PRESET, preset).with_all(&WIDTH, width);
-        let ran = run_blocks(family("dda"), blocks.clone(), &choices, EngineKind::Word);
+        let ran = run_blocks(machine("dda"), blocks.clone(), &choices, EngineKind::Word);
         assert_eq!((ran.outcome.ending, ran.outcome.reached), (Ending::Done, vec![15, 0, 0]), "{preset}");
     }
 }
@@ -337,14 +337,14 @@ proptest! {
 
     #[test]
     fn a_report_is_the_same_where_idle_clocks_are_passed_over(moves in moves(), slow in 6u32..9, narrow: bool) {
-        for family in FAMILIES {
+        for model in catalogue().machines() {
             // The position overflows during the run; the loops are compiled after 16384 clocks.
             let widths = [("x".to_owned(), stepwave_netlist::Width::new(4).unwrap())].into_iter().filter(|_| narrow);
             let choices = Options::default().with(&ON_OVERFLOW, OnOverflow::Wrap).with_single(&WIDTH, widths.collect());
-            let moves: Vec<ToolMove> = moves.iter().cycle().take(if family.arcs { 12 } else { 3 }).copied().collect();
-            let all = reports(family, &moves, &choices, slow, true);
-            let some = reports(family, &moves, &choices, slow, false);
-            prop_assert_eq!(all, some, "{}", family.name);
+            let moves: Vec<ToolMove> = moves.iter().cycle().take(if model.moves().unwrap().arcs { 12 } else { 3 }).copied().collect();
+            let all = reports(model, &moves, &choices, slow, true);
+            let some = reports(model, &moves, &choices, slow, false);
+            prop_assert_eq!(all, some, "{}", model.method_name());
         }
     }
 }

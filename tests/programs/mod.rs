@@ -1,5 +1,7 @@
-//! Whole programs: machines of every family, and what comes before them.
+//! Whole programs: machines of every method, and what comes before them.
 
+mod alone;
 mod command;
 mod field;
+mod like_any;
 mod machines;

@@ -43,6 +43,8 @@ pub struct Stimulus {
     pub done: Vec<Net>,
     /// 1 bit each: where one is 1 in a step without a number of clocks, the run is over.
     pub never: Vec<Net>,
+    /// They count in every sample: the design runs while its inputs are set.
+    pub always: bool,
     /// What else ends such a step, and the run.
     pub stall: Option<Stall>,
 }
@@ -215,16 +217,27 @@ fn ending(bench: &Bench<'_>, stimulus: &Stimulus) -> String {
     if let Some(stall) = &stimulus.stall {
         _ = writeln!(text, "        {quiet} = {} ? 64'd0 : {quiet} + 64'd1;", bench.any(&stall.nets));
     }
-    _ = writeln!(text, "        if ({over}) begin\n            if ({step} == {last}) $finish;\n        end");
-    _ = writeln!(text, "        else if ({clocks} == 64'd0) begin");
+    let mut never = String::new();
     for &net in &stimulus.never {
         let name = bench.output(net);
         let path = bench.netlist.name_of(net).map_or_else(|| name.to_owned(), |named| bench.netlist.path(named));
-        _ = writeln!(text, "            if ({name}) $display(\"%0t: {path} is 1\", $time);");
+        _ = writeln!(never, "            if ({name}) $display(\"%0t: {path} is 1\", $time);");
     }
-    _ = writeln!(text, "            if ({}) $finish;", bench.any(&stimulus.never));
+    let any = bench.any(&stimulus.never);
+    if stimulus.always {
+        _ = writeln!(text, "        if ({any}) begin\n{never}            $finish;\n        end");
+        text += "        else ";
+    } else {
+        text += "        ";
+    }
+    _ = writeln!(text, "if ({over}) begin\n            if ({step} == {last}) $finish;\n        end");
+    _ = writeln!(text, "        else if ({clocks} == 64'd0) begin");
+    if !stimulus.always {
+        _ = writeln!(text, "{never}            if ({any}) $finish;");
+    }
     if let Some(stall) = &stimulus.stall {
-        _ = writeln!(text, "            else if ({quiet} > 64'd{}) begin", stall.clocks);
+        let or = if stimulus.always { "" } else { "else " };
+        _ = writeln!(text, "            {or}if ({quiet} > 64'd{}) begin", stall.clocks);
         text +=
             "                $display(\"%0t: no sign of life\", $time);\n                $finish;\n            end\n";
     }

@@ -6,7 +6,7 @@ use bow::Bow;
 use nearest::{Nearest, nearest};
 
 use crate::{
-    Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, Place, Plane, Point, Segment, SegmentShape,
+    Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, Place, Plane, Point, Segment, SegmentShape, Side,
     ToolMove,
 };
 
@@ -31,6 +31,35 @@ pub struct PulseBlock {
 }
 
 impl PulseBlock {
+    /// The block of a curve by itself, as fast as a machine can run it: a line of 2 or 3 axes, an arc or a helix; `None` for
+    /// any other curve.
+    #[must_use]
+    pub fn alone(curve: &Curve) -> Option<PulseBlock> {
+        let arc = match curve {
+            Curve::Line(line) if line.axes() <= 3 => None,
+            Curve::Arc(arc) => Some(arc),
+            Curve::Helix(helix) => Some(helix.arc()),
+            Curve::Line(_) | Curve::Conic(_) => return None,
+        };
+        let place = |point: &[i64]| [0, 1, 2].map(|axis| point.get(axis).copied().unwrap_or(0));
+        let [from, to] = [curve.from(), curve.to()].map(place);
+        let (plane, curve) = match arc {
+            None => straight(from, to).ok()?,
+            Some(_) => (Plane::Xy, curve.clone()),
+        };
+        // Within 2^53, as every coordinate is.
+        let shape = arc.map_or(SegmentShape::Line, |arc| SegmentShape::Arc {
+            plane,
+            center: arc.center().map(|c| c as f64),
+            direction: arc.direction(),
+        });
+        let [start, end] = [from, to].map(|point| point.map(|c| c as f64));
+        let segment = Segment { from: start, to: end, shape };
+        let (place, cause) = (Place { line: 1, number: None }, Cause::Programmed);
+        let of = ToolMove { place, segment, feed: Feed::Rapid, cause, programmed: segment, side: Side::On };
+        Some(PulseBlock { of, plane, curve, from, to })
+    }
+
     /// The place of the block in its program.
     #[must_use]
     pub fn place(&self) -> Place {
@@ -148,16 +177,20 @@ impl Rounder {
         if from == to {
             return Ok(off);
         }
-        // The plane of the two longest travels: the third axis follows them.
-        let travel = |axis: usize| from[axis].abs_diff(to[axis]);
-        let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
-        let plane = planes.into_iter().min_by_key(|plane| travel(plane.axes()[2])).unwrap_or_default();
-        let along = |point: [i64; 3]| plane.axes().map(|axis| point[axis]).to_vec();
-        let curve = Curve::Line(Line::new(along(from), along(to))?);
+        let (plane, curve) = straight(from, to)?;
         out.push(PulseBlock { of: *of, plane, curve, from, to });
         self.at = to;
         Ok(off)
     }
+}
+
+/// A line, in the plane of its two longest travels, which the third axis follows.
+fn straight(from: [i64; 3], to: [i64; 3]) -> Result<(Plane, Curve), GeometryError> {
+    let travel = |axis: usize| from[axis].abs_diff(to[axis]);
+    let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
+    let plane = planes.into_iter().min_by_key(|plane| travel(plane.axes()[2])).unwrap_or_default();
+    let along = |point: [i64; 3]| plane.axes().map(|axis| point[axis]).to_vec();
+    Ok((plane, Curve::Line(Line::new(along(from), along(to))?)))
 }
 
 /// The nearest whole point.

@@ -19,7 +19,8 @@ pub struct Motion<'m> {
     pub negative: Signal<'m>,
 }
 
-/// Hands the pulses of the two axes in the plane and of the third to the axes x, y and z of the machine.
+/// Hands the pulses of the two axes in the plane and of the third to the axes x, y and z of the machine, or to x and y where
+/// it has no third.
 ///
 /// - `plane`, 2 bits: 0 is XY (G17), 1 is ZX (G18), 2 is YZ (G19).
 pub fn distributor<'m>(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware, motions: [Motion<'m>; 3]) {
@@ -30,7 +31,7 @@ pub fn distributor<'m>(m: Scope<'m>, block: &Block<'m>, hardware: &Hardware, mot
     let [first, second, third] = motions;
     // What each axis of the machine is in each plane.
     let axes = [[first, second, third], [second, third, first], [third, first, second]];
-    for (axis, [in_xy, in_zx, in_yz]) in axes.into_iter().enumerate() {
+    for (axis, [in_xy, in_zx, in_yz]) in axes.into_iter().enumerate().take(hardware.axes) {
         let chosen = |of: fn(Motion<'m>) -> Signal<'m>| zx.mux(of(in_zx), yz.mux(of(in_yz), of(in_xy)));
         let (pulse, negative) = (chosen(|motion| motion.pulse), chosen(|motion| motion.negative));
         hardware.axis(axis_scope(m, axis), block, axis, pulse, negative);

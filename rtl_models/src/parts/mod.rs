@@ -59,7 +59,7 @@ pub use minimum_deviation::{LeastDeviation, line_change};
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
 pub use phase_accumulator::{ACC, PhaseAccumulator, RATE};
 pub use point_comparison::{judged_by_sign, step_of_circle};
-pub use pulse_source::{PULSE_RATE, RATE_BITS, pulse_source, pulse_source_while};
+pub use pulse_source::{FASTEST_RATE, PULSE_RATE, RATE_BITS, pulse_source, pulse_source_while};
 pub use quadrant::{ArcKind, CCW, QUAD, next_quadrant, quadrant_register, x_grows};
 pub use rate_multiplier::{COEFFICIENT, Q, RateMultiplier, Units};
 pub use serial_divider::SerialDivider;

@@ -10,6 +10,9 @@ pub const RATE_BITS: u32 = 32;
 /// The rate of a pulse source, in 2^-32 pulses a clock.
 pub const PULSE_RATE: Reg = Reg::new("rate", Rule::Bits(RATE_BITS + 1), "pulses a clock, in 2^-32");
 
+/// The greatest rate: a pulse every second clock.
+pub const FASTEST_RATE: u64 = 1 << (RATE_BITS - 1);
+
 /// The pulse source f_g, a DDA on the clock: at every edge `rate` is added to `phase`, and the carry is its pulse.
 ///
 /// - `rate`, 33 bits: held for the whole block; at most 2^31, which is a pulse every second clock.

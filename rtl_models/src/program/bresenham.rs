@@ -12,36 +12,43 @@ use stepwave_nc::{Crossing, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::{delta, program_words};
-use super::{Family, HardwareBlock, Size};
+use super::{HardwareBlock, Moves, Size};
 use crate::bresenham;
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::model::{Interpolates, Model};
 use crate::options::{COMPARE, FORM};
 use crate::parts::{Buffer, pulse_source_while};
 use crate::plan::Plan;
 
-pub(super) const FAMILY: Family = Family {
-    name: "bresenham",
+/// Step counters of printer and mill firmware: a machine that runs whole programs.
+pub static MODEL: Model = Model {
+    name: "bresenham-machine",
     title: "Step counters of printer and mill firmware",
-    arcs: false,
-    crossing: Crossing::RoundedRadius,
-    direct: false,
+    method: bresenham::MODEL.method,
+    source: bresenham::MODEL.source,
     registers: bresenham::MODEL.registers,
     options: bresenham::MODEL.options,
-    plan,
+    claims: Some(Claims::of(Region::Lines)),
+    interpolates: Interpolates::Moves(Moves {
+        arcs: false,
+        crossing: Crossing::RoundedRadius,
+        direct: false,
+        plan,
+        load,
+        error_bound: |hardware, block| {
+            let right = bresenham::compares_right(hardware.get(&FORM), hardware.get(&COMPARE));
+            // The longest axis is exact, every other one half a BLU off.
+            let others = delta(block).iter().filter(|way| **way != 0).count().saturating_sub(1);
+            right.then(|| (others as f64).sqrt() / 2.0)
+        },
+    }),
     hardware,
-    words,
-    error_bound: |hardware, block| {
-        let right = bresenham::compares_right(hardware.get(&FORM), hardware.get(&COMPARE));
-        // The longest axis is exact, every other one half a BLU off.
-        let others = delta(block).iter().filter(|way| **way != 0).count().saturating_sub(1);
-        right.then(|| (others as f64).sqrt() / 2.0)
-    },
 };
 
 fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
     bresenham::registers(plan, size.magnitude, size.positions.iter().copied());
-    plan.stall_clocks = 0;
     Ok(())
 }
 
@@ -52,8 +59,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     bresenham::interpolator(m, hardware, block, Some(tick));
 }
 
-fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
-    let delta = delta(block);
-    let steps = crate::sizes::longest_of(&delta) as f64;
-    vec![HardwareBlock { words: bresenham::words(&delta, &[], hardware), steps, length: block.curve.length() }]
+fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
+    let delta = &delta(block)[..hardware.axes];
+    let steps = crate::sizes::longest_of(delta) as f64;
+    vec![HardwareBlock { words: bresenham::words(delta, &[], hardware), steps, length: block.curve.length() }]
 }

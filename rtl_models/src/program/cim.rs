@@ -15,25 +15,37 @@ use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::MODE;
-use super::{Family, HardwareBlock, planar};
+use super::{HardwareBlock, Moves, planar};
+use crate::cim_line;
+use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
 use crate::machine::Words;
+use crate::model::{Interpolates, Model};
 use crate::options::{ON_OVERFLOW, WIDTH, Weights};
 use crate::parts::{A_B, BASE, Change, END, F, PLANE, POSITION, QUAD, WHOLE, Weighing};
 use crate::words;
 
-pub(super) const FAMILY: Family = Family {
-    name: "cim",
+/// Where arcs are split.
+const CROSSING: Crossing = Crossing::RoundedRadius;
+
+/// Comparison-integral: a machine that runs whole programs.
+pub static MODEL: Model = Model {
+    name: "cim-machine",
     title: "Comparison-integral",
-    arcs: true,
-    crossing: Crossing::RoundedRadius,
-    direct: true,
+    method: cim_line::MODEL.method,
+    source: cim_line::MODEL.source,
     registers: &[&MODE, &PLANE, &QUAD, &F, &A_B, &BASE, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW],
-    plan: planar::judged,
+    claims: Some(Claims::of(Region::LinesAndArcs)),
+    interpolates: Interpolates::Moves(Moves {
+        arcs: true,
+        crossing: CROSSING,
+        direct: true,
+        plan: planar::judged,
+        load,
+        error_bound: |_, block| Some(planar::bound(block, 1.0)),
+    }),
     hardware,
-    words: blocks,
-    error_bound: |_, block| Some(planar::bound(block, 1.0)),
 };
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
@@ -51,8 +63,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, taken);
 }
 
-fn blocks(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
-    planar::blocks(&FAMILY, block, |at| {
+fn load(block: &PulseBlock, _: &Hardware) -> Vec<HardwareBlock> {
+    planar::blocks(CROSSING, block, |at| {
         let (f, weights) = match block.curve {
             Curve::Line(_) => (0, [at.pulses[1], at.pulses[0]]),
             _ => (words::weighed(Weights::Mid, at.start, at.x_grows, at.deviation), at.start),

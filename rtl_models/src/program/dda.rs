@@ -19,9 +19,12 @@ use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::frame::{Frame, MODE};
-use super::{Family, HardwareBlock, Size, planar};
+use super::{HardwareBlock, Moves, Size, planar};
+use crate::claims::{Claims, Region};
+use crate::dda_line;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::model::{Interpolates, Model};
 use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{
     Buffer, END, Iteration, JR, JV, PLANE, POSITION, QUAD, WHOLE, integrator, shifted_left, up_down_counter,
@@ -35,22 +38,31 @@ const UNIT: Reg = Reg::new("unit", N, "correction of an integrand").follows(|_| 
 /// The next block is an arc.
 const ARC: Reg = Reg::new("arc", Rule::Bits(1), "the next block is an arc");
 
-pub(super) const FAMILY: Family = Family {
-    name: "dda",
+/// Where arcs are split.
+const CROSSING: Crossing = Crossing::RoundedRadius;
+
+/// Digital differential analyser: a machine that runs whole programs.
+pub static MODEL: Model = Model {
+    name: "dda-machine",
     title: "Digital differential analyser",
-    arcs: true,
-    crossing: Crossing::RoundedRadius,
-    direct: false,
+    method: dda_line::MODEL.method,
+    source: dda_line::MODEL.source,
     registers: &[&MODE, &PLANE, &QUAD, &(JV.pair(), JR.pair()), &UNIT, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N"), &NORMALIZE, &ON_OVERFLOW],
-    plan,
+    claims: Some(Claims::of(Region::LinesAndArcs)),
+    interpolates: Interpolates::Moves(Moves {
+        arcs: true,
+        crossing: CROSSING,
+        direct: false,
+        plan,
+        load,
+        error_bound: |hardware, block| {
+            // Each axis of a line is rounded to the nearest, or cut; an arc has no promise.
+            let off = if hardware.presets.iter().all(|preset| *preset == Preset::Half) { 0.5 } else { 1.0 };
+            matches!(block.curve, Curve::Line(_)).then(|| planar::bound(block, f64::hypot(off, off)))
+        },
+    }),
     hardware,
-    words: blocks,
-    error_bound: |hardware, block| {
-        // Each axis of a line is rounded to the nearest, or cut; an arc has no promise.
-        let off = if hardware.presets.iter().all(|preset| *preset == Preset::Half) { 0.5 } else { 1.0 };
-        matches!(block.curve, Curve::Line(_)).then(|| planar::bound(block, f64::hypot(off, off)))
-    },
 };
 
 fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
@@ -62,7 +74,7 @@ fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
     // Normalised, a block takes no more steps than its integrands need.
     planar::one_scale(plan, &[JV.of(0), JV.of(1), JR.of(0), JR.of(1)], !normalized)?;
     plan.scale = &["jv", "jr"];
-    plan.stall_clocks = 0;
+    plan.stall_clocks = planar::stall_clocks(plan.bits(JR.of(0)));
     Ok(())
 }
 
@@ -132,9 +144,9 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, pulses);
 }
 
-fn blocks(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
     let bits = hardware.bits(JV.of(0));
-    planar::blocks(&FAMILY, block, |at| {
+    planar::blocks(CROSSING, block, |at| {
         let arc = !matches!(block.curve, Curve::Line(_));
         let [x, y] = if arc { [at.start[1], at.start[0]] } else { at.pulses };
         let mut words = words::integrators(hardware, [x, y]);

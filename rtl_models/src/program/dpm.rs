@@ -13,39 +13,49 @@ use stepwave_nc::{Crossing, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::program_words;
-use super::{Family, HardwareBlock, Size, planar};
+use super::{HardwareBlock, Moves, Size, planar};
+use crate::claims::{Claims, Region};
+use crate::dpm_line;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::Words;
+use crate::model::{Interpolates, Model};
 use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, Radix, WIDTH};
 use crate::parts::{Buffer, COEFFICIENT, POSITION, Q, RateMultiplier, SIGN, Units, axis_scope, pulse_source};
 use crate::plan::Plan;
 
-pub(super) const FAMILY: Family = Family {
-    name: "dpm",
+/// Digital pulse multiplier: a machine that runs whole programs.
+pub static MODEL: Model = Model {
+    name: "dpm-machine",
     title: "Digital pulse multiplier",
-    arcs: false,
-    crossing: Crossing::RoundedRadius,
-    direct: false,
+    method: dpm_line::MODEL.method,
+    source: dpm_line::MODEL.source,
     registers: &[&Q, &COEFFICIENT, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW],
-    plan,
+    claims: Some(Claims::of(Region::Lines)),
+    interpolates: Interpolates::Moves(Moves {
+        arcs: false,
+        crossing: Crossing::RoundedRadius,
+        direct: false,
+        plan,
+        load,
+        error_bound: |hardware, block| {
+            let moving = (0..3).filter(|&axis| block.from[axis] != block.to[axis]);
+            let off = crate::dpm_line::rate_bound(Radix::Binary, hardware.bits(Q));
+            Some(moving.fold(0.0, |sum, _| f64::hypot(sum, off)))
+        },
+    }),
     hardware,
-    words,
-    error_bound: |hardware, block| {
-        let moving = (0..3).filter(|&axis| block.from[axis] != block.to[axis]);
-        let off = crate::dpm_line::rate_bound(Radix::Binary, hardware.bits(Q));
-        Some(moving.fold(0.0, |sum, _| f64::hypot(sum, off)))
-    },
 };
 
 fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
     plan.n = plan.magnitude_bits(size.magnitude);
     plan.positions(size.positions);
     plan.fix(&END_POINT, EndPoint::Iterations);
-    planar::one_scale(plan, &[Q, COEFFICIENT.of(0), COEFFICIENT.of(1), COEFFICIENT.of(2)], true)?;
+    let registers = [Q, COEFFICIENT.of(0), COEFFICIENT.of(1), COEFFICIENT.of(2)];
+    planar::one_scale(plan, &registers[..=plan.axes()], true)?;
     plan.scale = &["m"];
-    plan.stall_clocks = 0;
+    plan.stall_clocks = planar::stall_clocks(plan.bits(Q));
     Ok(())
 }
 
@@ -67,9 +77,9 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     block.close(block.load, step, counter.carry);
 }
 
-fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
     let way = |axis: usize| i128::from(block.to[axis]) - i128::from(block.from[axis]);
-    let words = (0..3).fold(Words::new(), |words, axis| {
+    let words = (0..hardware.axes).fold(Words::new(), |words, axis| {
         words.set(COEFFICIENT.of(axis), way(axis).abs()).set(SIGN.of(axis), way(axis) < 0)
     });
     let steps = 2f64.powi(hardware.bits(Q).cast_signed());

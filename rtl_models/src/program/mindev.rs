@@ -12,24 +12,36 @@
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
-use super::{Family, HardwareBlock, planar};
+use super::{HardwareBlock, Moves, planar};
+use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
 use crate::machine::Words;
+use crate::mindev_line;
+use crate::model::{Interpolates, Model};
 use crate::options::{ON_OVERFLOW, WIDTH};
 use crate::parts::{DeviationAccumulator, F, LeastDeviation, XI_YI, line_change, square_gains};
 
-pub(super) const FAMILY: Family = Family {
-    name: "mindev",
+/// Where arcs are split.
+const CROSSING: Crossing = Crossing::RoundedRadius;
+
+/// Minimum deviation: a machine that runs whole programs.
+pub static MODEL: Model = Model {
+    name: "mindev-machine",
     title: "Minimum deviation",
-    arcs: true,
-    crossing: Crossing::RoundedRadius,
-    direct: true,
+    method: mindev_line::MODEL.method,
+    source: mindev_line::MODEL.source,
     registers: planar::JUDGED,
     options: &[&WIDTH, &ON_OVERFLOW],
-    plan: planar::judged,
+    claims: Some(Claims::of(Region::LinesAndArcs)),
+    interpolates: Interpolates::Moves(Moves {
+        arcs: true,
+        crossing: CROSSING,
+        direct: true,
+        plan: planar::judged,
+        load,
+        error_bound: |_, block| Some(planar::bound(block, 0.5)),
+    }),
     hardware,
-    words,
-    error_bound: |_, block| Some(planar::bound(block, 0.5)),
 };
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
@@ -63,8 +75,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, taken);
 }
 
-fn words(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
-    planar::blocks(&FAMILY, block, |at| {
+fn load(block: &PulseBlock, _: &Hardware) -> Vec<HardwareBlock> {
+    planar::blocks(CROSSING, block, |at| {
         let [x, y] = at.pulses;
         let (f, point) = match block.curve {
             Curve::Line(_) => (2 * x.min(y) - x.max(y), at.pulses),

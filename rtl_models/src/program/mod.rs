@@ -1,4 +1,4 @@
-//! Machines that run whole NC programs: one netlist a family of methods, for lines and arcs in three planes.
+//! Machines that run whole NC programs: one netlist a method, for lines and arcs in three planes.
 //!
 //! The host loads the next block into a buffer while the present one runs ([`Buffer`](crate::parts::Buffer)); a rate
 //! generator on the clock paces the interpolator ([`pulse_source`](crate::parts::pulse_source)); line and arc share its
@@ -6,27 +6,27 @@
 //! Every step is one clock, and the clock behind the last step of a block loads the next, while the phase of the pulse
 //! source goes on: pulses keep their distance across blocks.
 
-mod bresenham;
-mod cim;
-mod dda;
-mod dpm;
+pub mod bresenham;
+pub mod cim;
+pub mod dda;
+pub mod dpm;
 mod frame;
-mod mindev;
+pub mod mindev;
 mod planar;
-mod ppc;
-mod stepgen;
+pub mod ppc;
+pub mod stepgen;
 
 use stepwave_nc::{Crossing, Curve, PulseBlock};
-use stepwave_netlist::dsl::{Module, Scope};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::machine::{Machine, Words};
-use crate::options::{ON_OVERFLOW, Options, Takes, chosen};
-use crate::parts::{SHARE, WHOLE};
+use crate::machine::Words;
+use crate::model::{Interpolates, Model};
+use crate::options::{Options, chosen};
+use crate::parts::{FASTEST_RATE, POSITION, PULSE_RATE, SHARE, WHOLE};
 use crate::plan::Plan;
 use crate::promise::Promise;
-use crate::registers::{Reg, Registers, Rule};
+use crate::registers::{Reg, Rule};
 
 /// Words of every machine that only people read, and their bits: the number of the block, which a program has up to 2^40,
 /// and its feed in mm/min.
@@ -46,21 +46,27 @@ pub struct Size {
 }
 
 impl Size {
-    /// Takes one more block in.
-    pub fn add(&mut self, family: &Family, block: &PulseBlock) {
-        for (all, [low, high]) in self.positions.iter_mut().zip(block.reach()) {
+    /// Takes in one more block of a machine that splits arcs there.
+    pub fn add(&mut self, crossing: Crossing, block: &PulseBlock) {
+        let own = Size::of(crossing, block);
+        for (all, [low, high]) in self.positions.iter_mut().zip(own.positions) {
             *all = [all[0].min(low), all[1].max(high)];
         }
+        self.magnitude = self.magnitude.max(own.magnitude);
+    }
+
+    /// Of one block alone.
+    fn of(crossing: Crossing, block: &PulseBlock) -> Size {
         let arc = match &block.curve {
             Curve::Arc(arc) => Some(arc),
             Curve::Helix(helix) => Some(helix.arc()),
             Curve::Line(_) | Curve::Conic(_) => None,
         };
         let ways = (0..3).map(|axis| block.from[axis].abs_diff(block.to[axis]));
-        let sectors = arc.map(|arc| arc.sectors(family.crossing)).unwrap_or_default();
+        let sectors = arc.map(|arc| arc.sectors(crossing)).unwrap_or_default();
         let radius = arc.map_or(0, crate::sizes::off_circle_radius);
         let magnitude = crate::sizes::largest_coordinate(&sectors).max(radius).max(ways.max().unwrap_or(0));
-        self.magnitude = self.magnitude.max(magnitude);
+        Size { magnitude, positions: block.reach() }
     }
 }
 
@@ -81,13 +87,9 @@ impl HardwareBlock {
     }
 }
 
-/// A family of methods whose machine runs whole programs.
+/// How a machine takes the moves of a program: lines in three axes, arcs and helices, each as one or more blocks.
 #[derive(Debug)]
-pub struct Family {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// One line.
-    pub title: &'static str,
+pub struct Moves {
     /// It interpolates arcs; else the control gives it chords.
     pub arcs: bool,
     /// Where arcs are split.
@@ -95,49 +97,24 @@ pub struct Family {
     /// A commanded feed sets the frequency of the pulse source, f_g = v / (60 δ), whatever the direction of the block;
     /// else it is a feed rate number: f_g makes the block take the time that the feed wants.
     pub direct: bool,
-    /// Its registers, in the order of the step table.
-    pub registers: Registers,
-    /// The options that it takes.
-    pub options: &'static [&'static dyn Takes],
-    plan: fn(&Size, &mut Plan) -> Result<(), ModelError>,
-    hardware: fn(Scope<'_>, &Hardware),
-    words: fn(&Hardware, &PulseBlock) -> Vec<HardwareBlock>,
+    /// Fixes registers, widths and promises for blocks of this size.
+    ///
+    /// An error names a width or a value that cannot be.
+    pub plan: fn(&Size, &mut Plan) -> Result<(), ModelError>,
+    /// What the machine is loaded with for a block of the program, in order; all words but the rate of the pulse source.
+    pub load: fn(&PulseBlock, &Hardware) -> Vec<HardwareBlock>,
     /// Greatest distance from a curve whose ends lie on it that the method promises, in BLU, if it promises one.
-    error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
+    pub error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
 }
 
-/// Every family with a machine.
-pub const FAMILIES: [&Family; 7] =
-    [&ppc::FAMILY, &dda::FAMILY, &dpm::FAMILY, &cim::FAMILY, &mindev::FAMILY, &stepgen::FAMILY, &bresenham::FAMILY];
-
-impl Family {
-    /// Fixes every option for a program of this size.
-    ///
-    /// # Errors
-    /// The family does not take an option, or a width is impossible.
-    pub fn plan(&self, size: &Size, options: &Options) -> Result<Hardware, ModelError> {
-        let mut plan = Plan::new(self.name, 3, self.registers, chosen(self.name, self.options, options)?);
-        (self.plan)(size, &mut plan)?;
-        plan.finish()
-    }
-
-    /// The netlist of this hardware, elaborated.
-    ///
-    /// # Errors
-    /// The machine itself is wrong.
-    pub fn machine(&self, hardware: &Hardware) -> Result<Machine, ModelError> {
-        let module = Module::with_overflow(&format!("{}_machine", self.name), hardware.get(&ON_OVERFLOW));
-        (self.hardware)(module.top(), hardware);
-        Machine::new(module.finish()?, hardware)
-    }
-
+impl Moves {
     /// Whether a helix is so steep that its third axis cannot follow: in one of its sectors it has more than half as many
     /// pulses as the plane.
     #[must_use]
     pub fn too_steep(&self, block: &PulseBlock) -> bool {
         let Curve::Helix(_) = block.curve else { return false };
         let word = |sector: &HardwareBlock, wanted| sector.words.get(wanted).unwrap_or(0);
-        let sectors = planar::blocks(self, block, |_| (Words::new(), 0.0));
+        let sectors = planar::blocks(self.crossing, block, |_| (Words::new(), 0.0));
         sectors.iter().any(|sector| 2 * word(sector, SHARE) > word(sector, WHOLE))
     }
 
@@ -150,6 +127,77 @@ impl Family {
     /// What the machine is loaded with for a block of the program, in order.
     #[must_use]
     pub fn words(&self, hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
-        (self.words)(hardware, block)
+        (self.load)(block, hardware)
+    }
+
+    /// The block of a curve that the machine runs alone; `None` of one that it does not interpolate.
+    pub(crate) fn block(&self, curve: &Curve) -> Option<PulseBlock> {
+        let takes = self.arcs || matches!(curve, Curve::Line(_));
+        takes.then(|| PulseBlock::alone(curve)).flatten()
+    }
+
+    /// The words of every block of a curve that runs alone: from where it starts, as fast as the pulse source goes.
+    pub(crate) fn words_alone(&self, hardware: &Hardware, curve: &Curve) -> Vec<Words> {
+        let [number, feed] = PROGRAM_WORDS;
+        let blocks = self.block(curve).map(|block| self.words(hardware, &block)).unwrap_or_default();
+        let loaded = |(index, block): (i128, HardwareBlock)| {
+            let words = block.words.set(PULSE_RATE, FASTEST_RATE).set(number, index).set(feed, 0);
+            let from = curve.from().iter().enumerate();
+            from.fold(words, |words, (axis, &from)| words.set(POSITION.of(axis), from))
+        };
+        (1..).zip(blocks).map(loaded).collect()
+    }
+}
+
+/// What the name of a model that runs programs ends with, after the name of its method.
+const MACHINE: &str = "-machine";
+
+impl Model {
+    /// How it takes the moves of a program.
+    ///
+    /// # Errors
+    /// It does not run programs.
+    pub fn moves(&self) -> Result<&Moves, ModelError> {
+        match &self.interpolates {
+            Interpolates::Moves(moves) => Ok(moves),
+            _ => Err(ModelError::Curve {
+                model: self.name,
+                takes: self.curve().describe(),
+                given: "a program".to_owned(),
+            }),
+        }
+    }
+
+    /// What a model that runs programs is called there: its name without `-machine`.
+    #[must_use]
+    pub fn method_name(&self) -> &'static str {
+        self.name.strip_suffix(MACHINE).unwrap_or(self.name)
+    }
+
+    /// Fixes every option for a program of this size.
+    ///
+    /// # Errors
+    /// The model does not run programs or does not take an option, or a width is impossible.
+    pub fn plan_program(&self, size: &Size, options: &Options) -> Result<Hardware, ModelError> {
+        let name = self.method_name();
+        let mut plan = Plan::new(name, 3, self.registers, chosen(name, self.options, options)?);
+        (self.moves()?.plan)(size, &mut plan)?;
+        plan.finish()
+    }
+
+    /// Fixes every option for a block that runs alone, in as many axes as its curve has.
+    pub(crate) fn plan_alone(&self, moves: &Moves, block: &PulseBlock, mut plan: Plan) -> Result<Hardware, ModelError> {
+        if moves.too_steep(block) {
+            return Err(ModelError::Widths(format!(
+                "{}: z climbs more than half as many pulses as x and y have in a sector of the helix, so that it cannot \
+                 follow: give a --to less far in z",
+                self.name
+            )));
+        }
+        (moves.plan)(&Size::of(moves.crossing, block), &mut plan)?;
+        let hardware = plan.finish()?;
+        // A program divides a helix, so that its third axis strays by less than a pulse; alone it is not divided.
+        let divided = !matches!(block.curve, Curve::Helix(_));
+        Ok(Hardware { error_bound: (moves.error_bound)(&hardware, block).filter(|_| divided), ..hardware })
     }
 }

@@ -1,9 +1,9 @@
 //! What is loaded into every machine that interpolates in a plane.
 
-use stepwave_nc::{Arc, Curve, Direction, Plane, PulseBlock, Sector};
+use stepwave_nc::{Arc, Crossing, Curve, Direction, Plane, PulseBlock, Sector};
 
 use super::frame::{MODE, THIRD_SIGN};
-use super::{Family, HardwareBlock, Size};
+use super::{HardwareBlock, Size};
 use crate::error::ModelError;
 use crate::machine::Words;
 use crate::options::{END_POINT, EndPoint, Preset};
@@ -45,6 +45,12 @@ pub(super) fn judged(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
 /// Most bits of a machine whose blocks take 2^n steps: at a step every second clock they end within 2^53 clocks.
 const SCALE_BITS: u32 = 52;
 
+/// Clocks without a pulse after which none will come, of a machine whose blocks take 2^n steps in registers of so many bits:
+/// a step every second clock, after the buffer is ready.
+pub(super) fn stall_clocks(bits: u32) -> u64 {
+    2u64.checked_shl(bits).unwrap_or(u64::MAX).saturating_add(u64::from(bits) + 16)
+}
+
 /// Checks registers that share one scale: they are equally wide, and where it is `fixed` for all blocks, these end.
 pub(super) fn one_scale(plan: &Plan, registers: &[Reg], fixed: bool) -> Result<(), ModelError> {
     let (Some((last, others)), name) = (registers.split_last(), plan.model()) else { return Ok(()) };
@@ -66,8 +72,12 @@ pub(super) fn one_scale(plan: &Plan, registers: &[Reg], fixed: bool) -> Result<(
 }
 
 /// The blocks of the machine for a block of the program: one for a line, one for each sector of an arc. `own` gives the
-/// words of the family, and the steps that the interpolator takes.
-pub(super) fn blocks(family: &Family, block: &PulseBlock, own: impl Fn(&Start) -> (Words, f64)) -> Vec<HardwareBlock> {
+/// words of the method, and the steps that the interpolator takes.
+pub(super) fn blocks(
+    crossing: Crossing,
+    block: &PulseBlock,
+    own: impl Fn(&Start) -> (Words, f64),
+) -> Vec<HardwareBlock> {
     match &block.curve {
         Curve::Line(line) => {
             let delta: Vec<i128> = line.delta().into_iter().map(i128::from).collect();
@@ -83,7 +93,7 @@ pub(super) fn blocks(family: &Family, block: &PulseBlock, own: impl Fn(&Start) -
             let common = common(block, Words::new().set(MODE, 1).set(QUAD, quad).set(CCW, false), start.pulses, third);
             vec![HardwareBlock { words: words.and(common), steps, length: line.length() }]
         }
-        Curve::Arc(arc) => sectors(family, block, arc, |_, _| 0, &own),
+        Curve::Arc(arc) => sectors(crossing, block, arc, |_, _| 0, &own),
         Curve::Helix(helix) => {
             let all = helix.sectors();
             let sign = helix.z_travel().signum();
@@ -92,20 +102,20 @@ pub(super) fn blocks(family: &Family, block: &PulseBlock, own: impl Fn(&Start) -
                 let before = index.checked_sub(1).and_then(|index| all.get(index)).map_or(0, |sector| sector.z_steps);
                 i128::from(sign * (behind - before))
             };
-            sectors(family, block, helix.arc(), third, &own)
+            sectors(crossing, block, helix.arc(), third, &own)
         }
         Curve::Conic(_) => Vec::new(),
     }
 }
 
 fn sectors(
-    family: &Family,
+    crossing: Crossing,
     block: &PulseBlock,
     arc: &Arc,
     third: impl Fn(usize, &Sector) -> i128,
     own: &impl Fn(&Start) -> (Words, f64),
 ) -> Vec<HardwareBlock> {
-    let all = arc.sectors(family.crossing);
+    let all = arc.sectors(crossing);
     let ways: Vec<i128> = all.iter().enumerate().map(|(index, sector)| third(index, sector)).collect();
     let begin = |(sector, third): (&Sector, i128)| {
         let [x, y] = sector.start.map(i128::from);

@@ -13,24 +13,36 @@
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
-use super::{Family, HardwareBlock, planar};
+use super::{HardwareBlock, Moves, planar};
+use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
 use crate::machine::Words;
+use crate::model::{Interpolates, Model};
 use crate::options::{ON_OVERFLOW, WIDTH};
 use crate::parts::{DeviationAccumulator, F, XI_YI, judged_by_sign, step_of_circle};
+use crate::ppc_line;
 
-pub(super) const FAMILY: Family = Family {
-    name: "ppc",
+/// Where arcs are split.
+const CROSSING: Crossing = Crossing::PathExtreme;
+
+/// Point-by-point comparison: a machine that runs whole programs.
+pub static MODEL: Model = Model {
+    name: "ppc-machine",
     title: "Point-by-point comparison",
-    arcs: true,
-    crossing: Crossing::PathExtreme,
-    direct: true,
+    method: ppc_line::MODEL.method,
+    source: ppc_line::MODEL.source,
     registers: planar::JUDGED,
     options: &[&WIDTH, &ON_OVERFLOW],
-    plan: planar::judged,
+    claims: Some(Claims::of(Region::LinesAndArcs)),
+    interpolates: Interpolates::Moves(Moves {
+        arcs: true,
+        crossing: CROSSING,
+        direct: true,
+        plan: planar::judged,
+        load,
+        error_bound: |_, block| Some(planar::bound(block, 1.0)),
+    }),
     hardware,
-    words,
-    error_bound: |_, block| Some(planar::bound(block, 1.0)),
 };
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
@@ -54,9 +66,9 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, taken);
 }
 
-fn words(_: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
+fn load(block: &PulseBlock, _: &Hardware) -> Vec<HardwareBlock> {
     let pulses = |[a, b]: [i128; 2]| (a + b) as f64;
-    planar::blocks(&FAMILY, block, |at| {
+    planar::blocks(CROSSING, block, |at| {
         let (f, point) = if let Curve::Line(_) = block.curve { (0, at.pulses) } else { (at.deviation, at.start) };
         (Words::new().set(F, f).set_each(XI_YI, point), pulses(at.pulses))
     })

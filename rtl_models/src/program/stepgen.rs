@@ -14,33 +14,42 @@ use stepwave_nc::{Crossing, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::{delta, program_words};
-use super::{Family, HardwareBlock, Size};
+use super::{HardwareBlock, Moves, Size};
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::model::{Interpolates, Model};
 use crate::parts::{Buffer, pulse_source_while};
 use crate::plan::Plan;
 use crate::stepgen;
 
-pub(super) const FAMILY: Family = Family {
-    name: "stepgen",
+/// Phase accumulators of a motion card: a machine that runs whole programs.
+pub static MODEL: Model = Model {
+    name: "stepgen-machine",
     title: "Phase accumulators of a motion card",
-    arcs: false,
-    crossing: Crossing::RoundedRadius,
-    direct: false,
+    method: stepgen::MODEL.method,
+    source: stepgen::MODEL.source,
     registers: stepgen::MODEL.registers,
     options: stepgen::MODEL.options,
-    plan,
+    claims: Some(Claims::of(Region::Lines)),
+    interpolates: Interpolates::Moves(Moves {
+        arcs: false,
+        crossing: Crossing::RoundedRadius,
+        direct: false,
+        plan,
+        load,
+        error_bound: |hardware, block| {
+            let moving = delta(block).iter().filter(|way| **way != 0).count();
+            Some((moving as f64).sqrt() * stepgen::axis_bound(&hardware.presets))
+        },
+    }),
     hardware,
-    words,
-    error_bound: |hardware, block| {
-        let moving = delta(block).iter().filter(|way| **way != 0).count();
-        Some((moving as f64).sqrt() * stepgen::axis_bound(&hardware.presets))
-    },
 };
 
 fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
-    stepgen::registers(plan, size.magnitude, size.positions.iter().copied())?;
-    plan.stall_clocks = 0;
+    let accumulations = stepgen::registers(plan, size.magnitude, size.positions.iter().copied())?;
+    // The source gives a pulse every second clock at most.
+    plan.stall_clocks = stepgen::stall_clocks(plan, accumulations.saturating_mul(2));
     Ok(())
 }
 
@@ -50,9 +59,9 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     stepgen::interpolator(m, hardware, block, Some(pulse_source_while));
 }
 
-fn words(hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
-    let delta = delta(block);
-    let k = stepgen::least_accumulations(&delta, hardware);
+fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
+    let delta = &delta(block)[..hardware.axes];
+    let k = stepgen::least_accumulations(delta, hardware);
     let steps = 2f64.powi(k.cast_signed());
-    vec![HardwareBlock { words: stepgen::words(&delta, &[], hardware, k), steps, length: block.curve.length() }]
+    vec![HardwareBlock { words: stepgen::words(delta, &[], hardware, k), steps, length: block.curve.length() }]
 }

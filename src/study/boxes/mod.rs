@@ -8,7 +8,7 @@ mod plane;
 use std::fmt;
 use std::str::FromStr;
 
-use stepwave_models::options::{CASCADE, RADIX, WIDTH};
+use stepwave_models::options::{CASCADE, NORMALIZE, RADIX, WIDTH};
 use stepwave_models::{CurveKind, Hardware, Model, Options, Region};
 use stepwave_nc::{Curve, Line};
 use stepwave_netlist::Width;
@@ -114,6 +114,7 @@ fn region(model: &Model) -> Option<Region> {
         (Some(claims), _) => Some(claims.geometries),
         (None, CurveKind::Line { .. }) => Some(Region::Lines),
         (None, CurveKind::Arc) => Some(Region::QuadrantArcs),
+        (None, CurveKind::Move) => Some(Region::LinesAndArcs),
         (None, CurveKind::Conic | CurveKind::Helix) => None,
     }
 }
@@ -149,22 +150,14 @@ impl Geometries {
             Extent::Grid(grid) => grid.clone(),
         };
         plane::check(model, &sides, arcs)?;
-        let listed = match extent {
-            _ if !wanted => None,
-            Extent::Bits(k) => region.is_whole(*k).then(|| region.curves(*k, usize::MAX)),
-            Extent::Grid(grid) if arcs => plane::all_arcs(grid),
-            Extent::Grid(grid) => plane::all_lines(grid),
-        };
-        let all = listed.is_some();
-        let extremes = || match plane::extremes(&sides, arcs) {
-            // No two of its extreme points are on one circle; others may be.
-            none if none.is_empty() && arcs => {
-                plane::all_arcs(&sides).or_else(|| plane::corner_arcs(&sides)).unwrap_or_default()
-            }
-            some => some,
-        };
-        let mut curves = listed.unwrap_or_else(extremes);
         let axes = sides.0.len();
+        let (mut curves, mut all) = (Vec::new(), true);
+        // Arcs are in the plane.
+        for part in region.parts().iter().filter(|part| arcs || axes == 2 || **part != Region::QuadrantArcs) {
+            let (own, whole) = curves_of(*part, extent, &sides, wanted);
+            curves.extend(own);
+            all &= whole;
+        }
         let kinds = region.kinds();
         if axes == 2 {
             curves.retain(|curve| kinds.iter().any(|kind| region.symbols(kind, curve).is_some()));
@@ -216,13 +209,42 @@ impl Geometries {
     }
 }
 
-/// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is
-/// not the width of coordinates, but of the ways of a period.
+/// The curves of a region of one kind in a box, all if these are `wanted` and not too many, or the extreme ones; and whether
+/// they are all.
+fn curves_of(region: Region, extent: &Extent, sides: &Grid, wanted: bool) -> (Vec<Curve>, bool) {
+    let arcs = region == Region::QuadrantArcs;
+    let listed = match extent {
+        _ if !wanted => None,
+        Extent::Bits(k) => region.is_whole(*k).then(|| region.curves(*k, usize::MAX)),
+        Extent::Grid(grid) if arcs => plane::all_arcs(grid),
+        Extent::Grid(grid) => plane::all_lines(grid),
+    };
+    if let Some(listed) = listed {
+        return (listed, true);
+    }
+    let extremes = match plane::extremes(sides, arcs) {
+        // No two of its extreme points are on one circle; others may be.
+        none if none.is_empty() && arcs => {
+            plane::all_arcs(sides).or_else(|| plane::corner_arcs(sides)).unwrap_or_default()
+        }
+        some => some,
+    };
+    (extremes, false)
+}
+
+/// By how many bits registers that hold every number of `k` bits are wider than these: a machine that normalises keeps one
+/// bit free.
+pub(super) fn spare_bits(model: &Model, choices: &Options) -> u32 {
+    u32::from(model.moves().is_ok() && choices.value(&NORMALIZE))
+}
+
+/// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is not
+/// the width of coordinates, but of the ways of a period.
 fn width(model: &Model, choices: &Options, k: u32) -> Option<Width> {
     if model.method == "data sampling" {
         return None;
     }
-    let bits = choices.value(&RADIX).reading().needed((1_i128 << k) - 1);
+    let bits = choices.value(&RADIX).reading().needed((1_i128 << k) - 1) + spare_bits(model, choices);
     let bits = bits.next_multiple_of(choices.value(&CASCADE).map_or(1, Width::get));
     Width::new(u64::from(bits)).ok()
 }

@@ -74,6 +74,9 @@ impl Proposition {
         match self.bounds() {
             Some(extent) => self.at_widths(effort, extent),
             None if self.is_fixed() => self.in_any_box(effort),
+            None if self.model.moves().is_ok() && self.narrower.is_empty() => {
+                Err(ProofError::Buffered { model: self.model.name })
+            }
             None if claims.counted.is_empty() => self.for_every_width(effort),
             None => self.width_by_width(effort),
         }

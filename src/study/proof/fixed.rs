@@ -11,6 +11,7 @@ use stepwave_netlist::Width;
 use super::counter::try_all;
 use super::members::{Offsets, choices_with, largest, registers_named};
 use super::{Block, CountMethod, Counterexample, Narrower, ProofError, Subject, Tried, blocks};
+use crate::study::boxes::spare_bits;
 use crate::study::{Extent, Geometries, Grid, Range};
 use crate::testbench::Testbench;
 
@@ -66,8 +67,10 @@ impl Fixed {
             return Err(ProofError::Box(format!("a box of {axes} axes is not proved: give two, such as 0..9x0..9")));
         }
         let bits = extent.bits()?;
-        let k = choices.of_all(&WIDTH).map_or(bits, Width::get);
-        let choices = choices.clone().with_all(&WIDTH, Width::new(u64::from(k)).ok());
+        let spare = spare_bits(model, choices);
+        let k = choices.of_all(&WIDTH).map_or(bits, |width| width.get().saturating_sub(spare).max(1));
+        let width = choices.of_all(&WIDTH).or(Width::new(u64::from(k + spare)).ok());
+        let choices = choices.clone().with_all(&WIDTH, width);
         let usual = model.plan(&largest(&claims, k)?, &choices.clone().with_single(&WIDTH, BTreeMap::new()))?;
         for name in choices.of_single(&WIDTH).keys() {
             registers_named(model, &usual, name)?;

@@ -7,6 +7,8 @@ use stepwave_models::{AXES, Claims, Hardware, Model, ModelError, Options};
 use stepwave_nc::Curve;
 use stepwave_netlist::{Width, did_you_mean};
 
+use crate::study::boxes::spare_bits;
+
 /// Bits by which registers are narrower than by default, by name.
 pub type Narrower = BTreeMap<String, u32>;
 
@@ -39,7 +41,8 @@ pub(super) fn choices_with(
     offsets: &Offsets,
     k: u32,
 ) -> Result<Options, ModelError> {
-    let wide = choices.clone().with_all(&WIDTH, Width::new(u64::from(k)).ok());
+    let bits = k + spare_bits(model, choices);
+    let wide = choices.clone().with_all(&WIDTH, Width::new(u64::from(bits)).ok());
     if offsets.is_empty() {
         return Ok(wide);
     }

@@ -47,6 +47,15 @@ pub enum ProofError {
         /// The model.
         model: &'static str,
     },
+    /// Its blocks go through a buffer.
+    #[error(
+        "{model} takes its blocks through a buffer, which a proof for every width does not follow: give --width, --box or \
+         --travel, and every geometry is simulated"
+    )]
+    Buffered {
+        /// The model.
+        model: &'static str,
+    },
     /// There is no such box of geometries for the model.
     #[error("{0}")]
     Box(String),

@@ -38,6 +38,9 @@ impl Subject {
     /// As [`new`](Subject::new), some registers narrower or wider.
     pub(super) fn with(model: &'static Model, choices: &Options, offsets: &Offsets) -> Result<Subject, ProofError> {
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
+        if model.moves().is_ok() {
+            return Err(ProofError::Buffered { model: model.name });
+        }
         let member = |k| -> Result<_, ModelError> {
             let curve = largest(&claims, k)?;
             let hardware = model.plan(&curve, &choices_with(model, &claims, choices, offsets, k)?)?;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use stepwave_engine::EngineKind;
 use stepwave_engine::lanes::{LaneProgram, LaneStop, LaneWatch, Observe};
 use stepwave_models::options::WIDTH;
-use stepwave_models::{Model, ModelError, Options};
+use stepwave_models::{Model, ModelError, Options, find};
 use stepwave_nc::Curve;
 use stepwave_netlist::bits::to_signed;
 use stepwave_netlist::{Net, Width};
@@ -18,6 +18,8 @@ use crate::testbench::{Ending, RangeWatch, Testbench};
 pub(super) const LIMIT: u64 = 1 << 24;
 /// Clocks of a single run one bit below, at most, where a proof says how it ends.
 const SHOWN: u64 = 1 << 20;
+/// Single runs whose ranges are kept at once.
+const CHUNK: usize = 1 << 12;
 
 /// What was seen of a register: least and greatest value, and where.
 #[derive(Clone)]
@@ -61,6 +63,9 @@ pub(super) fn simulate(bench: &Testbench, curves: &[Curve], limit: u64, tick: Ti
     let registers: Vec<(String, Net, bool)> = names
         .filter_map(|name| netlist.find(name).map(|named| ((*name).to_owned(), named.net, named.format.is_signed())))
         .collect();
+    if machine.buffer.is_some() {
+        return simulate_alone(bench, curves, limit, &registers, tick);
+    }
     let ends =
         registers.iter().flat_map(|&(_, net, signed)| [Observe::Min { net, signed }, Observe::Max { net, signed }]);
     let watch = LaneWatch {
@@ -100,8 +105,50 @@ pub(super) fn simulate(bench: &Testbench, curves: &[Curve], limit: u64, tick: Ti
     Ok(runs)
 }
 
-/// Least and greatest value of every register over single runs of these curves on one engine, one after another instead
-/// of in lanes: what [`widths`](super::widths) is judged by. Runs that do not come to their end are left out.
+/// The same of a machine with a buffer, in single runs.
+fn simulate_alone(
+    bench: &Testbench,
+    curves: &[Curve],
+    limit: u64,
+    registers: &[(String, Net, bool)],
+    tick: Tick<'_>,
+) -> Result<Runs, ModelError> {
+    let model = find(bench.hardware().model)?;
+    // The ranges, and whether the run was cut off; none of a run that ends in a fault.
+    let run = |curve: &Curve| {
+        let bench = bench.of(model, curve).ok()?.limited(limit);
+        let mut watch = RangeWatch::new(&bench);
+        let outcome = bench.run(EngineKind::Word, &mut [&mut watch]).ok()?;
+        let cut = outcome.ending == Ending::Limit;
+        let ranges = watch.finish();
+        let range = |(name, ..): &(String, Net, bool)| {
+            ranges.iter().find(|range| range.name == *name).map(|range| (range.least, range.greatest))
+        };
+        tick(1);
+        (cut || outcome.ending == Ending::Done).then(|| (registers.iter().map(range).collect::<Vec<_>>(), cut))
+    };
+    let mut runs = Runs::default();
+    for (chunk, first) in curves.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
+        for (place, ran) in (first..).zip(chunk.par_iter().map(run).collect::<Vec<_>>()) {
+            let Some((ranges, cut)) = ran else {
+                runs.faults += 1;
+                continue;
+            };
+            runs.cut += usize::from(cut);
+            for ((name, ..), range) in registers.iter().zip(ranges) {
+                let Some((least, greatest)) = range else { continue };
+                let first = Seen { least: (least, place), greatest: (greatest, place) };
+                let own = runs.seen.entry(name.clone()).or_insert(first);
+                own.take(least, place);
+                own.take(greatest, place);
+            }
+        }
+    }
+    Ok(runs)
+}
+
+/// Least and greatest value of every register over single runs of these curves on one engine, one after another instead of
+/// in lanes: what [`widths`](super::widths) is judged by. Runs that do not come to their end are left out.
 ///
 /// # Errors
 /// A value does not fit in its register.
