@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use crate::models::Millionths;
 use crate::models::Model;
 use crate::nc::Opens;
-use clap::builder::StringValueParser;
 use clap::{Args, Parser, Subcommand};
 
 use crate::commands::diff::DiffArgs;
@@ -20,11 +19,12 @@ mod usage;
 mod values;
 mod widths;
 
+use crate::simulation::FileOptions;
 use crate::waves::WaveOptions;
 pub(crate) use endings::{Format, file_of};
 pub(crate) use hardware::HardwareArgs;
-pub(crate) use names::{Registers, known_register, registers};
-use names::{all_registers, listed, model_name};
+use names::model_name;
+pub(crate) use names::{Registers, all_registers, known_register, listed, registers};
 use program::machines;
 pub(crate) use program::{ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
@@ -163,9 +163,9 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) simulation: SimulationArgs,
     #[command(flatten)]
-    pub(crate) trace: TraceArgs,
+    pub(crate) trace: WaveOptions,
     #[command(flatten)]
-    pub(crate) outputs: OutputArgs,
+    pub(crate) outputs: FileOptions,
     /// Show registers in binary in the printed table
     #[arg(long, help_heading = "Outputs (- is standard output)")]
     pub(crate) bits: bool,
@@ -263,91 +263,4 @@ pub(crate) struct GeometryArgs {
     /// Counter-clockwise arc (G03, NR); on a parabola or hyperbola the ends alone say the way
     #[arg(long)]
     pub(crate) ccw: bool,
-}
-
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Wave")]
-#[command(group(clap::ArgGroup::new("wave").multiple(true)))]
-pub(crate) struct TraceArgs {
-    /// Write the wave as VCD, with a GTKWave save file and state-name files next to it
-    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Vcd]), group = "wave")]
-    pub(crate) vcd: Option<PathBuf>,
-    /// Write the wave as FST, with the same files next to it; next to a --vcd of the same name they take the whole
-    /// name of the FST file (w.fst.gtkw beside w.gtkw)
-    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Fst]), group = "wave")]
-    pub(crate) fst: Option<PathBuf>,
-    /// Dump only names that match (leaf name or dotted path; may be repeated)
-    #[arg(long, requires = "wave", value_name = "GLOB")]
-    #[arg(value_parser = listed(StringValueParser::new(), all_registers()), hide_possible_values = true)]
-    pub(crate) trace: Vec<String>,
-    /// Leave out names that match (may be repeated)
-    #[arg(long, requires = "wave", value_name = "GLOB")]
-    #[arg(value_parser = listed(StringValueParser::new(), all_registers()), hide_possible_values = true)]
-    pub(crate) trace_exclude: Vec<String>,
-    /// Dump at most this many levels of scopes; 1 is the top scope alone
-    #[arg(long, requires = "wave", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) trace_depth: Option<u64>,
-    /// First clock of the wave
-    #[arg(long, requires = "wave", value_name = "CLOCK", default_value_t = 0)]
-    pub(crate) trace_from: u64,
-    /// Last clock of the wave
-    #[arg(long, requires = "wave", value_name = "CLOCK")]
-    pub(crate) trace_to: Option<u64>,
-    /// Begin the wave at the first clock on which this 1-bit signal is 1
-    #[arg(long, requires = "wave", value_name = "SIGNAL")]
-    pub(crate) trace_on: Option<String>,
-    /// Do not dump the clock (saves about 15 bytes a cycle)
-    #[arg(long, requires = "wave")]
-    pub(crate) no_clk: bool,
-    /// Dump one sample a step, and those behind which a block is loaded, instead of every clock
-    #[arg(long, requires = "wave")]
-    pub(crate) trace_steps: bool,
-    /// Write a wave of more than 1 GB
-    #[arg(long, requires = "wave")]
-    pub(crate) large: bool,
-}
-
-impl OutputArgs {
-    /// The files of a run, with its waves.
-    pub(crate) fn files<'a>(&'a self, waves: &'a TraceArgs) -> [&'a Option<PathBuf>; 5] {
-        [&waves.vcd, &waves.fst, &self.steps, &self.json, &self.plot]
-    }
-}
-
-impl TraceArgs {
-    /// The same for the library.
-    pub(crate) fn options(&self) -> WaveOptions {
-        WaveOptions {
-            vcd: self.vcd.clone(),
-            fst: self.fst.clone(),
-            signals: self.trace.clone(),
-            excluded: self.trace_exclude.clone(),
-            depth: self.trace_depth,
-            from: self.trace_from,
-            to: self.trace_to,
-            on: self.trace_on.clone(),
-            clk: !self.no_clk,
-            steps: self.trace_steps,
-            large: self.large,
-        }
-    }
-
-    /// A wave is to be written.
-    pub(crate) fn wanted(&self) -> bool {
-        self.vcd.is_some() || self.fst.is_some()
-    }
-}
-
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Outputs (- is standard output)")]
-pub(crate) struct OutputArgs {
-    /// Write the step table as CSV
-    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Csv]))]
-    pub(crate) steps: Option<PathBuf>,
-    /// Write the report as JSON
-    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json]))]
-    pub(crate) json: Option<PathBuf>,
-    /// Draw the path over the ideal curve, and its error, or the contour of a program, as SVG
-    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Svg]))]
-    pub(crate) plot: Option<PathBuf>,
 }

@@ -1,26 +1,30 @@
-//! The recipe of a run: model, curve and options in; report, wave, table and picture out.
+//! The recipe of a run: a curve or an NC program, and options, in; report, wave, table and picture out.
 
+mod source;
 mod states;
+mod watches;
 
-use std::io::Write;
 use std::path::PathBuf;
 
-use self::states::{Begin, States};
+use self::source::{NcProgram, Source};
+use self::states::Begin;
+use self::watches::Watches;
+#[cfg(feature = "cli")]
+use crate::cli::{Format, file_of};
 use crate::engine::EngineKind;
-use crate::models::{Model, ModelError, Options};
+use crate::models::{Model, Options};
 use crate::nc::Curve;
-use crate::output::{Outputs, Sink};
-use crate::report::plot::Plot;
-use crate::report::{self, CsvTable, Report};
-use crate::testbench::{
-    CoarseWatch, Ending, Observer, ObserverError, Outcome, OverflowEvent, OverflowWatch, PathWatch, RangeWatch,
-    Recording, SpacingWatch, Step, Testbench,
-};
+use crate::output::{self, Outputs};
+use crate::program::Preparation;
+use crate::report::{CsvTable, JsonFile, Report, RunFile, Subject};
+use crate::testbench::{Ending, Observer, OverflowEvent, Recording, Testbench};
 use crate::trace::timescale::ClockTime;
 use crate::waves::{Sinks, WaveOptions, Waves};
 use crate::{Error, Trace};
 
-/// A run of a model over a curve, with everything that is to come of it.
+pub(crate) use self::source::Prepared;
+
+/// A run of a model over a curve, or of a machine over a whole NC program, with everything that is to come of it.
 ///
 /// ```
 /// use stepwave::Simulation;
@@ -36,21 +40,48 @@ use crate::{Error, Trace};
 /// assert_eq!(report.outcome.clocks, 17);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// A program is a file, and its machine the model of a method for whole programs:
+///
+/// ```
+/// # use stepwave::{Simulation, models::find};
+/// # let folder = tempfile::tempdir()?;
+/// # let part = folder.path().join("part.ngc");
+/// std::fs::write(&part, "G21 G90 G1 X3 Y0.9 F300\nG2 X5 Y2.9 I0 J2\n")?;
+/// let report = Simulation::program(find("ppc-machine")?, &part).blu_mm(0.01).run()?;
+/// assert!(report.failures().is_empty());
+/// assert_eq!(report.outcome.reached, [500, 290, 0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 #[must_use = "nothing is simulated before `run`"]
 pub struct Simulation {
     model: &'static Model,
-    curve: Curve,
+    source: Source,
     options: Options,
     engine: EngineKind,
     max_clocks: Option<u64>,
     clock_hz: f64,
     blu_mm: f64,
     waves: WaveOptions,
-    steps: Option<PathBuf>,
-    json: Option<PathBuf>,
-    plot: Option<PathBuf>,
+    files: FileOptions,
     checkpoints: Option<PathBuf>,
+}
+
+/// Files of a run besides its waves; on the command line, options of its outputs.
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+#[cfg_attr(feature = "cli", command(next_help_heading = "Outputs (- is standard output)"))]
+pub(crate) struct FileOptions {
+    /// Write the step table as CSV
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE", value_parser = file_of(&[Format::Csv])))]
+    pub(crate) steps: Option<PathBuf>,
+    /// Write the report as JSON
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json])))]
+    pub(crate) json: Option<PathBuf>,
+    /// Draw the path over the ideal curve, and its error, or the contour of a program, as SVG
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE", value_parser = file_of(&[Format::Svg])))]
+    pub(crate) plot: Option<PathBuf>,
 }
 
 /// What looks on besides what a report needs.
@@ -82,18 +113,25 @@ pub(crate) struct Ran<L> {
 impl Simulation {
     /// A run with the model's own options, a clock of 1 MHz and a BLU of 1 µm, of the compiled engine.
     pub fn new(model: &'static Model, curve: Curve) -> Simulation {
+        Simulation::of(model, Source::Curve(curve))
+    }
+
+    /// A run of the NC program in a file by a machine for whole programs, otherwise as [`new`](Self::new).
+    pub fn program(model: &'static Model, file: impl Into<PathBuf>) -> Simulation {
+        Simulation::of(model, Source::Program(Box::new(NcProgram::new(file.into()))))
+    }
+
+    fn of(model: &'static Model, source: Source) -> Simulation {
         Simulation {
             model,
-            curve,
+            source,
             options: Options::default(),
             engine: EngineKind::Compiled,
             max_clocks: None,
             clock_hz: 1e6,
             blu_mm: 1e-3,
             waves: WaveOptions::default(),
-            steps: None,
-            json: None,
-            plot: None,
+            files: FileOptions::default(),
             checkpoints: None,
         }
     }
@@ -101,6 +139,23 @@ impl Simulation {
     /// With these options of the hardware.
     pub fn options(self, options: Options) -> Simulation {
         Simulation { options, ..self }
+    }
+
+    /// With the text of the program read and prepared so; of a curve it does nothing. The BLU is that of
+    /// [`blu_mm`](Self::blu_mm), and how far the radii of an arc may differ that of the option `tolerance`.
+    pub fn preparation(mut self, preparation: Preparation) -> Simulation {
+        if let Source::Program(program) = &mut self.source {
+            program.preparation = preparation;
+        }
+        self
+    }
+
+    /// With this feed of G00 of a program in mm/min, in place of the fastest that the pulse source has.
+    pub fn rapid(mut self, feed: impl Into<Option<f64>>) -> Simulation {
+        if let Source::Program(program) = &mut self.source {
+            program.rapid = feed.into();
+        }
+        self
     }
 
     /// On this engine. All give the same samples.
@@ -118,7 +173,7 @@ impl Simulation {
         Simulation { clock_hz: hz, ..self }
     }
 
-    /// With a BLU of so many millimetres.
+    /// With a BLU of this many millimetres.
     pub fn blu_mm(self, mm: f64) -> Simulation {
         Simulation { blu_mm: mm, ..self }
     }
@@ -141,18 +196,21 @@ impl Simulation {
     }
 
     /// With the step table as CSV in this file.
-    pub fn steps(self, path: impl Into<PathBuf>) -> Simulation {
-        Simulation { steps: Some(path.into()), ..self }
+    pub fn steps(mut self, path: impl Into<PathBuf>) -> Simulation {
+        self.files.steps = Some(path.into());
+        self
     }
 
     /// With the report as JSON in this file.
-    pub fn json(self, path: impl Into<PathBuf>) -> Simulation {
-        Simulation { json: Some(path.into()), ..self }
+    pub fn json(mut self, path: impl Into<PathBuf>) -> Simulation {
+        self.files.json = Some(path.into());
+        self
     }
 
-    /// With the path over the ideal curve, and its error, as SVG in this file.
-    pub fn plot(self, path: impl Into<PathBuf>) -> Simulation {
-        Simulation { plot: Some(path.into()), ..self }
+    /// With the path over the ideal curve, and its error, or the contour of a program, as SVG in this file.
+    pub fn plot(mut self, path: impl Into<PathBuf>) -> Simulation {
+        self.files.plot = Some(path.into());
+        self
     }
 
     /// With states of the run in this file; where it exists, a wave of a late window begins at the last state before it.
@@ -162,25 +220,18 @@ impl Simulation {
 
     /// With the files of a command line.
     #[cfg(feature = "cli")]
-    pub(crate) fn files(
-        self,
-        steps: &Option<PathBuf>,
-        json: &Option<PathBuf>,
-        plot: &Option<PathBuf>,
-        checkpoints: &Option<PathBuf>,
-    ) -> Simulation {
-        let (steps, json) = (steps.clone(), json.clone());
-        Simulation { steps, json, plot: plot.clone(), checkpoints: checkpoints.clone(), ..self }
+    pub(crate) fn files(self, files: FileOptions, checkpoints: Option<PathBuf>) -> Simulation {
+        Simulation { files, checkpoints, ..self }
     }
 
     /// Simulates, and writes every file that is asked for: all of them or none.
     ///
     /// # Errors
-    /// The model does not take the curve or the options, a load word does not fit, or a file cannot be written. What the
-    /// hardware does wrong is no error: [`Report::failures`] names it.
+    /// The model does not take the curve or the options, the program is wrong, a load word does not fit, or a file cannot be
+    /// read or written. What the hardware does wrong is no error: [`Report::failures`] names it.
     pub fn run(&self) -> Result<Report, Error> {
         let mut outputs = self.outputs();
-        let ran = self.run_on(self.bench()?, &mut outputs, |_, _| Ok(()))?;
+        let ran = self.run_on(self.lean(self.prepare()?.bench), &mut outputs, |_, _| Ok(()))?;
         outputs.commit()?;
         Ok(ran.report)
     }
@@ -191,19 +242,15 @@ impl Simulation {
     /// As [`run`](Self::run).
     pub fn run_traced(&self) -> Result<(Report, Trace), Error> {
         let mut outputs = self.outputs();
-        let ran = self.run_on(self.bench()?, &mut outputs, |bench, _| Ok(Recording::new(bench)))?;
+        let ran = self.run_on(self.prepare()?.bench, &mut outputs, |bench, _| Ok(Recording::new(bench)))?;
         outputs.commit()?;
         Ok((ran.report, ran.onlookers.into_trace()))
     }
 
-    /// The outputs of the run: states that exist are read.
+    /// The outputs of the run: a program, and states that exist, are read.
     pub(crate) fn outputs(&self) -> Outputs {
-        Outputs::reading(self.checkpoints.iter().filter(|path| path.exists()))
-    }
-
-    /// The machine, loaded with the curve.
-    pub(crate) fn bench(&self) -> Result<Testbench, ModelError> {
-        Ok(Testbench::loading(self.model, &self.curve, &self.options)?.limited_to(self.max_clocks))
+        let states = self.checkpoints.as_ref().filter(|path| path.exists());
+        Outputs::reading(states.into_iter().chain(self.source.file()))
     }
 
     /// Simulates on a bench and stages every output. A run that an overflow stopped is simulated a second time where its
@@ -225,10 +272,14 @@ impl Simulation {
         }
     }
 
-    /// Not where an output has gone to a stream already, nor where the window leaves the trap out.
+    /// A wave is to show the operands of the cell that stopped the run. Not where one of its files is a stream, which has
+    /// gone out already, nor where the window leaves the clock of the overflow out.
     fn shows_trap(&self, event: &OverflowEvent) -> bool {
-        let files = [&self.waves.vcd, &self.waves.fst, &self.steps, &self.json, &self.plot];
-        self.checkpoints.is_none() && self.waves.shows_trap(event, files)
+        let WaveOptions { vcd, fst, from, to, .. } = &self.waves;
+        let window = *from..=to.unwrap_or(u64::MAX);
+        let files = [vcd, fst, &self.files.steps, &self.files.json, &self.files.plot];
+        let streams = files.into_iter().flatten().any(|path| output::is_stream(path));
+        self.checkpoints.is_none() && self.waves.wanted() && window.contains(&event.clock()) && !streams
     }
 
     fn once<L: Onlookers>(
@@ -238,33 +289,42 @@ impl Simulation {
         onlookers: impl Fn(&Testbench, &Outputs) -> Result<L, Error>,
     ) -> Result<Ran<L>, Error> {
         let time = ClockTime::from_hz(self.clock_hz)?;
-        let title = report::title(self.model, bench.hardware(), &self.curve);
-        let states = States::of(self, bench)?;
+        let mut report = self.report(bench);
+        let mut states = Begin::of(self, bench)?;
         // All are opened before the first is written: where one is refused, nothing has gone to standard output.
         let sinks = Sinks::open(&self.waves, outputs)?;
         let mut open = |path: &Option<PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
-        let [steps, json, plot] = [open(&self.steps)?, open(&self.json)?, open(&self.plot)?];
-        let mut states = states.map(|states| states.open(outputs)).transpose()?;
+        let [steps, json, plot] = [open(&self.files.steps)?, open(&self.files.json)?, open(&self.files.plot)?];
+        states.iter_mut().try_for_each(|states| states.open(outputs))?;
         let mut onlookers = onlookers(bench, outputs)?;
-        let mut files = Files {
-            table: steps.map(|sink| CsvTable::new(bench, sink)).transpose()?,
-            picture: plot.map(|sink| (Picture(Plot::new(&self.curve)), sink)),
-            json,
-        };
-        let mut waves = sinks.map(|sinks| Waves::new(bench, &self.waves, sinks, time, &title)).transpose()?;
-        let mut watches = Watches::new(bench, &self.curve);
+        let waves = sinks.map(|sinks| Waves::new(bench, &self.waves, sinks, time, &report.title())).transpose()?;
+        let mut waves = waves.map(|waves| waves.beginning_with(self.source.leading()));
+        let mut files: Vec<Box<dyn RunFile>> = Vec::new();
+        if let Some(sink) = steps {
+            files.push(Box::new(CsvTable::new(bench, sink)?));
+        }
+        if let Some(sink) = json {
+            files.push(Box::new(JsonFile::new(&report, sink)?));
+        }
+        files.extend(plot.map(|sink| report.picture(sink)));
+        let mut watches = Watches::new(bench, &self.source);
 
-        let mut observers = watches.observers();
+        let mut observers = watches.observers(&mut report.subject);
         observers.extend(onlookers.observers());
         observers.extend(waves.iter_mut().flat_map(Waves::observers));
-        observers.extend(files.observers());
-        let outcome = match &mut states {
-            Some(Begin::New { states, .. }) => bench.run_keeping(self.engine, &mut observers, states)?,
-            Some(Begin::At(state)) => bench.run_from(self.engine, &mut observers, state)?,
-            None => bench.run(self.engine, &mut observers)?,
+        observers.extend(files.iter_mut().map(|file| &mut **file as &mut dyn Observer));
+        let mut control = self.control(bench)?;
+        let outcome = match (&mut states, &mut control) {
+            (_, Some(control)) => bench.run_fed(self.engine, control, &mut observers)?,
+            (Some(Begin::New { states, .. }), None) => bench.run_keeping(self.engine, &mut observers, states)?,
+            (Some(Begin::At(state)), None) => bench.run_from(self.engine, &mut observers, state)?,
+            (None, None) => bench.run(self.engine, &mut observers)?,
         };
         drop(observers);
-        let report = watches.report(self, bench, outcome);
+        watches.finish(&mut report, outcome);
+        if let (Some(control), Subject::Program(of)) = (control, &mut report.subject) {
+            (of.left_out, report.cut) = (control.left_out, control.cut);
+        }
 
         let begun = states.as_ref().and_then(Begin::clock);
         if let Some(states) = states {
@@ -273,99 +333,7 @@ impl Simulation {
         if let Some(waves) = waves {
             waves.finish(&report.overflows, report.outcome.clocks, outputs)?;
         }
-        files.finish(&report)?;
+        files.iter_mut().try_for_each(|file| file.finish(&report))?;
         Ok(Ran { report, onlookers, begun })
-    }
-}
-
-/// What a report is put together from.
-struct Watches<'a> {
-    overflow: OverflowWatch,
-    ranges: RangeWatch,
-    path: PathWatch<'a>,
-    spacing: SpacingWatch,
-    coarse: Option<CoarseWatch<'a>>,
-}
-
-impl<'a> Watches<'a> {
-    fn new(bench: &Testbench, curve: &'a Curve) -> Watches<'a> {
-        Watches {
-            overflow: OverflowWatch::new(bench),
-            ranges: RangeWatch::new(bench),
-            path: PathWatch::new(bench, curve),
-            spacing: SpacingWatch::new(bench, curve),
-            coarse: CoarseWatch::new(bench, curve),
-        }
-    }
-
-    fn observers(&mut self) -> Vec<&mut dyn Observer> {
-        let Watches { overflow, ranges, path, spacing, coarse } = self;
-        let mut all: Vec<&mut dyn Observer> = vec![overflow, ranges, path, spacing];
-        all.extend(coarse.as_mut().map(|coarse| coarse as &mut dyn Observer));
-        all
-    }
-
-    fn report(self, simulation: &Simulation, bench: &Testbench, outcome: Outcome) -> Report {
-        Report {
-            model: simulation.model,
-            curve: simulation.curve.clone(),
-            hardware: bench.hardware().clone(),
-            engine: simulation.engine,
-            outcome,
-            ranges: self.ranges.finish(),
-            worst: self.path.worst,
-            coarse: self.coarse.and_then(|coarse| coarse.worst),
-            trains: self.spacing.finish(),
-            cut: bench.cut_words().to_vec(),
-            blocks: bench.blocks(),
-            overflows: self.overflow.events(),
-            overflow_count: self.overflow.count,
-            tallies: self.overflow.tallies(),
-            clock_hz: simulation.clock_hz,
-            blu_mm: simulation.blu_mm,
-        }
-    }
-}
-
-/// The files of a run but for its waves.
-struct Files {
-    table: Option<CsvTable<Sink>>,
-    picture: Option<(Picture, Sink)>,
-    json: Option<Sink>,
-}
-
-impl Files {
-    fn observers(&mut self) -> impl Iterator<Item = &mut dyn Observer> {
-        let table = self.table.iter_mut().map(|table| table as &mut dyn Observer);
-        table.chain(self.picture.iter_mut().map(|(picture, _)| picture as &mut dyn Observer))
-    }
-
-    fn finish(self, report: &Report) -> Result<(), Error> {
-        if let Some(table) = self.table {
-            table.finish()?;
-        }
-        if let Some(mut sink) = self.json {
-            writeln!(sink, "{:#}", report.json())?;
-            sink.flush()?;
-        }
-        if let Some((Picture(mut plot), mut sink)) = self.picture {
-            if let Some(event) = report.overflows.first() {
-                plot.mark(&format!("overflow of {}", event.component()));
-            }
-            let title = format!("{}: {}", report.model.name, report::geometry(&report.curve));
-            sink.write_all(plot.svg(&title).as_bytes())?;
-            sink.flush()?;
-        }
-        Ok(())
-    }
-}
-
-/// Hands every position to the picture.
-struct Picture(Plot);
-
-impl Observer for Picture {
-    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
-        self.0.point(&step.position);
-        Ok(())
     }
 }

@@ -5,6 +5,9 @@ pub(crate) mod limited;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "cli")]
+use clap::builder::StringValueParser;
+
 use crate::netlist::Width;
 use crate::netlist::cells::Format;
 use crate::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window, net_named};
@@ -16,33 +19,60 @@ use crate::trace::vcd::{Background, VcdBody, VcdHeader};
 
 use self::limited::Limited;
 use crate::Error;
+#[cfg(feature = "cli")]
+use crate::cli::{Format as FileFormat, all_registers, file_of, listed};
 use crate::output::{self, Outputs, SeekableSink, Sink};
 
-/// Which waves a run writes, of which signals, over which clocks.
+/// Which waves a run writes, of which signals, over which clocks: on the command line, the options of a wave.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+#[cfg_attr(feature = "cli", command(next_help_heading = "Wave"))]
+#[cfg_attr(feature = "cli", command(group(clap::ArgGroup::new("wave").multiple(true))))]
 #[non_exhaustive]
 pub struct WaveOptions {
-    /// The VCD file; its viewer files go next to it.
+    /// Write the wave as VCD, with a GTKWave save file and state-name files next to it
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE", value_parser = file_of(&[FileFormat::Vcd]), group = "wave"))]
     pub vcd: Option<PathBuf>,
-    /// The FST file; its viewer files go next to it.
+    /// Write the wave as FST, with the same files next to it; next to a --vcd of the same name they take the whole
+    /// name of the FST file (w.fst.gtkw beside w.gtkw)
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE", value_parser = file_of(&[FileFormat::Fst]), group = "wave"))]
     pub fst: Option<PathBuf>,
-    /// Globs of the signals shown, by name or dotted path; none means all.
+    /// Dump only names that match (leaf name or dotted path; may be repeated)
+    #[cfg_attr(feature = "cli", arg(id = "trace", long = "trace", requires = "wave", value_name = "GLOB"))]
+    #[cfg_attr(feature = "cli", arg(value_parser = listed(StringValueParser::new(), all_registers()), hide_possible_values = true))]
     pub signals: Vec<String>,
-    /// Globs of signals left out.
+    /// Leave out names that match (may be repeated)
+    #[cfg_attr(
+        feature = "cli",
+        arg(id = "trace_exclude", long = "trace-exclude", requires = "wave", value_name = "GLOB")
+    )]
+    #[cfg_attr(feature = "cli", arg(value_parser = listed(StringValueParser::new(), all_registers()), hide_possible_values = true))]
     pub excluded: Vec<String>,
-    /// Levels of scopes shown; 1 is the top scope alone.
+    /// Dump at most this many levels of scopes; 1 is the top scope alone
+    #[cfg_attr(feature = "cli", arg(id = "trace_depth", long = "trace-depth", requires = "wave", value_name = "N"))]
+    #[cfg_attr(feature = "cli", arg(value_parser = clap::value_parser!(u64).range(1..)))]
     pub depth: Option<u64>,
-    /// First clock shown.
+    /// First clock of the wave
+    #[cfg_attr(
+        feature = "cli",
+        arg(id = "trace_from", long = "trace-from", requires = "wave", value_name = "CLOCK", default_value_t = 0)
+    )]
     pub from: u64,
-    /// Last clock shown.
+    /// Last clock of the wave
+    #[cfg_attr(feature = "cli", arg(id = "trace_to", long = "trace-to", requires = "wave", value_name = "CLOCK"))]
     pub to: Option<u64>,
-    /// Show nothing before the first clock on which this 1-bit signal is 1.
+    /// Begin the wave at the first clock on which this 1-bit signal is 1
+    #[cfg_attr(feature = "cli", arg(id = "trace_on", long = "trace-on", requires = "wave", value_name = "SIGNAL"))]
     pub on: Option<String>,
-    /// Show the clock itself.
+    /// Dump the clock itself.
+    #[cfg_attr(feature = "cli", arg(id = "no_clk", long = "no-clk", requires = "wave", action = clap::ArgAction::SetFalse))]
+    #[cfg_attr(feature = "cli", arg(help = "Do not dump the clock (saves about 15 bytes a cycle)"))]
     pub clk: bool,
-    /// One sample a step, in place of every clock.
+    /// Dump one sample a step, and those behind which a block is loaded, instead of every clock
+    #[cfg_attr(feature = "cli", arg(id = "trace_steps", long = "trace-steps", requires = "wave"))]
     pub steps: bool,
-    /// More than 1 GB may be written.
+    /// Write a wave of more than 1 GB
+    #[cfg_attr(feature = "cli", arg(long, requires = "wave"))]
     pub large: bool,
 }
 
@@ -59,19 +89,6 @@ impl WaveOptions {
     #[must_use]
     pub fn wanted(&self) -> bool {
         self.vcd.is_some() || self.fst.is_some()
-    }
-
-    /// A second run is to show the operands of the cell that stopped the first. Not where one of the run's files is a
-    /// stream, which has gone out already, nor where the window leaves the clock of the overflow out.
-    pub(crate) fn shows_trap<'p>(
-        &self,
-        event: &OverflowEvent,
-        files: impl IntoIterator<Item = &'p Option<PathBuf>>,
-    ) -> bool {
-        let window = self.from..=self.to.unwrap_or(u64::MAX);
-        self.wanted()
-            && window.contains(&event.clock())
-            && !files.into_iter().flatten().any(|path| output::is_stream(path))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::models::options::{AnyOption, Options, STEP, SYSTEM, Shape, TOLERANCE, Value, all};
 use crate::models::{Millionths, ModelError};
+use crate::program::ProgramFailure;
 use crate::study::proof::ProofError;
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
@@ -99,12 +100,14 @@ impl FromArgMatches for HardwareArgs {
 
 impl HardwareArgs {
     /// A model's error in the words of this command line: a feed gives the way of a period, which is an option of its own.
-    pub(crate) fn explain(&self, error: ModelError) -> Error {
-        match error {
-            ModelError::NotTaken { model, option, takes } if option == STEP.name && self.feed.is_some() => {
+    pub(crate) fn explain(&self, error: impl Into<ProgramFailure>) -> Error {
+        match error.into() {
+            ProgramFailure::Model(ModelError::NotTaken { model, option, takes })
+                if option == STEP.name && self.feed.is_some() =>
+            {
                 Error::Invalid(format!("{model} does not take --feed; it takes {takes}"))
             }
-            error @ ModelError::Value { option, .. } if option == STEP.name => match self.feed {
+            ProgramFailure::Model(error @ ModelError::Value { option, .. }) if option == STEP.name => match self.feed {
                 Some(feed) => {
                     Error::Invalid(format!("--feed {feed} gives the way of a period, as --step does: {error}"))
                 }

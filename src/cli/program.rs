@@ -6,8 +6,10 @@ use crate::models::{Model, installed};
 use crate::nc::{Corner, Integers, Scheme};
 use clap::Args;
 
+use super::HardwareArgs;
 use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu};
-use super::{HardwareArgs, OutputArgs, TraceArgs};
+use crate::simulation::FileOptions;
+use crate::waves::WaveOptions;
 
 /// The radius of a tool: `1=4mm`.
 #[derive(Clone, Copy, Debug)]
@@ -124,7 +126,7 @@ pub(crate) struct ProgramArgs {
     #[command(flatten)]
     pub(crate) simulation: SimulationArgs,
     #[command(flatten)]
-    pub(crate) trace: TraceArgs,
+    pub(crate) trace: WaveOptions,
     #[command(flatten)]
-    pub(crate) outputs: OutputArgs,
+    pub(crate) outputs: FileOptions,
 }

@@ -2,16 +2,14 @@
 
 use std::path::Path;
 
-use crate::engine::EngineKind;
 use crate::export::{self, Checking, Options, Stimulus};
-use crate::models::find;
+use crate::models::{CutWord, find};
 use crate::netlist::{Design, Net};
-use crate::report;
+use crate::simulation::Simulation;
 use crate::testbench::Testbench;
 use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
-use super::program::{Prepared, Source};
 use crate::Error;
 use crate::cli::ExportArgs;
 use crate::output::{self, Outputs};
@@ -19,29 +17,25 @@ use crate::output::{self, Outputs};
 /// Last clock of a question to a solver where nothing is said and the run is longer.
 const DEEPEST: u64 = 1000;
 
-/// What is exported: a machine, and what is to be done to it.
-struct Subject {
-    bench: Testbench,
-    title: String,
-    /// Where its widths come from.
-    widths_by: &'static str,
-    stimulus: Stimulus,
-    /// What there is to say of it.
-    text: String,
-}
-
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
-    let prepared = args.program.as_deref().zip(args.method).map(|(file, model)| {
-        let ExportArgs { text, hardware, clock, .. } = args;
-        Source { file, model, text, hardware, clock_hz: clock.clock_hz }.machine()
-    });
-    let prepared = prepared.transpose()?;
-    let Subject { bench, title, widths_by, stimulus, text: mut notes } = match &prepared {
-        Some(prepared) => program(prepared, args)?,
-        None => geometry(args)?,
+    let (simulation, widths_by, moved) = match args.program.as_deref().zip(args.method) {
+        Some((file, model)) => {
+            let ExportArgs { text, hardware, clock, .. } = args;
+            (super::program::simulation(file, model, text, hardware, clock.clock_hz)?, "program", None)
+        }
+        None => {
+            let (simulation, moved) = geometry(args)?;
+            (simulation, "geometry", moved)
+        }
     };
+    let bench = simulation.prepare().map_err(|error| args.hardware.explain(error))?.bench;
+    if let Some(option) = args.program.as_ref().and_then(|_| geometry::given(&args.geometry)) {
+        return Err(Error::Invalid(format!("--program has the geometry: leave {option} out")));
+    }
+    let (title, stimulus, cut) = stimulus(&simulation, &bench)?;
+    let mut notes = moved.unwrap_or_default() + &summary(&bench) + &cut;
     let version = env!("CARGO_PKG_VERSION");
     let comment = [title, format!("Written by stepwave {version}; the {widths_by} gives the widths.")];
     let outputs = bench.outputs();
@@ -60,9 +54,9 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
         files.write(path, &export::btor2(&design, &checking)?)?;
     }
     if let Some(path) = &args.smt2 {
-        let run = || match &prepared {
+        let run = || match simulation.control(&bench)? {
             None => Ok::<_, Error>(bench.clocks_within(DEEPEST)),
-            Some(prepared) => Ok(bench.clocks_within_fed(DEEPEST, &mut prepared.control()?)),
+            Some(mut control) => Ok(bench.clocks_within_fed(DEEPEST, &mut control)),
         };
         let depth = match args.depth {
             Some(depth) => depth,
@@ -76,34 +70,31 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     if quiet { Ok(()) } else { output::print(&notes) }
 }
 
-/// A model with the blocks of a geometry.
-fn geometry(args: &ExportArgs) -> Result<Subject, Error> {
+/// A model with a geometry, and what is to be said of that.
+fn geometry(args: &ExportArgs) -> Result<(Simulation, Option<String>), Error> {
     let model = find(args.model.as_deref().unwrap_or_default())?;
     let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
     let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
-    let bench = Testbench::loading(model, &curve, &choices).map_err(|error| args.hardware.explain(error))?;
-    let title = report::title(model, bench.hardware(), &curve);
-    let mut text = geometry::moved_center(&curve, &args.geometry).unwrap_or_default() + &summary(&bench);
-    for word in bench.cut_words() {
-        text += &format!("warning: {word}\n");
-    }
-    Ok(Subject { stimulus: bench.stimulus(), bench, title, widths_by: "geometry", text })
+    let moved = geometry::moved_center(&curve, &args.geometry);
+    Ok((Simulation::new(model, curve).options(choices), moved))
 }
 
-/// A machine with the blocks of a whole program.
-fn program(prepared: &Prepared<'_>, args: &ExportArgs) -> Result<Subject, Error> {
-    if let Some(option) = geometry::given(&args.geometry) {
-        return Err(Error::Invalid(format!("--program has the geometry: leave {option} out")));
-    }
-    let bench = prepared.bench.clone();
-    let mut control = prepared.control()?;
-    let stimulus = bench.stimulus_fed(&mut control)?;
-    let title = prepared.head(EngineKind::Word).title();
-    let mut text = summary(&bench);
-    for (line, word) in &control.losses.cut {
-        text += &format!("warning: line {line}: {word}\n");
-    }
-    Ok(Subject { bench, title, widths_by: "program", stimulus, text })
+/// The title of what is exported, what is to be done to the machine, and warnings about load words.
+fn stimulus(simulation: &Simulation, bench: &Testbench) -> Result<(String, Stimulus, String), Error> {
+    let mut report = simulation.report(bench);
+    let stimulus = match simulation.control(bench)? {
+        None => bench.stimulus(),
+        Some(mut control) => {
+            let stimulus = bench.stimulus_fed(&mut control)?;
+            report.cut = control.cut;
+            stimulus
+        }
+    };
+    let warning = |(line, word): &(u64, CutWord)| match line {
+        0 => format!("warning: {word}\n"),
+        line => format!("warning: line {line}: {word}\n"),
+    };
+    Ok((report.title(), stimulus, report.cut.first.iter().map(warning).collect()))
 }
 
 /// The machine with a loader, and the load words that are left open.

@@ -18,8 +18,10 @@ mod widths;
 use std::path::{Path, PathBuf};
 
 use crate::Error;
-use crate::cli::{Cli, Command, GoldenCommand, OutputArgs, TraceArgs};
+use crate::cli::{Cli, Command, GoldenCommand};
+use crate::simulation::FileOptions;
 use crate::stop;
+use crate::waves::WaveOptions;
 
 /// Runs the command that was given.
 ///
@@ -47,8 +49,8 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Error> {
 
 /// Nothing comes of a command but what it writes on standard output.
 fn only_prints(command: &Command) -> bool {
-    let traced = |args: &TraceArgs| [args.vcd.clone(), args.fst.clone()];
-    let written = |args: &OutputArgs| [args.steps.clone(), args.json.clone(), args.plot.clone()];
+    let traced = |args: &WaveOptions| [args.vcd.clone(), args.fst.clone()];
+    let written = |args: &FileOptions| [args.steps.clone(), args.json.clone(), args.plot.clone()];
     let files: Vec<Option<PathBuf>> = match command {
         Command::Run(args) => {
             let own = [args.checkpoints.clone()];

@@ -98,18 +98,6 @@ impl Progress {
     pub(crate) fn finish(self) {}
 }
 
-/// Counts the blocks of a program.
-impl Observer for Progress {
-    fn wants_steps(&self) -> bool {
-        false
-    }
-
-    fn block_ended(&mut self, _: &BlockReport) -> Result<(), ObserverError> {
-        self.add(1);
-        Ok(())
-    }
-}
-
 impl Drop for Progress {
     fn drop(&mut self) {
         *self.shared.over.lock().unwrap_or_else(PoisonError::into_inner) = true;
@@ -209,7 +197,7 @@ fn span(seconds: f64) -> String {
     }
 }
 
-/// Shows the clocks of a run, and the share of its pulses that were made.
+/// Shows how far a run is: along a curve its clocks, and the share of its pulses that were made; of a program its moves.
 pub(crate) struct RunProgress {
     progress: Progress,
     pulses: Vec<usize>,
@@ -223,6 +211,11 @@ impl RunProgress {
         let pulses = bench.machine().pulses.iter().map(|port| bench.columns().index(port.net)).collect();
         RunProgress { progress, pulses, begun: false }
     }
+
+    /// Of a program of this many moves.
+    pub(crate) fn of_moves(moves: u64) -> RunProgress {
+        RunProgress { progress: Progress::of(moves, "moves"), pulses: Vec::new(), begun: false }
+    }
 }
 
 impl Observer for RunProgress {
@@ -231,8 +224,8 @@ impl Observer for RunProgress {
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
-        // Without a drawer nobody looks.
-        if self.progress.drawer.is_none() || rows.is_empty() {
+        // Without a drawer nobody looks, and of a program moves are counted.
+        if self.progress.drawer.is_none() || self.pulses.is_empty() || rows.is_empty() {
             return Ok(());
         }
         let shared = &self.progress.shared;
@@ -242,6 +235,11 @@ impl Observer for RunProgress {
         let made = |column: &usize| rows.column(*column).iter().map(|&pulse| u64::from(pulse != 0)).sum::<u64>();
         shared.part.fetch_add(self.pulses.iter().map(made).sum(), Ordering::Relaxed);
         shared.done.store(rows.first_clock() + rows.len() as u64 - 1, Ordering::Relaxed);
+        Ok(())
+    }
+
+    fn block_ended(&mut self, _: &BlockReport) -> Result<(), ObserverError> {
+        self.progress.add(1);
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use crate::models::find;
 use crate::report::{Report, TEXTBOOK_STEPS, TextbookTable};
 use crate::simulation::{Onlookers, Simulation};
-use crate::testbench::{Ending, Observer, OverflowEvent};
+use crate::testbench::Observer;
 use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
@@ -28,8 +28,6 @@ pub(crate) struct Finished {
     pub(crate) text: String,
     /// What is wrong with the simulated hardware.
     pub(crate) failures: Vec<String>,
-    /// What stopped the run.
-    pub(crate) trap: Option<OverflowEvent>,
 }
 
 impl Finished {
@@ -48,12 +46,12 @@ impl Finished {
 }
 
 /// What a terminal shows of a run.
-struct Terminal {
-    table: TextbookTable,
-    progress: RunProgress,
+pub(super) struct Terminal<T> {
+    pub(super) table: T,
+    pub(super) progress: RunProgress,
 }
 
-impl Onlookers for Terminal {
+impl<T: Observer> Onlookers for Terminal<T> {
     fn observers(&mut self) -> Vec<&mut dyn Observer> {
         vec![&mut self.table, &mut self.progress]
     }
@@ -79,11 +77,11 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         .max_clocks(args.simulation.max_clocks)
         .clock_hz(args.clock.clock_hz)
         .blu_mm(args.hardware.blu)
-        .waves(args.trace.options())
-        .files(&args.outputs.steps, &args.outputs.json, &args.outputs.plot, &args.checkpoints);
+        .waves(args.trace.clone())
+        .files(args.outputs.clone(), args.checkpoints.clone());
     // A clock that is not possible is refused as such, before a model finds it too slow.
     ClockTime::from_hz(args.clock.clock_hz)?;
-    let bench = simulation.bench().map_err(|error| args.hardware.explain(error))?;
+    let bench = simulation.prepare().map_err(|error| args.hardware.explain(error))?.bench;
     let ran = simulation.run_on(bench, outputs, |bench, outputs| {
         if outputs.uses_stdout() {
             no_table(args)?;
@@ -97,8 +95,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     if let Some(clock) = ran.begun {
         text += &format!("begun from the state at clock {clock}; the report is that of the whole run\n");
     }
-    let trap = report.overflows.first().filter(|_| report.outcome.ending == Ending::Trapped);
-    Ok(Finished { text, failures: report.failures(), trap: trap.cloned() })
+    Ok(Finished { text, failures: report.failures() })
 }
 
 /// Refuses what is about the printed table, where a file is printed in its place.

@@ -8,9 +8,8 @@ use crate::testbench::Testbench;
 use crate::trace::timescale::ClockTime;
 
 use crate::Error;
-use crate::cli::TraceArgs;
 use crate::waves::limited::{LARGE, REMEDIES};
-use crate::waves::probes;
+use crate::waves::{WaveOptions, probes};
 
 /// Bytes above which a program reports the size of its wave before it writes it.
 const NOTED: f64 = 1e8;
@@ -45,8 +44,8 @@ impl Size {
     ///
     /// # Errors
     /// The options name no signal.
-    pub(super) fn of(bench: &Testbench, args: &TraceArgs, time: ClockTime) -> Result<Size, Error> {
-        let mut probes = probes(bench, &args.options())?;
+    pub(super) fn of(bench: &Testbench, args: &WaveOptions, time: ClockTime) -> Result<Size, Error> {
+        let mut probes = probes(bench, args)?;
         probes.sort_by_key(|probe| probe.column);
         probes.dedup_by_key(|probe| probe.column);
         let (mut clock, mut step, mut count) = (0.0, 0.0, 0.0);
@@ -66,21 +65,21 @@ impl Size {
     }
 
     /// Bytes of the VCD and of the FST that are asked for, 0 where they are not.
-    fn bytes(&self, args: &TraceArgs, limit: Option<u64>, estimate: &Estimate) -> [f64; 2] {
+    fn bytes(&self, args: &WaveOptions, limit: Option<u64>, estimate: &Estimate) -> [f64; 2] {
         let clocks = limit.map_or(estimate.clocks, |limit| estimate.clocks.min(limit as f64));
-        let end = args.trace_to.map_or(clocks, |to| clocks.min(to as f64 + 1.0));
-        let shown = (end - args.trace_from as f64).max(0.0);
+        let end = args.to.map_or(clocks, |to| clocks.min(to as f64 + 1.0));
+        let shown = (end - args.from as f64).max(0.0);
         let of_window = |all: f64| all * shown / estimate.clocks.max(1.0);
         let [steps, moving, drifting] = [estimate.steps, estimate.moving, estimate.drifting].map(of_window);
-        let samples = if args.trace_steps { steps } else { shown };
+        let samples = if args.steps { steps } else { shown };
         // A #, the time and the end of the line.
         let stamp = 2.0 + (end * self.ticks).max(1.0).log10().floor() + 1.0;
-        let edges = if args.no_clk { stamp } else { 2.0 * stamp + 6.0 };
-        let edges = if args.no_clk && self.clock == 0.0 { edges * steps } else { edges * samples };
+        let edges = if args.clk { 2.0 * stamp + 6.0 } else { stamp };
+        let edges = if !args.clk && self.clock == 0.0 { edges * steps } else { edges * samples };
         // At steps alone the flags of a step stay up, and of the source only the phase between two steps is seen.
-        let (changing, flags) = if args.trace_steps { (drifting, 0.0) } else { (samples, FLAGS) };
+        let (changing, flags) = if args.steps { (drifting, 0.0) } else { (samples, FLAGS) };
         let vcd = edges + self.clock * changing + (self.count + flags) * steps + self.step * moving;
-        let round = if args.trace_steps { 1.0 } else { FST_ROUND + drifting / steps.max(1.0) };
+        let round = if args.steps { 1.0 } else { FST_ROUND + drifting / steps.max(1.0) };
         let source = if self.clock > 0.0 { FST_CLOCK * changing * round } else { 0.0 };
         let fst = source + FST_COUNT * self.count * steps + FST_STEP * self.step * moving;
         [(&args.vcd, vcd), (&args.fst, fst)].map(|(path, bytes)| if path.is_some() { bytes } else { 0.0 })
@@ -90,11 +89,11 @@ impl Size {
     ///
     /// # Errors
     /// It would have more than 1 GB, and `--large` is not given.
-    pub(super) fn check(&self, args: &TraceArgs, limit: Option<u64>, estimate: &Estimate) -> Result<(), Error> {
+    pub(super) fn check(&self, args: &WaveOptions, limit: Option<u64>, estimate: &Estimate) -> Result<(), Error> {
         let most = self.bytes(args, limit, estimate).into_iter().fold(0.0, f64::max);
         let (size, clocks) = (readable(most), estimate.clocks);
         // Where a signal opens the window nobody knows how much of the run is left.
-        if most > LARGE as f64 && !args.large && args.trace_on.is_none() {
+        if most > LARGE as f64 && !args.large && args.on.is_none() {
             return Err(Error::Invalid(format!(
                 "the wave would have about {size}, as the program runs for about {clocks:.0} clocks: {REMEDIES}"
             )));

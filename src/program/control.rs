@@ -9,7 +9,7 @@ use stepwave_nc::{PulseBlock, ToolMove};
 
 use super::feed::{Pace, commanded, frequency, rate, shown_feed};
 use super::stream::{Item, Stream};
-use super::tally::Losses;
+use super::tally::{CutWords, LeftOut};
 use crate::testbench::{Feeder, Next, ObserverError, Part, Testbench};
 
 /// The control of a machine that runs a program.
@@ -22,16 +22,18 @@ pub struct Control<'a, R> {
     ready: VecDeque<Next>,
     speed: Option<f64>,
     moves: u64,
-    /// What the machine was not given as the program has it, so far.
-    pub losses: Losses,
+    /// Moves that the machine was not given, so far.
+    pub left_out: LeftOut,
+    /// Words that it was given and has no room for, so far.
+    pub cut: CutWords,
 }
 
 impl<'a, R: BufRead> Control<'a, R> {
     /// A control that reads its blocks from a stream.
     #[must_use]
     pub fn new(stream: Stream<R>, machine: &'static Moves, bench: &'a Testbench, pace: Pace) -> Control<'a, R> {
-        let (ready, losses) = (VecDeque::new(), Losses::default());
-        Control { stream, machine, bench, pace, ready, speed: None, moves: 0, losses }
+        let (ready, left_out, cut) = (VecDeque::new(), LeftOut::default(), CutWords::default());
+        Control { stream, machine, bench, pace, ready, speed: None, moves: 0, left_out, cut }
     }
 
     /// Makes the words of the next move.
@@ -39,7 +41,7 @@ impl<'a, R: BufRead> Control<'a, R> {
         match self.stream.next().transpose()? {
             None => self.ready.push_back(Next::End),
             Some(Item::Stop(_)) => {}
-            Some(Item::LeftOut(of, apart)) => self.losses.leave_out(apart, of.place.line),
+            Some(Item::LeftOut(of, apart)) => self.left_out.take(apart, of.place.line),
             Some(Item::Dwell(_, seconds)) => {
                 // Beyond all that can be simulated the cast saturates.
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -67,7 +69,7 @@ impl<'a, R: BufRead> Control<'a, R> {
                 let [shown, speed] = PROGRAM_WORDS;
                 let words = part.words.set(PULSE_RATE, rate.word).set(shown, number).set(speed, feed);
                 let loaded = self.bench.load(&[words])?;
-                self.losses.cut(of.place.line, &loaded.cut);
+                self.cut.take(of.place.line, &loaded.cut);
                 let part = Part {
                     length: std::mem::take(&mut length),
                     commanded: self.speed,
@@ -96,6 +98,6 @@ impl<R: BufRead> Feeder for Control<'_, R> {
     }
 
     fn cut_words(&self) -> u64 {
-        self.losses.cut_words
+        self.cut.count
     }
 }

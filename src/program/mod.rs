@@ -19,7 +19,7 @@ pub use estimate::Estimate;
 pub use feed::Pace;
 pub use stream::{Item, Preparation, Stream};
 pub use survey::Survey;
-pub use tally::{Greatest, Losses, Totals};
+pub use tally::{CutWords, Greatest, LeftOut, Totals};
 
 /// Why a program cannot be run.
 #[derive(Debug, thiserror::Error)]
@@ -44,6 +44,9 @@ pub enum ProgramFailure {
     /// Nothing moves.
     #[error("no block of the program moves an axis by as much as one BLU: choose a smaller --blu")]
     NoPulses,
+    /// A file cannot be read, or what is wrong with its text, with the name of the file.
+    #[error("{0}")]
+    File(String),
     /// The machine does not take what it is given.
     #[error(transparent)]
     Model(#[from] ModelError),

@@ -1,10 +1,12 @@
 //! From the text of a program to the blocks of a machine: read, compensated, rounded; one line at a time.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::io::BufRead;
 
 use stepwave_models::program::Moves;
-use stepwave_nc::{Compensator, Corner, Event, Place, Program, PulseBlock, Reading, Rounder, Scheme, ToolMove};
+use stepwave_nc::{
+    Compensator, Corner, Event, Integers, Place, Program, PulseBlock, Reading, Rounder, Scheme, ToolMove,
+};
 
 use super::ProgramFailure;
 
@@ -19,6 +21,15 @@ pub struct Preparation {
     pub corner: Corner,
     /// How far a chord may be off its arc, in BLU, where the machine draws lines only or cannot follow a steep helix.
     pub chords: f64,
+}
+
+/// mm by RS-274, scheme C, straight corners, and chords up to half a BLU off their arc.
+impl Default for Preparation {
+    fn default() -> Preparation {
+        let (integers, tools, home) = (Integers::Units, BTreeMap::new(), Some([0.0; 3]));
+        let reading = Reading { blu: 1e-3, integers, tools, tolerance: 0.0, home };
+        Preparation { reading, scheme: Scheme::C, corner: Corner::Straight, chords: 0.5 }
+    }
 }
 
 /// What the machine does next.

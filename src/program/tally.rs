@@ -55,30 +55,42 @@ const CUT_WORDS: usize = 100;
 /// Sentences that are kept.
 const FAILURES: usize = 8;
 
-/// What the machine was not given, or not as the program has it.
-#[derive(Clone, Debug, Default)]
-pub struct Losses {
-    /// Moves to which standing still was nearer than any pulse.
-    pub left_out: u64,
+/// Moves to which standing still was nearer than any pulse.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LeftOut {
+    /// How many.
+    pub moves: u64,
     /// The farthest that such a move goes from there, in BLU.
-    pub off_left_out: Greatest,
-    /// Load words that did not fit in their registers.
-    pub cut_words: u64,
-    /// The first of them, each with its line of the program.
-    pub cut: Vec<(u64, CutWord)>,
+    pub farthest: Greatest,
 }
 
-impl Losses {
-    /// Takes the load words of a block of this line that were cut.
-    pub(super) fn cut(&mut self, line: u64, words: &[CutWord]) {
-        self.cut_words += words.len() as u64;
-        let room = CUT_WORDS.saturating_sub(self.cut.len());
-        self.cut.extend(words.iter().take(room).map(|word| (line, *word)));
+impl LeftOut {
+    pub(super) fn take(&mut self, apart: f64, line: u64) {
+        self.moves += 1;
+        self.farthest.take(apart, line);
+    }
+}
+
+/// Load words that did not fit in their registers.
+#[derive(Clone, Debug, Default)]
+pub struct CutWords {
+    /// How many.
+    pub count: u64,
+    /// The first of a program, each with its line; all of a curve, with line 0.
+    pub first: Vec<(u64, CutWord)>,
+}
+
+impl CutWords {
+    /// Those of a curve.
+    pub(crate) fn of_curve(words: &[CutWord]) -> CutWords {
+        CutWords { count: words.len() as u64, first: words.iter().map(|word| (0, *word)).collect() }
     }
 
-    pub(super) fn leave_out(&mut self, apart: f64, line: u64) {
-        self.left_out += 1;
-        self.off_left_out.take(apart, line);
+    /// Takes in those of a block of this line.
+    pub(super) fn take(&mut self, line: u64, words: &[CutWord]) {
+        self.count += words.len() as u64;
+        let room = CUT_WORDS.saturating_sub(self.first.len());
+        self.first.extend(words.iter().take(room).map(|word| (line, *word)));
     }
 }
 

@@ -1,19 +1,20 @@
 //! The JSON report.
 
 use serde_json::{Map, Value, json};
-use stepwave_models::{CutWord, Named, Promise};
-use stepwave_nc::{Curve, Shape};
+use stepwave_models::CutWord;
+use stepwave_models::options::{Takes, WIDTH};
 use stepwave_netlist::bits::Reading;
 use stepwave_netlist::cells::Arithmetic;
 
-use super::{Report, summary};
-use crate::testbench::{Ending, OverflowEvent, OverflowTally};
+use super::{Report, Subject};
+use crate::program::CutWords;
+use crate::testbench::{Ending, OverflowEvent, OverflowTally, RegisterRange};
 
 /// Version of the report's form; a change of meaning raises it.
 const SCHEMA: u32 = 1;
 
 /// A number as JSON; one beyond 64 bits to the 53 bits that a real number holds.
-pub(super) fn number(value: i128) -> Value {
+fn number(value: i128) -> Value {
     if let Ok(value) = i64::try_from(value) {
         return json!(value);
     }
@@ -21,7 +22,7 @@ pub(super) fn number(value: i128) -> Value {
 }
 
 /// The word of a choice as JSON: a number where it is one.
-pub(super) fn choice(name: &str, word: &str) -> Value {
+fn choice(name: &str, word: &str) -> Value {
     // The systems of data sampling are names.
     if name == "system" {
         return json!(word);
@@ -30,45 +31,7 @@ pub(super) fn choice(name: &str, word: &str) -> Value {
     whole.or_else(|_| word.parse::<f64>().map(|number| json!(number))).unwrap_or_else(|_| json!(word))
 }
 
-fn geometry(curve: &Curve) -> Value {
-    match curve {
-        Curve::Line(_) => json!({ "curve": "line", "from": curve.from(), "to": curve.to() }),
-        Curve::Arc(arc) => json!({
-            "curve": "arc",
-            "from": curve.from(),
-            "to": curve.to(),
-            "center": arc.center(),
-            "direction": arc.direction().to_string(),
-            "radius": arc.radius(),
-        }),
-        Curve::Conic(conic) => {
-            let (shape, sizes) = match conic.shape() {
-                Shape::Ellipse { semi_axes } => ("ellipse", json!(semi_axes)),
-                Shape::Parabola { c, .. } => ("parabola", json!([c])),
-                Shape::Hyperbola { semi_axes, .. } => ("hyperbola", json!(semi_axes)),
-            };
-            json!({
-                "curve": shape,
-                "from": curve.from(),
-                "to": curve.to(),
-                "center": conic.center(),
-                "sizes": sizes,
-                "opens": conic.opens().map(|opens| opens.to_string()),
-                "direction": conic.direction().map(|direction| direction.to_string()),
-            })
-        }
-        Curve::Helix(helix) => json!({
-            "curve": "helix",
-            "from": curve.from(),
-            "to": curve.to(),
-            "center": helix.arc().center(),
-            "direction": helix.arc().direction().to_string(),
-            "radius": helix.arc().radius(),
-        }),
-    }
-}
-
-pub(super) fn event(event: &OverflowEvent) -> Value {
+fn event(event: &OverflowEvent) -> Value {
     match event {
         OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } => {
             let (exact, needed) = event.exact().unwrap_or_default();
@@ -92,17 +55,25 @@ pub(super) fn event(event: &OverflowEvent) -> Value {
     }
 }
 
-pub(super) fn cut_word(word: &CutWord) -> Value {
-    json!({
-        "register": word.register,
-        "block": word.block,
-        "value": number(word.value),
-        "loaded": number(word.loaded),
-        "width": word.width.get(),
-    })
+/// The load words that were cut, each with its line of a program.
+pub(super) fn cut_words(cut: &CutWords) -> Value {
+    let word = |(line, word): &(u64, CutWord)| {
+        let mut fields = json!({
+            "register": word.register,
+            "block": word.block,
+            "value": number(word.value),
+            "loaded": number(word.loaded),
+            "width": word.width.get(),
+        });
+        if *line > 0 {
+            fields["line"] = json!(line);
+        }
+        fields
+    };
+    cut.first.iter().map(word).collect()
 }
 
-pub(super) fn tally(tally: &OverflowTally) -> Value {
+fn tally(tally: &OverflowTally) -> Value {
     json!({
         "component": tally.first.component(),
         "count": tally.count,
@@ -111,153 +82,95 @@ pub(super) fn tally(tally: &OverflowTally) -> Value {
     })
 }
 
+/// The fields of both.
+fn joined(mut fields: Value, more: Value) -> Value {
+    if let (Some(fields), Value::Object(more)) = (fields.as_object_mut(), more) {
+        fields.extend(more);
+    }
+    fields
+}
+
 impl Report {
-    /// The report as JSON: see the README for its fields.
+    /// The report as JSON: see the README for its fields. The moves of a program are not kept: [`JsonFile`](super::JsonFile)
+    /// writes them one by one.
     #[must_use]
     pub fn json(&self) -> Value {
-        let outcome = &self.outcome;
-        let choices = summary::choices(self.model, &self.hardware);
-        let choices: Map<String, Value> = choices
-            .into_iter()
-            .filter(|(name, _)| *name != "width")
-            .map(|(name, value)| (name.replace('-', "_"), choice(name, &value)))
-            .collect();
+        let mut report = joined(self.json_head(), self.json_results());
+        report["failures"] = json!(self.failures());
+        report
+    }
+
+    /// What is known before the run.
+    pub(super) fn json_head(&self) -> Value {
+        let own = match &self.subject {
+            Subject::Curve(of) => of.head(self),
+            Subject::Program(of) => of.head(self),
+        };
+        let taken = self.model.options.iter().filter(|takes| takes.name() != WIDTH.name);
+        let choices: Map<String, Value> =
+            taken.map(|takes| (takes.name().replace('-', "_"), self.json_choice(*takes))).collect();
         let widths: Map<String, Value> =
             self.hardware.widths.iter().map(|(name, width)| ((*name).to_owned(), json!(width.get()))).collect();
-        let registers: Vec<Value> = self
-            .ranges
-            .iter()
-            .map(|range| {
-                json!({
-                    "name": range.name,
-                    "path": range.path,
-                    "width": range.width.get(),
-                    "signed": range.reading.is_signed(),
-                    "radix": if range.reading == Reading::Decimal { 10 } else { 2 },
-                    "least": number(range.least),
-                    "greatest": number(range.greatest),
-                    "needed_width": self.needed_bits(range),
-                    "stuck_bits": range.stuck_bits(),
-                    "limits": range.limits.iter().copied().map(number).collect::<Vec<_>>(),
-                })
-            })
-            .collect();
-        let letters = self.hardware.letters();
-        let pulses: Map<String, Value> =
-            letters.iter().zip(&outcome.pulses).map(|(axis, count)| ((*axis).to_owned(), json!(count))).collect();
-        let axes = || letters.iter().zip(&self.trains);
-        let spacing: Map<String, Value> = axes()
-            .map(|(axis, train)| {
-                let [least, greatest] = [0, 1].map(|end| train.spacing.map(|spacing| spacing[end]));
-                let spacing = json!({ "least": least, "greatest": greatest, "ideal": train.ideal_spacing });
-                ((*axis).to_owned(), spacing)
-            })
-            .collect();
-        let deviations: Map<String, Value> = axes()
-            .filter_map(|(axis, train)| {
-                let deviation = train.deviation?;
-                Some(((*axis).to_owned(), json!({ "greatest": deviation.pulses, "step": deviation.step })))
-            })
-            .collect();
-        let rate_deviation =
-            (!deviations.is_empty()).then(|| json!({ "axes": deviations, "bound": self.hardware.rate_bound }));
-        let path_error = self.worst.as_ref().map(|worst| {
-            json!({
-                "greatest": worst.error,
-                "step": worst.step,
-                "position": worst.position,
-                "bound": self.promise().map(Promise::bound),
-                "ends_off": self.promise().map(Promise::ends),
-                "within_bound": self.path_within_bound(),
-            })
+        let head = json!({ "schema": SCHEMA, "choices": choices, "widths": widths, "engine": self.engine.name() });
+        joined(head, own)
+    }
+
+    /// The value of an option; of a program yes and no are true and false.
+    fn json_choice(&self, takes: &'static dyn Takes) -> Value {
+        match (self.hardware.text(takes.option()).as_str(), &self.subject) {
+            ("yes", Subject::Program(_)) => json!(true),
+            ("no", Subject::Program(_)) => json!(false),
+            (text, _) => choice(takes.name(), text),
+        }
+    }
+
+    /// What the run came to, but for failures.
+    pub(super) fn json_results(&self) -> Value {
+        let mut overflow = json!({
+            "events": self.overflows.iter().map(event).collect::<Vec<_>>(),
+            "components": self.tallies.iter().map(tally).collect::<Vec<_>>(),
         });
-        let ending = match outcome.ending {
+        let own = match &self.subject {
+            Subject::Curve(of) => {
+                overflow["count"] = json!(self.overflow_count);
+                of.results(self)
+            }
+            Subject::Program(of) => of.results(self),
+        };
+        let ending = match self.outcome.ending {
             Ending::Done => "done",
             Ending::Trapped => "trapped",
             Ending::Stalled { .. } => "stalled",
             Ending::Endless { .. } => "endless",
             Ending::Limit => "limit",
         };
-        let mut report = json!({
-            "schema": SCHEMA,
-            "model": self.model.name,
-            "geometry": geometry(&self.curve),
-            "choices": choices,
-            "widths": widths,
-            "engine": self.engine.name(),
-            "registers": registers,
-            "clocks": outcome.clocks,
-            "steps": outcome.steps,
-            "pulses": pulses,
-            "end_point": {
-                "wanted": self.curve.to(),
-                "reached": outcome.reached,
-                "exact": self.end_exact(),
-            },
-            "path_error": path_error,
-            "sampling": self.sampling(),
-            "pulse_spacing": spacing,
-            "rate_deviation": rate_deviation,
-            "overflow": {
-                "count": self.overflow_count,
-                "events": self.overflows.iter().map(event).collect::<Vec<_>>(),
-                "components": self.tallies.iter().map(tally).collect::<Vec<_>>(),
-            },
-            "feed": self.feed(),
+        let results = json!({
+            "registers": self.ranges.iter().map(|range| self.json_register(range)).collect::<Vec<_>>(),
+            "clocks": self.outcome.clocks,
+            "overflow": overflow,
             "ending": ending,
-            "warnings": self.warnings(),
-            "failures": self.failures(),
         });
-        // Only where the hardware did not do what it was given.
-        if !self.cut.is_empty() {
-            report["cut_words"] = self.cut.iter().map(cut_word).collect();
+        joined(results, own)
+    }
+
+    fn json_register(&self, range: &RegisterRange) -> Value {
+        let register = json!({
+            "name": range.name,
+            "path": range.path,
+            "width": range.width.get(),
+            "signed": range.reading.is_signed(),
+            "least": number(range.least),
+            "greatest": number(range.greatest),
+            "needed_width": self.needed_bits(range),
+        });
+        if self.program().is_some() {
+            return register;
         }
-        if outcome.counters != outcome.reached {
-            report["position_counters"] = json!(outcome.counters);
-        }
-        report
-    }
-
-    /// The coarse stage, and what its fraction costs.
-    fn sampling(&self) -> Option<Value> {
-        let (sampling, coarse) = (self.hardware.sampling.as_ref()?, self.coarse.as_ref()?);
-        let micrometres = |length: f64| length * self.blu_mm * 1e3;
-        Some(json!({
-            "system": sampling.system.word(),
-            "period_seconds": sampling.system.period(),
-            "period_clocks": sampling.period_clocks(),
-            "fraction_bits": sampling.fraction,
-            "step": sampling.step.units(),
-            "feed_mm_per_min": sampling.step.units() * self.blu_mm * 60.0 / sampling.system.period(),
-            "chord_error": sampling.chord_error,
-            "chord_error_um": micrometres(sampling.chord_error),
-            "tolerance": sampling.tolerance.units(),
-            "coarse_error": coarse.error,
-            "coarse_error_um": micrometres(coarse.error),
-            "coarse_error_period": coarse.period,
-        }))
-    }
-
-    /// Clocks of the motion: those that load are none.
-    fn moving_clocks(&self) -> u64 {
-        self.outcome.clocks.saturating_sub(self.outcome.load_clocks)
-    }
-
-    /// Mean speed along the curve, in mm/min at the clock and BLU chosen.
-    pub(super) fn mean_feed(&self) -> f64 {
-        60.0 * self.curve.length() * self.blu_mm * self.clock_hz / self.moving_clocks().max(1) as f64
-    }
-
-    /// Mean speed along the curve: BLU per step, and mm/min.
-    fn feed(&self) -> Value {
-        let (steps, length) = (self.outcome.steps.max(1) as f64, self.curve.length());
-        json!({
-            "clock_hz": self.clock_hz,
-            "blu_mm": self.blu_mm,
-            "length": length,
-            "clocks": self.moving_clocks(),
-            "mean_per_step": length / steps,
-            "mean_mm_per_min": self.mean_feed(),
-        })
+        let of_curve = json!({
+            "radix": if range.reading == Reading::Decimal { 10 } else { 2 },
+            "stuck_bits": range.stuck_bits(),
+            "limits": range.limits.iter().copied().map(number).collect::<Vec<_>>(),
+        });
+        joined(register, of_curve)
     }
 }

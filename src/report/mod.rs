@@ -1,6 +1,8 @@
 //! What a run came to, for people and for programs: summary, step table, JSON, picture.
 
-mod command;
+mod curve;
+mod file;
+mod geometry;
 pub mod heat;
 mod json;
 
@@ -13,19 +15,24 @@ mod workpiece;
 
 use stepwave_engine::EngineKind;
 use stepwave_models::options::ON_OVERFLOW;
-use stepwave_models::{CutWord, Hardware, Model, Preset, Promise};
-use stepwave_nc::Curve;
+use stepwave_models::{CutWord, Hardware, Model, Preset};
 use stepwave_netlist::OnOverflow;
 
-use crate::testbench::{
-    CoarseError, Ending, Outcome, OverflowEvent, OverflowTally, PulseTrain, RegisterRange, WorstError,
-};
+use crate::output::Sink;
+use crate::program::CutWords;
+use crate::testbench::{Ending, Outcome, OverflowEvent, OverflowTally, RegisterRange, Testbench};
 
-pub use command::{geometry_options, run_command};
-pub use program::{ProgramHead, ProgramJson, ProgramTable, ProgramTail, TABLE_MOVES};
-pub use summary::{choices, geometry, title};
+pub use curve::OfCurve;
+pub use file::{JsonFile, PathPicture, RunFile};
+pub use geometry::{geometry, geometry_options, run_command, title};
+pub use program::{MoveTable, OfProgram, TABLE_MOVES};
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
 pub use workpiece::Workpiece;
+
+use self::summary::point;
+
+/// Most load words that were cut that a program's summary shows.
+const SHOWN_CUTS: usize = 8;
 
 /// Everything known about a finished run.
 #[derive(Debug)]
@@ -33,8 +40,8 @@ pub use workpiece::Workpiece;
 pub struct Report {
     /// The model.
     pub model: &'static Model,
-    /// What was to be interpolated.
-    pub curve: Curve,
+    /// What was run, and what is known of that kind of run alone.
+    pub subject: Subject,
     /// The hardware, with every choice made.
     pub hardware: Hardware,
     /// What simulated it.
@@ -43,16 +50,8 @@ pub struct Report {
     pub outcome: Outcome,
     /// What each register held.
     pub ranges: Vec<RegisterRange>,
-    /// Greatest path error.
-    pub worst: Option<WorstError>,
-    /// How far coarse points lie off the curve, of a machine that has such.
-    pub coarse: Option<CoarseError>,
-    /// The pulses of each axis.
-    pub trains: Vec<PulseTrain>,
     /// Load words that did not fit in their registers, and what these took.
-    pub cut: Vec<CutWord>,
-    /// Blocks that the curve was loaded in.
-    pub blocks: usize,
+    pub cut: CutWords,
     /// The first overflows in full.
     pub overflows: Vec<OverflowEvent>,
     /// Number of overflows.
@@ -65,42 +64,106 @@ pub struct Report {
     pub blu_mm: f64,
 }
 
+/// What a run is of.
+#[derive(Debug)]
+pub enum Subject {
+    /// A curve of a model.
+    Curve(Box<OfCurve>),
+    /// A whole program.
+    Program(Box<OfProgram>),
+}
+
 impl Report {
-    /// The end point was reached exactly.
+    /// A report whose results are still empty.
+    pub(crate) fn new(model: &'static Model, subject: Subject, bench: &Testbench) -> Report {
+        let (pulses, reached, counters) = (Vec::new(), Vec::new(), Vec::new());
+        Report {
+            model,
+            subject,
+            hardware: bench.hardware().clone(),
+            engine: EngineKind::Compiled,
+            outcome: Outcome { ending: Ending::Done, clocks: 0, load_clocks: 0, steps: 0, pulses, reached, counters },
+            ranges: Vec::new(),
+            cut: CutWords::default(),
+            overflows: Vec::new(),
+            overflow_count: 0,
+            tallies: Vec::new(),
+            clock_hz: 0.0,
+            blu_mm: 0.0,
+        }
+    }
+
+    /// The curve, of a run of one.
+    #[must_use]
+    pub fn curve(&self) -> Option<&OfCurve> {
+        match &self.subject {
+            Subject::Curve(of) => Some(of),
+            Subject::Program(_) => None,
+        }
+    }
+
+    /// The program, of a run of one.
+    #[must_use]
+    pub fn program(&self) -> Option<&OfProgram> {
+        match &self.subject {
+            Subject::Curve(_) => None,
+            Subject::Program(of) => Some(of),
+        }
+    }
+
+    /// One line for the wave's header: what was run, and the choices made.
+    #[must_use]
+    pub fn title(&self) -> String {
+        match &self.subject {
+            Subject::Curve(of) => title(self.model, &self.hardware, &of.curve),
+            Subject::Program(of) => of.title(self),
+        }
+    }
+
+    /// What was run and by which method, for people.
+    #[must_use]
+    pub fn headline(&self) -> String {
+        match &self.subject {
+            Subject::Curve(of) => format!("{}: {}", self.model.name, geometry(&of.curve)),
+            Subject::Program(of) => format!("{} by {}", of.file_name(), self.model.title.to_lowercase()),
+        }
+    }
+
+    /// The picture of the run, still without points.
+    pub(crate) fn picture(&self, out: Sink) -> Box<dyn RunFile> {
+        match &self.subject {
+            Subject::Curve(of) => Box::new(PathPicture::new(of, out)),
+            Subject::Program(_) => Box::new(Workpiece::new(&self.headline(), out)),
+        }
+    }
+
+    /// The end point was reached exactly; that of every move of a program.
     #[must_use]
     pub fn end_exact(&self) -> bool {
-        self.outcome.reached == self.curve.to()
+        match &self.subject {
+            Subject::Curve(of) => self.outcome.reached == of.curve.to(),
+            Subject::Program(of) => of.totals.missed == 0,
+        }
     }
 
-    /// Sentences about position counters that do not show where the pulses led.
-    fn wrong_counters(&self) -> Vec<String> {
-        wrong_counters(&self.outcome, &self.hardware)
-    }
-
-    /// What the method promises of the path, if it promises anything.
-    #[must_use]
-    pub fn promise(&self) -> Option<Promise> {
-        Promise::of(self.hardware.error_bound, &self.curve)
-    }
-
-    /// The path error stayed within what the method promises.
-    #[must_use]
-    pub fn path_within_bound(&self) -> bool {
-        self.worst.as_ref().zip(self.promise()).is_none_or(|(worst, promise)| promise.is_kept(worst.error))
-    }
-
-    /// Bits that a register needs: for the values that it held, and for the results that did not fit.
+    /// Bits that a register needs: for the values that it held, and on a curve for the results that did not fit.
     #[must_use]
     pub fn needed_bits(&self, range: &RegisterRange) -> u32 {
-        let own = self.tallies.iter().find(|tally| tally.first.component() == range.path);
+        let of_range = |tally: &&OverflowTally| tally.first.component() == range.path;
+        let own = self.curve().and_then(|_| self.tallies.iter().find(of_range));
         own.and_then(|tally| tally.needed).unwrap_or(1).max(range.needed())
     }
 
-    /// Sentences for who chooses widths: how far ranges and bits needed can be trusted, and what did not fit. They come
-    /// from values that were reached: neither bits to spare nor a register that was just wide enough gives one.
+    /// Sentences for who chooses widths: how far ranges and bits needed can be trusted, and what did not fit; of a
+    /// program also how many feeds were out of reach. They come from values that were reached: neither bits to spare nor a
+    /// register that was just wide enough gives one.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings: Vec<String> = self.cut.iter().map(|word| self.of_block(word)).collect();
+        let mut warnings = self.cut_sentences();
+        if let Subject::Program(of) = &self.subject {
+            warnings.extend(of.limited());
+            return warnings;
+        }
         let clocks = self.outcome.clocks;
         let cut = |why: &str| format!("ranges and bits needed are those up to clock {clocks} alone, where {why}");
         match self.outcome.ending {
@@ -116,7 +179,7 @@ impl Report {
         }
         warnings.extend(self.tallies.iter().map(|tally| self.went_on(tally)));
         let since = self.tallies.first().map(|tally| format!("after clock {}", tally.first.clock()));
-        if let Some(since) = if self.cut.is_empty() { since } else { Some("from the load on".to_owned()) } {
+        if let Some(since) = if self.cut.count == 0 { since } else { Some("from the load on".to_owned()) } {
             warnings.push(format!(
                 "what registers held {since} is not what the method makes of this curve, so ranges and bits needed say \
                  little about it",
@@ -125,10 +188,20 @@ impl Report {
         warnings
     }
 
-    /// A load word that was cut, with its block where there are several.
-    fn of_block(&self, word: &CutWord) -> String {
-        let word_of = if self.blocks > 1 { format!("block {}: ", word.block + 1) } else { String::new() };
-        format!("{word_of}{word}")
+    /// Load words that were cut, each with its line of a program, or its block of several of a curve.
+    fn cut_sentences(&self) -> Vec<String> {
+        let shown = if self.program().is_some() { SHOWN_CUTS } else { usize::MAX };
+        let several = self.curve().is_some_and(|of| of.blocks > 1);
+        let sentence = |(line, word): &(u64, CutWord)| match line {
+            0 if several => format!("block {}: {word}", word.block + 1),
+            0 => word.to_string(),
+            line => format!("line {line}: {word}"),
+        };
+        let mut sentences: Vec<String> = self.cut.first.iter().take(shown).map(sentence).collect();
+        if self.cut.count > shown as u64 {
+            sentences.push(format!("{} load words did not fit; --json FILE lists more", self.cut.count));
+        }
+        sentences
     }
 
     /// How often a component overflowed while the run went on.
@@ -152,87 +225,81 @@ impl Report {
     /// Sentences that say what is wrong with the simulated hardware; none if all is good.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
+        let (clocks, position) = (self.outcome.clocks, point(&self.outcome.reached));
+        // Of a program, where in it.
+        let line = self.program().map(|of| format!("line {}: ", of.totals.line)).unwrap_or_default();
         let mut failures = Vec::new();
         match self.outcome.ending {
             Ending::Trapped => {
-                if let Some(event) = self.overflows.last() {
-                    failures.push(event.to_string() + &way_out(event, &self.hardware));
-                }
-                return failures;
+                let event = self.overflows.last();
+                return event
+                    .map(|event| format!("{line}{event}{}", remedy(event, &self.hardware)))
+                    .into_iter()
+                    .collect();
+            }
+            Ending::Limit => {
+                let cut = if self.cut.count > 0 { ", with a load word that was cut" } else { "" };
+                return vec![match &self.subject {
+                    Subject::Curve(_) => {
+                        format!("not done after {clocks} clocks{cut}, at {position}: give a greater --max-clocks")
+                    }
+                    Subject::Program(_) => {
+                        format!("{line}given up at clock {clocks}{cut}: give a greater --max-clocks, or leave it out")
+                    }
+                }];
+            }
+            Ending::Endless { since } => {
+                let remedy = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap {
+                    ""
+                } else {
+                    "; --on-overflow trap shows where it first went wrong"
+                };
+                return vec![format!(
+                    "the motion never ends: at clock {clocks}, at {position}, every register is what it was at clock \
+                     {since}{remedy}"
+                )];
             }
             Ending::Stalled { clocks } => {
-                let position = summary::point(&self.outcome.reached);
                 let by_curve = matches!(self.model.name, "dda-arc" | "dda-conic" | "dda-helix");
-                let way_out = if by_curve && self.hardware.presets.iter().any(|preset| *preset != Preset::Half) {
+                let remedy = if by_curve && self.hardware.presets.iter().any(|preset| *preset != Preset::Half) {
                     "; give --preset half, with which curves whose ends lie on them exactly were never seen to"
                 } else {
                     ""
                 };
                 failures
-                    .push(format!("stalled at {position}: no pulse for {clocks} clocks, and none will come{way_out}"));
-            }
-            Ending::Endless { since } => {
-                let position = summary::point(&self.outcome.reached);
-                let clock = self.outcome.clocks;
-                let way_out = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap {
-                    ""
-                } else {
-                    "; --on-overflow trap shows where it first went wrong"
-                };
-                failures.push(format!(
-                    "the motion never ends: at clock {clock}, at {position}, every register is what it was at clock \
-                     {since}{way_out}"
-                ));
-                return failures;
-            }
-            Ending::Limit => {
-                let cut = if self.cut.is_empty() { "" } else { ", with a load word that was cut" };
-                failures.push(format!(
-                    "not done after {} clocks{cut}, at {}: give a greater --max-clocks",
-                    self.outcome.clocks,
-                    summary::point(&self.outcome.reached)
-                ));
-                return failures;
+                    .push(format!("stalled at {position}: no pulse for {clocks} clocks, and none will come{remedy}"));
             }
             Ending::Done => {}
         }
-        failures.extend(self.wrong_counters());
-        if !self.end_exact() {
-            let (wanted, reached) = (summary::point(self.curve.to()), summary::point(&self.outcome.reached));
-            failures.push(format!("the end point {wanted} was missed: the machine is at {reached}"));
-        }
-        if let (false, Some(worst), Some(promise)) = (self.path_within_bound(), &self.worst, self.promise()) {
-            let curve = match self.curve {
-                Curve::Line(_) => "line",
-                Curve::Arc(_) => "arc",
-                Curve::Conic(_) => "conic",
-                Curve::Helix(_) => "helix",
-            };
-            failures.push(format!(
-                "the path left the {curve}: {:.3} BLU off at {} after step {}, where the method promises at most {promise}",
-                worst.error,
-                summary::point(&worst.position),
-                worst.step,
-            ));
+        match &self.subject {
+            Subject::Curve(of) => {
+                failures.extend(self.wrong_counters());
+                failures.extend(of.failures(self));
+            }
+            Subject::Program(of) => {
+                failures.extend(of.totals.failures.iter().cloned());
+                failures.extend(self.wrong_counters());
+            }
         }
         failures
     }
+
+    /// A sentence for each position counter that does not show where the pulses led.
+    fn wrong_counters(&self) -> Vec<String> {
+        let outcome = &self.outcome;
+        let shown = outcome.counters.iter().zip(&outcome.reached).zip(&outcome.pulses).zip(self.hardware.letters());
+        let wrong = shown.filter(|(((counter, place), _), _)| counter != place);
+        wrong
+            .map(|(((counter, place), pulses), axis)| {
+                format!(
+                    "the counter {axis} shows {counter}, {pulses} pulses were given: it is wrong, the pulses led to {place}"
+                )
+            })
+            .collect()
+    }
 }
 
-/// A sentence for each position counter that does not show where the pulses led.
-fn wrong_counters(outcome: &Outcome, hardware: &Hardware) -> Vec<String> {
-    let shown = outcome.counters.iter().zip(&outcome.reached).zip(&outcome.pulses).zip(hardware.letters());
-    let wrong = shown.filter(|(((counter, place), _), _)| counter != place);
-    wrong
-        .map(|(((counter, place), pulses), axis)| {
-            format!(
-                "the counter {axis} shows {counter}, {pulses} pulses were given: it is wrong, the pulses led to {place}"
-            )
-        })
-        .collect()
-}
-
-fn way_out(event: &OverflowEvent, hardware: &Hardware) -> String {
+fn remedy(event: &OverflowEvent, hardware: &Hardware) -> String {
     let leaf = event.component().rsplit('.').next().unwrap_or_default();
     match (event, event.exact()) {
         (OverflowEvent::Overflow { signed, .. }, Some((exact, needed))) if *signed || exact >= 0 => {

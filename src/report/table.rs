@@ -4,6 +4,7 @@ use std::io::Write;
 
 use stepwave_models::Port;
 
+use super::{Report, RunFile};
 use crate::testbench::{BlockReport, Memory, Observer, ObserverError, Step, Testbench};
 
 /// Most steps that a textbook table shows.
@@ -32,12 +33,10 @@ impl<W: Write> CsvTable<W> {
         writeln!(out, "{front}{}", names.join(","))?;
         Ok(CsvTable { out, front: String::new() })
     }
+}
 
-    /// Writes out what is buffered.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    pub fn finish(mut self) -> std::io::Result<()> {
+impl<W: Write> RunFile for CsvTable<W> {
+    fn finish(&mut self, _: &Report) -> std::io::Result<()> {
         self.out.flush()
     }
 }
@@ -59,6 +58,18 @@ impl<W: Write> Observer for CsvTable<W> {
         writeln!(self.out)?;
         Ok(())
     }
+}
+
+/// Rows as lines, each column aligned to the right.
+pub(super) fn aligned(rows: &[Vec<String>]) -> Vec<String> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let line = |cells: &Vec<String>| {
+        let padded: Vec<_> = cells.iter().zip(&widths).map(|(cell, width)| format!("{cell:>width$}")).collect();
+        padded.join("  ").trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
 }
 
 /// Keeps the first steps for a table as a textbook prints it.
@@ -113,20 +124,12 @@ impl TextbookTable {
         if !self.complete {
             return None;
         }
-        let rows: Vec<Vec<String>> = self.rows.iter().map(|step| self.cells(step)).collect();
-        let width = |column: usize| {
-            let cells = rows.iter().map(|row| row[column].chars().count());
-            cells.chain([self.heading[column].chars().count()]).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..self.heading.len()).map(width).collect();
-        let line = |cells: &[String]| {
-            let padded: Vec<_> = cells.iter().zip(&widths).map(|(cell, width)| format!("{cell:>width$}")).collect();
-            padded.join("  ").trim_end().to_owned() + "\n"
-        };
-        let rule: usize = widths.iter().map(|width| width + 2).sum::<usize>() - 2;
-        let mut text = line(&self.heading) + &"─".repeat(rule) + "\n";
-        text.extend(rows.iter().map(|row| line(row)));
-        Some(text)
+        let rows = std::iter::once(self.heading.clone()).chain(self.rows.iter().map(|step| self.cells(step)));
+        let rows: Vec<Vec<String>> = rows.collect();
+        let mut lines = aligned(&rows);
+        let rule = lines.iter().map(|line| line.trim_end().chars().count()).max().unwrap_or(0);
+        lines.insert(1, "─".repeat(rule) + "\n");
+        Some(lines.concat())
     }
 }
 

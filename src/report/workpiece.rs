@@ -3,10 +3,12 @@
 //! The memory is bounded whatever the length of the program: a long path is thinned.
 
 use std::collections::VecDeque;
+use std::io::{self, Write};
 
 use stepwave_nc::{Cause, Direction, SegmentShape, Side, ToolMove, swept};
 
 use super::plot::{FONT, HEAD, Page, Pair, TITLE_FONT, View, cut, escaped, reaching, text_width};
+use super::{Report, RunFile};
 use crate::testbench::{BlockReport, Observer, ObserverError, Step};
 
 /// Points of the path that are kept; when they are full, every second one goes.
@@ -21,7 +23,8 @@ const RAPID: &str = r##"stroke="#009e73" stroke-width="1" stroke-dasharray="6 4"
 const TOOL: &str = r##"stroke="#999" stroke-width="0.8""##;
 
 /// Collects the path of a program as seen along one axis.
-pub struct Workpiece {
+pub struct Workpiece<W> {
+    out: W,
     title: String,
     /// The axes shown to the right and upwards.
     axes: [usize; 2],
@@ -36,11 +39,12 @@ pub struct Workpiece {
     ranges: [Pair; 2],
 }
 
-impl Workpiece {
-    /// A picture in x and y.
+impl<W> Workpiece<W> {
+    /// A picture in x and y, for an output.
     #[must_use]
-    pub fn new(title: &str) -> Workpiece {
+    pub fn new(title: &str, out: W) -> Workpiece<W> {
         Workpiece {
+            out,
             title: title.to_owned(),
             axes: [0, 1],
             contour: Vec::new(),
@@ -134,7 +138,15 @@ impl Workpiece {
     }
 }
 
-impl Observer for Workpiece {
+impl<W: Write> RunFile for Workpiece<W> {
+    fn finish(&mut self, _: &Report) -> io::Result<()> {
+        let svg = self.svg();
+        self.out.write_all(svg.as_bytes())?;
+        self.out.flush()
+    }
+}
+
+impl<W> Observer for Workpiece<W> {
     fn block_begun(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
         let rapid = block.of.feed == stepwave_nc::Feed::Rapid;
         if self.path.last().is_none_or(|(before, _)| *before != rapid) {

@@ -10,19 +10,23 @@ use super::Simulation;
 use crate::Error;
 use crate::output::{Outputs, Sink};
 
-/// What a file of states is for.
-pub(super) enum States<'a> {
-    /// It does not exist yet: this run writes it.
-    Kept(&'a Path, Checkpoints),
-    /// It holds a state shortly before the window of the wave: this run begins there.
-    Resumed(Checkpoint),
+/// Where a run begins, and what its file of states is for.
+pub(super) enum Begin<'a> {
+    /// At the reset: the file does not exist yet, and the run writes it.
+    New { states: Checkpoints, path: &'a Path, sink: Option<Sink> },
+    /// At a state in the file, shortly before the window of the wave.
+    At(Checkpoint),
 }
 
-impl<'a> States<'a> {
+impl<'a> Begin<'a> {
     /// What the options ask for; nothing where the file holds no state before the window.
-    pub(super) fn of(simulation: &'a Simulation, bench: &Testbench) -> Result<Option<States<'a>>, Error> {
+    pub(super) fn of(simulation: &'a Simulation, bench: &Testbench) -> Result<Option<Begin<'a>>, Error> {
         let Some(path) = &simulation.checkpoints else { return Ok(None) };
-        if simulation.steps.is_some() || simulation.plot.is_some() {
+        if simulation.source.file().is_some() {
+            let need = "states are kept of a run along a curve, not of a program";
+            return Err(Error::Invalid(format!("--checkpoints: {need}: leave the option out")));
+        }
+        if simulation.files.steps.is_some() || simulation.files.plot.is_some() {
             let need = "the step table and the picture need every step, from the first";
             return Err(Error::Invalid(format!("--checkpoints: {need}: leave out --steps and --plot")));
         }
@@ -33,9 +37,11 @@ impl<'a> States<'a> {
         match fs::read_to_string(path) {
             Ok(text) => {
                 let states = Checkpoints::read(&text, bench).map_err(|error| read(&error))?;
-                Ok(states.before(simulation.waves.from).cloned().map(States::Resumed))
+                Ok(states.before(simulation.waves.from).cloned().map(Begin::At))
             }
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(Some(States::Kept(path, Checkpoints::new(bench)))),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                Ok(Some(Begin::New { states: Checkpoints::new(bench), path, sink: None }))
+            }
             Err(error) => Err(read(&error)),
         }
     }
@@ -44,28 +50,13 @@ impl<'a> States<'a> {
     ///
     /// # Errors
     /// It cannot be written.
-    pub(super) fn open(self, outputs: &mut Outputs) -> Result<Begin, Error> {
-        Ok(match self {
-            States::Kept(path, states) => Begin::New { states, sink: outputs.open(path)? },
-            States::Resumed(state) => Begin::At(state),
-        })
+    pub(super) fn open(&mut self, outputs: &mut Outputs) -> Result<(), Error> {
+        if let Begin::New { path, sink, .. } = self {
+            *sink = Some(outputs.open(path)?);
+        }
+        Ok(())
     }
-}
 
-/// Where a run begins.
-pub(super) enum Begin {
-    /// At the reset; its states are kept.
-    New {
-        /// The states so far.
-        states: Checkpoints,
-        /// Where they go.
-        sink: Sink,
-    },
-    /// At a state.
-    At(Checkpoint),
-}
-
-impl Begin {
     /// Clock of the state that the run begins at.
     pub(super) fn clock(&self) -> Option<u64> {
         match self {
@@ -79,7 +70,7 @@ impl Begin {
     /// # Errors
     /// They cannot be written.
     pub(super) fn finish(self) -> Result<(), Error> {
-        if let Begin::New { states, mut sink } = self {
+        if let Begin::New { states, sink: Some(mut sink), .. } = self {
             sink.write_all(states.write()?.as_bytes())?;
             sink.flush()?;
         }

@@ -36,8 +36,10 @@ pub(super) fn refuted(args: &ProveArgs, proposition: &Proposition, example: &Cou
     let options = choices.clone().at_clock(CLOCK_HZ);
     let simulation = Simulation::new(model, curve.clone()).options(options).clock_hz(CLOCK_HZ).waves(wave(args));
     let mut outputs = Outputs::default();
-    let ran =
-        simulation.bench().map_err(Error::from).and_then(|bench| simulation.run_on(bench, &mut outputs, |_, _| Ok(())));
+    let ran = simulation
+        .prepare()
+        .map_err(Error::from)
+        .and_then(|made| simulation.run_on(made.bench, &mut outputs, |_, _| Ok(())));
     let shown = match ran {
         Ok(ran) => match ran.report.failures() {
             // With wrap and saturate a run goes on after an overflow or a load word that was cut, and may reach its end all

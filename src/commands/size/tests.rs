@@ -1,6 +1,3 @@
-use std::io::{BufReader, Cursor};
-
-use crate::program::{Pace, Survey};
 use clap::Parser;
 
 use super::*;
@@ -20,15 +17,9 @@ fn args(words: &str) -> Box<ProgramArgs> {
 
 /// What is expected of the waves of a program.
 fn expected(args: &ProgramArgs) -> [f64; 2] {
-    let preparation = program::Source::of(args).preparation().expect("options");
-    let text = || BufReader::new(Cursor::new(TEXT));
-    let survey = Survey::of(text(), args.method.moves().expect("moves"), &preparation).expect("a program");
-    let hardware = args.method.plan_program(&survey.size, &args.hardware.choices()).expect("hardware");
-    let machine = args.method.machine(&hardware).expect("a machine");
-    let bench = Testbench::of_machine(hardware, machine);
-    let pace = Pace { clock_hz: args.clock.clock_hz, blu_mm: args.hardware.blu, rapid: args.text.rapid };
-    let estimate = Estimate::of(text(), args.method.moves().expect("moves"), &preparation, bench.hardware(), pace)
-        .expect("an estimate");
+    let simulation = program::asked(args).expect("options");
+    let bench = simulation.prepare().expect("a machine").bench;
+    let estimate = simulation.estimate(&bench).expect("a program").expect("an estimate");
     let time = ClockTime::from_hz(args.clock.clock_hz).expect("a clock");
     Size::of(&bench, &args.trace, time).expect("a size").bytes(&args.trace, None, &estimate)
 }

@@ -1,0 +1,50 @@
+//! What a report is put together from.
+
+use super::source::Source;
+use crate::report::{Report, Subject};
+use crate::testbench::{CoarseWatch, Observer, Outcome, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, Testbench};
+
+/// What looks on for the report; the account of a program keeps itself.
+pub(super) struct Watches<'a> {
+    overflow: OverflowWatch,
+    ranges: RangeWatch,
+    curve: Option<(PathWatch<'a>, SpacingWatch, Option<CoarseWatch<'a>>)>,
+}
+
+impl<'a> Watches<'a> {
+    pub(super) fn new(bench: &Testbench, source: &'a Source) -> Watches<'a> {
+        let curve = match source {
+            Source::Curve(curve) => {
+                Some((PathWatch::new(bench, curve), SpacingWatch::new(bench, curve), CoarseWatch::new(bench, curve)))
+            }
+            Source::Program(_) => None,
+        };
+        Watches { overflow: OverflowWatch::new(bench), ranges: RangeWatch::new(bench), curve }
+    }
+
+    pub(super) fn observers<'o>(&'o mut self, subject: &'o mut Subject) -> Vec<&'o mut dyn Observer> {
+        let mut all: Vec<&mut dyn Observer> = vec![&mut self.overflow, &mut self.ranges];
+        if let Some((path, spacing, coarse)) = &mut self.curve {
+            all.extend([path as &mut dyn Observer, spacing]);
+            all.extend(coarse.as_mut().map(|coarse| coarse as &mut dyn Observer));
+        }
+        if let Subject::Program(of) = subject {
+            all.push(&mut of.totals);
+        }
+        all
+    }
+
+    /// Fills the results in.
+    pub(super) fn finish(self, report: &mut Report, outcome: Outcome) {
+        report.outcome = outcome;
+        report.ranges = self.ranges.finish();
+        report.overflows = self.overflow.events();
+        report.overflow_count = self.overflow.count;
+        report.tallies = self.overflow.tallies();
+        if let (Some((path, spacing, coarse)), Subject::Curve(of)) = (self.curve, &mut report.subject) {
+            of.worst = path.worst;
+            of.trains = spacing.finish();
+            of.coarse = coarse.and_then(|coarse| coarse.worst);
+        }
+    }
+}
