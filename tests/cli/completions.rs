@@ -32,7 +32,11 @@ fn set(words: &str) -> BTreeSet<String> {
 #[test]
 fn models_complete_where_a_model_is_wanted() {
     for command in ["run", "widths", "prove", "export", "sweep"] {
-        assert_eq!(offered(&["stepwave", command, "mindev"]), set("mindev-line mindev-arc"), "{command}");
+        assert_eq!(
+            offered(&["stepwave", command, "mindev"]),
+            set("mindev-line mindev-arc mindev-machine"),
+            "{command}"
+        );
     }
 }
 

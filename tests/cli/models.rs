@@ -143,14 +143,17 @@ fn compare_has_a_row_for_each_form_of_the_dda() {
         let name = |line: &str| line.split("  ").next().unwrap().to_owned();
         printed.lines().map(name).filter(|name| name.starts_with("dda-")).collect()
     };
-    let forms = ["", " --preset half", " --preset half --normalize", " --radix 10", " --adder serial"];
-    assert_eq!(rows("--to 100,62"), forms.map(|form| format!("dda-line{form}")));
+    let lines = ["", " --preset half", " --preset half --normalize", " --radix 10", " --adder serial"];
+    let machines = ["", " --preset zero", " --normalize"].map(|form| format!("dda-machine{form}")).to_vec();
+    let lines: Vec<String> = lines.iter().map(|form| format!("dda-line{form}")).collect();
+    assert_eq!(rows("--to 100,62"), [lines, machines.clone()].concat());
     // Those of curves start from half by default.
     assert_eq!(
         rows("--ellipse 6,4 --from 6,0 --to 0,4 --ccw"),
         ["dda-conic", "dda-conic --preset zero", "dda-conic --normalize"]
     );
-    assert_eq!(rows("--from 5,0,0 --to 0,5,3 --ccw"), ["dda-helix", "dda-helix --preset zero"]);
+    let helices = ["dda-helix", "dda-helix --preset zero"].map(str::to_owned);
+    assert_eq!(rows("--from 5,0,0 --to 0,5,3 --ccw"), [helices.to_vec(), machines].concat());
 }
 
 #[test]

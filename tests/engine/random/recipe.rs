@@ -245,7 +245,7 @@ impl<'m> Kitchen<'m> {
 
     /// Mostly of few bits, as the memories are small.
     fn address(&self, index: u16) -> Signal<'m> {
-        if index % 4 == 0 { self.pick(index) } else { narrowed(self.pick(index), 1 + u32::from(index % 5)) }
+        if index.is_multiple_of(4) { self.pick(index) } else { narrowed(self.pick(index), 1 + u32::from(index % 5)) }
     }
 
     /// A signal cut or extended to a width.
