@@ -12,6 +12,7 @@ use crate::commands::diff::DiffArgs;
 mod endings;
 mod hardware;
 mod names;
+mod own;
 mod program;
 mod proof;
 mod sweep;
@@ -25,6 +26,7 @@ pub(crate) use endings::{Format, file_of};
 pub(crate) use hardware::HardwareArgs;
 use names::model_name;
 pub(crate) use names::{Registers, all_registers, known_register, listed, registers};
+pub(crate) use own::{CheckArgs, ImportArgs, SimArgs};
 use program::machines;
 pub(crate) use program::{ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
@@ -63,6 +65,12 @@ pub(crate) enum Command {
     Diff(DiffArgs),
     /// Write a machine as Verilog, with a test bench that runs the geometry, or for model checkers and solvers
     Export(Box<ExportArgs>),
+    /// A design of one's own, in Verilog or VHDL, as a netlist
+    Import(Box<ImportArgs>),
+    /// Every mistake of a netlist in the text form
+    Check(CheckArgs),
+    /// Run a netlist by values of its inputs, clock by clock: wave and report
+    Sim(Box<SimArgs>),
     /// Re-simulate the recorded cases of a folder and compare bit by bit
     #[command(subcommand)]
     Golden(GoldenCommand),
@@ -210,6 +218,9 @@ pub(crate) struct ExportArgs {
     pub(crate) hardware: HardwareArgs,
     #[command(flatten)]
     pub(crate) clock: ClockArgs,
+    /// Write the netlist in the text form, which `stepwave sim` and `check` read
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Netlist]), group = "exports", help_heading = "Outputs (- is standard output)")]
+    pub(crate) netlist: Option<PathBuf>,
     /// Write the netlist as a Verilog module
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Verilog]), group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) verilog: Option<PathBuf>,

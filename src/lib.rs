@@ -29,6 +29,7 @@
 
 pub use stepwave_engine as engine;
 pub use stepwave_export as export;
+pub use stepwave_import as import;
 pub use stepwave_models as models;
 pub use stepwave_nc as nc;
 pub use stepwave_netlist as netlist;
@@ -46,6 +47,8 @@ pub mod golden;
 pub mod guide;
 #[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]
 mod output;
+#[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]
+pub mod own;
 pub mod program;
 pub mod report;
 #[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]

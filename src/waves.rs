@@ -8,9 +8,11 @@ use std::path::{Path, PathBuf};
 #[cfg(feature = "cli")]
 use clap::builder::StringValueParser;
 
-use crate::netlist::Width;
 use crate::netlist::cells::Format;
-use crate::testbench::{Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window, net_named};
+use crate::netlist::{Design, Net, Width};
+use crate::testbench::{
+    Columns, Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window, net_named,
+};
 use crate::trace::fst::{FstBody, FstHeader};
 use crate::trace::gtkw::{View, side_files};
 use crate::trace::probe::{Probe, Selection};
@@ -110,6 +112,21 @@ impl<'a> Sinks<'a> {
     }
 }
 
+/// What a wave can show: a design, the columns of its samples, and the columns that mark its steps.
+#[derive(Clone, Copy)]
+pub(crate) struct Shown<'b> {
+    pub(crate) design: &'b Design,
+    pub(crate) columns: &'b Columns,
+    pub(crate) steps: Option<[Net; 2]>,
+}
+
+impl<'b> From<&'b Testbench> for Shown<'b> {
+    fn from(bench: &'b Testbench) -> Shown<'b> {
+        let steps = Some([bench.machine().stepped.net, bench.machine().loaded.net]);
+        Shown { design: bench.design(), columns: bench.columns(), steps }
+    }
+}
+
 /// Waves that are being written: the same samples of the same signals.
 pub(crate) struct Waves<'a> {
     vcd: Option<Wave<'a, VcdBody<Background<Limited<Sink>>>>>,
@@ -131,21 +148,20 @@ impl<'a> Waves<'a> {
     ///
     /// # Errors
     /// The options name no signal, or an output cannot be written.
-    pub(crate) fn new(
-        bench: &Testbench,
+    pub(crate) fn new<'b>(
+        shown: impl Into<Shown<'b>>,
         args: &WaveOptions,
         sinks: Sinks<'a>,
         time: ClockTime,
         title: &str,
     ) -> Result<Waves<'a>, Error> {
-        let probes = probes(bench, args)?;
+        let shown = shown.into();
+        let probes = probes(shown, args)?;
         let trigger = match &args.on {
-            Some(name) => Trigger::Column(flag_column(bench, name)?),
+            Some(name) => Trigger::Column(flag_column(shown, name)?),
             None => Trigger::Immediately,
         };
-        let machine = bench.machine();
-        let of_steps = || [machine.stepped.net, machine.loaded.net].map(|net| bench.columns().index(net));
-        let steps = args.steps.then(of_steps);
+        let steps = shown.steps.filter(|_| args.steps).map(|nets| nets.map(|net| shown.columns.index(net)));
         let window = Window { from: args.from, to: args.to, trigger, steps };
         let clk = args.clk;
         let curves: Vec<(usize, Width)> = probes
@@ -282,20 +298,21 @@ fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Writte
 ///
 /// # Errors
 /// They name none.
-pub(crate) fn probes(bench: &Testbench, args: &WaveOptions) -> Result<Vec<Probe>, Error> {
+pub(crate) fn probes<'b>(shown: impl Into<Shown<'b>>, args: &WaveOptions) -> Result<Vec<Probe>, Error> {
     let depth = args.depth.map(|depth| usize::try_from(depth).unwrap_or(usize::MAX));
     let selection = Selection::new(&args.signals, &args.excluded, depth)?;
-    Ok(selection.probes(bench.design(), bench.columns().nets())?)
+    let shown = shown.into();
+    Ok(selection.probes(shown.design, shown.columns.nets())?)
 }
 
 /// Column of the 1-bit net of this name, path, or end of a path.
-fn flag_column(bench: &Testbench, name: &str) -> Result<usize, Error> {
+fn flag_column(shown: Shown<'_>, name: &str) -> Result<usize, Error> {
     let refuse = |why: String| Error::Invalid(format!("--trace-on: {why}"));
-    let netlist = bench.design().netlist();
+    let netlist = shown.design.netlist();
     let net = net_named(netlist, name).map_err(refuse)?.net;
     let width = netlist.width(net);
     if width.get() != 1 {
         return Err(refuse(format!("{name} has {width}, but a trigger is 1 bit wide")));
     }
-    Ok(bench.columns().index(net))
+    Ok(shown.columns.index(net))
 }

@@ -8,6 +8,7 @@ mod cli;
 mod engine;
 mod export;
 mod house;
+mod import;
 mod models;
 mod netlist;
 mod programs;

@@ -19,6 +19,7 @@ pub(crate) enum Format {
     Json,
     Svg,
     Png,
+    Netlist,
     Verilog,
     Btor2,
     SmtLib,
@@ -28,7 +29,7 @@ pub(crate) enum Format {
 /// A format: its name, the endings of its files, the one to propose first, and the options that write it.
 struct Entry(Format, &'static str, &'static [&'static str], &'static [&'static str]);
 
-const TABLE: [Entry; 11] = [
+const TABLE: [Entry; 12] = [
     Entry(Format::Vcd, "VCD", &["vcd"], &["vcd", "merged"]),
     Entry(Format::Fst, "FST", &["fst"], &["fst"]),
     Entry(Format::Csv, "CSV", &["csv"], &["steps", "csv"]),
@@ -36,6 +37,7 @@ const TABLE: [Entry; 11] = [
     Entry(Format::Json, "JSON", &["json"], &["json"]),
     Entry(Format::Svg, "SVG", &["svg"], &["plot"]),
     Entry(Format::Png, "PNG", &["png"], &["plot"]),
+    Entry(Format::Netlist, "a netlist", &["net"], &["output", "netlist"]),
     Entry(Format::Verilog, "Verilog", &["v", "sv"], &["verilog", "testbench"]),
     Entry(Format::Btor2, "BTOR2", &["btor2", "btor"], &["btor2"]),
     Entry(Format::SmtLib, "SMT-LIB", &["smt2"], &["smt2"]),

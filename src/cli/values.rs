@@ -1,5 +1,7 @@
 //! Values on the command line, each with the sentence that says what is wrong with a bad one.
 
+use stepwave_import::Unknown;
+
 use crate::engine::EngineKind;
 use crate::models::Millionths;
 use crate::nc::Opens;
@@ -114,4 +116,22 @@ pub(crate) struct SimulationArgs {
     /// A run that is not done after so many clocks is given up; one that comes back to an earlier state always is
     #[arg(long, value_name = "CLOCKS", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_clocks: Option<u64>,
+}
+
+/// A name and a value with `=` between them.
+pub(super) fn parse_setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        _ => Err("expected NAME=VALUE".to_owned()),
+    }
+}
+
+/// What unknown bits are taken for.
+pub(super) fn parse_unknown(text: &str) -> Result<Unknown, String> {
+    match (text, text.strip_prefix("random:").map(str::parse)) {
+        ("0", _) => Ok(Unknown::Zero),
+        ("1", _) => Ok(Unknown::One),
+        (_, Some(Ok(seed))) => Ok(Unknown::Random(seed)),
+        _ => Err("expected 0, 1 or random:SEED, with a whole number as the seed".to_owned()),
+    }
 }

@@ -41,6 +41,9 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let outputs = bench.outputs();
     let options = Options { comment: &comment, outputs: &outputs };
     let mut files = Outputs::reading(&args.program);
+    if let Some(path) = &args.netlist {
+        files.write(path, &bench.design().netlist().to_string())?;
+    }
     if let Some(path) = &args.verilog {
         files.write(path, &export::verilog(bench.design(), &options))?;
     }

@@ -6,6 +6,7 @@ mod export;
 mod geometry;
 mod golden;
 mod list;
+mod own;
 mod pages;
 pub(crate) mod program;
 mod progress;
@@ -41,6 +42,9 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Error> {
         Command::Prove(args) => prove::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Export(args) => export::run(args),
+        Command::Import(args) => own::import(args),
+        Command::Check(args) => own::check(args),
+        Command::Sim(args) => own::sim(args),
         Command::Golden(command) => golden::run(command),
         Command::Completions { shell } => pages::completions(*shell),
         Command::Man { dir } => pages::manual(dir),
@@ -61,6 +65,7 @@ fn only_prints(command: &Command) -> bool {
             let table = &args.outputs;
             table.plot.iter().cloned().map(Some).chain([table.csv.clone(), table.parquet.clone()]).collect()
         }
+        Command::Sim(args) => traced(&args.trace).into_iter().chain([args.json.clone()]).collect(),
         Command::Prove(args) => vec![args.certificate.clone(), args.vcd.clone()],
         Command::Diff(args) => vec![args.merged.clone()],
         Command::Compare(_) | Command::Widths(_) | Command::Golden(GoldenCommand::Check(_)) => Vec::new(),

@@ -4,7 +4,6 @@ use serde_json::{Map, Value, json};
 use stepwave_models::CutWord;
 use stepwave_models::options::{Takes, WIDTH};
 use stepwave_netlist::bits::Reading;
-use stepwave_netlist::cells::Arithmetic;
 
 use super::{Report, Subject};
 use crate::program::CutWords;
@@ -35,10 +34,7 @@ fn event(event: &OverflowEvent) -> Value {
     match event {
         OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } => {
             let (exact, needed) = event.exact().unwrap_or_default();
-            let operation = match operation {
-                Arithmetic::Add => "add",
-                Arithmetic::Sub => "sub",
-            };
+            let operation = operation.name();
             json!({
                 "component": component,
                 "clock": clock,

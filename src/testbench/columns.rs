@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use stepwave_models::Machine;
-use stepwave_netlist::Net;
 use stepwave_netlist::cells::{Claim, Op};
+use stepwave_netlist::{Design, Net, Netlist};
 
 /// Nets in the order of a row, each once.
 #[derive(Clone, Debug)]
@@ -17,7 +17,14 @@ impl Columns {
     /// Every named net of a machine, and the operands and flags of its strict cells.
     #[must_use]
     pub fn of(machine: &Machine) -> Columns {
-        Columns::of_nets(machine, machine.design.netlist().names.iter().map(|named| named.net))
+        Columns::of_design(&machine.design)
+    }
+
+    /// Every named net of a design, and what its properties are about.
+    #[must_use]
+    pub fn of_design(design: &Design) -> Columns {
+        let netlist = design.netlist();
+        Columns::of_nets(netlist, netlist.names.iter().map(|named| named.net))
     }
 
     /// What is looked at where no wave is written: every named register, the ports of the step table, and the operands
@@ -30,17 +37,16 @@ impl Columns {
         let table = machine.table.iter().map(|(_, port)| port);
         let strobes = [&machine.loaded, &machine.stepped].into_iter();
         let ports = strobes.chain(&machine.pulses).chain(&machine.positions).chain(table);
-        Columns::of_nets(machine, registers.chain(ports.map(|port| port.net)))
+        Columns::of_nets(netlist, registers.chain(ports.map(|port| port.net)))
     }
 
     /// These nets, and those of the properties.
-    fn of_nets(machine: &Machine, nets: impl Iterator<Item = Net>) -> Columns {
-        let netlist = machine.design.netlist();
+    fn of_nets(netlist: &Netlist, nets: impl Iterator<Item = Net>) -> Columns {
         let mut columns = Columns { nets: Vec::new(), index: HashMap::new() };
         nets.for_each(|net| columns.add(net));
         for property in &netlist.properties {
             columns.add(property.never);
-            if let Claim::NoOverflow { left, right, .. } = property.claim {
+            if let Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } = property.claim {
                 columns.add(left.net);
                 columns.add(right.net);
             }

@@ -8,8 +8,8 @@ use stepwave_engine::Rows;
 use stepwave_models::Machine;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_netlist::bits;
-use stepwave_netlist::cells::{Arithmetic, Claim, Property};
-use stepwave_netlist::{OnOverflow, Width, elaborate};
+use stepwave_netlist::cells::{Claim, Operator, Property, Source};
+use stepwave_netlist::{Netlist, OnOverflow, Width, elaborate};
 
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Columns, Observer, ObserverError, Testbench};
@@ -28,8 +28,8 @@ pub enum OverflowEvent {
         width: Width,
         /// Two's complement.
         signed: bool,
-        /// Add or subtract.
-        operation: Arithmetic,
+        /// What was computed.
+        operation: Operator,
         /// Value of the register.
         left: i128,
         /// What was added or subtracted.
@@ -67,7 +67,7 @@ impl OverflowEvent {
     #[must_use]
     pub fn exact(&self) -> Option<(i128, u32)> {
         let OverflowEvent::Overflow { operation, left, right, signed, .. } = self else { return None };
-        let exact = exact(*operation, *left, *right);
+        let exact = operation.exact(*left, *right)?;
         Some((exact, Width::needed(exact, *signed)))
     }
 }
@@ -77,16 +77,19 @@ impl fmt::Display for OverflowEvent {
         let OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } = self else {
             return write!(f, "invariant {} does not hold at clock {}", self.component(), self.clock());
         };
-        let (exact, needed) = self.exact().unwrap_or_default();
         let (least, greatest) = width.range(*signed);
-        let sign = match operation {
-            Arithmetic::Add => "+",
-            Arithmetic::Sub => "-",
+        let sign = operation.sign();
+        let in_brackets = |value: i128| if value < 0 { format!("({value})") } else { value.to_string() };
+        let computed = match operation {
+            Operator::Neg => format!("-{}", in_brackets(*left)),
+            _ => format!("{left} {sign} {}", in_brackets(*right)),
         };
-        let right = if *right < 0 { format!("({right})") } else { right.to_string() };
+        let Some((exact, needed)) = self.exact() else {
+            return write!(f, "overflow of {component} at clock {clock}: {computed} has more than 127 bits");
+        };
         write!(
             f,
-            "overflow of {component} at clock {clock}: {left} {sign} {right} = {exact} does not fit in its {width} \
+            "overflow of {component} at clock {clock}: {computed} = {exact} does not fit in its {width} \
              ({least} to {greatest}); "
         )?;
         if exact < 0 && !signed {
@@ -106,7 +109,7 @@ impl Testbench {
         let netlist = self.design().netlist();
         let of_event = |property: &&Property| {
             property.name == *component
-                && matches!(property.claim, Claim::NoOverflow { operation, .. } if operation == *wanted)
+                && matches!(property.claim, Claim::NoOverflow { operation, .. } if Operator::from(operation) == *wanted)
         };
         let shown = netlist.showing_operands(netlist.properties.iter().find(of_event)?)?;
         let machine = Machine { design: elaborate(shown).ok()?, ..self.machine().clone() };
@@ -124,10 +127,13 @@ pub struct OverflowTally {
     pub first: OverflowEvent,
     /// Width that would have held every exact result, if one would.
     pub needed: Option<u32>,
+    /// `file:line` of the source of the first, of imported hardware.
+    pub source: Option<String>,
 }
 
 struct Watched {
     property: Property,
+    source: Option<String>,
     never: usize,
     operands: Option<(usize, Width, usize, Width)>,
 }
@@ -155,8 +161,8 @@ impl Tally {
 
     fn count(&mut self, watched: &Watched, seen: &Seen) {
         self.count += 1;
-        let needed = numbers(watched, seen).and_then(|(operation, left, right, signed)| {
-            let exact = exact(operation, left, right);
+        let needed = numbers(watched, seen).and_then(|(operation, left, right, _, signed)| {
+            let exact = operation.exact(left, right)?;
             (signed || exact >= 0).then(|| Width::needed(exact, signed))
         });
         self.needed = self.needed.zip(needed).map(|(before, now)| before.max(now));
@@ -183,18 +189,29 @@ impl OverflowWatch {
     /// Watches every property of a machine.
     #[must_use]
     pub fn new(bench: &Testbench) -> OverflowWatch {
-        let netlist = bench.design().netlist();
-        let at = |net| bench.columns().index(net);
-        let watched = netlist.properties.iter().map(|property| {
+        let watch = OverflowWatch::of(bench.design().netlist(), bench.columns());
+        OverflowWatch { mode: bench.hardware().get(&ON_OVERFLOW), ..watch }
+    }
+
+    /// Watches every property of a netlist whose strict cells wrap.
+    #[must_use]
+    pub fn of(netlist: &Netlist, columns: &Columns) -> OverflowWatch {
+        let at = |net| columns.index(net);
+        let announced = |property: &&Property| !matches!(property.claim, Claim::Fits { wraps: true, .. });
+        let watched = netlist.properties.iter().filter(announced).map(|property| {
             let operands = match property.claim {
-                Claim::NoOverflow { left, right, .. } => {
+                Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } => {
                     Some((at(left.net), netlist.width(left.net), at(right.net), netlist.width(right.net)))
                 }
                 Claim::Invariant => None,
             };
-            Watched { property: property.clone(), never: at(property.never), operands }
+            let source = match netlist.sources.get(property.never.index()) {
+                Some(Some(Source::File { file, line, .. })) => Some(format!("{file}:{line}")),
+                _ => None,
+            };
+            Watched { property: property.clone(), source, never: at(property.never), operands }
         });
-        let mode = bench.hardware().get(&ON_OVERFLOW);
+        let mode = OnOverflow::Wrap;
         let watched: Vec<_> = watched.collect();
         OverflowWatch { tallies: vec![Tally::NONE; watched.len()], watched, seen: Vec::new(), count: 0, mode }
     }
@@ -212,12 +229,16 @@ impl OverflowWatch {
         for (watched, tally) in self.watched.iter().zip(&self.tallies) {
             let Some(first) = tally.first.as_ref().map(|seen| event(watched, seen)) else { continue };
             match found.iter_mut().find(|known| known.first.component() == first.component()) {
-                None => found.push(OverflowTally { count: tally.count, first, needed: tally.needed }),
+                None => {
+                    let source = watched.source.clone();
+                    found.push(OverflowTally { count: tally.count, first, needed: tally.needed, source });
+                }
                 Some(known) => {
                     known.count = known.count.saturating_add(tally.count);
                     known.needed = known.needed.zip(tally.needed).map(|(a, b)| a.max(b));
                     if first.clock() < known.first.clock() {
                         known.first = first;
+                        known.source.clone_from(&watched.source);
                     }
                 }
             }
@@ -227,28 +248,25 @@ impl OverflowWatch {
     }
 }
 
-fn exact(operation: Arithmetic, left: i128, right: i128) -> i128 {
-    match operation {
-        Arithmetic::Add => left + right,
-        Arithmetic::Sub => left - right,
-    }
-}
-
-/// Operation and operands of a strict cell as numbers, and the register's sign.
-fn numbers(watched: &Watched, seen: &Seen) -> Option<(Arithmetic, i128, i128, bool)> {
-    let Claim::NoOverflow { operation, left, right } = watched.property.claim else { return None };
-    let ((_, width, _, right_width), (a, b)) = watched.operands.zip(seen.operands)?;
-    let (a, b) = (bits::number(width, a, left.signed), bits::number(right_width, b, right.signed));
-    Some((operation, a, b, left.signed))
+/// What a property says of a result: the operator, both operands as numbers, the bits that are kept and their reading.
+fn numbers(watched: &Watched, seen: &Seen) -> Option<(Operator, i128, i128, Width, bool)> {
+    let ((_, left_width, _, right_width), (a, b)) = watched.operands.zip(seen.operands)?;
+    let (operator, left, right, width, signed) = match watched.property.claim {
+        Claim::NoOverflow { operation, left, right } => (operation.into(), left, right, left_width, left.signed),
+        Claim::Fits { operator, left, right, width, signed, .. } => (operator, left, right, width, signed),
+        Claim::Invariant => return None,
+    };
+    let (a, b) = (bits::number(left_width, a, left.signed), bits::number(right_width, b, right.signed));
+    Some((operator, a, b, width, signed))
 }
 
 fn event(watched: &Watched, seen: &Seen) -> OverflowEvent {
     let (component, clock) = (watched.property.name.clone(), seen.clock);
-    match (numbers(watched, seen), watched.operands) {
-        (Some((operation, left, right, signed)), Some((_, width, ..))) => {
+    match numbers(watched, seen) {
+        Some((operation, left, right, width, signed)) => {
             OverflowEvent::Overflow { component, width, signed, operation, left, right, clock }
         }
-        _ => OverflowEvent::Invariant { component, clock },
+        None => OverflowEvent::Invariant { component, clock },
     }
 }
 

@@ -10,6 +10,7 @@ mod source;
 
 use crate::bits::{Reading, Width};
 use crate::formula::Clause;
+pub use crate::operator::Operator;
 
 pub use memory::{HasMemories, Memory, WritePort};
 pub use source::Source;
@@ -283,6 +284,21 @@ pub enum Claim {
         left: Operand,
         /// What is added or subtracted.
         right: Operand,
+    },
+    /// An operator of imported hardware: what is kept of its exact result shows all of it, whenever the result is taken.
+    Fits {
+        /// Operator.
+        operator: Operator,
+        /// First operand.
+        left: Operand,
+        /// Second operand; constant 0 of a negation.
+        right: Operand,
+        /// Bits that are kept.
+        width: Width,
+        /// They are read as two's complement.
+        signed: bool,
+        /// The author announces that what does not fit is meant to be lost.
+        wraps: bool,
     },
     /// An invariant that the model's author claims.
     Invariant,

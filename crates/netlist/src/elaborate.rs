@@ -190,7 +190,7 @@ fn check_properties(netlist: &Netlist, report: &mut impl FnMut(Code, Place, Stri
         } else if netlist.width(property.never) != Width::ONE {
             report(Code::NotOneBit, place.clone(), "a property is 1 bit wide".to_owned());
         }
-        if let Claim::NoOverflow { left, right, .. } = property.claim
+        if let Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } = property.claim
             && left.net.max(right.net).index() >= count
         {
             report(Code::Order, place, "an operand of the property does not exist".to_owned());

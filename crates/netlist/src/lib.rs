@@ -32,6 +32,7 @@ pub mod dsl;
 mod elaborate;
 pub mod formula;
 mod nearest;
+mod operator;
 pub mod passes;
 mod rows;
 pub mod text;

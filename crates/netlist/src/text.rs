@@ -14,10 +14,13 @@
 //! between-steps "counter.x.even" count - 2 | -count
 //! ```
 //!
-//! `at` gives file, line and column of a cell's source. `name` ends in the format: `unsigned`, `signed`, `analog`, `binary` or `states 0x1 "JUDGE" 0x2 "FEED"`. `property`
+//! `at` gives file, line and column of a cell's source. `name` ends in the format: `unsigned`, `signed`, `analog`,
+//! `binary`, `decimal` or `states 0x1 "JUDGE" 0x2 "FEED"`.
 //! `memory 0 in 1 "ram" width 8 words 16` comes before the cells `read 0 %4`, followed by `initial 0 0x12 0x0*15`, its
 //! first words, and `write 0 enable %1 address %2 data %3 mask %4`, its ports; a mask may be missing. `property`
-//! ends in `invariant` or in the strict operation with its operands, `between-steps` in formulas with `|` between them.
+//! ends in `invariant`, in the strict operation with its operands, or in `fits`, the bits that are kept of a result, their
+//! reading, the operation with its operands, and `wraps` where a carry is meant to be lost; `between-steps` in formulas with
+//! `|` between them.
 //! Text in quotes is escaped as in Rust.
 
 mod memory;
@@ -132,6 +135,12 @@ impl fmt::Display for Netlist {
             write!(f, "property {:?} never {}", property.name, property.never)?;
             match property.claim {
                 Claim::Invariant => writeln!(f, " invariant")?,
+                Claim::Fits { operator, left, right, width, signed, wraps } => {
+                    let (l, r, own) = (reading(left.signed), reading(right.signed), reading(signed));
+                    let wraps = if wraps { " wraps" } else { "" };
+                    let (word, width) = (operator.name(), width.get());
+                    writeln!(f, " fits {width} {own} {word} {} {l} {} {r}{wraps}", left.net, right.net)?;
+                }
                 Claim::NoOverflow { operation, left, right } => {
                     let word = match operation {
                         Arithmetic::Add => "add",
@@ -241,9 +250,10 @@ impl Parser {
                 let never = words.net()?;
                 let claim = match words.word()? {
                     "invariant" => Claim::Invariant,
+                    "fits" => words.fits()?,
                     "add" => words.strict(Arithmetic::Add)?,
                     "sub" => words.strict(Arithmetic::Sub)?,
-                    _ => return Err("'invariant', 'add' or 'sub'".to_owned()),
+                    _ => return Err("'invariant', 'fits', 'add' or 'sub'".to_owned()),
                 };
                 self.netlist.properties.push(Property { name, never, claim });
             }

@@ -166,16 +166,25 @@ impl Names {
         scopes + &self.named[entry]
     }
 
-    /// The shortest path to an entry of `Netlist::names` from inside a scope; `None` where a name in between hides it.
+    /// A path to an entry of `Netlist::names` from inside a scope; `None` where a name in between hides it. It begins at the
+    /// innermost scope around both, or at the top where Yosys would not find a scope that comes later in a scope.
     pub(super) fn path_from(&self, netlist: &Netlist, entry: usize, from: ScopeId) -> Option<String> {
         let target = netlist.names[entry].scope;
         let common = self.common(from, target);
-        let down = &self.scope_path(target)[self.scope_path(common).len()..];
+        let inner = common != ScopeId::TOP && target != common;
+        let starts = if inner { [ScopeId::TOP, common] } else { [common, common] };
+        starts.into_iter().find_map(|start| self.path_below(netlist, entry, from, start))
+    }
+
+    /// The path to an entry from a scope around both it and the place where it is read.
+    fn path_below(&self, netlist: &Netlist, entry: usize, from: ScopeId, start: ScopeId) -> Option<String> {
+        let depth = self.scope_path(start).len();
+        let down = &self.scope_path(netlist.names[entry].scope)[depth..];
         let path: String = down.iter().map(|scope| format!("{}.", self.scopes[scope.index()])).collect();
         let path = path + &self.named[entry];
         let head = down.first().map_or(&self.named[entry], |scope| &self.scopes[scope.index()]);
         let head = head.trim_start_matches('\\').trim_end();
-        let between = &self.scope_path(from)[self.scope_path(common).len()..];
+        let between = &self.scope_path(from)[depth..];
         let hidden = between.iter().any(|scope| self.taken[scope.index()].contains(head));
         (!hidden).then_some(path)
     }

@@ -93,7 +93,7 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
 /// A property about other nets.
 pub fn move_property(property: &mut Property, go: impl Fn(Net) -> Net) {
     property.never = go(property.never);
-    if let Claim::NoOverflow { left, right, .. } = &mut property.claim {
+    if let Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } = &mut property.claim {
         for operand in [left, right] {
             operand.net = go(operand.net);
         }

@@ -3,7 +3,8 @@
 use std::str::CharIndices;
 
 use super::{BINARY, Expected};
-use crate::cells::{Arithmetic, Claim, Format, Net, Op, Operand};
+use crate::bits::Width;
+use crate::cells::{Arithmetic, Claim, Format, Net, Op, Operand, Operator};
 
 /// A number, written in digits and nothing else.
 pub(super) fn digits(word: &str, radix: u32) -> Option<u64> {
@@ -97,9 +98,26 @@ impl<'a> Words<'a> {
         }
     }
 
-    pub(super) fn strict(&mut self, operation: Arithmetic) -> Result<Claim, Expected> {
+    fn operands(&mut self) -> Result<(Operand, Operand), Expected> {
         let left = Operand { net: self.net()?, signed: self.signed()? };
-        let right = Operand { net: self.net()?, signed: self.signed()? };
+        Ok((left, Operand { net: self.net()?, signed: self.signed()? }))
+    }
+
+    pub(super) fn fits(&mut self) -> Result<Claim, Expected> {
+        let width = Width::new(self.number()?).map_err(|error| format!("a width of 1 to 64 bits ({error})"))?;
+        let (signed, word) = (self.signed()?, self.word()?);
+        let operator = Operator::ALL.into_iter().find(|operator| operator.name() == word);
+        let operator = operator.ok_or("'add', 'sub', 'neg', 'mul' or 'shift-left'")?;
+        let (left, right) = self.operands()?;
+        let wraps = !self.rest.is_empty();
+        if wraps {
+            self.keyword("wraps")?;
+        }
+        Ok(Claim::Fits { operator, left, right, width, signed, wraps })
+    }
+
+    pub(super) fn strict(&mut self, operation: Arithmetic) -> Result<Claim, Expected> {
+        let (left, right) = self.operands()?;
         Ok(Claim::NoOverflow { operation, left, right })
     }
 

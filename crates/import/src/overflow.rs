@@ -1,0 +1,388 @@
+//! Overflow events: an exact result that does not fit in the bits that are kept of it, in a clock in which it is taken.
+//!
+//! False alarms are what makes people switch such checks off, so:
+//! - only bits that something reads count as kept, and a carry that is read elsewhere is kept;
+//! - a result is taken where multiplexers and enables let it through into a register, an output or other logic:
+//!   `t == 9 ? 0 : t + 1` never takes what it drops;
+//! - what cannot overflow for any values of its operands has no event;
+//! - `(* stepwave_wraps *)` on the net or register announces that a carry is meant to be lost.
+
+use std::collections::{HashMap, HashSet};
+
+use stepwave_netlist::Net;
+use stepwave_netlist::bits::Width;
+use stepwave_netlist::cells::{Claim, Format, NamedNet, Operand, Operator, Property, ScopeData, ScopeId};
+
+use crate::cells::is_register;
+use crate::design::Design;
+use crate::json::{Cell, Wire};
+use crate::names::Scopes;
+use crate::word::Word;
+
+/// Attribute of a net or register whose carry is meant to be lost.
+const WRAPS: &str = "stepwave_wraps";
+
+/// A pin that reads bits of a cell.
+struct Reader<'a> {
+    cell: &'a Cell,
+    name: &'a str,
+    pin: &'a str,
+    /// Place of the bit on the pin.
+    at: usize,
+}
+
+/// Who reads each numbered net, and which nets are outputs of the design.
+pub(crate) struct Readers<'a> {
+    of: HashMap<u32, Vec<Reader<'a>>>,
+    /// When the result of a cell is taken, by its name; `None` while it is being worked out.
+    taken: HashMap<&'a str, Option<Net>>,
+    outputs: HashSet<u32>,
+    /// Bits that anything reads.
+    read: HashSet<u32>,
+}
+
+/// An operand as numbers: its word, its reading, and the numbers that it can be.
+struct Read {
+    word: Word,
+    signed: bool,
+    least: i128,
+    greatest: i128,
+}
+
+fn is_constant(wires: &[Wire]) -> bool {
+    wires.iter().all(|wire| matches!(wire, Wire::Constant(_)))
+}
+
+/// Read as signed: the cell is, or the upper bits are copies of one net, or it is a constant of mostly leading ones.
+fn is_signed(wires: &[Wire], cell_signed: bool) -> bool {
+    if cell_signed {
+        return true;
+    }
+    let Some(top) = wires.last() else { return false };
+    let copies = wires.iter().rev().take_while(|wire| *wire == top).count();
+    match top {
+        Wire::Net(_) => copies > 1,
+        Wire::Constant(text) => text == "1" && wires.len() > 1 && is_constant(wires) && 2 * copies > wires.len(),
+    }
+}
+
+/// The inputs of multiplexers that are handed on to a bit.
+fn handed_on(cell: &Cell) -> impl Iterator<Item = (&Wire, &Wire)> {
+    let y = cell.pin("Y");
+    let pins = if is_multiplexer(cell) { ["A", "B"] } else { ["", ""] };
+    pins.into_iter().flat_map(move |pin| cell.pin(pin).iter().zip(y.iter().cycle()))
+}
+
+fn is_multiplexer(cell: &Cell) -> bool {
+    matches!(cell.kind.as_str(), "$mux" | "$pmux")
+}
+
+impl Readers<'_> {
+    /// Finds the bits that anything reads: what a multiplexer hands on counts where its result is read.
+    fn find_read<'c>(&mut self, cells: impl Iterator<Item = &'c Cell> + Clone) {
+        let mut from: HashMap<u32, Vec<u32>> = HashMap::new();
+        for (input, output) in cells.flat_map(handed_on) {
+            if let (Wire::Net(input), Wire::Net(output)) = (input, output) {
+                from.entry(*output).or_default().push(*input);
+            }
+        }
+        let outright = |reader: &Reader<'_>| !is_multiplexer(reader.cell) || reader.pin == "S";
+        let read = self.of.iter().filter(|(_, all)| all.iter().any(outright)).map(|(net, _)| *net);
+        let mut pending: Vec<u32> = read.chain(self.outputs.iter().copied()).collect();
+        while let Some(net) = pending.pop() {
+            if self.read.insert(net) {
+                pending.extend(from.get(&net).into_iter().flatten());
+            }
+        }
+    }
+
+    fn is_read(&self, wire: &Wire) -> bool {
+        matches!(wire, Wire::Net(net) if self.read.contains(net))
+    }
+}
+
+impl<'a> Design<'a> {
+    /// Who reads what.
+    pub(crate) fn readers(&self) -> Readers<'a> {
+        let mut of: HashMap<u32, Vec<Reader<'a>>> = HashMap::new();
+        let module = self.module;
+        for (name, cell) in &module.cells {
+            for (pin, wires) in
+                cell.connections.iter().filter(|(pin, _)| !matches!(pin.as_str(), "Y" | "Q" | "RD_DATA"))
+            {
+                for (at, wire) in wires.iter().enumerate() {
+                    if let Wire::Net(net) = wire {
+                        of.entry(*net).or_default().push(Reader { cell, name, pin, at });
+                    }
+                }
+            }
+        }
+        let ports = module.ports.values().filter(|port| port.direction == "output");
+        let outputs = ports.flat_map(|port| &port.bits).filter_map(|wire| match wire {
+            Wire::Net(net) => Some(*net),
+            Wire::Constant(_) => None,
+        });
+        let (taken, outputs, read) = (HashMap::new(), outputs.collect(), HashSet::new());
+        let mut readers = Readers { of, taken, outputs, read };
+        readers.find_read(module.cells.values());
+        readers
+    }
+
+    /// A property for every operator whose result may not fit.
+    pub(crate) fn overflows(&mut self, scopes: &mut Scopes) {
+        let mut readers = self.readers();
+        let module = self.module;
+        let arithmetic = |kind: &str| matches!(kind, "$add" | "$sub" | "$neg" | "$mul" | "$shl" | "$sshl");
+        let mut flags: Vec<(String, Net)> = Vec::new();
+        for (name, cell) in module.cells.iter().filter(|(_, cell)| arithmetic(&cell.kind)) {
+            let y = cell.pin("Y");
+            let kept = y.iter().rposition(|wire| readers.is_read(wire)).map_or(0, |last| last + 1);
+            self.at(cell);
+            let target = self.target(&y[..kept], &readers);
+            if let Some((never, claim)) = self.lost(name, cell, kept, &target, &mut readers) {
+                let operator = cell.kind.trim_start_matches('$');
+                let place = cell.place().map_or_else(|| name.clone(), |place| format!("{}:{}", place.file, place.line));
+                let target = if target.name.is_empty() { format!("{place} {operator}") } else { target.name };
+                let path = format!("{}.{target}", self.builder.netlist.scopes[0].name);
+                flags.push((target, never));
+                self.builder.netlist.properties.push(Property { name: path, never, claim });
+            }
+        }
+        if flags.is_empty() {
+            return;
+        }
+        let (_, own) = scopes.place(&mut self.builder.netlist.scopes, "overflow");
+        let scope = ScopeId(u32::try_from(self.builder.netlist.scopes.len()).unwrap_or(u32::MAX));
+        self.builder.netlist.scopes.push(ScopeData { parent: Some(ScopeId::TOP), name: own });
+        for (name, net) in flags {
+            let name = scopes.fresh(scope, &crate::names::cleaned(&name));
+            self.builder.netlist.names.push(NamedNet { net, scope, name, format: Format::Unsigned });
+        }
+    }
+
+    /// When an operator loses something of its exact result, and what is claimed; `None` where it never does.
+    fn lost(
+        &mut self,
+        name: &'a str,
+        cell: &'a Cell,
+        kept: usize,
+        target: &Target,
+        readers: &mut Readers<'a>,
+    ) -> Option<(Net, Claim)> {
+        let width = Width::new(kept as u64).ok()?;
+        let operator = match cell.kind.as_str() {
+            "$add" => Operator::Add,
+            "$sub" => Operator::Sub,
+            "$neg" => Operator::Neg,
+            "$mul" => Operator::Mul,
+            _ => Operator::ShiftLeft,
+        };
+        let shift = operator == Operator::ShiftLeft;
+        let both = cell.flag("A_SIGNED") && (operator == Operator::Neg || shift || cell.flag("B_SIGNED"));
+        let a = self.operand_read(cell.pin("A"), is_signed(cell.pin("A"), both))?;
+        let b = match operator {
+            Operator::Neg => self.operand_read(&[Wire::Constant("0".to_owned())], false)?,
+            _ => self.operand_read(cell.pin("B"), is_signed(cell.pin("B"), both && !shift) && !shift)?,
+        };
+        let (least, greatest) = width.range(target.signed);
+        let (low, high) = operator.range([a.least, a.greatest], [b.least, b.greatest])?;
+        if least <= low && high <= greatest {
+            return None;
+        }
+        let outside = self.outside(operator, &a, &b, kept, target.signed)?;
+        let taken = self.cell_taken(name, cell, readers);
+        let never = self.builder.and(outside, taken);
+        let operand = |read: &Read| {
+            (read.word.parts.len() == 1).then(|| Operand { net: read.word.parts[0], signed: read.signed })
+        };
+        let claim = match operand(&a).zip(operand(&b)) {
+            Some((left, right)) => {
+                Claim::Fits { operator, left, right, width, signed: target.signed, wraps: target.wraps }
+            }
+            None => Claim::Invariant,
+        };
+        Some((never, claim))
+    }
+
+    fn operand_read(&mut self, wires: &[Wire], signed: bool) -> Option<Read> {
+        if wires.is_empty() || wires.len() > 63 {
+            return None;
+        }
+        let word = self.word(wires);
+        let (least, greatest) = if is_constant(wires) {
+            let value = wires
+                .iter()
+                .rev()
+                .fold(0u64, |value, wire| value << 1 | u64::from(*wire == Wire::Constant("1".to_owned())));
+            let width = Width::new(wires.len() as u64).ok()?;
+            let value = stepwave_netlist::bits::number(width, value, signed);
+            (value, value)
+        } else {
+            // Zeros above are no part of the number.
+            let zeros = wires.iter().rev().take_while(|wire| **wire == Wire::Constant("0".to_owned())).count();
+            let width = Width::new((wires.len() - if signed { 0 } else { zeros }) as u64).ok()?;
+            width.range(signed)
+        };
+        Some(Read { word, signed, least, greatest })
+    }
+
+    /// The exact result is outside of what the kept bits show.
+    fn outside(&mut self, operator: Operator, a: &Read, b: &Read, kept: usize, signed: bool) -> Option<Net> {
+        let kept = u32::try_from(kept).ok()?;
+        if operator == Operator::ShiftLeft {
+            // Shifted there and back: something is lost where another number comes out.
+            let wide = a.word.width.max(kept) + 1;
+            let x = self.builder.fit(&a.word, wide, a.signed);
+            let there = self.builder.shift(&x, &b.word, true, false);
+            let there = self.builder.fit(&there, kept, signed);
+            let there = self.builder.fit(&there, wide, signed);
+            let back = self.builder.shift(&there, &b.word, false, signed);
+            let same = self.builder.equal(&back, &x);
+            // An amount beyond the word shifts everything out, which comes back as 0.
+            let limit = self.builder.number(u64::from(kept), b.word.width.max(8));
+            let amount = self.builder.fit(&b.word, b.word.width.max(8), false);
+            let small = self.builder.less(&amount, &limit, false);
+            let any = self.builder.any(&x);
+            let (large, changed) = (self.builder.invert(small), self.builder.invert(same));
+            let gone = self.builder.and(large, any);
+            return Some(self.builder.or(changed, gone));
+        }
+        let wide = match operator {
+            Operator::Mul => a.word.width + b.word.width + 2,
+            _ => a.word.width.max(b.word.width) + 2,
+        };
+        let wide = wide.max(kept + 1);
+        let x = self.builder.fit(&a.word, wide, a.signed);
+        let y = self.builder.fit(&b.word, wide, b.signed);
+        let exact = match operator {
+            Operator::Add => self.builder.add(&x, &y, None).0,
+            Operator::Sub => self.builder.sub(&x, &y),
+            Operator::Neg => self.builder.negate(&x),
+            _ => self.builder.mul(&x, &y),
+        };
+        let cut = self.builder.fit(&exact, kept, false);
+        let shown = self.builder.fit(&cut, wide, signed);
+        let same = self.builder.equal(&shown, &exact);
+        Some(self.builder.invert(same))
+    }
+
+    /// What the result of a cell is for.
+    fn target(&self, bits: &[Wire], readers: &Readers<'a>) -> Target {
+        let of = |bits: &[Wire]| {
+            let mut names = self.module.netnames.iter().filter(|(_, name)| !name.is_hidden());
+            let found = names.find(|(_, name)| {
+                name.bits.starts_with(bits) || bits.starts_with(&name.bits) && name.bits.len() + 1 >= bits.len()
+            });
+            found.map(|(name, of)| Target { name: name.clone(), signed: of.is_signed(), wraps: of.has(WRAPS) })
+        };
+        let mut bits = bits.to_vec();
+        for _ in 0..16 {
+            let Some(Wire::Net(first)) = bits.first().cloned() else { break };
+            if let Some(target) = of(&bits) {
+                return target;
+            }
+            // Through multiplexers, extensions and into the register.
+            let Some(reader) = readers.of.get(&first).and_then(|all| all.iter().find(|reader| passes(reader))) else {
+                break;
+            };
+            let out = if is_register(&reader.cell.kind) { reader.cell.pin("Q") } else { reader.cell.pin("Y") };
+            let low = if reader.cell.kind == "$pmux" { reader.at % out.len().max(1) } else { reader.at };
+            bits = out.iter().skip(low).take(bits.len()).cloned().collect();
+        }
+        Target { name: String::new(), signed: false, wraps: false }
+    }
+
+    /// When the result of a cell is taken.
+    fn cell_taken(&mut self, name: &'a str, cell: &'a Cell, readers: &mut Readers<'a>) -> Net {
+        let always = self.builder.number(1, 1).parts[0];
+        match readers.taken.get(name) {
+            Some(Some(net)) => return *net,
+            Some(None) => return always,
+            None => {}
+        }
+        readers.taken.insert(name, None);
+        let mut all: Vec<(&'a str, &'a str, &'a Cell, usize)> = Vec::new();
+        let mut output = false;
+        for wire in cell.pin("Y") {
+            let Wire::Net(net) = wire else { continue };
+            output |= readers.outputs.contains(net);
+            let width = |reader: &Reader<'a>| reader.cell.pin("Y").len().max(1);
+            // Of a multiplexer with several inputs, which of them.
+            let slot = |reader: &Reader<'a>| {
+                if reader.cell.kind == "$pmux" && reader.pin == "B" { reader.at / width(reader) } else { 0 }
+            };
+            all.extend(
+                readers
+                    .of
+                    .get(net)
+                    .into_iter()
+                    .flatten()
+                    .map(|reader| (reader.name, reader.pin, reader.cell, slot(reader))),
+            );
+        }
+        all.sort_by_key(|(name, pin, _, slot)| (*name, *pin, *slot));
+        all.dedup_by_key(|(name, pin, _, slot)| (*name, *pin, *slot));
+        let mut taken = self.builder.number(u64::from(output), 1).parts[0];
+        for (name, pin, reader, slot) in all {
+            let own = self.reader_takes(name, pin, reader, slot, readers);
+            taken = self.builder.or(taken, own);
+        }
+        readers.taken.insert(name, Some(taken));
+        taken
+    }
+
+    /// When a pin takes what is on it.
+    fn reader_takes(
+        &mut self,
+        name: &'a str,
+        pin: &str,
+        cell: &'a Cell,
+        slot: usize,
+        readers: &mut Readers<'a>,
+    ) -> Net {
+        let always = self.builder.number(1, 1).parts[0];
+        let chosen = match (cell.kind.as_str(), pin) {
+            ("$mux", "A" | "B") | ("$pmux", "A") => {
+                let select = self.word(cell.pin("S"));
+                let any = self.builder.any(&select);
+                if pin == "A" { self.builder.invert(any) } else { any }
+            }
+            ("$pmux", "B") => {
+                let Some(select) = cell.pin("S").get(slot) else { return always };
+                self.word(std::slice::from_ref(select)).parts[0]
+            }
+            (kind, "D") if is_register(kind) => return self.clocked_in(cell),
+            _ => return always,
+        };
+        let after = self.cell_taken(name, cell, readers);
+        self.builder.and(chosen, after)
+    }
+
+    /// A register takes its data at the next edge.
+    fn clocked_in(&mut self, cell: &Cell) -> Net {
+        let mut taken = self.builder.number(1, 1).parts[0];
+        for (pin, active) in [("EN", true), ("SRST", false), ("ARST", false), ("ALOAD", false)] {
+            if let Some(net) = self.control(cell, pin) {
+                let net = if active { net } else { self.builder.invert(net) };
+                taken = self.builder.and(taken, net);
+            }
+        }
+        taken
+    }
+}
+
+/// What a result drives: its name, its declared sign, and whether it is announced to wrap.
+struct Target {
+    name: String,
+    signed: bool,
+    wraps: bool,
+}
+
+/// A pin that hands a word on unchanged.
+fn passes(reader: &Reader<'_>) -> bool {
+    match reader.cell.kind.as_str() {
+        "$mux" | "$pmux" => reader.pin != "S",
+        "$pos" => true,
+        kind => is_register(kind) && reader.pin == "D",
+    }
+}

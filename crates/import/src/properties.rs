@@ -1,0 +1,38 @@
+//! Assertions of the source become properties; assumptions and covers are noted.
+
+use stepwave_netlist::cells::{Claim, Property};
+
+use crate::design::{Design, is_property};
+use crate::json::Cell;
+
+/// What a cell claims: `assert`, `assume`, `cover`, …
+fn flavour(cell: &Cell) -> &str {
+    match cell.kind.as_str() {
+        "$check" => cell.text("FLAVOR").unwrap_or("assert").trim(),
+        kind => kind.trim_start_matches('$'),
+    }
+}
+
+impl Design<'_> {
+    /// A property for every assertion: its condition is 0 while it is enabled.
+    pub(crate) fn assertions(&mut self) {
+        let module = self.module;
+        for (name, cell) in module.cells.iter().filter(|(_, cell)| is_property(&cell.kind)) {
+            let place = cell.place().map_or_else(|| name.clone(), |place| format!("{}:{}", place.file, place.line));
+            let flavour = flavour(cell);
+            if flavour != "assert" {
+                self.notes.push(format!("{flavour} at {place} is not looked at"));
+                continue;
+            }
+            self.at(cell);
+            let [condition, enable] = ["A", "EN"].map(|pin| self.word(cell.pin(pin)).parts[0]);
+            let broken = self.builder.invert(condition);
+            let never = self.builder.and(broken, enable);
+            self.builder.netlist.properties.push(Property {
+                name: format!("assert at {place}"),
+                never,
+                claim: Claim::Invariant,
+            });
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! `stepwave import`, `check` and `sim`: hardware of one's own.
+
+use crate::Error;
+use crate::cli::{CheckArgs, ImportArgs, SimArgs};
+use crate::netlist::elaborate;
+use crate::output::{self, Outputs};
+use crate::own::{Sim, Source, Stimulus, checked, read_netlist, read_text, summary, yosys_json};
+
+/// Most bytes of JSON.
+const MOST_JSON: u64 = 1 << 31;
+/// Most bytes of a stimulus.
+const MOST_CSV: u64 = 1 << 30;
+
+/// Writes the netlist of a design.
+pub(crate) fn import(args: &ImportArgs) -> Result<(), Error> {
+    let mut outputs = Outputs::reading(args.files.iter().chain(&args.json));
+    let text = match &args.json {
+        Some(path) => read_text(path, MOST_JSON)?,
+        None => yosys_json(&Source {
+            files: args.files.clone(),
+            top: args.top.clone().unwrap_or_default(),
+            parameters: args.param.clone(),
+            include: args.include.clone(),
+            define: args.define.clone(),
+            yosys: args.yosys.clone(),
+            ghdl: args.ghdl.clone(),
+        })?,
+    };
+    // The module that Yosys marks as top has its parameters in its name.
+    let top = args.json.as_ref().and(args.top.clone());
+    let imported = stepwave_import::import(&text, &stepwave_import::Options { top, unknown: args.x })?;
+    let design = elaborate(imported.netlist)?;
+    outputs.write(&args.output, &design.netlist().to_string())?;
+    let quiet = outputs.uses_stdout();
+    outputs.commit()?;
+    if quiet {
+        return Ok(());
+    }
+    let mut text = summary(design.netlist(), &design) + "\n";
+    if let Some(clock) = imported.clock {
+        let edge = if clock.rising { "rising" } else { "falling" };
+        text += &format!("clock: the {edge} edge of {}\n", clock.name);
+    }
+    for note in imported.notes {
+        text += &format!("note: {note}\n");
+    }
+    output::print(&text)
+}
+
+/// Lists the mistakes of a netlist.
+pub(crate) fn check(args: &CheckArgs) -> Result<(), Error> {
+    match checked(&args.file)? {
+        Ok(design) => output::print(&(summary(design.netlist(), &design) + "\n")),
+        Err(mistakes) => {
+            let file = args.file.display();
+            Err(Error::Extract(mistakes.iter().map(|mistake| format!("{file}: {mistake}\n")).collect()))
+        }
+    }
+}
+
+/// Runs a netlist by a stimulus.
+pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
+    if args.trace.steps {
+        let file = args.file.display();
+        return Err(Error::Invalid(format!(
+            "--trace-steps: {file} has no steps, as it is no interpolator; leave it out"
+        )));
+    }
+    let design = read_netlist(&args.file)?;
+    let set = args.set.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+    let mut stimulus = Stimulus::constants(&design, set).map_err(|error| Error::Invalid(error.to_string()))?;
+    if let Some(path) = &args.stimulus {
+        let of_file = |error: &dyn std::fmt::Display| Error::Invalid(format!("{}: {error}", path.display()));
+        stimulus = stimulus.table(&design, &read_text(path, MOST_CSV)?).map_err(|error| of_file(&error))?;
+    }
+    let mut outputs = Outputs::reading([&args.file].into_iter().chain(&args.stimulus));
+    let sim = Sim::new(design, stimulus, args.clocks)
+        .engine(args.engine)
+        .clock_hz(args.clock.clock_hz)
+        .strict(args.strict.clone())
+        .wraps(&args.wraps)?
+        .waves(args.trace.clone())
+        .json(args.json.clone());
+    let report = sim.staged(&mut outputs)?;
+    let quiet = outputs.uses_stdout();
+    outputs.commit()?;
+    let events = report.events();
+    if !quiet {
+        let mut text = format!("{} clocks", report.clocks);
+        text += &match events.len() {
+            0 => "; no property was violated\n".to_owned(),
+            1 => "; 1 property was violated\n".to_owned(),
+            count => format!("; {count} properties were violated\n"),
+        };
+        for event in &events {
+            text += &format!("warning: {event}\n");
+        }
+        output::print(&text)?;
+    }
+    let failures = report.failures();
+    if failures.is_empty() { Ok(()) } else { Err(Error::Check(failures)) }
+}

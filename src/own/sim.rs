@@ -1,0 +1,266 @@
+//! The recipe of a run without a geometry: netlist and stimulus in; wave and report out.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use globset::{Glob, GlobMatcher};
+use serde_json::json;
+
+use crate::Error;
+use crate::engine::{EngineKind, Rows, Stop, Watch};
+use crate::netlist::cells::{Claim, Property};
+use crate::netlist::{Design, Net, elaborate};
+use crate::output::Outputs;
+use crate::testbench::{Columns, Observer, OverflowEvent, OverflowTally, OverflowWatch};
+use crate::trace::timescale::ClockTime;
+use crate::waves::{Shown, Sinks, WaveOptions, Waves};
+
+use super::Stimulus;
+
+/// Samples held between engine and observers.
+const CHUNK: usize = 256;
+
+/// A run of a netlist by a stimulus.
+#[derive(Clone, Debug)]
+#[must_use = "nothing is simulated before `run`"]
+pub struct Sim {
+    design: Design,
+    stimulus: Stimulus,
+    clocks: u64,
+    engine: EngineKind,
+    clock_hz: f64,
+    strict: Vec<String>,
+    waves: WaveOptions,
+    json: Option<PathBuf>,
+}
+
+/// What a run came to.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SimReport {
+    /// Edges of the clock.
+    pub clocks: u64,
+    /// It ended before, at a violation of a property that was to be strict.
+    pub trapped: bool,
+    /// The violations of each property that had some.
+    pub tallies: Vec<OverflowTally>,
+    /// The value of each named net in the last sample, in binary, by its path.
+    pub last: Vec<(String, String)>,
+}
+
+impl Sim {
+    /// A run over this many edges of the clock, with a clock of 1 MHz, on the compiled engine.
+    pub fn new(design: Design, stimulus: Stimulus, clocks: u64) -> Sim {
+        let (engine, waves) = (EngineKind::Compiled, WaveOptions::default());
+        Sim { design, stimulus, clocks, engine, clock_hz: 1e6, strict: Vec::new(), waves, json: None }
+    }
+
+    /// On this engine. All give the same samples.
+    pub fn engine(self, engine: EngineKind) -> Sim {
+        Sim { engine, ..self }
+    }
+
+    /// With a clock of this frequency in Hz: the time axis of waves.
+    pub fn clock_hz(self, hz: f64) -> Sim {
+        Sim { clock_hz: hz, ..self }
+    }
+
+    /// Ended at the first violation of a property whose path matches one of these globs.
+    pub fn strict(self, globs: Vec<String>) -> Sim {
+        Sim { strict: globs, ..self }
+    }
+
+    /// What the properties whose path matches one of these globs lose is announced: it is shown as a flag, and not reported.
+    ///
+    /// # Errors
+    /// A glob matches nothing.
+    pub fn wraps(mut self, globs: &[String]) -> Result<Sim, Error> {
+        let mut netlist = self.design.netlist().clone();
+        for glob in globs {
+            let nets: Vec<Net> =
+                matching("--wraps", glob, &netlist.properties)?.iter().map(|found| found.never).collect();
+            for property in netlist.properties.iter_mut().filter(|property| nets.contains(&property.never)) {
+                if let Claim::Fits { wraps, .. } = &mut property.claim {
+                    *wraps = true;
+                }
+            }
+        }
+        self.design = elaborate(netlist)?;
+        Ok(self)
+    }
+
+    /// With these waves.
+    pub fn waves(self, waves: WaveOptions) -> Sim {
+        Sim { waves, ..self }
+    }
+
+    /// With the report as JSON in this file.
+    pub fn json(self, path: Option<PathBuf>) -> Sim {
+        Sim { json: path, ..self }
+    }
+
+    /// Simulates, and writes every file that is asked for: all of them or none.
+    ///
+    /// # Errors
+    /// A glob matches nothing, or a file cannot be written.
+    pub fn run(&self) -> Result<SimReport, Error> {
+        let mut outputs = Outputs::default();
+        let report = self.staged(&mut outputs)?;
+        outputs.commit()?;
+        Ok(report)
+    }
+
+    pub(crate) fn staged(&self, outputs: &mut Outputs) -> Result<SimReport, Error> {
+        let time = ClockTime::from_hz(self.clock_hz)?;
+        let columns = Columns::of_design(&self.design);
+        let shown = Shown { design: &self.design, columns: &columns, steps: None };
+        let sinks = Sinks::open(&self.waves, outputs)?;
+        let json = self.json.as_deref().map(|path| outputs.open(path)).transpose()?;
+        let title = format!("{}; {} clocks", self.design.netlist().scopes[0].name, self.clocks);
+        let mut waves = sinks.map(|sinks| Waves::new(shown, &self.waves, sinks, time, &title)).transpose()?;
+        let mut overflow = OverflowWatch::of(self.design.netlist(), &columns);
+        let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow];
+        observers.extend(waves.iter_mut().flat_map(Waves::observers));
+        let Run { clocks, trapped, last } = self.clocked(&columns, &mut observers)?;
+        drop(observers);
+        if let Some(waves) = waves {
+            waves.finish(&overflow.events(), clocks, outputs)?;
+        }
+        let report = SimReport { clocks, trapped, tallies: overflow.tallies(), last };
+        if let Some(mut sink) = json {
+            writeln!(sink, "{:#}", self.report_json(&report))?;
+            sink.flush()?;
+        }
+        Ok(report)
+    }
+
+    /// Properties that end the run.
+    fn stops(&self) -> Result<Vec<Net>, Error> {
+        let mut stops = Vec::new();
+        for glob in &self.strict {
+            let found = matching("--strict", glob, &self.design.netlist().properties)?;
+            stops.extend(found.iter().map(|property| property.never));
+        }
+        Ok(stops)
+    }
+
+    /// Runs the clock.
+    fn clocked(&self, columns: &Columns, observers: &mut [&mut dyn Observer]) -> Result<Run, Error> {
+        let watch = Watch { columns: columns.nets().to_vec(), stops: self.stops()? };
+        let mut engine = self.engine.build(&self.design, &watch);
+        let mut rows = Rows::new(watch.columns.len(), CHUNK);
+        let stimulus = &self.stimulus;
+        stimulus.held().chain(stimulus.row(0)).for_each(|(net, value)| engine.set_input(net, value));
+        engine.reset(&mut rows);
+        let mut trapped = watch.stops.iter().any(|&net| engine.value(net) == 1);
+        while engine.clock() < self.clocks && !trapped {
+            let next = usize::try_from(engine.clock() + 1).unwrap_or(usize::MAX);
+            let left = self.clocks - engine.clock();
+            let burst = if next < stimulus.rows() {
+                stimulus.row(next).for_each(|(net, value)| engine.set_input(net, value));
+                1
+            } else {
+                left
+            };
+            if rows.is_full() {
+                drain(&mut rows, observers)?;
+            }
+            trapped = matches!(engine.run(burst, &mut rows), Stop::Net(_));
+        }
+        drain(&mut rows, observers)?;
+        let netlist = self.design.netlist();
+        let last = netlist.names.iter().map(|named| {
+            let width = netlist.width(named.net).get() as usize;
+            (netlist.path(named), format!("{:0width$b}", engine.value(named.net)))
+        });
+        Ok(Run { clocks: engine.clock(), trapped, last: last.collect() })
+    }
+
+    fn report_json(&self, report: &SimReport) -> serde_json::Value {
+        let events = report.tallies.iter().map(|tally| {
+            json!({
+                "name": tally.first.component(),
+                "first_clock": tally.first.clock(),
+                "count": tally.count,
+                "needed_width": tally.needed,
+                "source": tally.source,
+                "text": tally.first.to_string(),
+            })
+        });
+        json!({
+            "schema": 1,
+            "design": self.design.netlist().scopes[0].name,
+            "engine": self.engine.name(),
+            "clock_hz": self.clock_hz,
+            "clocks": report.clocks,
+            "ending": if report.trapped { "trapped" } else { "done" },
+            "events": events.collect::<Vec<_>>(),
+            "last": report.last.iter().map(|(path, bits)| (path.clone(), json!(bits))).collect::<serde_json::Map<_, _>>(),
+        })
+    }
+}
+
+/// How a run ended: after how many edges, whether by a trap, and what every name had then, in binary.
+struct Run {
+    clocks: u64,
+    trapped: bool,
+    last: Vec<(String, String)>,
+}
+
+fn drain(rows: &mut Rows, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
+    for observer in observers.iter_mut() {
+        observer.samples(rows)?;
+    }
+    rows.clear();
+    Ok(())
+}
+
+/// The first violation, with the line of the source.
+fn placed(tally: &OverflowTally) -> String {
+    match &tally.source {
+        Some(source) => format!("{source}: {}", tally.first),
+        None => tally.first.to_string(),
+    }
+}
+
+/// The property has this path, or this name, by a glob.
+fn named(glob: &GlobMatcher, property: &Property) -> bool {
+    let leaf = property.name.rsplit('.').next().unwrap_or_default();
+    let inner = property.name.split_once('.').map_or("", |(_, inner)| inner);
+    [property.name.as_str(), inner, leaf].iter().any(|name| glob.is_match(name))
+}
+
+/// The properties that a glob of an option names.
+fn matching<'p>(option: &str, text: &str, properties: &'p [Property]) -> Result<Vec<&'p Property>, Error> {
+    let glob = Glob::new(text).map_err(|error| Error::Invalid(format!("{option} {text}: {error}")))?.compile_matcher();
+    let found: Vec<&Property> = properties.iter().filter(|property| named(&glob, property)).collect();
+    if found.is_empty() {
+        let names: Vec<&str> = properties.iter().map(|property| property.name.as_str()).collect();
+        let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        return Err(Error::Invalid(format!("{option} {text} matches no property; there are: {names}")));
+    }
+    Ok(found)
+}
+
+impl SimReport {
+    /// Sentences about what the hardware did wrong: properties that were violated.
+    #[must_use]
+    pub fn events(&self) -> Vec<String> {
+        let times = |count: u64| if count == 1 { "once".to_owned() } else { format!("{count} times") };
+        let shown = |tally: &OverflowTally| {
+            let all = tally.needed.map_or_else(String::new, |bits| format!(", {bits} bits would hold all"));
+            let all = if tally.count > 1 { all } else { String::new() };
+            format!("{} ({}{all})", placed(tally), times(tally.count))
+        };
+        self.tallies.iter().map(shown).collect()
+    }
+
+    /// Sentences that say what is wrong with the hardware: a trap, an assertion that did not hold.
+    #[must_use]
+    pub fn failures(&self) -> Vec<String> {
+        let invariant = |tally: &&OverflowTally| matches!(tally.first, OverflowEvent::Invariant { .. });
+        let last = self.tallies.iter().max_by_key(|tally| tally.first.clock());
+        let trap = last.filter(|_| self.trapped && !self.tallies.iter().any(|tally| invariant(&tally))).map(placed);
+        trap.into_iter().chain(self.tallies.iter().filter(invariant).map(placed)).collect()
+    }
+}

