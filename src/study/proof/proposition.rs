@@ -23,7 +23,7 @@ use crate::study::Extent;
 ///
 /// let narrow = Proposition::of(find("ppc-line")?).narrower("f", 1).prove(&Effort::default())?;
 /// let example = narrow.counterexample().ok_or("no counterexample")?;
-/// assert_eq!(example.k, 1);
+/// assert_eq!(example.k, 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
