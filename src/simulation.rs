@@ -228,7 +228,7 @@ impl Simulation {
     ///
     /// # Errors
     /// The model does not take the curve or the options, the program is wrong, a load word does not fit, or a file cannot be
-    /// read or written. What the hardware does wrong is no error: [`Report::failures`] names it.
+    /// read or written. What the hardware does wrong is not an error: [`Report::failures`] names it.
     pub fn run(&self) -> Result<Report, Error> {
         let mut outputs = self.outputs();
         let ran = self.run_on(self.lean(self.prepare()?.bench), &mut outputs, |_, _| Ok(()))?;

@@ -24,7 +24,7 @@ pub enum CurveKind {
     Arc,
     /// Arcs of ellipses, parabolas and hyperbolas in the plane.
     Conic,
-    /// Circular arcs in the plane with a way in z.
+    /// Circular arcs in the plane with a displacement in z.
     Helix,
     /// What a program is made of: lines of 2 or 3 axes, circular arcs in the plane, and helices.
     Move,

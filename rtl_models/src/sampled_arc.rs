@@ -9,8 +9,8 @@
 //!   └────────────┘               └─► side of the end
 //! ```
 //!
-//! n bits hold 1.25·R and some BLU, q is `--fraction`, and 2^k is greater than the way of any period. The signs of px and
-//! py are all that tells quadrants apart; nothing is reloaded at the axes.
+//! n bits hold 1.25·R and some BLU, q is `--fraction`, and 2^k is greater than the displacement of any period. The signs of px and
+//! py are all that distinguishes quadrants; nothing is reloaded at the axes.
 //!
 //! - `7m` (T = 8 ms): of the smaller coordinate u and the larger v, where both grow away from each other,
 //!   tan α = (u + ½f·cos 45°)/(v - ½f·sin 45°), and u moves by f·cos α = f/√(1 + tan² α). The larger becomes √(R² - u²):
@@ -22,8 +22,8 @@
 //!
 //! The fine stage takes the points rounded to the nearest pulse; the fraction stays in the point. The last period is the
 //! one that passes the radius to the end point: before it xe·y - ye·x, which the multiplier gives in every period, has
-//! the sign of a point in front of the end, and behind it no longer. It takes what is left, so that the end is exact. An
-//! arc that starts behind the radius of its end, or on it, goes once around.
+//! the sign of a point before the end, and after it no longer. It takes what is left, so that the end is exact. An
+//! arc that starts after the radius of its end, or on it, goes once around.
 //!
 //! The chord of a period leaves the arc by f²/(8R): steps for which that is more than `--tolerance`, or which are longer
 //! than R/2, are refused.
@@ -35,7 +35,7 @@
 //! row of the step table.
 //!
 //! A quarter of the circle of 10 BLU with 4 BLU a period, from the golden file `waves/sampled-arc-7m.csv`; the wave
-//! stands next to it:
+//! is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/sampled-arc-7m.csv")]
@@ -170,8 +170,8 @@ fn by_direction(coarse: Coarse<'_>) -> Vec<Row<'_>> {
     let one = m.lit(1, 1).concat(m.lit(2 * p, 0)).extend(2 * bits);
     let above_one = product.slice(0, 2 * p + 2).extend(2 * bits).wrapping_add(one);
     let driven = drives_x.q.mux(x, y);
-    let way = quotient.slice(0, f.bits()).extend(bits + 1).as_signed();
-    let moved = backwards.q.mux(driven.wrapping_sub(way), driven.wrapping_add(way));
+    let chord = quotient.slice(0, f.bits()).extend(bits + 1).as_signed();
+    let moved = backwards.q.mux(driven.wrapping_sub(chord), driven.wrapping_add(chord));
     let found = with_sign(m, root, bits + 1, other_negative.q);
     let drive = [(px, drives_x.q.mux(moved, x)), (py, drives_x.q.mux(y, moved))];
     let follow = [(px, drives_x.q.mux(x, found)), (py, drives_x.q.mux(found, y))];
@@ -204,8 +204,8 @@ fn by_step_factor<'m>(coarse: Coarse<'m>) -> (Vec<Row<'m>>, [Register<'m>; 2]) {
         plus(from.q, half, subtract)
     };
     let step = |axis: Register<'m>, rest: Register<'m>, middle: Register<'m>, against| {
-        let way = product.extend(2 * bits + 1).as_signed();
-        let sum = plus(axis.q.concat(rest.q), way, middle.q.msb() ^ against);
+        let chord = product.extend(2 * bits + 1).as_signed();
+        let sum = plus(axis.q.concat(rest.q), chord, middle.q.msb() ^ against);
         [(axis, sum.slice(bits, bits + 1).as_signed()), (rest, sum.slice(0, bits))]
     };
     let [rest_x, rest_y] = [0, 1].map(|axis| m.reg(REMAINDERS.of(axis).name(), bits));

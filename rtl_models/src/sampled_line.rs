@@ -28,7 +28,7 @@
 //! clock that leaves the coarse calculation too few clocks is refused. `stepped` marks the end of each period, which is a
 //! row of the step table.
 //!
-//! The line (12, -5) with 4 BLU a period, from the golden file `waves/sampled-line-12-5.csv`; the wave stands next to it:
+//! The line (12, -5) with 4 BLU a period, from the golden file `waves/sampled-line-12-5.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/sampled-line-12-5.csv")]
@@ -114,7 +114,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let fine = FineStage::new(m.scope("fine"), hardware.bits(JV.of(0)));
     let m = m.scope("coarse");
     let f = block.held(m, DISPLACEMENT.name(), sampling.word_bits());
-    let [long, short] = [0, 1].map(|way| block.held(m, LONG_SHORT.of(way).name(), n));
+    let [long, short] = [0, 1].map(|axis| block.held(m, LONG_SHORT.of(axis).name(), n));
     let x_is_longest = hardware.held(m, &block, LONGEST.of(0));
     let program = Microprogram::new(m, [bits + 1, n], [dividend_bits(&sampling), bits.max(n)], bits);
     let square = m.reg("square", 2 * n);
@@ -133,14 +133,14 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     program.close(&[&[idle][..], &squares, &[length, hand_over], &own].concat());
 
     let signs = [0, 1].map(|axis| hardware.held(m, &block, NEGATIVE.of(axis)));
-    let ways = [x_is_longest.mux(far, near), x_is_longest.mux(near, far)];
+    let travels = [x_is_longest.mux(far, near), x_is_longest.mux(near, far)];
     let wholes = [x_is_longest.mux(long, short), x_is_longest.mux(short, long)];
-    let points = [0, 1].map(|axis| with_sign(m, ways[axis], bits + 2, signs[axis]));
+    let points = [0, 1].map(|axis| with_sign(m, travels[axis], bits + 2, signs[axis]));
     let ends = [0, 1].map(|axis| with_sign(m, wholes[axis], n + 2, signs[axis]));
     fine.close(block, hardware, [hand, last], points, q, ends);
 }
 
-/// The coarse way of the long and the short axis, the registers that a block begins with as 0, and the rows that a system
+/// The coarse travel of the long and the short axis, the registers that a block begins with as 0, and the rows that a system
 /// has for itself.
 fn own_rows<'m>(
     m: Scope<'m>,
@@ -150,9 +150,9 @@ fn own_rows<'m>(
     [long, short]: [Signal<'m>; 2],
 ) -> ([Signal<'m>; 2], Vec<Register<'m>>, Vec<Row<'m>>) {
     let (n, bits, by_direction) = (sampling.whole, sampling.magnitude(), sampling.system == System::Direction);
-    // The way of the long axis, or the step factor: both once a block. A way beyond the end is as good as one up to it.
+    // The travel of the long axis, or the step factor: both once a block. A travel beyond the end is as good as one up to it.
     let factor = m.reg(if by_direction { "step" } else { "lambda" }, bits + 1);
-    let [far, near] = [0, 1].map(|way| m.reg(FAR_NEAR.of(way).name(), bits + 1));
+    let [far, near] = [0, 1].map(|axis| m.reg(FAR_NEAR.of(axis).name(), bits + 1));
     // What is below the fraction is kept for the next period.
     let near_rest = m.reg(REMAINDERS.of(1).name(), n);
     let (product, quotient, length) = (program.multiplier.product(), program.divider.quotient(), program.root.root());
@@ -173,12 +173,12 @@ fn own_rows<'m>(
             row(at::RATIO, Divide(ratio, long), point, at::HAND_OVER),
         ]
     } else {
-        // λ = f / length; {way, rest} := {way, rest} + λ·L.
+        // λ = f / length; {travel, rest} := {travel, rest} + λ·L.
         let far_rest = m.reg(REMAINDERS.of(0).name(), n);
         cleared.push(far_rest);
-        let [far, near] = [(far, far_rest), (near, near_rest)].map(|(way, rest)| {
-            let sum = way.q.concat(rest.q).wrapping_add(product);
-            [(way, sum.slice(n, bits + 1)), (rest, sum.slice(0, n))]
+        let [far, near] = [(far, far_rest), (near, near_rest)].map(|(travel, rest)| {
+            let sum = travel.q.concat(rest.q).wrapping_add(product);
+            [(travel, sum.slice(n, bits + 1)), (rest, sum.slice(0, n))]
         });
         vec![
             row(at::LAMBDA, Divide(f.concat(m.lit(bits, 0)), length), [(factor, limited)], at::STEP_FAR),

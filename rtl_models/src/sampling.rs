@@ -1,4 +1,4 @@
-//! The coarse stage of data sampling: the way of a period in fixed point, and its widths.
+//! The coarse stage of data sampling: the travel of a period in fixed point, and its widths.
 
 use stepwave_netlist::Width;
 
@@ -13,7 +13,7 @@ pub struct Sampling {
     pub system: System,
     /// Bits q of the fraction of coarse points.
     pub fraction: u32,
-    /// Way f of a period.
+    /// Travel f of a period.
     pub step: Millionths,
     /// The same as the hardware holds it, in 2^-q BLU.
     pub word: u64,
@@ -29,7 +29,7 @@ pub struct Sampling {
     pub clocks: [u64; 2],
 }
 
-/// The way of a period in BLU where none is chosen.
+/// The travel of a period in BLU where none is chosen.
 const USUAL_STEP: u64 = 8;
 /// Least bits of a fraction.
 const LEAST_FRACTION: u32 = 8;
@@ -88,7 +88,7 @@ impl Sampling {
                 format!("it is 0 with {fraction} bits of fraction: give --step {least} or more, or a higher --feed");
             return refused(STEP.name, step.to_string(), reason);
         }
-        // What lies in front of the middle of a step, and room for the way that the path may be off.
+        // What lies in front of the middle of a step, and room for how far the path may be off.
         let room = radius.map_or(greatest.max(step.units()) + 2.0, |_| greatest * 1.25 + 8.0);
         let whole = Width::needed_unsigned(whole(room));
         if whole + fraction > MOST {

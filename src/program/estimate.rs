@@ -22,7 +22,7 @@ pub struct Estimate {
     pub drifting: f64,
 }
 
-/// Pulses for each BLU of the way, on the average of all directions.
+/// Pulses for each BLU of the path, on the average of all directions.
 const PULSES: f64 = 1.25;
 
 impl Estimate {

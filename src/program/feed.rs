@@ -15,7 +15,7 @@ pub struct Pace {
     pub rapid: Option<f64>,
 }
 
-/// What the pulse source is told for one block of the machine.
+/// What the pulse source gets for one block of the machine.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Rate {
     /// Word of the rate register.
@@ -47,7 +47,7 @@ pub(super) fn rate(pace: Pace, moves: &Moves, block: &PulseBlock, part: &Hardwar
     let timed = !moves.direct || matches!(block.feed(), Feed::Inverse(_));
     let hertz = if timed { speed * part.steps / part.length } else { speed };
     let word = (hertz / pace.clock_hz * 2f64.powi(RATE_BITS.cast_signed())).round();
-    // 0 for what is no number.
+    // 0 for what is not a number.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let wanted = word as u64;
     Rate { word: wanted.clamp(1, FASTEST_RATE), limited: wanted > FASTEST_RATE || wanted == 0 }
@@ -65,7 +65,7 @@ pub(super) fn frequency(pace: Pace, word: u64) -> f64 {
 pub(super) fn shown_feed(pace: Pace, speed: Option<f64>, part: &HardwareBlock, source_hz: f64) -> u64 {
     let own = part.length * source_hz / part.steps;
     let feed = (speed.unwrap_or(own) * 60.0 * pace.blu_mm).round();
-    // 0 for what is no number, the greatest for what is beyond.
+    // 0 for what is not a number, the greatest for what is beyond.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let feed = feed as u64;
     feed.min(u32::MAX.into())

@@ -39,9 +39,9 @@ pub enum Item {
     Move(ToolMove, Vec<PulseBlock>),
     /// A move to which standing still is nearer than any pulse, and how far it goes from there, in BLU.
     LeftOut(ToolMove, f64),
-    /// It stands for so many seconds.
+    /// It rests for this many seconds.
     Dwell(Place, f64),
-    /// It stands until the operator starts it again: M00 or M01, which a simulation goes on behind at once.
+    /// It rests until the operator starts it again: M00 or M01, which a simulation continues after at once.
     Stop(Place),
 }
 
@@ -61,7 +61,7 @@ impl<R: BufRead> Stream<R> {
     /// The blocks of the program in `text` for this machine.
     ///
     /// # Errors
-    /// The BLU or a tool is no length.
+    /// The BLU or the radius of a tool is not a length.
     pub fn new(text: R, machine: &'static Moves, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
         let chords = (!machine.arcs).then_some(preparation.chords);
         Ok(Stream {
@@ -116,13 +116,13 @@ impl<R: BufRead> Stream<R> {
         for of in self.moves.drain(..) {
             let mut blocks = Vec::new();
             let line = of.place.line;
-            let told = |error| ProgramFailure::Geometry { line, error };
+            let failed = |error| ProgramFailure::Geometry { line, error };
             let before = self.rounder.clone();
-            let mut apart = self.rounder.blocks(&of, &mut blocks).map_err(told)?;
+            let mut apart = self.rounder.blocks(&of, &mut blocks).map_err(failed)?;
             if blocks.iter().any(|block| self.machine.too_steep(block)) {
                 self.rounder = before;
                 blocks.clear();
-                apart = self.rounder.chords(&of, self.chords, &mut blocks).map_err(told)?;
+                apart = self.rounder.chords(&of, self.chords, &mut blocks).map_err(failed)?;
             }
             self.items.push_back(if blocks.is_empty() { Item::LeftOut(of, apart) } else { Item::Move(of, blocks) });
         }

@@ -175,8 +175,8 @@ mod tests {
         totals.add(&report);
         assert_eq!((totals.beyond, totals.failures.len()), (0, 0));
         totals.add(&BlockReport { off_compensated: 1.75, ..report });
-        let told = "line 1: the tool's centre is 1.750 BLU off the contour, where method and rounding promise 1.500 BLU: \
+        let said = "line 1: the tool's centre is 1.750 BLU off the contour, where method and rounding promise 1.500 BLU: \
                     choose a smaller --blu";
-        assert_eq!((totals.beyond, totals.failures), (1, vec![told.to_owned()]));
+        assert_eq!((totals.beyond, totals.failures), (1, vec![said.to_owned()]));
     }
 }

@@ -74,7 +74,7 @@ fn shade(place: f64) -> [u8; 3] {
     [mix(0), mix(1), mix(2)]
 }
 
-/// A number in at most four digits behind the point.
+/// A number in at most four digits after the point.
 fn number(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -99,7 +99,7 @@ impl HeatMap {
         }
     }
 
-    /// Takes the number of a point, or that it has none; true if it is the greatest so far. A point beside the grid is
+    /// Takes the number of a point, or that it has none; true if it is the greatest so far. A point off the grid is
     /// left out.
     pub fn point(&mut self, point: [i64; 2], number: Option<f64>) -> bool {
         let place = |axis: usize| Some(self.ranges[axis].index(point[axis])? / self.share[axis]);
@@ -143,14 +143,14 @@ impl HeatMap {
         extent.map(|side| (MAP_MOST * side / extent[0].max(extent[1])).max(MAP_LEAST))
     }
 
-    /// The sentence that tells the greatest number and its point.
+    /// The sentence with the greatest number and its point.
     fn greatest(what: &str, unit: &str, number: f64, [x, y]: [i64; 2]) -> String {
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
         let at = format!("({x}, {y})").replace('-', "\u{2212}");
         format!("greatest {what} {}{unit} at {at}:", self::number(number))
     }
 
-    /// The numbers beside the scale of the colours, each with its place from 0 to 1.
+    /// The numbers next to the scale of the colours, each with its place from 0 to 1.
     fn scale(&self) -> Vec<(f64, String)> {
         let [least, greatest] = self.worst.map_or([0.0; 2], |(greatest, _)| [self.least, greatest]);
         let ticks = if least < greatest { 5 } else { 1 };
@@ -158,13 +158,13 @@ impl HeatMap {
         parts.map(|part| (part, number(least + (greatest - least) * part))).collect()
     }
 
-    /// The colours of cells; behind them there is room for others.
+    /// The colours of cells; after them there is room for others.
     fn colours() -> Vec<[u8; 3]> {
         let shades = (0..SHADES).map(|place| shade(place as f64 / (SHADES - 1) as f64));
         EMPTY.into_iter().chain(shades).collect()
     }
 
-    /// The colour of each cell, the greatest y first and each as large as `zoom`: a row as it stands in a picture.
+    /// The colour of each cell, the greatest y first and each as large as `zoom`: a row as it is in a picture.
     fn rows(&self, zoom: [usize; 2]) -> impl Iterator<Item = Vec<u8>> {
         let greatest = self.worst.map_or(0.0, |(greatest, _)| greatest);
         let span = if greatest > self.least { greatest - self.least } else { 1.0 };
@@ -249,16 +249,16 @@ impl HeatMap {
         };
         page.0 += &area(y, height, "url(#scale)");
         let mut right = x + BAR;
-        let mut beside = |page: &mut Page, y: f64, text: &str| {
+        let mut label = |page: &mut Page, y: f64, text: &str| {
             page.text([x + BAR + 6.0, y + 4.0], "", text);
             right = right.max(x + BAR + 6.0 + text_width(text, FONT));
         };
         for (part, text) in self.scale() {
-            beside(page, y + height * (1.0 - part), &text);
+            label(page, y + height * (1.0 - part), &text);
         }
         if self.cells.contains(&Cell::Without) {
             page.0 += &area(y + height + 14.0, 12.0, &colour(EMPTY[1]));
-            beside(page, y + height + 20.0, "no value");
+            label(page, y + height + 20.0, "no value");
         }
         let turned = format!(r#"{CENTRED} transform="rotate(-90 {:.2} {:.2})""#, right + 14.0, y + height / 2.0);
         page.text([right + 14.0, y + height / 2.0], &turned, what);
@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn the_page_tells_axes_scale_and_the_words_that_repeat_the_worst() {
+    fn the_page_has_axes_scale_and_the_words_that_repeat_the_worst() {
         let mut some = map("-3..3", "0..2");
         some.point([-3, 2], Some(0.125));
         some.point([1, 1], Some(1.0));

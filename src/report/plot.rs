@@ -127,8 +127,8 @@ impl Plot {
         let usual = if self.curve.axes() == 2 { [-1.0, 1.0] } else { [0.0, 1.0] };
         let [least, most] = self.spans.iter().copied().fold(usual, union);
         let steps = self.last.as_ref().map_or(0, |(step, _)| *step) as f64;
-        let (beside, above) = (0.5 + 0.012 * steps, 0.1 * (most - least));
-        let ranges = [[-beside, steps + beside], [least - above, most + above]];
+        let (aside, above) = (0.5 + 0.012 * steps, 0.1 * (most - least));
+        let ranges = [[-aside, steps + aside], [least - above, most + above]];
 
         let left = 32.0 + label_width(panel.ranges[1]).max(label_width(ranges[1]));
         let coarse = usize::from(panel.scale(0) < SCALE_COARSE);
@@ -352,7 +352,7 @@ fn label_width(range: Pair) -> f64 {
     range.map(|end| text_width(&format!("{end:.0}"), FONT)).into_iter().fold(text_width("-1.0", FONT), f64::max)
 }
 
-/// A text of at most so many characters, with an ellipsis where it was cut.
+/// A text of at most this many characters, with an ellipsis where it was cut.
 pub(super) fn cut(text: &str, limit: usize) -> String {
     let long = text.chars().nth(limit).is_some();
     if long { text.chars().take(limit - 1).chain(['…']).collect() } else { text.to_owned() }

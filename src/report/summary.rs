@@ -46,11 +46,11 @@ impl Report {
         // The bits of an operand say nothing of the motion.
         let moving = self.chosen().filter(|range| !range.held);
         let stuck = moving.flat_map(|range| {
-            // That the bits above did not move is told by those needed, and a sign may well stay.
+            // That the bits above did not move is shown by those needed, and a sign may well stay.
             let magnitude = range.needed() - u32::from(range.reading.is_signed());
             range.stuck_below(magnitude).into_iter().map(|bits| format!("{}{bits}", range.name))
         });
-        // What went beyond its range is told by itself.
+        // What went beyond its range is reported by itself.
         let held = |range: &&RegisterRange| self.tallies.iter().all(|tally| tally.first.component() != range.path);
         let full = self
             .chosen()

@@ -16,7 +16,7 @@ const PATH_LIMIT: usize = 1 << 13;
 /// Segments of the contour that are kept; of a longer program the first ones.
 const CONTOUR_LIMIT: usize = 4096;
 
-// Okabe and Ito's colours; the contour pale and broad, so that it shows under the way of the tool.
+// Okabe and Ito's colours; the contour pale and broad, so that it shows under the path of the tool.
 const PROGRAMMED: &str = r##"stroke="#eebf99" stroke-width="5""##;
 const CUT: &str = r##"stroke="#0072b2" stroke-width="1.2""##;
 const RAPID: &str = r##"stroke="#009e73" stroke-width="1" stroke-dasharray="6 4""##;

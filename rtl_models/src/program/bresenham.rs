@@ -40,7 +40,7 @@ pub static MODEL: Model = Model {
         error_bound: |hardware, block| {
             let right = bresenham::compares_right(hardware.get(&FORM), hardware.get(&COMPARE));
             // The longest axis is exact, every other one half a BLU off.
-            let others = delta(block).iter().filter(|way| **way != 0).count().saturating_sub(1);
+            let others = delta(block).iter().filter(|travel| **travel != 0).count().saturating_sub(1);
             right.then(|| (others as f64).sqrt() / 2.0)
         },
     }),

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! On an arc a pulse changes the weight of its axis by one, on a line by nothing. The weight of a pulse is the middle of
-//! those before and behind it.
+//! those before and after it.
 
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;

@@ -10,7 +10,7 @@
 //!
 //! A line loads J_VX = abs(dx), J_VY = abs(dy), which stay; an arc J_VX = abs(y), J_VY = abs(x), which pulses of the
 //! other axis change. An exhausted axis stops adding. Where one axis is exhausted and the integrand of the other is 0, the
-//! other steps at once: beside an axis an arc would stall there otherwise. Normalised, the integrands of the
+//! other steps at once: next to an axis an arc would stall there otherwise. Normalised, the integrands of the
 //! *next* block shift left in the buffer while the present one runs, until one has its highest bit set, on an arc its
 //! second highest.
 
@@ -129,8 +129,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
         let add = frame.step & open[axis];
         let iteration = Iteration { add, complete: add };
         let carry = integrator(scopes[axis], &block, hardware, axis, jv[axis].q, iteration);
-        let stands = !open[1 - axis] & jv[axis].q.is_zero();
-        scopes[axis].name("taken", carry | open[axis] & stands)
+        let stalled = !open[1 - axis] & jv[axis].q.is_zero();
+        scopes[axis].name("taken", carry | open[axis] & stalled)
     });
 
     // A pulse of one axis corrects the integrand of the other.

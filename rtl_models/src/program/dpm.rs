@@ -78,9 +78,9 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 }
 
 fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
-    let way = |axis: usize| i128::from(block.to[axis]) - i128::from(block.from[axis]);
+    let travel = |axis: usize| i128::from(block.to[axis]) - i128::from(block.from[axis]);
     let words = (0..hardware.axes).fold(Words::new(), |words, axis| {
-        words.set(COEFFICIENT.of(axis), way(axis).abs()).set(SIGN.of(axis), way(axis) < 0)
+        words.set(COEFFICIENT.of(axis), travel(axis).abs()).set(SIGN.of(axis), travel(axis) < 0)
     });
     let steps = 2f64.powi(hardware.bits(Q).cast_signed());
     vec![HardwareBlock { words, steps, length: block.curve.length() }]

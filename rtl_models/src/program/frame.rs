@@ -22,7 +22,7 @@ pub(super) const THIRD_SIGN: Reg = Reg::new("sw", Rule::Bits(1), "direction of t
 /// - `mode`, 2 bits: 1 is LINE, 2 is ARC. `quad`, 2 bits: the quadrant of an arc's sector, or the one that a line runs into, Q1 = 0;
 ///   `ccw`, 1 bit.
 /// - `ex`, `ey`: pulses of the first and second axis of the plane that are left.
-/// - `plane`, and the axes of the machine behind the pulse distributor.
+/// - `plane`, and the axes of the machine after the pulse distributor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame<'m> {
     pub(super) m: Scope<'m>,
@@ -74,7 +74,7 @@ impl<'m> Frame<'m> {
         [self.x_grows, self.arc & !self.x_grows]
     }
 
-    /// Closes a pair of registers that hold the ways of a line, and count the coordinates of an arc: those of the axes
+    /// Closes a pair of registers that hold the displacements of a line, and count the coordinates of an arc: those of the axes
     /// taken (1 bit each) change by one.
     pub(super) fn coordinates(&self, registers: [(Register<'m>, Reg); 2], taken: [Signal<'m>; 2]) {
         let counts = |taken: Signal<'m>| self.step & self.arc & taken;

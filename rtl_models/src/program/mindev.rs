@@ -7,7 +7,7 @@
 //!   rate ──► phase ──► step                                                          └──► ex, ey ──► end of the block
 //! ```
 //!
-//! `xi`, `yi` hold the ways of a line, or count the coordinates of an arc. F is D = 2S - L of a line, or x² + y² - R².
+//! `xi`, `yi` hold the displacements of a line, or count the coordinates of an arc. F is D = 2S - L of a line, or x² + y² - R².
 
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
@@ -52,7 +52,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let [x, y] = [xi, yi].map(|register| register.q.extend(bits));
     let wide = f.value().bits().max(bits + 2) + 2;
 
-    // Judge an arc: F behind each of the three steps, and the least of their magnitudes.
+    // Judge an arc: F after each of the three steps, and the least of their magnitudes.
     let least = LeastDeviation::new(m, f.value(), square_gains(m, [x, y], frame.grows(), wide));
 
     // Judge a line: the long axis always, the other where D >= 0.
@@ -67,8 +67,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
     // Compute.
     let of_arc = least.change(taken);
-    let ways = [x_is_longest.mux(x, y), x_is_longest.mux(y, x)];
-    let of_line = line_change(m, ways, wide, diagonal).as_signed();
+    let travels = [x_is_longest.mux(x, y), x_is_longest.mux(y, x)];
+    let of_line = line_change(m, travels, wide, diagonal).as_signed();
     f.close_adding(&frame.block, frame.step, m.name("operand", frame.arc.mux(of_arc, of_line)));
     frame.coordinates([(xi, XI_YI.of(0)), (yi, XI_YI.of(1))], taken);
 

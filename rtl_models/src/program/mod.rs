@@ -3,8 +3,8 @@
 //! The host loads the next block into a buffer while the present one runs ([`Buffer`](crate::parts::Buffer)); a rate
 //! generator on the clock paces the interpolator ([`pulse_source`](crate::parts::pulse_source)); line and arc share its
 //! registers; a distributor hands the pulses of the plane's axes to x, y and z; a third axis follows those of the plane.
-//! Every step is one clock, and the clock behind the last step of a block loads the next, while the phase of the pulse
-//! source goes on: pulses keep their distance across blocks.
+//! Every step is one clock, and the clock after the last step of a block loads the next, while the phase of the pulse
+//! source continues: pulses keep their distance across blocks.
 
 pub mod bresenham;
 pub mod cim;
@@ -38,7 +38,7 @@ pub const PROGRAM_WORDS: [Reg; 2] = [
 /// What the registers of a machine must hold for all blocks of a program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Size {
-    /// The longest way of an axis in a line, the largest coordinate of an arc about its centre, and the radius of one whose
+    /// The longest displacement of an axis in a line, the largest coordinate of an arc about its centre, and the radius of one whose
     /// end lies off its circle, in BLU.
     pub magnitude: u64,
     /// Least and greatest position of each axis, in BLU.
@@ -62,10 +62,10 @@ impl Size {
             Curve::Helix(helix) => Some(helix.arc()),
             Curve::Line(_) | Curve::Conic(_) => None,
         };
-        let ways = (0..3).map(|axis| block.from[axis].abs_diff(block.to[axis]));
+        let travels = (0..3).map(|axis| block.from[axis].abs_diff(block.to[axis]));
         let sectors = arc.map(|arc| arc.sectors(crossing)).unwrap_or_default();
         let radius = arc.map_or(0, crate::sizes::off_circle_radius);
-        let magnitude = crate::sizes::largest_coordinate(&sectors).max(radius).max(ways.max().unwrap_or(0));
+        let magnitude = crate::sizes::largest_coordinate(&sectors).max(radius).max(travels.max().unwrap_or(0));
         Size { magnitude, positions: block.reach() }
     }
 }
@@ -77,7 +77,7 @@ pub struct HardwareBlock {
     pub words: Words,
     /// Steps that the interpolator takes, as its method has them: those of the pulse source in the block.
     pub steps: f64,
-    /// The way of the tool, in BLU.
+    /// The path length of the tool, in BLU.
     pub length: f64,
 }
 

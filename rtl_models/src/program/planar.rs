@@ -45,7 +45,7 @@ pub(super) fn judged(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
 /// Most bits of a machine whose blocks take 2^n steps: at a step every second clock they end within 2^53 clocks.
 const SCALE_BITS: u32 = 52;
 
-/// Clocks without a pulse after which none will come, of a machine whose blocks take 2^n steps in registers of so many bits:
+/// Clocks without a pulse after which none will come, of a machine whose blocks take 2^n steps in registers of this many bits:
 /// a step every second clock, after the buffer is ready.
 pub(super) fn stall_clocks(bits: u32) -> u64 {
     2u64.checked_shl(bits).unwrap_or(u64::MAX).saturating_add(u64::from(bits) + 16)
@@ -98,9 +98,9 @@ pub(super) fn blocks(
             let all = helix.sectors();
             let sign = helix.z_travel().signum();
             let third = |index: usize, _: &Sector| {
-                let behind = all.get(index).map_or(0, |sector| sector.z_steps);
+                let after = all.get(index).map_or(0, |sector| sector.z_steps);
                 let before = index.checked_sub(1).and_then(|index| all.get(index)).map_or(0, |sector| sector.z_steps);
-                i128::from(sign * (behind - before))
+                i128::from(sign * (after - before))
             };
             sectors(crossing, block, helix.arc(), third, &own)
         }
@@ -116,7 +116,7 @@ fn sectors(
     own: &impl Fn(&Start) -> (Words, f64),
 ) -> Vec<HardwareBlock> {
     let all = arc.sectors(crossing);
-    let ways: Vec<i128> = all.iter().enumerate().map(|(index, sector)| third(index, sector)).collect();
+    let travels: Vec<i128> = all.iter().enumerate().map(|(index, sector)| third(index, sector)).collect();
     let begin = |(sector, third): (&Sector, i128)| {
         let [x, y] = sector.start.map(i128::from);
         let [start, end] = [sector.start, sector.end].map(|point| point.map(|c| c as f64));
@@ -135,7 +135,7 @@ fn sectors(
         let length = f64::hypot(arc.radius() * angle, third as f64);
         HardwareBlock { words: words.and(common(block, mode, at.pulses, third)), steps, length }
     };
-    all.iter().zip(ways).map(begin).filter(|block| block.has_pulses()).collect()
+    all.iter().zip(travels).map(begin).filter(|block| block.has_pulses()).collect()
 }
 
 /// Words that every machine in a plane has.
@@ -171,8 +171,8 @@ pub(super) fn longest_steps(at: &Start) -> f64 {
     if !passes {
         return ex.max(ey);
     }
-    // The way of each axis to the 45° point, and from there.
+    // The displacement of each axis to the 45° point, and from there.
     let before = (x - diagonal).abs().max((y - diagonal).abs());
-    let behind = (end_x - diagonal).abs().max((end_y - diagonal).abs());
-    before + behind
+    let after = (end_x - diagonal).abs().max((end_y - diagonal).abs());
+    before + after
 }

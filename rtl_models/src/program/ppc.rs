@@ -7,7 +7,7 @@
 //!   rate ──► phase ──► step ──────────────────▲─────────┘         └──► third axis follows
 //! ```
 //!
-//! `xi`, `yi` hold the ways of a line, or count the coordinates of an arc. A line takes F -= yi for a step of its first
+//! `xi`, `yi` hold the displacements of a line, or count the coordinates of an arc. A line takes F -= yi for a step of its first
 //! axis and F += xi for one of the second; an arc F -= 2c - 1 or F += 2c + 1. The loader splits arcs at the axes.
 
 use stepwave_nc::{Crossing, Curve, PulseBlock};
@@ -59,8 +59,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let wide = xi.q.bits().max(yi.q.bits());
     let [x, y] = [xi, yi].map(|register| register.q.extend(wide));
     let (grows, gain) = step_of_circle(m, [x, y], take_x, frame.x_grows);
-    let way = take_x.mux(y, x).extend(gain.bits());
-    f.close(&frame.block, frame.step, !grows, m.name("operand", frame.arc.mux(gain, way)));
+    let other = take_x.mux(y, x).extend(gain.bits());
+    f.close(&frame.block, frame.step, !grows, m.name("operand", frame.arc.mux(gain, other)));
     frame.coordinates([(xi, XI_YI.of(0)), (yi, XI_YI.of(1))], taken);
 
     frame.close(hardware, taken);

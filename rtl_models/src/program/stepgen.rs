@@ -39,7 +39,7 @@ pub static MODEL: Model = Model {
         plan,
         load,
         error_bound: |hardware, block| {
-            let moving = delta(block).iter().filter(|way| **way != 0).count();
+            let moving = delta(block).iter().filter(|travel| **travel != 0).count();
             Some((moving as f64).sqrt() * stepgen::axis_bound(&hardware.presets))
         },
     }),

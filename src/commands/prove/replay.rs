@@ -42,7 +42,7 @@ pub(super) fn refuted(args: &ProveArgs, proposition: &Proposition, example: &Cou
         .and_then(|made| simulation.run_on(made.bench, &mut outputs, |_, _| Ok(())));
     let shown = match ran {
         Ok(ran) => match ran.report.failures() {
-            // With wrap and saturate a run goes on after an overflow or a load word that was cut, and may reach its end all
+            // With wrap and saturate a run continues after an overflow or a load word that was cut, and may reach its end all
             // the same.
             none if none.is_empty() && matches!(fault, Fault::Overflow | Fault::Refused) => {
                 let summary = ran.report.summary().to_string();

@@ -22,11 +22,11 @@ impl PixelColor for Ink {
     type Raw = RawU8;
 }
 
-/// White, and grey of a point without a value; behind them the shades.
+/// White, and grey of a point without a value; after them the shades.
 const PAPER: Ink = Ink(0);
 const WITHOUT: Ink = Ink(1);
 const FIRST_SHADE: u8 = 2;
-/// Behind the shades.
+/// After the shades.
 const OWN: [[u8; 3]; 3] = [[0; 3], [102; 3], [204, 121, 167]];
 const BLACK: Ink = Ink(252);
 const FRAME: Ink = Ink(253);
@@ -45,7 +45,7 @@ const BAR_MOST: i32 = 300;
 /// Half of the mark's width.
 const REACH: i32 = 8;
 
-/// Where a text stands next to its point.
+/// Where a text is next to its point.
 #[derive(Clone, Copy)]
 enum Side {
     Right,
@@ -111,7 +111,7 @@ impl Plane {
         Plane { size, pixels: vec![PAPER.0; size[0] * size[1]] }
     }
 
-    /// The middle of the text's first line stands at this height.
+    /// The middle of the text's first line is at this height.
     fn text(&mut self, font: &'static MonoFont<'static>, [x, y]: [i32; 2], side: Side, text: &str) {
         let alignment = match side {
             Side::Right => Alignment::Left,
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_and_lines_have_colours_of_their_own_behind_those_of_the_cells() {
+    fn letters_and_lines_have_colours_of_their_own_after_those_of_the_cells() {
         assert_eq!(HeatMap::colours().len(), usize::from(BLACK.0));
         assert_eq!(OWN[usize::from(MARK.0 - BLACK.0)], [204, 121, 167]);
     }
@@ -301,7 +301,7 @@ mod tests {
         let cell = |x: usize, y: usize| pixels[(left + 1 + 155 * y + 20) * width + first + 155 * x + 20];
         let row = |y| [0, 1, 2, 3].map(|x| cell(x, y));
         assert_eq!((row(0), row(1)), ([0, 0, 251, 1], [2, 127, 0, 0]));
-        // The mark stands about the middle of its cell.
+        // The mark is about the middle of its cell.
         let middle = |x: usize, y: usize| (left + 1 + 155 * y + 77) * width + first + 155 * x + 77;
         let marked = |x, y| pixels[middle(x, y) - 12..middle(x, y)].contains(&MARK.0);
         assert!(marked(2, 0) && !marked(1, 1) && !marked(0, 0));

@@ -8,13 +8,13 @@ use super::{Block, CertificateFile, CountMethod, Effort, FileError, ProofError, 
 /// Why a text proves nothing.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
-    /// It is no certificate.
+    /// It is not a certificate.
     #[error("no certificate: {0}")]
     File(#[from] FileError),
     /// It is about something that cannot be checked.
     #[error(transparent)]
     Proof(#[from] ProofError),
-    /// The blocks in it are not those that the second way comes to.
+    /// The blocks in it are not those that the second method comes to.
     #[error("does not say what its blocks come to")]
     Blocks,
     /// Its widths are of no family.
@@ -25,7 +25,7 @@ pub enum CheckError {
 /// Checks a certificate: every step of it is multiplied out in exact arithmetic, every block in it counted anew.
 ///
 /// # Errors
-/// See [`CheckError`]. What the certificate leaves open is no error: [`Verdict::is_proved`] says it.
+/// See [`CheckError`]. What the certificate leaves open is not an error: [`Verdict::is_proved`] says it.
 pub fn check(text: &str) -> Result<Verdict, CheckError> {
     check_with(text, &Effort::default())
 }

@@ -23,7 +23,7 @@ pub struct Block {
     pub kind: String,
     /// Clocks from the load to the end.
     pub clocks: u64,
-    /// The place of each axis in the end, by the bits of its coefficient; `None` where it is no sum of them.
+    /// The place of each axis in the end, by the bits of its coefficient; `None` where it is not a sum of them.
     pub ends: Vec<Option<Sum>>,
     /// Where it should be.
     pub wanted: Vec<Sum>,

@@ -120,10 +120,11 @@ impl Proposition {
         &self,
         effort: &Effort<'_>,
         ks: Vec<u32>,
-        way: CountMethod,
+        method: CountMethod,
     ) -> Result<Vec<Block>, ProofError> {
         let claims = self.claims()?;
-        let each = effort.each("widths", ks, |k| blocks(self.model, &claims, &self.options, &self.narrower, k, way))?;
+        let each =
+            effort.each("widths", ks, |k| blocks(self.model, &claims, &self.options, &self.narrower, k, method))?;
         Ok(each.concat())
     }
 
@@ -170,7 +171,7 @@ impl Proposition {
         {
             return Ok(self.refuted(example));
         }
-        // They are not believed: what counts is what the second way comes to.
+        // They are not believed: what counts is what the second method comes to.
         match found.and_then(|blocks| Ok((self.followed(effort, ks, CountMethod::Recount)? == blocks, blocks))) {
             Ok((true, blocks)) => {
                 let scope = Scope::of_blocks(self, self.claims()?.geometries.describe(), &blocks);

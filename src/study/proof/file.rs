@@ -26,7 +26,7 @@ pub struct CertificateFile {
     pub counted: Vec<String>,
 }
 
-/// Why a file is no file of certificates.
+/// Why a file is not a file of certificates.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// It is something else.

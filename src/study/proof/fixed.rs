@@ -144,7 +144,7 @@ impl Fixed {
     ) -> Result<(Option<Counterexample>, Tried), ProofError> {
         let free = self.choices.clone().without(&WIDTH);
         let (mut curves, mut all) = match &self.extent {
-            // Listed in a moment, though coordinates of so many bits may be far more.
+            // Listed in a moment, though coordinates of this many bits may be far more.
             Extent::Grid(grid) if few && points(grid) < FEW as u128 => {
                 let geometries = Geometries::of(self.model, &free, &self.extent)?;
                 (geometries.curves, geometries.all)

@@ -108,11 +108,11 @@ impl Subject {
 /// What came of one step.
 struct Stepped {
     clocks: u64,
-    /// What each register means behind it.
+    /// What each register means after it.
     after: Vec<i128>,
     /// The block has ended with it.
     done: bool,
-    /// What is wrong whatever the state behind it is.
+    /// What is wrong whatever the state after it is.
     wrong: Option<String>,
 }
 

@@ -80,7 +80,7 @@ pub enum ProofError {
     /// The claims do not fit the netlist.
     #[error(transparent)]
     Case(#[from] CaseError),
-    /// The load word of an input is no formula of the geometry.
+    /// The load word of an input is not a formula of the geometry.
     #[error(
         "the load word {word} of {kind} is no polynomial of its geometry, so that nothing can be concluded from it"
     )]
@@ -110,7 +110,7 @@ pub enum ProofError {
         /// Why.
         lost: Lost,
     },
-    /// A counted register is not loaded with the way of its axis, bit by bit.
+    /// A counted register is not loaded with the displacement of its axis, bit by bit.
     #[error("{register} is not loaded with |d| in binary, so that its bits are not followed: leave --radix 10 out")]
     Counted {
         /// The register.

@@ -29,12 +29,12 @@ pub(super) fn number(machine: &Machine, net: Net, bits: u64) -> i128 {
     netlist.name_of(net).map_or(i128::from(bits), |named| named.format.reading().number(width, bits))
 }
 
-/// Rows of one run at most: a block that stalls may go on completing steps.
+/// Rows of one run at most: a block that stalls may continue to complete steps.
 const MOST_ROWS: usize = 2000;
 /// Clocks without a row after which none is waited for.
 const LONGEST: u32 = 4096;
 
-/// The rows of a block, but for the last: the samples in which it stands loaded or a step was completed.
+/// The rows of a block, but for the last: the samples in which it is loaded or a step was completed.
 #[must_use]
 pub fn states(machine: &Machine, words: &[(Net, u64)]) -> Vec<State> {
     let design = &machine.design;

@@ -168,7 +168,7 @@ pub type Attend<'a> = &'a dyn Fn(&mut dyn FnMut() -> Option<u32>);
 
 /// Asks a solver: its command, whose words stand apart by blanks, gets the script on its input. After the `limit` it is
 /// killed with all that it has started, and gives no answer. `attend` does what starts and what ends it, each of which
-/// gives the process that runs from then on, so that whoever ends this process can end that one, too.
+/// gives the process that runs from then on, so that what ends this process can end that one, too.
 ///
 /// # Errors
 /// It cannot be run, or says neither `sat` nor `unsat`, or nothing in time.

@@ -27,7 +27,7 @@ const LEAST_K: u32 = 3;
 /// The k whose netlists are all checked to be of one family.
 const GREATEST_K: u32 = 52;
 impl Subject {
-    /// The hardware of a model for every k, with these choices beside the widths.
+    /// The hardware of a model for every k, with these choices in addition to the widths.
     ///
     /// # Errors
     /// The model claims nothing, a choice is impossible, or the netlists of several k differ in more than widths.
