@@ -240,6 +240,11 @@ impl Writer<'_> {
         (size <= width.mask()).then(|| format!("{address} < {}", literal(width, size)))
     }
 
+    /// The address is a constant beyond the memory: a port that writes there writes nothing, and simulators warn of it.
+    pub(super) fn is_outside(&self, memory: usize, address: Net) -> bool {
+        self.layout.known(address).is_some_and(|address| address >= self.netlist.memories[memory].size)
+    }
+
     /// The complement, without a second one in front of a first.
     fn not(&self, net: Net, place: ScopeId) -> Expression {
         let inline = self.layout.forms[net.index()] == Form::Inline && self.layout.known(net).is_none();

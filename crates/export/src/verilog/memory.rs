@@ -44,7 +44,7 @@ impl Module<'_> {
         }
         let mut text = indented(depth, &format!("always @(posedge {})", self.names.clk));
         text += &indented(depth + 1, &format!("if (!{}) begin", self.names.rst));
-        for port in &memory.writes {
+        for port in memory.writes.iter().filter(|port| !self.writer.is_outside(index, port.address)) {
             text += &self.port(index, memory.width, *port, depth + 2);
         }
         text + &indented(depth + 1, "end")
