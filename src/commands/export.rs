@@ -126,13 +126,13 @@ fn dump_name(testbench: &Path, design: &str) -> String {
 }
 
 fn summary(bench: &Testbench) -> String {
-    let (netlist, registers) = (bench.design().netlist(), bench.design().registers());
-    let bits: u32 = registers.iter().map(|&register| netlist.width(register).get()).sum();
+    let design = bench.design();
     format!(
-        "{}: {} registers of {bits} bits together, {} inputs, {} outputs\n",
-        netlist.scopes[0].name,
-        registers.len(),
-        bench.design().inputs().len(),
+        "{}: {} registers of {} bits together, {} inputs, {} outputs\n",
+        design.netlist().scopes[0].name,
+        design.registers().len(),
+        design.register_bits(),
+        design.inputs().len(),
         bench.outputs().len()
     )
 }

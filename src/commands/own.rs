@@ -36,7 +36,7 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Error> {
     if quiet {
         return Ok(());
     }
-    let mut text = summary(design.netlist(), &design) + "\n";
+    let mut text = summary(&design) + "\n";
     if let Some(clock) = imported.clock {
         let edge = if clock.rising { "rising" } else { "falling" };
         text += &format!("clock: the {edge} edge of {}\n", clock.name);
@@ -50,7 +50,7 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Error> {
 /// Lists the mistakes of a netlist.
 pub(crate) fn check(args: &CheckArgs) -> Result<(), Error> {
     match checked(&args.file)? {
-        Ok(design) => output::print(&(summary(design.netlist(), &design) + "\n")),
+        Ok(design) => output::print(&(summary(&design) + "\n")),
         Err(mistakes) => {
             let file = args.file.display();
             Err(Error::Extract(mistakes.iter().map(|mistake| format!("{file}: {mistake}\n")).collect()))
@@ -63,7 +63,7 @@ pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
     if args.trace.steps {
         let file = args.file.display();
         return Err(Error::Invalid(format!(
-            "--trace-steps: {file} has no steps, as it is no interpolator; leave it out"
+            "--trace-steps: {file} has no steps, as it is not an interpolator; leave it out"
         )));
     }
     let design = read_netlist(&args.file)?;

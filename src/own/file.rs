@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
-use crate::netlist::{Design, Netlist, elaborate, text};
+use crate::netlist::{Design, elaborate, text};
 
 /// Most bytes of a netlist in a file.
 const MOST_BYTES: u64 = 1 << 30;
@@ -80,14 +80,14 @@ pub fn read_netlist(path: &Path) -> Result<Design, FileError> {
 }
 
 /// Registers with their bits, inputs, cells.
-pub(crate) fn summary(netlist: &Netlist, design: &Design) -> String {
-    let registers = design.registers();
-    let bits: u32 = registers.iter().map(|&register| netlist.width(register).get()).sum();
+pub(crate) fn summary(design: &Design) -> String {
+    let netlist = design.netlist();
     format!(
-        "{}: {} cells, {} registers of {bits} bits together, {} inputs, {} names, {} properties",
+        "{}: {} cells, {} registers of {} bits together, {} inputs, {} names, {} properties",
         netlist.scopes[0].name,
         netlist.cells.len(),
-        registers.len(),
+        design.registers().len(),
+        design.register_bits(),
         design.inputs().len(),
         netlist.names.len(),
         netlist.properties.len()

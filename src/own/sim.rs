@@ -1,24 +1,23 @@
 //! The recipe of a run without a geometry: netlist and stimulus in; wave and report out.
 
+use std::borrow::Borrow;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use globset::{Glob, GlobMatcher};
 use serde_json::json;
 
 use crate::Error;
 use crate::engine::{EngineKind, Rows, Stop, Watch};
 use crate::netlist::cells::{Claim, Property};
-use crate::netlist::{Design, Net, elaborate};
+use crate::netlist::{Design, elaborate};
 use crate::output::Outputs;
-use crate::testbench::{Columns, Observer, OverflowEvent, OverflowTally, OverflowWatch};
+use crate::report::json::{event, joined, tally as tally_json};
+use crate::testbench::{CHUNK, Columns, Observer, OverflowEvent, OverflowTally, OverflowWatch};
+use crate::trace::pattern::{fits, glob};
 use crate::trace::timescale::ClockTime;
 use crate::waves::{Shown, Sinks, WaveOptions, Waves};
 
 use super::Stimulus;
-
-/// Samples held between engine and observers.
-const CHUNK: usize = 256;
 
 /// A run of a netlist by a stimulus.
 #[derive(Clone, Debug)]
@@ -40,8 +39,8 @@ pub struct Sim {
 pub struct SimReport {
     /// Edges of the clock.
     pub clocks: u64,
-    /// It ended before, at a violation of a property that was to be strict.
-    pub trapped: bool,
+    /// The strict property at whose violation it ended before.
+    pub trap: Option<String>,
     /// The violations of each property that had some.
     pub tallies: Vec<OverflowTally>,
     /// The value of each named net in the last sample, in binary, by its path.
@@ -70,17 +69,18 @@ impl Sim {
         Sim { strict: globs, ..self }
     }
 
-    /// What the properties whose path matches one of these globs lose is announced: it is shown as a flag, and not reported.
+    /// What the operators lose whose path matches one of these globs is announced: it is shown as a flag, and not reported.
     ///
     /// # Errors
-    /// A glob matches nothing.
+    /// A glob matches none of them, or [`strict`](Self::strict) has it too.
     pub fn wraps(mut self, globs: &[String]) -> Result<Sim, Error> {
         let mut netlist = self.design.netlist().clone();
         for glob in globs {
-            let nets: Vec<Net> =
-                matching("--wraps", glob, &netlist.properties)?.iter().map(|found| found.never).collect();
-            for property in netlist.properties.iter_mut().filter(|property| nets.contains(&property.never)) {
-                if let Claim::Fits { wraps, .. } = &mut property.claim {
+            let all = netlist.properties.iter_mut();
+            let overflows =
+                all.filter(|property| matches!(property.claim, Claim::Fits { .. } | Claim::FitsWide { .. }));
+            for property in matching("--wraps", glob, overflows)? {
+                if let Claim::Fits { wraps, .. } | Claim::FitsWide { wraps, .. } = &mut property.claim {
                     *wraps = true;
                 }
             }
@@ -121,12 +121,12 @@ impl Sim {
         let mut overflow = OverflowWatch::of(self.design.netlist(), &columns);
         let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow];
         observers.extend(waves.iter_mut().flat_map(Waves::observers));
-        let Run { clocks, trapped, last } = self.clocked(&columns, &mut observers)?;
+        let Run { clocks, trap, last } = self.clocked(&columns, &mut observers)?;
         drop(observers);
         if let Some(waves) = waves {
             waves.finish(&overflow.events(), clocks, outputs)?;
         }
-        let report = SimReport { clocks, trapped, tallies: overflow.tallies(), last };
+        let report = SimReport { clocks, trap, tallies: overflow.tallies(), last };
         if let Some(mut sink) = json {
             writeln!(sink, "{:#}", self.report_json(&report))?;
             sink.flush()?;
@@ -135,25 +135,34 @@ impl Sim {
     }
 
     /// Properties that end the run.
-    fn stops(&self) -> Result<Vec<Net>, Error> {
+    fn stops(&self) -> Result<Vec<&Property>, Error> {
         let mut stops = Vec::new();
         for glob in &self.strict {
-            let found = matching("--strict", glob, &self.design.netlist().properties)?;
-            stops.extend(found.iter().map(|property| property.never));
+            let found = matching("--strict", glob, self.design.netlist().properties.iter())?;
+            if let Some(announced) = found.iter().find(|property| property.claim.is_announced()) {
+                return Err(Error::Invalid(format!(
+                    "--strict {glob}: {} is announced to lose its carry: leave out --wraps, its attribute stepwave_wraps, or \
+                     --strict",
+                    announced.name
+                )));
+            }
+            stops.extend(found);
         }
         Ok(stops)
     }
 
     /// Runs the clock.
     fn clocked(&self, columns: &Columns, observers: &mut [&mut dyn Observer]) -> Result<Run, Error> {
-        let watch = Watch { columns: columns.nets().to_vec(), stops: self.stops()? };
+        let strict = self.stops()?;
+        let stops = strict.iter().map(|property| property.never).collect();
+        let watch = Watch { columns: columns.nets().to_vec(), stops };
         let mut engine = self.engine.build(&self.design, &watch);
         let mut rows = Rows::new(watch.columns.len(), CHUNK);
         let stimulus = &self.stimulus;
         stimulus.held().chain(stimulus.row(0)).for_each(|(net, value)| engine.set_input(net, value));
         engine.reset(&mut rows);
-        let mut trapped = watch.stops.iter().any(|&net| engine.value(net) == 1);
-        while engine.clock() < self.clocks && !trapped {
+        let mut stop = watch.stops.iter().position(|&net| engine.value(net) == 1);
+        while engine.clock() < self.clocks && stop.is_none() {
             let next = usize::try_from(engine.clock() + 1).unwrap_or(usize::MAX);
             let left = self.clocks - engine.clock();
             let burst = if next < stimulus.rows() {
@@ -165,7 +174,9 @@ impl Sim {
             if rows.is_full() {
                 drain(&mut rows, observers)?;
             }
-            trapped = matches!(engine.run(burst, &mut rows), Stop::Net(_));
+            if let Stop::Net(index) = engine.run(burst, &mut rows) {
+                stop = Some(index);
+            }
         }
         drain(&mut rows, observers)?;
         let netlist = self.design.netlist();
@@ -173,19 +184,14 @@ impl Sim {
             let width = netlist.width(named.net).get() as usize;
             (netlist.path(named), format!("{:0width$b}", engine.value(named.net)))
         });
-        Ok(Run { clocks: engine.clock(), trapped, last: last.collect() })
+        let trap = stop.and_then(|index| strict.get(index)).map(|property| property.name.clone());
+        Ok(Run { clocks: engine.clock(), trap, last: last.collect() })
     }
 
     fn report_json(&self, report: &SimReport) -> serde_json::Value {
         let events = report.tallies.iter().map(|tally| {
-            json!({
-                "name": tally.first.component(),
-                "first_clock": tally.first.clock(),
-                "count": tally.count,
-                "needed_width": tally.needed,
-                "source": tally.source,
-                "text": tally.first.to_string(),
-            })
+            let more = json!({ "first": event(&tally.first), "source": tally.source, "text": tally.first.to_string() });
+            joined(tally_json(tally), more)
         });
         json!({
             "schema": 1,
@@ -193,17 +199,17 @@ impl Sim {
             "engine": self.engine.name(),
             "clock_hz": self.clock_hz,
             "clocks": report.clocks,
-            "ending": if report.trapped { "trapped" } else { "done" },
+            "ending": if report.trap.is_some() { "trapped" } else { "done" },
             "events": events.collect::<Vec<_>>(),
             "last": report.last.iter().map(|(path, bits)| (path.clone(), json!(bits))).collect::<serde_json::Map<_, _>>(),
         })
     }
 }
 
-/// How a run ended: after how many edges, whether by a trap, and what every name had then, in binary.
+/// How a run ended: after how many edges, by which strict property, and what every name had then, in binary.
 struct Run {
     clocks: u64,
-    trapped: bool,
+    trap: Option<String>,
     last: Vec<(String, String)>,
 }
 
@@ -223,21 +229,16 @@ fn placed(tally: &OverflowTally) -> String {
     }
 }
 
-/// The property has this path, or this name, by a glob.
-fn named(glob: &GlobMatcher, property: &Property) -> bool {
-    let leaf = property.name.rsplit('.').next().unwrap_or_default();
-    let inner = property.name.split_once('.').map_or("", |(_, inner)| inner);
-    [property.name.as_str(), inner, leaf].iter().any(|name| glob.is_match(name))
-}
-
-/// The properties that a glob of an option names.
-fn matching<'p>(option: &str, text: &str, properties: &'p [Property]) -> Result<Vec<&'p Property>, Error> {
-    let glob = Glob::new(text).map_err(|error| Error::Invalid(format!("{option} {text}: {error}")))?.compile_matcher();
-    let found: Vec<&Property> = properties.iter().filter(|property| named(&glob, property)).collect();
+/// The properties among these that a glob of an option names.
+fn matching<P: Borrow<Property>>(option: &str, text: &str, all: impl Iterator<Item = P>) -> Result<Vec<P>, Error> {
+    let glob = glob(text).map_err(|why| Error::Invalid(format!("{option} {text}: {why}")))?;
+    let (found, others): (Vec<P>, Vec<P>) = all.partition(|property| fits(&glob, &property.borrow().name));
     if found.is_empty() {
-        let names: Vec<&str> = properties.iter().map(|property| property.name.as_str()).collect();
+        let names: Vec<&str> = others.iter().map(|property| property.borrow().name.as_str()).collect();
         let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        return Err(Error::Invalid(format!("{option} {text} matches no property; there are: {names}")));
+        return Err(Error::Invalid(format!(
+            "{option} {text} matches no property that it can be of; there are: {names}"
+        )));
     }
     Ok(found)
 }
@@ -258,9 +259,10 @@ impl SimReport {
     /// Sentences that say what is wrong with the hardware: a trap, an assertion that did not hold.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
-        let invariant = |tally: &&OverflowTally| matches!(tally.first, OverflowEvent::Invariant { .. });
-        let last = self.tallies.iter().max_by_key(|tally| tally.first.clock());
-        let trap = last.filter(|_| self.trapped && !self.tallies.iter().any(|tally| invariant(&tally))).map(placed);
-        trap.into_iter().chain(self.tallies.iter().filter(invariant).map(placed)).collect()
+        let ends = |tally: &&OverflowTally| {
+            matches!(tally.first, OverflowEvent::Invariant { .. })
+                || self.trap.as_deref() == Some(tally.first.component())
+        };
+        self.tallies.iter().filter(ends).map(placed).collect()
     }
 }

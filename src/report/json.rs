@@ -30,7 +30,7 @@ fn choice(name: &str, word: &str) -> Value {
     whole.or_else(|_| word.parse::<f64>().map(|number| json!(number))).unwrap_or_else(|_| json!(word))
 }
 
-fn event(event: &OverflowEvent) -> Value {
+pub(crate) fn event(event: &OverflowEvent) -> Value {
     match event {
         OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } => {
             let (exact, needed) = event.exact().unwrap_or_default();
@@ -46,6 +46,9 @@ fn event(event: &OverflowEvent) -> Value {
                 "exact": number(exact),
                 "needed_width": if exact < 0 && !signed { Value::Null } else { json!(needed) },
             })
+        }
+        OverflowEvent::Wide { component, bits, operation, clock } => {
+            json!({ "component": component, "clock": clock, "width": bits, "operation": operation.name() })
         }
         OverflowEvent::Invariant { component, clock } => json!({ "component": component, "clock": clock }),
     }
@@ -69,7 +72,7 @@ pub(super) fn cut_words(cut: &CutWords) -> Value {
     cut.first.iter().map(word).collect()
 }
 
-fn tally(tally: &OverflowTally) -> Value {
+pub(crate) fn tally(tally: &OverflowTally) -> Value {
     json!({
         "component": tally.first.component(),
         "count": tally.count,
@@ -79,7 +82,7 @@ fn tally(tally: &OverflowTally) -> Value {
 }
 
 /// The fields of both.
-fn joined(mut fields: Value, more: Value) -> Value {
+pub(crate) fn joined(mut fields: Value, more: Value) -> Value {
     if let (Some(fields), Value::Object(more)) = (fields.as_object_mut(), more) {
         fields.extend(more);
     }

@@ -4,7 +4,7 @@ mod curve;
 mod file;
 mod geometry;
 pub mod heat;
-mod json;
+pub(crate) mod json;
 
 pub mod plot;
 mod png;
@@ -306,7 +306,9 @@ fn remedy(event: &OverflowEvent, hardware: &Hardware) -> String {
             let width = hardware.widening(leaf, needed, needed);
             format!(": give --width {width}, or go on with --on-overflow wrap or saturate")
         }
-        (OverflowEvent::Overflow { .. }, _) => "; go on with --on-overflow wrap or saturate".to_owned(),
+        (OverflowEvent::Overflow { .. } | OverflowEvent::Wide { .. }, _) => {
+            "; go on with --on-overflow wrap or saturate".to_owned()
+        }
         (OverflowEvent::Invariant { .. }, _) => ": the model is wrong, please report this".to_owned(),
     }
 }

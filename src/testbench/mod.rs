@@ -48,7 +48,7 @@ use steps::StepColumns;
 pub use wave::{Taken, Trigger, WaveBody, WaveWriter, Window};
 
 /// Samples held between engine and observers.
-const CHUNK: usize = 256;
+pub(crate) const CHUNK: usize = 256;
 
 /// Trouble while running: what an observer could not do.
 pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;

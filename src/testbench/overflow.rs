@@ -37,6 +37,17 @@ pub enum OverflowEvent {
         /// Clock of the sample with the operands; the register would take the result at the next edge.
         clock: u64,
     },
+    /// A result of imported hardware, of more than 64 bits or of operands of as many, that did not fit.
+    Wide {
+        /// Path of the register.
+        component: String,
+        /// Bits that are kept.
+        bits: u32,
+        /// What was computed.
+        operation: Operator,
+        /// Clock of the sample.
+        clock: u64,
+    },
     /// An invariant of the model that did not hold: a defect of the model.
     Invariant {
         /// Path of the invariant.
@@ -51,7 +62,9 @@ impl OverflowEvent {
     #[must_use]
     pub fn component(&self) -> &str {
         match self {
-            OverflowEvent::Overflow { component, .. } | OverflowEvent::Invariant { component, .. } => component,
+            OverflowEvent::Overflow { component, .. }
+            | OverflowEvent::Wide { component, .. }
+            | OverflowEvent::Invariant { component, .. } => component,
         }
     }
 
@@ -59,7 +72,9 @@ impl OverflowEvent {
     #[must_use]
     pub fn clock(&self) -> u64 {
         match self {
-            OverflowEvent::Overflow { clock, .. } | OverflowEvent::Invariant { clock, .. } => *clock,
+            OverflowEvent::Overflow { clock, .. }
+            | OverflowEvent::Wide { clock, .. }
+            | OverflowEvent::Invariant { clock, .. } => *clock,
         }
     }
 
@@ -74,6 +89,13 @@ impl OverflowEvent {
 
 impl fmt::Display for OverflowEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let OverflowEvent::Wide { component, bits, operation, clock } = self {
+            let name = operation.name();
+            return write!(
+                f,
+                "overflow of {component} at clock {clock}: the exact result of {name} does not fit in {bits} bits"
+            );
+        }
         let OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } = self else {
             return write!(f, "invariant {} does not hold at clock {}", self.component(), self.clock());
         };
@@ -197,13 +219,13 @@ impl OverflowWatch {
     #[must_use]
     pub fn of(netlist: &Netlist, columns: &Columns) -> OverflowWatch {
         let at = |net| columns.index(net);
-        let announced = |property: &&Property| !matches!(property.claim, Claim::Fits { wraps: true, .. });
-        let watched = netlist.properties.iter().filter(announced).map(|property| {
+        let reported = |property: &&Property| !property.claim.is_announced();
+        let watched = netlist.properties.iter().filter(reported).map(|property| {
             let operands = match property.claim {
                 Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } => {
                     Some((at(left.net), netlist.width(left.net), at(right.net), netlist.width(right.net)))
                 }
-                Claim::Invariant => None,
+                Claim::FitsWide { .. } | Claim::Invariant => None,
             };
             let source = match netlist.sources.get(property.never.index()) {
                 Some(Some(Source::File { file, line, .. })) => Some(format!("{file}:{line}")),
@@ -254,7 +276,7 @@ fn numbers(watched: &Watched, seen: &Seen) -> Option<(Operator, i128, i128, Widt
     let (operator, left, right, width, signed) = match watched.property.claim {
         Claim::NoOverflow { operation, left, right } => (operation.into(), left, right, left_width, left.signed),
         Claim::Fits { operator, left, right, width, signed, .. } => (operator, left, right, width, signed),
-        Claim::Invariant => return None,
+        Claim::FitsWide { .. } | Claim::Invariant => return None,
     };
     let (a, b) = (bits::number(left_width, a, left.signed), bits::number(right_width, b, right.signed));
     Some((operator, a, b, width, signed))
@@ -262,11 +284,14 @@ fn numbers(watched: &Watched, seen: &Seen) -> Option<(Operator, i128, i128, Widt
 
 fn event(watched: &Watched, seen: &Seen) -> OverflowEvent {
     let (component, clock) = (watched.property.name.clone(), seen.clock);
-    match numbers(watched, seen) {
-        Some((operation, left, right, width, signed)) => {
+    match (numbers(watched, seen), watched.property.claim) {
+        (Some((operation, left, right, width, signed)), _) => {
             OverflowEvent::Overflow { component, width, signed, operation, left, right, clock }
         }
-        None => OverflowEvent::Invariant { component, clock },
+        (None, Claim::FitsWide { operator, bits, .. }) => {
+            OverflowEvent::Wide { component, bits, operation: operator, clock }
+        }
+        (None, _) => OverflowEvent::Invariant { component, clock },
     }
 }
 

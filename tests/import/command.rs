@@ -62,7 +62,7 @@ fn a_strict_property_ends_the_run_with_code_1_and_an_announced_one_is_none() {
     let nothing = sim(&folder, &["--clocks", "20", "--strict", "acc"]);
     assert_eq!(
         (nothing.code, nothing.err.as_str()),
-        (2, "stepwave: --strict acc matches no property; there are: t.q\n")
+        (2, "stepwave: --strict acc matches no property that it can be of; there are: t.q\n")
     );
 }
 
@@ -119,4 +119,57 @@ fn a_model_in_the_text_form_runs_as_its_netlist() {
     assert_eq!((ran.code, ran.err.as_str()), (0, ""));
     let ran = folder.run_words(&["sim", "line.net", "--clocks", "5", "--set", "block.load=0"]);
     assert_eq!((ran.code, ran.out.as_str()), (0, "5 clocks; no property was violated\n"));
+}
+
+#[test]
+fn a_property_that_is_strict_and_announced_is_refused_and_so_is_an_announcement_of_an_assertion() {
+    let folder = counter();
+    let both = sim(&folder, &["--set", "en=1", "--clocks", "20", "--strict", "q", "--wraps", "q"]);
+    assert_eq!((both.code, both.out.as_str()), (2, ""));
+    assert!(both.err.contains("--strict q: t.q is announced to lose its carry"), "{}", both.err);
+    let text = folder.read("t.net") + "property \"t.sure\" never %0 invariant\n";
+    folder.write("t.net", &text);
+    let none = sim(&folder, &["--clocks", "2", "--wraps", "sure"]);
+    assert!(
+        none.code == 2 && none.err.contains("--wraps sure matches no property that it can be of; there are: t.q"),
+        "{}",
+        none.err
+    );
+    // Both are violated in one clock; the one that is strict ends the run, and the assertion fails it anyway.
+    let ran = sim(&folder, &["--set", "en=1", "--clocks", "20", "--strict", "sure"]);
+    assert_eq!((ran.code, ran.err.as_str()), (1, "stepwave: invariant t.sure does not hold at clock 0\n"));
+}
+
+#[test]
+fn a_trap_names_the_strict_property_and_not_one_that_came_before() {
+    let folder = counter();
+    let text = folder.read("t.net");
+    let never = text.lines().find_map(|line| line.split_once("\"t.q\" never ")).expect("a property").1;
+    // A second property of the same net: it is violated in the same clock.
+    folder.write("t.net", &format!("{text}property \"t.another\" never {never}\n"));
+    for strict in ["q", "another"] {
+        let ran = sim(&folder, &["--set", "en=1", "--clocks", "20", "--strict", strict]);
+        assert_eq!(ran.code, 1);
+        assert!(
+            ran.err.contains(&format!("overflow of t.{strict} at clock 7")) && ran.err.lines().count() == 1,
+            "{}",
+            ran.err
+        );
+    }
+}
+
+#[test]
+fn a_wide_overflow_is_reported_with_its_bits() {
+    let folder = Folder::new();
+    folder.write(
+        "w.net",
+        "netlist w\n%0:1 = input\nname %0 in 0 \"a\" unsigned\nproperty \"w.acc\" never %0 fits-wide 87 add\n",
+    );
+    let ran = folder.run_words(&["sim", "w.net", "--set", "a=1", "--clocks", "1"]);
+    assert_eq!(ran.code, 0);
+    assert!(
+        ran.out.contains("overflow of w.acc at clock 0: the exact result of add does not fit in 87 bits (2 times)"),
+        "{}",
+        ran.out
+    );
 }

@@ -86,3 +86,36 @@ fn an_attribute_of_the_register_announces_that_it_wraps() {
     let property = text.lines().find(|line| line.starts_with("property")).expect("a property");
     assert!(property.ends_with(" wraps") && property.contains("fits 2 unsigned add"), "{property}");
 }
+
+/// A counter of this many bits that begins two below its greatest value, with its netlist's properties as text.
+fn wide_counter(bits: u32) -> (stepwave::netlist::Design, Vec<String>) {
+    let (q, y): (Vec<u32>, Vec<u32>) = ((10..10 + bits).collect(), (200..200 + bits).collect());
+    let cells = json!({
+        "add": cell("$add", &[], json!({ "A": q, "B": ["1"], "Y": y })),
+        "ff": cell("$dff", &["CLK_POLARITY"], json!({ "CLK": [2], "D": y, "Q": q })),
+    });
+    let init = format!("{}01", "1".repeat(bits as usize - 2));
+    let names = json!({ "clk": name([2]), "q": { "hide_name": 0, "bits": q, "attributes": { "init": init } } });
+    let ports = json!({ "clk": port("input", [2]), "q": { "direction": "output", "bits": q } });
+    let design = design(&module(ports, cells, names));
+    let properties = design.netlist().to_string();
+    let properties = properties.lines().filter(|line| line.starts_with("property")).map(str::to_owned).collect();
+    (design, properties)
+}
+
+#[test]
+fn a_carry_out_of_63_64_65_and_87_bits_is_an_event_in_its_clock() {
+    for (bits, claim) in [
+        (63, " fits 63 unsigned add"),
+        (64, " fits 64 unsigned add"),
+        (65, " fits-wide 65 add"),
+        (87, " fits-wide 87 add"),
+    ] {
+        let (design, properties) = wide_counter(bits);
+        assert!(properties.len() == 1 && properties[0].contains(claim), "{properties:?}");
+        let flags: Vec<u64> = samples(&design, &["t.overflow.q"], &[&[][..]; 6]).into_iter().flatten().collect();
+        assert_eq!(flags, [0, 0, 1, 0, 0, 0], "{bits} bits");
+        let text = design.netlist().to_string();
+        assert_eq!(&stepwave::netlist::text::parse(&text).expect("the same"), design.netlist());
+    }
+}

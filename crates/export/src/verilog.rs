@@ -54,6 +54,9 @@ pub fn verilog(design: &Design, options: &Options<'_>) -> String {
         "// Registers have their reset values from the beginning, and again after an edge with {} = 1.",
         names.rst
     );
+    if names.hide_others() {
+        text += "// A signal may have the name of a scope further out, as in the wave.\n/* verilator lint_off VARHIDDEN */\n";
+    }
     text += &format!("\n{}", module.head());
     for &net in module.writer.hidden.borrow().iter() {
         let entry = names.first(net).unwrap_or_default();

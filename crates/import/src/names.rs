@@ -78,6 +78,10 @@ impl Design<'_> {
             if of.bits.is_empty() {
                 continue;
             }
+            if clock.is_some_and(|net| of.bits.contains(&Wire::Net(net))) {
+                self.notes.push(format!("'{name}' has the clock among its bits: it is not shown"));
+                continue;
+            }
             let word = self.word(&of.bits);
             let (scope, own) = scopes.place(&mut self.builder.netlist.scopes, name);
             let format = if of.is_signed() { Format::Signed } else { Format::Unsigned };

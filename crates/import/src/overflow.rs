@@ -41,12 +41,24 @@ pub(crate) struct Readers<'a> {
     read: HashSet<u32>,
 }
 
-/// An operand as numbers: its word, its reading, and the numbers that it can be.
+/// An operand as numbers: its word, its reading, and the least and greatest number that it can be, up to 64 bits.
 struct Read {
     word: Word,
     signed: bool,
-    least: i128,
-    greatest: i128,
+    range: Option<[i128; 2]>,
+}
+
+impl Read {
+    /// It, for a claim that keeps numbers.
+    fn operand(&self) -> Option<Operand> {
+        let [net] = self.word.parts[..] else { return None };
+        Some(Operand { net, signed: self.signed })
+    }
+}
+
+/// The number needs no more bits than these.
+fn holds(kept: usize, signed: bool, number: i128) -> bool {
+    (signed || number >= 0) && Width::needed(number, signed) as usize <= kept
 }
 
 fn is_constant(wires: &[Wire]) -> bool {
@@ -169,7 +181,9 @@ impl<'a> Design<'a> {
         target: &Target,
         readers: &mut Readers<'a>,
     ) -> Option<(Net, Claim)> {
-        let width = Width::new(kept as u64).ok()?;
+        if kept == 0 {
+            return None;
+        }
         let operator = match cell.kind.as_str() {
             "$add" => Operator::Add,
             "$sub" => Operator::Sub,
@@ -184,51 +198,50 @@ impl<'a> Design<'a> {
             Operator::Neg => self.operand_read(&[Wire::Constant("0".to_owned())], false)?,
             _ => self.operand_read(cell.pin("B"), is_signed(cell.pin("B"), both && !shift) && !shift)?,
         };
-        let (least, greatest) = width.range(target.signed);
-        let (low, high) = operator.range([a.least, a.greatest], [b.least, b.greatest])?;
-        if least <= low && high <= greatest {
+        let (signed, wraps) = (target.signed, target.wraps);
+        let results = a.range.zip(b.range).and_then(|(a, b)| operator.range(a, b));
+        if results.is_some_and(|(low, high)| holds(kept, signed, low) && holds(kept, signed, high)) {
             return None;
         }
-        let outside = self.outside(operator, &a, &b, kept, target.signed)?;
+        let bits = u32::try_from(kept).unwrap_or(u32::MAX);
+        let outside = self.outside(operator, &a, &b, bits, signed);
         let taken = self.cell_taken(name, cell, readers);
         let never = self.builder.and(outside, taken);
-        let operand = |read: &Read| {
-            (read.word.parts.len() == 1).then(|| Operand { net: read.word.parts[0], signed: read.signed })
-        };
-        let claim = match operand(&a).zip(operand(&b)) {
-            Some((left, right)) => {
-                Claim::Fits { operator, left, right, width, signed: target.signed, wraps: target.wraps }
-            }
-            None => Claim::Invariant,
+        let claim = match (a.operand(), b.operand(), Width::new(u64::from(bits))) {
+            (Some(left), Some(right), Ok(width)) => Claim::Fits { operator, left, right, width, signed, wraps },
+            _ => Claim::FitsWide { operator, bits, wraps },
         };
         Some((never, claim))
     }
 
     fn operand_read(&mut self, wires: &[Wire], signed: bool) -> Option<Read> {
-        if wires.is_empty() || wires.len() > 63 {
+        if wires.is_empty() {
             return None;
         }
         let word = self.word(wires);
-        let (least, greatest) = if is_constant(wires) {
+        let range = self.numbers(wires, signed);
+        Some(Read { word, signed, range })
+    }
+
+    /// Least and greatest number that is on these wires, up to 64 of them.
+    fn numbers(&self, wires: &[Wire], signed: bool) -> Option<[i128; 2]> {
+        // Zeros above are not part of the number.
+        let zeros = wires.iter().rev().take_while(|wire| **wire == Wire::Constant("0".to_owned())).count();
+        let width = Width::new((wires.len() - if signed { 0 } else { zeros }).max(1) as u64).ok()?;
+        if is_constant(wires) {
             let value = wires
                 .iter()
                 .rev()
                 .fold(0u64, |value, wire| value << 1 | u64::from(*wire == Wire::Constant("1".to_owned())));
-            let width = Width::new(wires.len() as u64).ok()?;
             let value = stepwave_netlist::bits::number(width, value, signed);
-            (value, value)
-        } else {
-            // Zeros above are no part of the number.
-            let zeros = wires.iter().rev().take_while(|wire| **wire == Wire::Constant("0".to_owned())).count();
-            let width = Width::new((wires.len() - if signed { 0 } else { zeros }) as u64).ok()?;
-            width.range(signed)
-        };
-        Some(Read { word, signed, least, greatest })
+            return Some([value, value]);
+        }
+        let (least, greatest) = width.range(signed);
+        Some([least, greatest])
     }
 
     /// The exact result is outside of what the kept bits show.
-    fn outside(&mut self, operator: Operator, a: &Read, b: &Read, kept: usize, signed: bool) -> Option<Net> {
-        let kept = u32::try_from(kept).ok()?;
+    fn outside(&mut self, operator: Operator, a: &Read, b: &Read, kept: u32, signed: bool) -> Net {
         if operator == Operator::ShiftLeft {
             // Shifted there and back: something is lost where another number comes out.
             let wide = a.word.width.max(kept) + 1;
@@ -239,13 +252,13 @@ impl<'a> Design<'a> {
             let back = self.builder.shift(&there, &b.word, false, signed);
             let same = self.builder.equal(&back, &x);
             // An amount beyond the word shifts everything out, which comes back as 0.
-            let limit = self.builder.number(u64::from(kept), b.word.width.max(8));
-            let amount = self.builder.fit(&b.word, b.word.width.max(8), false);
+            let limit = self.builder.number(u64::from(kept), b.word.width.max(u32::BITS));
+            let amount = self.builder.fit(&b.word, b.word.width.max(u32::BITS), false);
             let small = self.builder.less(&amount, &limit, false);
             let any = self.builder.any(&x);
             let (large, changed) = (self.builder.invert(small), self.builder.invert(same));
             let gone = self.builder.and(large, any);
-            return Some(self.builder.or(changed, gone));
+            return self.builder.or(changed, gone);
         }
         let wide = match operator {
             Operator::Mul => a.word.width + b.word.width + 2,
@@ -263,7 +276,7 @@ impl<'a> Design<'a> {
         let cut = self.builder.fit(&exact, kept, false);
         let shown = self.builder.fit(&cut, wide, signed);
         let same = self.builder.equal(&shown, &exact);
-        Some(self.builder.invert(same))
+        self.builder.invert(same)
     }
 
     /// What the result of a cell is for.

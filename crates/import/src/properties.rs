@@ -17,7 +17,8 @@ impl Design<'_> {
     /// A property for every assertion: its condition is 0 while it is enabled.
     pub(crate) fn assertions(&mut self) {
         let module = self.module;
-        for (name, cell) in module.cells.iter().filter(|(_, cell)| is_property(&cell.kind)) {
+        let claims = |cell: &Cell| is_property(&cell.kind) || cell.kind == "$print";
+        for (name, cell) in module.cells.iter().filter(|(_, cell)| claims(cell)) {
             let place = cell.place().map_or_else(|| name.clone(), |place| format!("{}:{}", place.file, place.line));
             let flavour = flavour(cell);
             if flavour != "assert" {

@@ -300,8 +300,25 @@ pub enum Claim {
         /// The author announces that what does not fit is meant to be lost.
         wraps: bool,
     },
+    /// The same of a result or operands of more than 64 bits, whose numbers are not kept.
+    FitsWide {
+        /// Operator.
+        operator: Operator,
+        /// Bits that are kept.
+        bits: u32,
+        /// The author announces that what does not fit is meant to be lost.
+        wraps: bool,
+    },
     /// An invariant that the model's author claims.
     Invariant,
+}
+
+impl Claim {
+    /// What an operator of imported hardware loses is announced: it is shown, and not reported.
+    #[must_use]
+    pub fn is_announced(self) -> bool {
+        matches!(self, Claim::Fits { wraps: true, .. } | Claim::FitsWide { wraps: true, .. })
+    }
 }
 
 /// A net that must never be 1. The simulator watches it, a prover proves it.

@@ -51,6 +51,12 @@ impl Design {
         first.map_or(Ok(()), |memory| Err(HasMemories { tool, memory }))
     }
 
+    /// Bits of all registers together.
+    #[must_use]
+    pub fn register_bits(&self) -> u32 {
+        self.registers().iter().map(|&register| self.netlist().width(register).get()).sum()
+    }
+
     /// All inputs in creation order.
     #[must_use]
     pub fn inputs(&self) -> &[Net] {

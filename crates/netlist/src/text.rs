@@ -19,7 +19,8 @@
 //! `memory 0 in 1 "ram" width 8 words 16` comes before the cells `read 0 %4`, followed by `initial 0 0x12 0x0*15`, its
 //! first words, and `write 0 enable %1 address %2 data %3 mask %4`, its ports; a mask may be missing. `property`
 //! ends in `invariant`, in the strict operation with its operands, or in `fits`, the bits that are kept of a result, their
-//! reading, the operation with its operands, and `wraps` where a carry is meant to be lost; `between-steps` in formulas with
+//! reading, the operation with its operands, and `wraps` where a carry is meant to be lost, or `fits-wide`, where a word has
+//! more than 64 bits, with bits and operation alone; `between-steps` in formulas with
 //! `|` between them.
 //! Text in quotes is escaped as in Rust.
 
@@ -141,6 +142,9 @@ impl fmt::Display for Netlist {
                     let (word, width) = (operator.name(), width.get());
                     writeln!(f, " fits {width} {own} {word} {} {l} {} {r}{wraps}", left.net, right.net)?;
                 }
+                Claim::FitsWide { operator, bits, wraps } => {
+                    writeln!(f, " fits-wide {bits} {}{}", operator.name(), if wraps { " wraps" } else { "" })?;
+                }
                 Claim::NoOverflow { operation, left, right } => {
                     let word = match operation {
                         Arithmetic::Add => "add",
@@ -251,9 +255,10 @@ impl Parser {
                 let claim = match words.word()? {
                     "invariant" => Claim::Invariant,
                     "fits" => words.fits()?,
+                    "fits-wide" => words.fits_wide()?,
                     "add" => words.strict(Arithmetic::Add)?,
                     "sub" => words.strict(Arithmetic::Sub)?,
-                    _ => return Err("'invariant', 'fits', 'add' or 'sub'".to_owned()),
+                    _ => return Err("'invariant', 'fits', 'fits-wide', 'add' or 'sub'".to_owned()),
                 };
                 self.netlist.properties.push(Property { name, never, claim });
             }

@@ -6,7 +6,7 @@ pub mod gtkw;
 pub mod guard;
 pub mod merge;
 mod moves;
-mod pattern;
+pub mod pattern;
 pub mod probe;
 pub mod read;
 pub mod timescale;

@@ -8,8 +8,11 @@ use globset::{Glob, GlobMatcher};
 const LONGEST: usize = 1000;
 const DEEPEST: usize = 8;
 
-/// Compiles a glob; the error says why the text is not one.
-pub(crate) fn glob(pattern: &str) -> Result<GlobMatcher, String> {
+/// Compiles a glob.
+///
+/// # Errors
+/// Why the text is not one.
+pub fn glob(pattern: &str) -> Result<GlobMatcher, String> {
     if pattern.len() > LONGEST {
         return Err(format!("it has {} bytes; at most {LONGEST} are read", pattern.len()));
     }
@@ -29,6 +32,14 @@ pub(crate) fn glob(pattern: &str) -> Result<GlobMatcher, String> {
         Err(error) => Err(error.kind().to_string()),
     };
     guarded(compile).unwrap_or_else(|_| Err("its alternatives cannot be read".to_owned()))
+}
+
+/// A glob fits the leaf name, the dotted path, or the path without the design's name.
+#[must_use]
+pub fn fits(glob: &GlobMatcher, path: &str) -> bool {
+    let leaf = path.rsplit('.').next().unwrap_or(path);
+    let inner = path.split_once('.').map_or(path, |(_, inner)| inner);
+    [leaf, path, inner].iter().any(|text| glob.is_match(text))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use globset::GlobMatcher;
 
-use crate::pattern::glob;
+use crate::pattern::{fits, glob};
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Format, Net, Op};
 use stepwave_netlist::did_you_mean;
@@ -87,11 +87,8 @@ fn matchers(patterns: &[String]) -> Result<Vec<GlobMatcher>, PatternError> {
     patterns.iter().map(compile).collect()
 }
 
-/// A pattern fits the leaf name, the dotted path, or the path without the design's name.
 fn matches(glob: &GlobMatcher, scopes: &[String], name: &str) -> bool {
-    let inner = [&scopes[1..], &[name.to_owned()]].concat().join(".");
-    let path = format!("{}.{inner}", scopes[0]);
-    [name, path.as_str(), inner.as_str()].iter().any(|text| glob.is_match(text))
+    fits(glob, &format!("{}.{name}", scopes.join(".")))
 }
 
 impl Selection {

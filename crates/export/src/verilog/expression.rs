@@ -281,17 +281,11 @@ impl Writer<'_> {
         let width = self.netlist.width(a);
         let zero = literal(width, 0);
         let (a, b) = (self.read(a, place).into_unsigned(), self.read(b, place).into_unsigned());
-        match (width, operator) {
-            // Only 1 divides.
-            (Width::ONE, "/") => Expression {
-                binding: Binding::And,
-                ..Expression::atom(format!("{} & {}", a.within(Binding::Unary), b.within(Binding::Unary)))
-            },
-            (Width::ONE, _) => Expression::atom(zero),
-            _ => {
-                let (a, b) = (a.within(Binding::Unary), b.within(Binding::Unary));
-                Expression::atom(format!("{{{b} == {zero} ? {zero} : {a} {operator} {b}}}"))
-            }
+        let (a, b) = (a.within(Binding::Unary), b.within(Binding::Unary));
+        match width {
+            // A quotient by 1; a remainder of 1 bit is known.
+            Width::ONE => Expression { binding: Binding::And, ..Expression::atom(format!("{a} & {b}")) },
+            _ => Expression::atom(format!("{{{b} == {zero} ? {zero} : {a} {operator} {b}}}")),
         }
     }
 

@@ -6,9 +6,9 @@
 use std::collections::HashMap;
 
 use super::names::Names;
-use stepwave_netlist::Design;
-use stepwave_netlist::bits;
 use stepwave_netlist::cells::{Net, Netlist, Op, ScopeId};
+use stepwave_netlist::passes::constant;
+use stepwave_netlist::{Design, Width};
 
 /// Operators in one expression before it is cut by a wire.
 const LARGEST: usize = 8;
@@ -276,18 +276,16 @@ impl Layout {
     }
 }
 
-/// The values of constants, and of what is cut and joined from them.
+/// The values of all that follows from constants. Icarus Verilog 11 compiles a shift by or of a name that it finds to be
+/// constant to something that it cannot read; with a number it does not.
 fn known(netlist: &Netlist) -> Vec<Option<u64>> {
     let mut known: Vec<Option<u64>> = Vec::with_capacity(netlist.cells.len());
     for cell in &netlist.cells {
-        let of = |net: Net| known.get(net.index()).copied().flatten();
+        let of = |net: Net| Some((known.get(net.index()).copied().flatten()?, netlist.width(net)));
         known.push(match cell.op {
-            Op::Const(value) => Some(value),
-            Op::ZeroExtend(a) => of(a),
-            Op::SignExtend(a) => of(a).map(|value| bits::sign_extend(netlist.width(a), cell.width, value)),
-            Op::Slice { of: a, low } => of(a).map(|value| value >> low & cell.width.mask()),
-            Op::Concat { high, low } => of(high).zip(of(low)).map(|(h, l)| h << netlist.width(low).get() | l),
-            _ => None,
+            // 1 divides everything, and a remainder by 0 is 0.
+            Op::Rem(..) if cell.width == Width::ONE => Some(0),
+            op => constant::value(op, cell.width, of),
         });
     }
     known

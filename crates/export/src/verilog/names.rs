@@ -143,6 +143,15 @@ impl Names {
         format!("{}sum{}", self.prefix, net.index())
     }
 
+    /// A name of an inner scope is also that of something in a scope around it.
+    pub(super) fn hide_others(&self) -> bool {
+        let around = |scope: ScopeId| self.scope_path(scope).into_iter().filter(move |other| *other != scope);
+        (0u32..)
+            .map(ScopeId)
+            .zip(&self.taken)
+            .any(|(scope, names)| around(scope).any(|other| !self.taken[other.index()].is_disjoint(names)))
+    }
+
     /// Scopes from the top to this one.
     fn scope_path(&self, scope: ScopeId) -> Vec<ScopeId> {
         let mut path = vec![scope];

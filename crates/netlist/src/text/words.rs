@@ -105,15 +105,28 @@ impl<'a> Words<'a> {
 
     pub(super) fn fits(&mut self) -> Result<Claim, Expected> {
         let width = Width::new(self.number()?).map_err(|error| format!("a width of 1 to 64 bits ({error})"))?;
-        let (signed, word) = (self.signed()?, self.word()?);
-        let operator = Operator::ALL.into_iter().find(|operator| operator.name() == word);
-        let operator = operator.ok_or("'add', 'sub', 'neg', 'mul' or 'shift-left'")?;
+        let (signed, operator) = (self.signed()?, self.operator()?);
         let (left, right) = self.operands()?;
+        Ok(Claim::Fits { operator, left, right, width, signed, wraps: self.wraps()? })
+    }
+
+    pub(super) fn fits_wide(&mut self) -> Result<Claim, Expected> {
+        Ok(Claim::FitsWide { bits: self.number()?, operator: self.operator()?, wraps: self.wraps()? })
+    }
+
+    fn operator(&mut self) -> Result<Operator, Expected> {
+        let word = self.word()?;
+        let operator = Operator::ALL.into_iter().find(|operator| operator.name() == word);
+        operator.ok_or_else(|| "'add', 'sub', 'neg', 'mul' or 'shift-left'".to_owned())
+    }
+
+    /// The word `wraps`, or the end.
+    fn wraps(&mut self) -> Result<bool, Expected> {
         let wraps = !self.rest.is_empty();
         if wraps {
             self.keyword("wraps")?;
         }
-        Ok(Claim::Fits { operator, left, right, width, signed, wraps })
+        Ok(wraps)
     }
 
     pub(super) fn strict(&mut self, operation: Arithmetic) -> Result<Claim, Expected> {
