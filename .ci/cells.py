@@ -44,8 +44,8 @@ class Design:
         self.outputs.append((name, width))
         return name
 
-    def width(self, most=100):
-        return self.rng.choice([1, 2, self.rng.randint(3, 20), self.rng.randint(21, 64), self.rng.randint(1, most)])
+    def width(self, most=140):
+        return self.rng.choice([1, 2, self.rng.randint(3, 20), self.rng.randint(21, 64), self.rng.randint(1, most), most])
 
     def instance(self, kind, parameters, pins):
         shown = ", ".join(f".{name}({value})" for name, value in parameters.items())
@@ -56,7 +56,7 @@ class Design:
         rng = self.rng
         if kind in BINARY or kind in SHIFTS:
             # Icarus divides words of more than 64 bits by 1 to 0.
-            most = 100 if kind not in ("div", "mod", "divfloor", "modfloor") else 64
+            most = 140 if kind not in ("div", "mod", "divfloor", "modfloor") else 64
             a, b, y = self.width(most), self.width(most), self.width(most)
             if kind in SHIFTS:
                 b = rng.randint(1, 8)

@@ -20,19 +20,26 @@ fn a_register_with_an_asynchronous_reset_shows_it_in_the_same_sample() {
     assert_eq!(values, [0, 1, 2, 2, 2, 2, 3]);
 }
 
-#[test]
-fn words_of_87_bits_add_with_the_carry_from_part_to_part() {
-    let (a, y): (Vec<u32>, Vec<u32>) = ((10..97).collect(), (100..187).collect());
+/// A counter of 87 or more bits that begins with this many low ones.
+fn counter(bits: u32, ones: usize) -> stepwave::netlist::Design {
+    let (a, y): (Vec<u32>, Vec<u32>) = ((10..10 + bits).collect(), (300..300 + bits).collect());
     let cells = json!({
         "add": cell("$add", &[], json!({ "A": a, "B": ["1"], "Y": y })),
         "ff": cell("$dff", &["CLK_POLARITY"], json!({ "CLK": [2], "D": y, "Q": a })),
     });
-    let init = format!("{}{}", "0".repeat(23), "1".repeat(64));
+    let init = format!("{}{}", "0".repeat(bits as usize - ones), "1".repeat(ones));
     let wide = json!({ "hide_name": 0, "bits": a, "attributes": { "init": init } });
     let ports = json!({ "clk": port("input", [2]), "acc": { "direction": "output", "bits": a } });
-    let design = design(&module(ports, cells, json!({ "clk": name([2]), "acc": wide })));
-    let rows = samples(&design, &["acc_63_0", "acc_86_64"], &[&[], &[], &[]]);
+    design(&module(ports, cells, json!({ "clk": name([2]), "acc": wide })))
+}
+
+#[test]
+fn wide_words_add_with_the_carry_from_part_to_part() {
+    let rows = samples(&counter(87, 64), &["acc_63_0", "acc_86_64"], &[&[], &[], &[]]);
     assert_eq!(rows, [[u64::MAX, 0], [0, 1], [1, 1]]);
+    // The carry goes through a part that is all ones.
+    let rows = samples(&counter(130, 128), &["acc_63_0", "acc_127_64", "acc_129_128"], &[&[], &[], &[]]);
+    assert_eq!(rows, [[u64::MAX, u64::MAX, 0], [0, 0, 1], [1, 0, 1]]);
 }
 
 #[test]

@@ -87,6 +87,23 @@ fn an_attribute_of_the_register_announces_that_it_wraps() {
     assert!(property.ends_with(" wraps") && property.contains("fits 2 unsigned add"), "{property}");
 }
 
+#[test]
+fn bits_that_nothing_reads_are_not_kept() {
+    // 8 bits of q + 1, through a multiplexer, into a register of 2.
+    let (y, m): (Vec<u32>, Vec<u32>) = ((20..28).collect(), (30..38).collect());
+    let cells = json!({
+        "add": cell("$add", &[], json!({ "A": [4, 5], "B": ["1"], "Y": y })),
+        "mux": cell("$mux", &[], json!({ "A": ["0", "0", "0", "0", "0", "0", "0", "0"], "B": y, "S": [3], "Y": m })),
+        "ff": cell("$dff", &["CLK_POLARITY"], json!({ "CLK": [2], "D": m[..2], "Q": [4, 5] })),
+    });
+    let ports = json!({ "clk": port("input", [2]), "en": port("input", [3]), "q": port("output", [4, 5]) });
+    let design = design(&module(ports, cells, names()));
+    let Claim::Fits { width, .. } = design.netlist().properties[0].claim else { panic!() };
+    assert_eq!((width.get(), design.netlist().properties[0].name.as_str()), (2, "t.q"));
+    let rows = samples(&design, &["t.q", "t.overflow.q"], &[&[("en", 1)], &[], &[], &[], &[("en", 0)]]);
+    assert_eq!(rows, [[0, 0], [1, 0], [2, 0], [3, 1], [0, 0]]);
+}
+
 /// A counter of this many bits that begins two below its greatest value, with its netlist's properties as text.
 fn wide_counter(bits: u32) -> (stepwave::netlist::Design, Vec<String>) {
     let (q, y): (Vec<u32>, Vec<u32>) = ((10..10 + bits).collect(), (200..200 + bits).collect());
