@@ -173,3 +173,13 @@ fn a_wide_overflow_is_reported_with_its_bits() {
         ran.out
     );
 }
+
+#[test]
+fn the_netlist_of_the_page_on_the_text_form_is_one() {
+    let page = include_str!("../../docs/netlist.md");
+    let text = page.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a netlist");
+    let folder = Folder::new();
+    folder.write("counter.net", text);
+    let checked = folder.good("check counter.net");
+    assert!(checked.starts_with("counter: 6 cells, 1 registers of 4 bits together"), "{checked}");
+}
