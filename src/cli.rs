@@ -26,7 +26,7 @@ pub(crate) use endings::{Format, file_of};
 pub(crate) use hardware::HardwareArgs;
 use names::model_name;
 pub(crate) use names::{Registers, all_registers, known_register, listed, registers};
-pub(crate) use own::{CheckArgs, ImportArgs, SimArgs};
+pub(crate) use own::{BenchArgs, CheckArgs, ImportArgs, SimArgs};
 use program::machines;
 pub(crate) use program::{ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
@@ -97,8 +97,14 @@ pub(crate) struct ListArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
     stepwave compare --to 100,62\n  \
-    stepwave compare --from 100,0 --to 0,100 --ccw --markdown")]
+    stepwave compare --from 100,0 --to 0,100 --ccw --markdown\n  \
+    stepwave compare dda-line dda.net --to 100,62")]
 pub(crate) struct CompareArgs {
+    /// Models to compare; netlists of one's own alone are compared with all models [default: all]
+    #[arg(value_parser = model_name(), hide_possible_values = true)]
+    pub(crate) models: Vec<String>,
+    #[command(flatten)]
+    pub(crate) bench: BenchArgs,
     #[command(flatten)]
     pub(crate) geometry: GeometryArgs,
     /// How far an end point may leave an arc: its radius may differ from that of the start by so many BLU more than
@@ -159,9 +165,11 @@ pub(crate) struct GoldenArgs {
     stepwave run ppc-arc --from 5,0 --to 0,5 --ccw --steps - \n  \
     stepwave run ppc-line --to 6,4 --width f=3 --vcd trap.vcd")]
 pub(crate) struct RunArgs {
-    /// The model; `stepwave list` shows them
+    /// The model; `stepwave list` shows them. Or a netlist of one's own: F.net
     #[arg(value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: String,
+    #[command(flatten)]
+    pub(crate) bench: BenchArgs,
     #[command(flatten)]
     pub(crate) geometry: GeometryArgs,
     #[command(flatten)]
@@ -200,10 +208,12 @@ pub(crate) struct RunArgs {
 #[command(group(clap::ArgGroup::new("exports").required(true).multiple(true)))]
 #[command(group(clap::ArgGroup::new("checked").multiple(true)))]
 pub(crate) struct ExportArgs {
-    /// The model; `stepwave list` shows them
+    /// The model; `stepwave list` shows them. Or a netlist of one's own: F.net
     #[arg(value_parser = model_name(), hide_possible_values = true)]
     #[arg(required_unless_present = "program")]
     pub(crate) model: Option<String>,
+    #[command(flatten)]
+    pub(crate) bench: BenchArgs,
     /// An NC program in place of a model and its geometry: the machine of --method, which runs all of it
     #[arg(long, value_name = "FILE", requires = "method", conflicts_with_all = ["model", "any_geometry"])]
     pub(crate) program: Option<PathBuf>,

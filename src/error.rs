@@ -74,6 +74,7 @@ invalid_by!(
     crate::import::ImportError,
     crate::netlist::Diagnostics,
     crate::netlist::HasMemories,
+    crate::own::BenchError,
     crate::own::FileError,
     crate::own::StimulusError,
     crate::own::YosysError,

@@ -1,10 +1,16 @@
-//! Hardware of one's own: netlists from files, run by a stimulus, without a model and without a geometry.
+//! Hardware of one's own: netlists from files, run by a stimulus, or with a bench file as a model.
 
+mod announce;
+mod bench;
 mod file;
 mod sim;
 mod stimulus;
 mod yosys;
 
+pub(crate) use announce::{announce, matching};
+#[cfg(feature = "cli")]
+pub(crate) use bench::next_to;
+pub use bench::{BenchError, is_netlist, model};
 pub use file::{FileError, read_netlist};
 #[cfg(feature = "cli")]
 pub(crate) use file::{checked, read_text, summary};

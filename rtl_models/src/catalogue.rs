@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
 
 use crate::MODELS;
+use crate::described::known;
 use crate::error::ModelError;
 use crate::model::{CurveKind, Model};
 use crate::options::{ALL, AnyOption, Options, Shape};
@@ -34,13 +35,13 @@ pub fn installed() -> &'static Catalogue {
     INSTALLED.get_or_init(catalogue)
 }
 
-/// The model of this name in the [installed] catalogue.
+/// The model of this name in the [installed] catalogue, or one that is [known](crate::know) besides.
 ///
 /// # Errors
 /// There is none; the message lists those there are.
 pub fn find(name: &str) -> Result<&'static Model, ModelError> {
     let models = installed();
-    models.iter().find(|model| model.name == name).ok_or_else(|| ModelError::UnknownModel {
+    models.iter().find(|model| model.name == name).or_else(|| known(name)).ok_or_else(|| ModelError::UnknownModel {
         name: name.to_owned(),
         known: models.iter().map(|model| model.name).collect::<Vec<_>>().join(", "),
     })
@@ -159,7 +160,7 @@ fn check(model: &'static Model) -> Result<(), ModelError> {
                 return Err(ModelError::defect(model.name, what));
             }
         }
-        let blocks = model.words(&hardware, &curve);
+        let blocks = model.words(&hardware, &curve).map_err(defect)?;
         if blocks.is_empty() {
             return Err(ModelError::defect(model.name, format!("with '{words}': it loads no block")));
         }

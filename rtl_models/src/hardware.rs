@@ -43,7 +43,7 @@ pub struct Hardware {
     pub sampling: Option<Sampling>,
     /// Registers that a step table shows, in order.
     pub table: Vec<&'static str>,
-    /// No pulse for this many clocks while a block runs means that none will come.
+    /// No pulse for this many clocks while a block runs means that none will come; `u64::MAX` where that is not known.
     pub stall_clocks: u64,
     /// Greatest path error in BLU that the method promises, if it promises one.
     pub error_bound: Option<f64>,
@@ -178,6 +178,12 @@ impl Hardware {
         // Whole units of a pulse multiplier.
         let all = self.get(&CASCADE).map_or(all, |unit| all.next_multiple_of(unit.get()));
         if self.shares_a_scale(register) && !fits { all.to_string() } else { format!("{register}={bits}") }
+    }
+
+    /// How long it may be without a pulse is known.
+    #[must_use]
+    pub fn has_stall_clocks(&self) -> bool {
+        self.stall_clocks < u64::MAX
     }
 
     /// Letters of the axes.

@@ -73,6 +73,7 @@ static MODELS: &[&Model] = &[
 
 mod catalogue;
 mod claims;
+mod described;
 mod docs;
 mod error;
 mod hardware;
@@ -86,6 +87,7 @@ mod words;
 
 pub use catalogue::{Catalogue, catalogue, find, installed};
 pub use claims::{Claims, Kind, Region, extremes};
+pub use described::{Described, know};
 pub use error::ModelError;
 pub use hardware::{Hardware, Pace};
 pub use machine::{BufferPorts, CutWord, Loaded, Machine, Port, Words};

@@ -42,6 +42,13 @@ impl Words {
         self
     }
 
+    /// With one more, for the input of this name.
+    #[must_use]
+    pub fn set_input(mut self, input: &'static str, value: i128) -> Words {
+        self.0.push((input, value));
+        self
+    }
+
     /// With a word for each of these registers.
     #[must_use]
     pub fn set_each<const K: usize>(self, registers: Reg<K>, values: [impl Into<i128>; K]) -> Words {
@@ -104,6 +111,10 @@ pub struct Machine {
     pub inputs: BTreeMap<String, Port>,
     /// Ports of the block buffer, of a machine that runs whole programs.
     pub buffer: Option<BufferPorts>,
+    /// Flags that end a run where overflows trap; 1 bit each.
+    pub traps: Vec<Net>,
+    /// Clocks in which the first block of a machine without a buffer is loaded, and each further one.
+    pub load_clocks: [u64; 2],
 }
 
 /// Ports of a machine that takes the next block while the present one runs; 1 bit each but the last.
@@ -124,15 +135,21 @@ pub(crate) fn input_name(register: &str) -> String {
     format!("{register}_in")
 }
 
-fn port(netlist: &Netlist, name: &str) -> Result<Port, ModelError> {
-    let named = netlist.find(name).ok_or_else(|| ModelError::MissingPort(name.to_owned()))?;
-    Ok(Port { net: named.net, width: netlist.width(named.net), reading: named.format.reading() })
+impl Port {
+    /// The net of this name, given as leaf name or as dotted path.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn of(netlist: &Netlist, name: &str) -> Result<Port, ModelError> {
+        let named = netlist.find(name).ok_or_else(|| ModelError::MissingPort(name.to_owned()))?;
+        Ok(Port { net: named.net, width: netlist.width(named.net), reading: named.format.reading() })
+    }
 }
 
 impl Machine {
     /// Elaborates a netlist and finds its ports.
     pub(crate) fn new(netlist: Netlist, hardware: &Hardware) -> Result<Machine, ModelError> {
-        let find = |name: &str| port(&netlist, name);
+        let find = |name: &str| Port::of(&netlist, name);
         let letters = hardware.letters().iter();
         let inputs = netlist.names.iter().filter_map(|named| named.name.strip_suffix("_in"));
         let inputs = inputs.map(|register| Ok((register.to_owned(), find(&input_name(register))?)));
@@ -153,6 +170,8 @@ impl Machine {
             positions: letters.map(|axis| find(axis)).collect::<Result<_, ModelError>>()?,
             table: table.collect::<Result<_, ModelError>>()?,
             inputs: inputs.collect::<Result<_, ModelError>>()?,
+            traps: netlist.properties.iter().map(|property| property.never).collect(),
+            load_clocks: [1, 2],
             design: elaborate(netlist)?,
         })
     }

@@ -4,6 +4,7 @@ use stepwave_nc::{Arc, Conic, Curve, Helix, Line};
 use stepwave_netlist::dsl::{Module, Scope};
 
 use crate::claims::Claims;
+use crate::described::Described;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
@@ -107,6 +108,8 @@ pub enum Interpolates {
     Helices(Method<Helix>),
     /// The moves of a program, or one of them alone.
     Moves(Moves),
+    /// What data describe, wiring included: [`Model::hardware`] is not called.
+    Described(&'static dyn Described),
 }
 
 /// An interpolator: its documentation, and how it is planned, wired and loaded.
@@ -143,7 +146,14 @@ impl Model {
             Interpolates::Helices(_) => CurveKind::Helix,
             Interpolates::Moves(moves) if moves.arcs => CurveKind::Move,
             Interpolates::Moves(_) => CurveKind::Line { max_axes: 3 },
+            Interpolates::Described(described) => described.curve(),
         }
+    }
+
+    /// It is hardware that data describe, whose widths are not to be chosen.
+    #[must_use]
+    pub fn is_described(&self) -> bool {
+        matches!(self.interpolates, Interpolates::Described(_))
     }
 
     /// Its registers by what is declared together, in the order of the step table.
@@ -186,6 +196,10 @@ impl Model {
             (Interpolates::Arcs(method), Curve::Arc(arc)) => method.planned(arc, new()?),
             (Interpolates::Conics(method), Curve::Conic(conic)) => method.planned(conic, new()?),
             (Interpolates::Helices(method), Curve::Helix(helix)) => method.planned(helix, new()?),
+            (Interpolates::Described(described), _) if described.curve().fits(curve) => {
+                let mut plan = new()?;
+                described.plan(curve, &mut plan).map(|()| plan)
+            }
             _ => {
                 let given = match curve {
                     Curve::Line(line) => format!("a line of {} axes", line.axes()),
@@ -204,22 +218,30 @@ impl Model {
     /// # Errors
     /// The model itself is wrong.
     pub fn machine(&self, hardware: &Hardware) -> Result<Machine, ModelError> {
+        if let Interpolates::Described(described) = &self.interpolates {
+            return described.machine(hardware);
+        }
         let module = Module::with_overflow(&self.name.replace('-', "_"), hardware.get(&ON_OVERFLOW));
         (self.hardware)(module.top(), hardware);
         Machine::new(module.finish()?, hardware)
     }
 
     /// The words of every block of a geometry; none of a curve that the model does not interpolate.
-    #[must_use]
-    pub fn words(&self, hardware: &Hardware, curve: &Curve) -> Vec<Words> {
-        match (&self.interpolates, curve) {
+    ///
+    /// # Errors
+    /// Of hardware that data describe: a word cannot be computed, or the hardware cannot take it.
+    pub fn words(&self, hardware: &Hardware, curve: &Curve) -> Result<Vec<Words>, ModelError> {
+        if let Interpolates::Described(described) = &self.interpolates {
+            return described.words(hardware, curve);
+        }
+        Ok(match (&self.interpolates, curve) {
             (Interpolates::Lines(_, method), Curve::Line(line)) => (method.load)(line, hardware),
             (Interpolates::Arcs(method), Curve::Arc(arc)) => (method.load)(arc, hardware),
             (Interpolates::Conics(method), Curve::Conic(conic)) => (method.load)(conic, hardware),
             (Interpolates::Helices(method), Curve::Helix(helix)) => (method.load)(helix, hardware),
             (Interpolates::Moves(moves), _) => moves.words_alone(hardware, curve),
             _ => Vec::new(),
-        }
+        })
     }
 }
 

@@ -31,7 +31,7 @@ pub struct Plan {
     pub pace: Pace,
     /// Greatest deviation of an axis from its uniform rate, in pulses, that the method promises, if it promises one.
     pub rate_bound: Option<f64>,
-    /// No pulse for this many clocks while a block runs means that none will come.
+    /// No pulse for this many clocks while a block runs means that none will come; `u64::MAX` where that is not known.
     pub stall_clocks: u64,
     /// Beginnings of the names of registers that share one scale and are widened together.
     pub scale: &'static [&'static str],

@@ -6,7 +6,10 @@ use clap::Args;
 use stepwave_import::Unknown;
 
 use super::{ClockArgs, Format, file_of, values};
+use crate::Error;
 use crate::engine::EngineKind;
+use crate::models::{Model, find};
+use crate::own::{self, is_netlist};
 use crate::waves::WaveOptions;
 
 #[derive(Debug, Args)]
@@ -51,6 +54,41 @@ pub(crate) struct ImportArgs {
     /// Write the netlist into this file (- is standard output)
     #[arg(long, short = 'o', value_name = "FILE", value_parser = file_of(&[Format::Netlist]))]
     pub(crate) output: PathBuf,
+}
+
+/// The bench file of a netlist that is given in place of the name of a model.
+#[derive(Debug, Default, Args)]
+pub(crate) struct BenchArgs {
+    /// Of a netlist as MODEL: what its ports mean [default: F.toml next to F.net]
+    #[arg(long, value_name = "BENCH", help_heading = "Hardware of one's own")]
+    pub(crate) bench: Option<PathBuf>,
+}
+
+impl BenchArgs {
+    /// The model of this name, or the one in the netlist at this path.
+    ///
+    /// # Errors
+    /// There is none.
+    pub(crate) fn model(&self, word: &str) -> Result<&'static Model, Error> {
+        if is_netlist(word) {
+            return Ok(own::model(word, self.bench.as_deref())?);
+        }
+        match &self.bench {
+            None => Ok(find(word)?),
+            Some(bench) => Err(Error::Invalid(format!(
+                "--bench {} is for a netlist of one's own, and {word} is a model of the catalogue: leave it out",
+                bench.display()
+            ))),
+        }
+    }
+
+    /// The files that are read for the models of these names.
+    pub(crate) fn files<'a>(&'a self, words: impl IntoIterator<Item = &'a String>) -> Vec<PathBuf> {
+        let netlists = words.into_iter().filter(|word| is_netlist(word)).map(PathBuf::from);
+        let pairs =
+            netlists.flat_map(|netlist| [self.bench.clone().unwrap_or_else(|| own::next_to(&netlist)), netlist]);
+        pairs.collect()
+    }
 }
 
 #[derive(Debug, Args)]

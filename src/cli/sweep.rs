@@ -8,6 +8,7 @@ use crate::study::{Grid, Range};
 use clap::builder::StringValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 
+use super::BenchArgs;
 use super::endings::{Format, file_of};
 use super::hardware::proposals;
 use super::names::{listed, model_name};
@@ -66,9 +67,11 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
 pub(crate) struct SweepArgs {
     #[command(subcommand)]
     pub(crate) command: Option<SweepCommand>,
-    /// The model; `stepwave list` shows them
+    /// The model; `stepwave list` shows them. Or a netlist of one's own: F.net
     #[arg(required = true, value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: Option<String>,
+    #[command(flatten)]
+    pub(crate) bench: BenchArgs,
     #[command(flatten)]
     pub(crate) space: SpaceArgs,
     #[command(flatten)]

@@ -4,8 +4,8 @@ use clap::Args;
 
 use crate::study::Extent;
 
-use super::HardwareArgs;
 use super::names::model_name;
+use super::{BenchArgs, HardwareArgs};
 
 #[derive(Debug, Args)]
 #[command(after_help = "How a width is known to be enough:\n  \
@@ -27,9 +27,11 @@ use super::names::model_name;
     stepwave widths cim-conic --box 4\n  \
     stepwave widths bresenham --box 6 --json")]
 pub(crate) struct WidthsArgs {
-    /// The model; `stepwave list` shows them
+    /// The model; `stepwave list` shows them. Or a netlist of one's own: F.net
     #[arg(value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: String,
+    #[command(flatten)]
+    pub(crate) bench: BenchArgs,
     /// Bits of the coordinates, or a range for each axis (0..255x0..255): every line from the origin to such a point, or
     /// every arc inside a quadrant with both ends on the circle; in bits also every helix over such an arc, and every
     /// quarter of an ellipse with such semi-axes and every arc of a parabola or hyperbola from or to the vertex

@@ -12,6 +12,7 @@ use super::progress::Progress;
 use crate::Error;
 use crate::cli::CompareArgs;
 use crate::output;
+use crate::own::is_netlist;
 
 /// Prints one row for each model that takes the curve, by default and in its other common forms.
 pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
@@ -25,7 +26,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     };
     let curve = geometry::curve("compare", kind, geometry, args.tolerance.map_or(0.0, Millionths::units))?;
     let mut rows = vec![HEADING.map(str::to_owned)];
-    let models = installed().iter().filter(|model| model.curve().fits(&curve));
+    let models = models(args)?;
+    let models = models.into_iter().filter(|model| model.curve().fits(&curve));
     let runs: Vec<_> =
         models.flat_map(|model| forms(model, &curve).into_iter().map(move |form| (model, form))).collect();
     let progress = Progress::of(runs.len() as u64, "machines");
@@ -44,6 +46,14 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
 }
 
 const HEADING: [&str; 6] = ["model", "steps", "clocks", "greatest error (BLU)", "widest register", "end point"];
+
+/// The models to compare: those that are named; all, and netlists of one's own, where no model of the catalogue is.
+fn models(args: &CompareArgs) -> Result<Vec<&'static Model>, Error> {
+    let named = args.models.iter().map(|word| args.bench.model(word)).collect::<Result<Vec<_>, _>>()?;
+    let all = args.models.iter().all(|word| is_netlist(word));
+    let catalogue = installed().iter().filter(|_| all);
+    Ok(catalogue.chain(named).collect())
+}
 
 /// The forms of a model whose path or clocks differ: its default, and one for each of the common options.
 fn forms(model: &Model, curve: &Curve) -> Vec<(String, Options)> {

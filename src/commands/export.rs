@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::export::{self, Checking, Options, Stimulus};
-use crate::models::{CutWord, find};
+use crate::models::CutWord;
 use crate::netlist::{Design, Net};
 use crate::simulation::Simulation;
 use crate::testbench::Testbench;
@@ -40,7 +40,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let comment = [title, format!("Written by stepwave {version}; the {widths_by} gives the widths.")];
     let outputs = bench.outputs();
     let options = Options { comment: &comment, outputs: &outputs };
-    let mut files = Outputs::reading(&args.program);
+    let own = args.bench.files(&args.model);
+    let mut files = Outputs::reading(args.program.iter().chain(&own));
     if let Some(path) = &args.netlist {
         files.write(path, &bench.design().netlist().to_string())?;
     }
@@ -75,7 +76,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
 
 /// A model with a geometry, and what is to be said of that.
 fn geometry(args: &ExportArgs) -> Result<(Simulation, Option<String>), Error> {
-    let model = find(args.model.as_deref().unwrap_or_default())?;
+    let model = args.bench.model(args.model.as_deref().unwrap_or_default())?;
     let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
     let choices = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
     let moved = geometry::moved_center(&curve, &args.geometry);

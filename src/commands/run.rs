@@ -1,6 +1,5 @@
 //! `stepwave run`.
 
-use crate::models::find;
 use crate::report::{Report, TEXTBOOK_STEPS, TextbookTable};
 use crate::simulation::{Onlookers, Simulation};
 use crate::testbench::Observer;
@@ -18,7 +17,8 @@ const TEXTBOOK_MODELS: [&str; 3] = ["dda-arc", "dda-conic", "dda-helix"];
 /// Runs a model and writes what was asked for.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Error> {
     // States that exist are read; else they are an output.
-    let mut outputs = Outputs::reading(args.checkpoints.iter().filter(|path| path.exists()));
+    let own = args.bench.files([&args.model]);
+    let mut outputs = Outputs::reading(args.checkpoints.iter().filter(|path| path.exists()).chain(&own));
     simulate(args, &mut outputs)?.print(outputs)
 }
 
@@ -62,7 +62,7 @@ impl<T: Observer> Onlookers for Terminal<T> {
 /// # Errors
 /// Bad input, or an output cannot be written; nothing has got its final name.
 pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished, Error> {
-    let model = find(&args.model)?;
+    let model = args.bench.model(&args.model)?;
     if args.textbook && !TEXTBOOK_MODELS.contains(&model.name) {
         let (name, models) = (model.name, TEXTBOOK_MODELS.join(", "));
         return Err(Error::Invalid(format!(

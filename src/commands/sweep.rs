@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::models::options::{AnyOption, Shape, TOLERANCE};
-use crate::models::{CurveKind, Millionths, Model, find};
+use crate::models::{CurveKind, Millionths, Model};
 use crate::nc::Direction;
 use crate::netlist::did_you_mean;
 use crate::report::heat::HeatMap;
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
     if let Some(SweepCommand::Merge { out, parts }) = &args.command {
         return merge(out, parts);
     }
-    let model = find(args.model.as_deref().unwrap_or_default())?;
+    let model = args.bench.model(args.model.as_deref().unwrap_or_default())?;
     let [number, of] = args.outputs.shard.unwrap_or([1, 1]);
     let mut variants = variants(&args.variants)?;
     let radii = radii(model, &mut variants)?;
@@ -48,7 +48,8 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
         }
     }
     let sweep = Sweep::new(model, space, variants, SweepPart { number, of }, args.outputs.max_clocks)?;
-    let inputs: Vec<&PathBuf> = args.space.file.iter().collect();
+    let own = args.bench.files(&args.model);
+    let inputs: Vec<&PathBuf> = args.space.file.iter().chain(&own).collect();
     let mut outputs = Outputs::reading(&inputs);
     let written = write(&sweep, &args.outputs, Outputs::reading(&inputs), &mut outputs);
     let text = written.map_err(|failure| match (failure, temporary::kept()) {

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::models::Model;
 use crate::models::options::WIDTH;
-use crate::models::{Model, find};
 use crate::report::run_command;
 use crate::study::widths::{Known, RegisterWidth, Widths, Witness, widths};
 use serde_json::{Value, json};
@@ -15,14 +15,16 @@ use crate::output;
 
 /// Prints the table; a width that is given and too narrow is a failed check.
 pub(crate) fn run(args: &WidthsArgs) -> Result<(), Error> {
-    let model = find(&args.model)?;
+    let model = args.bench.model(&args.model)?;
     let choices = args.hardware.choices();
     let progress = Progress::new("geometries");
     let found = widths(model, &choices, &args.extent, &|more| progress.add(more));
     progress.finish();
     let found = found.map_err(|error| args.hardware.explain_study(error))?;
     if args.json { output::print_data(&as_json(model, &found)) } else { output::print(&table(model, &found)) }?;
-    if choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty() {
+    // Those of a netlist are given in its source.
+    let given = choices.of_all(&WIDTH).is_some() || !choices.of_single(&WIDTH).is_empty() || model.is_described();
+    if !given {
         return Ok(());
     }
     let short = found.registers.iter().filter(|register| register.given < register.needed);

@@ -13,6 +13,7 @@ use crate::cli::{Cli, Command, usage};
 use crate::commands::{program, run};
 use crate::engine::EngineKind;
 use crate::output::Outputs;
+use crate::own::is_netlist;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -46,7 +47,12 @@ impl Listed {
             Some(name) => words.extend(["program".into(), folder.join(name).into_os_string()]),
             None => words.push("run".into()),
         }
-        words.extend(self.args.iter().map(Into::into));
+        // A netlist of one's own is in the folder, as a program is.
+        let path = |(index, word): (usize, &String)| match index == 0 && is_netlist(word) {
+            true => folder.join(word).into(),
+            false => word.into(),
+        };
+        words.extend(self.args.iter().enumerate().map(path));
         let files = ["--vcd".into(), vcd.into_os_string(), "--steps".into(), steps.into_os_string()];
         words.extend(["--engine".into(), engine.name().into()].into_iter().chain(files));
         let cli = Cli::try_parse_from(words).map_err(|error| usage(&error))?;

@@ -1,6 +1,5 @@
 //! The recipe of a run without a geometry: netlist and stimulus in; wave and report out.
 
-use std::borrow::Borrow;
 use std::io::Write as _;
 use std::path::PathBuf;
 
@@ -8,16 +7,15 @@ use serde_json::json;
 
 use crate::Error;
 use crate::engine::{EngineKind, Rows, Stop, Watch};
-use crate::netlist::cells::{Claim, Property};
+use crate::netlist::cells::Property;
 use crate::netlist::{Design, elaborate};
 use crate::output::Outputs;
 use crate::report::json::{event, joined, tally as tally_json};
 use crate::testbench::{CHUNK, Columns, Observer, OverflowEvent, OverflowTally, OverflowWatch};
-use crate::trace::pattern::{fits, glob};
 use crate::trace::timescale::ClockTime;
 use crate::waves::{Shown, Sinks, WaveOptions, Waves};
 
-use super::Stimulus;
+use super::{Stimulus, announce, matching};
 
 /// A run of a netlist by a stimulus.
 #[derive(Clone, Debug)]
@@ -75,16 +73,7 @@ impl Sim {
     /// A glob matches none of them, or [`strict`](Self::strict) has it too.
     pub fn wraps(mut self, globs: &[String]) -> Result<Sim, Error> {
         let mut netlist = self.design.netlist().clone();
-        for glob in globs {
-            let all = netlist.properties.iter_mut();
-            let overflows =
-                all.filter(|property| matches!(property.claim, Claim::Fits { .. } | Claim::FitsWide { .. }));
-            for property in matching("--wraps", glob, overflows)? {
-                if let Claim::Fits { wraps, .. } | Claim::FitsWide { wraps, .. } = &mut property.claim {
-                    *wraps = true;
-                }
-            }
-        }
+        announce(&mut netlist, globs).map_err(|(glob, why)| Error::Invalid(format!("--wraps {glob}: {why}")))?;
         self.design = elaborate(netlist)?;
         Ok(self)
     }
@@ -138,7 +127,8 @@ impl Sim {
     fn stops(&self) -> Result<Vec<&Property>, Error> {
         let mut stops = Vec::new();
         for glob in &self.strict {
-            let found = matching("--strict", glob, self.design.netlist().properties.iter())?;
+            let found = matching(glob, self.design.netlist().properties.iter());
+            let found = found.map_err(|why| Error::Invalid(format!("--strict {glob}: {why}")))?;
             if let Some(announced) = found.iter().find(|property| property.claim.is_announced()) {
                 return Err(Error::Invalid(format!(
                     "--strict {glob}: {} is announced to lose its carry: leave out --wraps, its attribute stepwave_wraps, or \
@@ -221,39 +211,11 @@ fn drain(rows: &mut Rows, observers: &mut [&mut dyn Observer]) -> Result<(), Err
     Ok(())
 }
 
-/// The first violation, with the line of the source.
-fn placed(tally: &OverflowTally) -> String {
-    match &tally.source {
-        Some(source) => format!("{source}: {}", tally.first),
-        None => tally.first.to_string(),
-    }
-}
-
-/// The properties among these that a glob of an option names.
-fn matching<P: Borrow<Property>>(option: &str, text: &str, all: impl Iterator<Item = P>) -> Result<Vec<P>, Error> {
-    let glob = glob(text).map_err(|why| Error::Invalid(format!("{option} {text}: {why}")))?;
-    let (found, others): (Vec<P>, Vec<P>) = all.partition(|property| fits(&glob, &property.borrow().name));
-    if found.is_empty() {
-        let names: Vec<&str> = others.iter().map(|property| property.borrow().name.as_str()).collect();
-        let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        return Err(Error::Invalid(format!(
-            "{option} {text} matches no property that it can be of; there are: {names}"
-        )));
-    }
-    Ok(found)
-}
-
 impl SimReport {
     /// Sentences about what the hardware did wrong: properties that were violated.
     #[must_use]
     pub fn events(&self) -> Vec<String> {
-        let times = |count: u64| if count == 1 { "once".to_owned() } else { format!("{count} times") };
-        let shown = |tally: &OverflowTally| {
-            let all = tally.needed.map_or_else(String::new, |bits| format!(", {bits} bits would hold all"));
-            let all = if tally.count > 1 { all } else { String::new() };
-            format!("{} ({}{all})", placed(tally), times(tally.count))
-        };
-        self.tallies.iter().map(shown).collect()
+        self.tallies.iter().map(OverflowTally::sentence).collect()
     }
 
     /// Sentences that say what is wrong with the hardware: a trap, an assertion that did not hold.
@@ -263,6 +225,6 @@ impl SimReport {
             matches!(tally.first, OverflowEvent::Invariant { .. })
                 || self.trap.as_deref() == Some(tally.first.component())
         };
-        self.tallies.iter().filter(ends).map(placed).collect()
+        self.tallies.iter().filter(ends).map(OverflowTally::placed).collect()
     }
 }

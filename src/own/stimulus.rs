@@ -85,7 +85,7 @@ fn inputs(design: &Design) -> Vec<(Net, String)> {
 }
 
 /// A number in decimal, or with 0x or 0b in front; a minus sign may come first.
-fn parsed(text: &str) -> Option<i128> {
+pub(super) fn parsed(text: &str) -> Option<i128> {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(digits) => (true, digits),
         None => (false, text),

@@ -114,5 +114,11 @@ pub fn run_command(model: &Model, curve: &Curve, choices: &Options) -> String {
 pub fn title(model: &Model, hardware: &Hardware, curve: &Curve) -> String {
     let choice = |takes: &&'static dyn Takes| format!("{} {}", takes.name(), hardware.text(takes.option()));
     let choices: Vec<_> = model.options.iter().map(choice).collect();
-    format!("{}; {}; {}", model.name, geometry(curve), choices.join("; "))
+    // A netlist is the same wherever it is.
+    let name = if model.is_described() { file_name(model.name) } else { model.name };
+    format!("{name}; {}; {}", geometry(curve), choices.join("; "))
+}
+
+fn file_name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
 }

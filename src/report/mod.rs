@@ -58,6 +58,8 @@ pub struct Report {
     pub overflow_count: u64,
     /// The overflows of each component.
     pub tallies: Vec<OverflowTally>,
+    /// Paths of the properties that end a run where overflows trap.
+    pub traps: Vec<String>,
     /// Clock in Hz.
     pub clock_hz: f64,
     /// One BLU in millimetres.
@@ -77,6 +79,8 @@ impl Report {
     /// A report whose results are still empty.
     pub(crate) fn new(model: &'static Model, subject: Subject, bench: &Testbench) -> Report {
         let (pulses, reached, counters) = (Vec::new(), Vec::new(), Vec::new());
+        let properties = bench.design().netlist().properties.iter();
+        let traps = properties.filter(|property| bench.machine().traps.contains(&property.never));
         Report {
             model,
             subject,
@@ -88,6 +92,7 @@ impl Report {
             overflows: Vec::new(),
             overflow_count: 0,
             tallies: Vec::new(),
+            traps: traps.map(|property| property.name.clone()).collect(),
             clock_hz: 0.0,
             blu_mm: 0.0,
         }
@@ -169,6 +174,8 @@ impl Report {
         match self.outcome.ending {
             Ending::Trapped => {
                 warnings.push(cut("the run was stopped"));
+                let others = self.tallies.iter().filter(|tally| !self.is_trap(tally));
+                warnings.extend(others.map(OverflowTally::sentence));
                 return warnings;
             }
             Ending::Stalled { .. } | Ending::Endless { .. } | Ending::Limit => {
@@ -176,6 +183,11 @@ impl Report {
                 return warnings;
             }
             Ending::Done => {}
+        }
+        if self.model.is_described() {
+            // Its author decides what an overflow means.
+            warnings.extend(self.tallies.iter().filter(|tally| !tally.is_assertion()).map(OverflowTally::sentence));
+            return warnings;
         }
         warnings.extend(self.tallies.iter().map(|tally| self.went_on(tally)));
         let since = self.tallies.first().map(|tally| format!("after clock {}", tally.first.clock()));
@@ -186,6 +198,11 @@ impl Report {
             ));
         }
         warnings
+    }
+
+    /// The component is one at whose first violation a run ends.
+    fn is_trap(&self, tally: &OverflowTally) -> bool {
+        self.traps.iter().any(|trap| trap == tally.first.component())
     }
 
     /// Load words that were cut, each with its line of a program, or its block of several of a curve.
@@ -231,6 +248,10 @@ impl Report {
         let mut failures = Vec::new();
         match self.outcome.ending {
             Ending::Trapped => {
+                if self.model.is_described() {
+                    let trap = self.tallies.iter().find(|tally| self.is_trap(tally));
+                    return trap.map(|tally| format!("{line}{}", tally.placed())).into_iter().collect();
+                }
                 let event = self.overflows.last();
                 return event
                     .map(|event| format!("{line}{event}{}", remedy(event, &self.hardware)))
@@ -270,6 +291,10 @@ impl Report {
                     .push(format!("stalled at {position}: no pulse for {clocks} clocks, and none will come{remedy}"));
             }
             Ending::Done => {}
+        }
+        if self.model.is_described() {
+            let broken = self.tallies.iter().filter(|tally| tally.is_assertion());
+            failures.extend(broken.map(OverflowTally::sentence));
         }
         match &self.subject {
             Subject::Curve(of) => {

@@ -31,7 +31,9 @@ impl Report {
 
     /// The registers with a choice of width.
     fn chosen(&self) -> impl Iterator<Item = &RegisterRange> {
-        self.ranges.iter().filter(|range| self.hardware.widths.contains_key(range.name.as_str()))
+        let widths = &self.hardware.widths;
+        let has = |name: &str| widths.contains_key(name);
+        self.ranges.iter().filter(move |range| has(&range.name) || has(&range.path))
     }
 
     /// What they needed of it.

@@ -67,18 +67,20 @@ impl Testbench {
     fn lanes_with(&self, limit: u64, instruments: Option<Instruments>) -> Result<Lanes, ModelError> {
         let model = find(self.hardware.model)?;
         let machine = &self.machine;
-        let never: Vec<Net> = self.design().netlist().properties.iter().map(|property| property.never).collect();
+        let reported = self.design().netlist().properties.iter().filter(|property| !property.claim.is_announced());
+        let never: Vec<Net> = reported.map(|property| property.never).collect();
         let pulses: Vec<Net> = machine.pulses.iter().map(|port| port.net).collect();
-        let traps = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap { never.clone() } else { Vec::new() };
+        let traps =
+            if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap { machine.traps.clone() } else { Vec::new() };
         let mut observe: Vec<Observe> = machine.positions.iter().map(|port| Observe::Last(port.net)).collect();
         observe.extend(pulses.iter().map(|&net| Observe::Count(vec![net])));
-        let trusted = !traps.is_empty() || never.is_empty();
+        let trusted = never.iter().all(|flag| traps.contains(flag));
         if !trusted {
             // +1 counts as 1 and -1 as 3: with the number of pulses this gives their sum.
             observe.extend(pulses.iter().map(|&net| Observe::Sum { net, bits: 64 }));
         }
         observe.push(Observe::Count(vec![machine.stepped.net]));
-        if traps.is_empty() {
+        if !trusted {
             observe.push(Observe::Count(never));
         }
         let own = observe.len();
@@ -203,7 +205,7 @@ impl Lanes {
     /// What the inputs are set to for a geometry.
     fn load(&self, curve: &Curve) -> Result<Loaded, ModelError> {
         let hardware = self.bench.hardware();
-        let words = if curve.axes() == hardware.axes { self.model.words(hardware, curve) } else { Vec::new() };
+        let words = if curve.axes() == hardware.axes { self.model.words(hardware, curve)? } else { Vec::new() };
         if words.is_empty() {
             let given = format!("a curve of {} axes in hardware for {}", curve.axes(), hardware.axes);
             return Err(ModelError::Curve { model: self.model.name, takes: self.model.curve().describe(), given });

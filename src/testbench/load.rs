@@ -39,7 +39,7 @@ impl Testbench {
     /// # Errors
     /// A value does not fit in its register.
     pub fn of(&self, model: &Model, curve: &Curve) -> Result<Testbench, ModelError> {
-        let loaded = self.load(&model.words(&self.hardware, curve))?;
+        let loaded = self.load(&model.words(&self.hardware, curve)?)?;
         Ok(Testbench { blocks: loaded.blocks, cut: loaded.cut, start: curve.from().to_vec(), ..self.clone() })
     }
 
@@ -54,11 +54,12 @@ impl Testbench {
         Ok(Loaded { blocks: self.machine.encode(&self.hardware, words)?, cut: Vec::new() })
     }
 
-    /// The same bench, whose runs are aborted after this many clocks; without a number, and if a load word was cut,
-    /// after 2^27 clocks.
+    /// The same bench, whose runs are aborted after this many clocks; without a number, and if a load word was cut or nothing
+    /// is known of pauses of the hardware, after 2^27 clocks.
     #[must_use]
     pub fn limited_to(self, clocks: Option<u64>) -> Testbench {
-        let most = if self.cut.is_empty() { u64::MAX } else { CUT_CLOCKS };
+        let ends = self.cut.is_empty() && self.hardware.has_stall_clocks();
+        let most = if ends { u64::MAX } else { CUT_CLOCKS };
         self.limited(clocks.unwrap_or(most))
     }
 

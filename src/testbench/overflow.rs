@@ -153,6 +153,32 @@ pub struct OverflowTally {
     pub source: Option<String>,
 }
 
+impl OverflowTally {
+    /// The first with the line of its source, how often there were others, and what would have held all of them.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let times = if self.count == 1 { "once".to_owned() } else { format!("{} times", self.count) };
+        let needed = self.needed.filter(|_| self.count > 1);
+        let all = needed.map_or_else(String::new, |bits| format!(", {bits} bits would hold all"));
+        format!("{} ({times}{all})", self.placed())
+    }
+
+    /// It is of an assertion, and not of a result that did not fit.
+    #[must_use]
+    pub fn is_assertion(&self) -> bool {
+        matches!(self.first, OverflowEvent::Invariant { .. })
+    }
+
+    /// The first, with the line of its source.
+    #[must_use]
+    pub fn placed(&self) -> String {
+        match &self.source {
+            Some(source) => format!("{source}: {}", self.first),
+            None => self.first.to_string(),
+        }
+    }
+}
+
 struct Watched {
     property: Property,
     source: Option<String>,

@@ -60,7 +60,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let flags: Vec<Net> = bench.design().netlist().properties.iter().map(|property| property.never).collect();
         let mut stops = machine.buffer.map_or(vec![machine.done.net], |ports| vec![ports.call, ports.at_end]);
         if bench.traps() {
-            stops.extend(&flags);
+            stops.extend(&machine.traps);
         }
         let watch = Watch { columns: bench.columns().nets().to_vec(), stops };
         let columns = watch.columns.len();
@@ -111,9 +111,11 @@ impl<'a, 'o> Run<'a, 'o> {
         let ending = self.blocks()?;
         self.drain()?;
         self.account.end(self.observers)?;
-        // One clock from reset to the first block, and two for each block after another; a buffer loads while blocks run.
+        let [first, further] = self.bench.machine().load_clocks;
+        // A buffer loads while blocks run.
         let load_clocks = match (self.is_buffered(), self.alone) {
-            (false, _) => (2 * self.loaded as u64).saturating_sub(1),
+            (false, _) if self.loaded == 0 => 0,
+            (false, _) => first + further * (self.loaded as u64 - 1),
             (true, true) => BUFFER_CLOCKS,
             (true, false) => 0,
         };
@@ -247,17 +249,22 @@ impl<'a, 'o> Run<'a, 'o> {
         if quiet > self.bench.hardware.stall_clocks || quiet >= CHUNK as u64 && at_rest() {
             return Some(Ending::Stalled { clocks: quiet });
         }
-        self.came_back().map(|since| Ending::Endless { since })
+        let since = self.came_back()?;
+        let pulsed = self.steps.last_pulse > since;
+        Some(if pulsed { Ending::Endless { since } } else { Ending::Stalled { clocks: quiet } })
     }
 
-    /// The clock of the anchor, if the machine is in the state that it had there and has pulsed since: inputs stay, so
-    /// it will do the same again. The anchor moves on whenever the clocks have doubled, so that no loop escapes it.
+    /// The clock of the anchor, if the machine is in the state that it had there: inputs stay, so it will do the same
+    /// again. The anchor moves on whenever the clocks have doubled, so that no loop escapes it.
     fn came_back(&mut self) -> Option<u64> {
         let (engine, registers) = (&self.engine, self.bench.design().registers());
         let clock = engine.clock();
         if let Some(anchor) = &self.anchor {
+            // The contents of memories are not compared.
             let mut values = registers.iter().zip(&anchor.registers);
-            if self.steps.last_pulse > anchor.clock && values.all(|(&net, value)| engine.value(net) == *value) {
+            let comparable = self.bench.design().netlist().memories.is_empty();
+            let pulsed = self.steps.last_pulse > anchor.clock || !self.bench.hardware.has_stall_clocks();
+            if comparable && pulsed && values.all(|(&net, value)| engine.value(net) == *value) {
                 return Some(anchor.clock);
             }
             if clock / 2 < anchor.clock {
@@ -292,8 +299,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// A property is violated in the present sample, and that ends the run.
     fn trapped(&self) -> bool {
-        let mut properties = self.bench.design().netlist().properties.iter();
-        self.bench.traps() && properties.any(|property| self.engine.value(property.never) == 1)
+        self.bench.traps() && self.bench.machine().traps.iter().any(|&flag| self.engine.value(flag) == 1)
     }
 
     /// Shows the rows to the observers and makes room.

@@ -62,7 +62,7 @@ fn a_strict_property_ends_the_run_with_code_1_and_an_announced_one_is_none() {
     let nothing = sim(&folder, &["--clocks", "20", "--strict", "acc"]);
     assert_eq!(
         (nothing.code, nothing.err.as_str()),
-        (2, "stepwave: --strict acc matches no property that it can be of; there are: t.q\n")
+        (2, "stepwave: --strict acc: it matches no property that it can be of; there are: t.q\n")
     );
 }
 
@@ -131,7 +131,7 @@ fn a_property_that_is_strict_and_announced_is_refused_and_so_is_an_announcement_
     folder.write("t.net", &text);
     let none = sim(&folder, &["--clocks", "2", "--wraps", "sure"]);
     assert!(
-        none.code == 2 && none.err.contains("--wraps sure matches no property that it can be of; there are: t.q"),
+        none.code == 2 && none.err.contains("--wraps sure: it matches no property that it can be of; there are: t.q"),
         "{}",
         none.err
     );

@@ -1,5 +1,6 @@
 //! Hardware of one's own: the JSON of Yosys becomes a netlist that does what the source does.
 
+mod bench;
 mod cells;
 mod command;
 mod overflow;

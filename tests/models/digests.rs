@@ -83,7 +83,7 @@ fn digest(model: &'static Model, curve: &Curve, variants: &Variants) -> String {
         Err(error) => format!("refused {:08x}", crc(&error.to_string())),
         Ok(hardware) => {
             let machine = model.machine(&hardware).unwrap();
-            let loaded = match machine.load(&hardware, &model.words(&hardware, curve)) {
+            let loaded = match machine.load(&hardware, &model.words(&hardware, curve).unwrap()) {
                 Ok(loaded) => format!("{:?} {:?}", loaded.blocks, loaded.cut),
                 Err(error) => error.to_string(),
             };

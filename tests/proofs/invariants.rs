@@ -71,7 +71,7 @@ fn what_authors_claim_between_steps_holds_in_every_row_of_runs() {
                 let machine = model.machine(&hardware).unwrap();
                 let clauses = machine.design.netlist().invariants.clone();
                 claimed |= !clauses.is_empty();
-                let blocks = machine.encode(&hardware, &model.words(&hardware, &curve)).unwrap();
+                let blocks = machine.encode(&hardware, &model.words(&hardware, &curve).unwrap()).unwrap();
                 looked_at += assert_hold(&format!("{} {curve:?}", model.name), &clauses, &machine, &blocks);
             }
         }

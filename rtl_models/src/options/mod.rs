@@ -23,8 +23,8 @@ use std::sync::Arc;
 pub use given::{Options, Value};
 pub use table::{
     ADDER, ALL, Adder, BEATS, Beats, CASCADE, COMPARE, Compare, END_POINT, EndPoint, FORM, FRACTION, Form, NORMALIZE,
-    ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, Radix, STEP, SYSTEM, System, TIMING, TOLERANCE, WEIGHTS, WIDTH,
-    Weights,
+    ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, Radix, STEP, STRICT, SYSTEM, System, TIMING, TOLERANCE, WEIGHTS,
+    WIDTH, WRAPS, Weights,
 };
 pub use taken::{Taken, Takes};
 pub(crate) use taken::{chosen, taken};

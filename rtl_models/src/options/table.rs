@@ -415,6 +415,45 @@ options! {
         about: "",
         default: OnOverflow::Trap,
     };
+    /// Overflows of hardware of one's own that end a run.
+    STRICT: Vec<String> = OptionDef {
+        name: "strict",
+        help: "Of a netlist of one's own: properties at whose first violation a run ends, by register or path",
+        value_name: "GLOB,…",
+        values: GLOBS,
+        about: "GLOB,…: end the run at their first violation (default: none)",
+        default: Vec::new(),
+    };
+    /// Overflows of hardware of one's own that are meant to be lost.
+    WRAPS: Vec<String> = OptionDef {
+        name: "wraps",
+        help: "Of a netlist of one's own: registers whose carries are meant to be lost, flags in the wave and not events",
+        value_name: "GLOB,…",
+        values: GLOBS,
+        about: "GLOB,…: their carries are meant to be lost (default: none)",
+        default: Vec::new(),
+    };
+}
+
+/// Globs of names, with commas between them that are not in braces.
+const GLOBS: Values<Vec<String>> =
+    Values::Parsed { shape: Shape::Commas, parse: |text| Ok(globs(text)), text: |globs| globs.join(",") };
+
+fn globs(text: &str) -> Vec<String> {
+    let (mut globs, mut depth) = (vec![String::new()], 0_usize);
+    for c in text.chars() {
+        match c {
+            '{' | '[' => depth += 1,
+            '}' | ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        match globs.last_mut() {
+            Some(last) if c != ',' || depth > 0 => last.push(c),
+            _ => globs.push(String::new()),
+        }
+    }
+    globs.retain(|glob| !glob.trim().is_empty());
+    globs
 }
 
 /// A value, or `none`.

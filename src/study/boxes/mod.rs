@@ -239,9 +239,9 @@ pub(super) fn spare_bits(model: &Model, choices: &Options) -> u32 {
 }
 
 /// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is not
-/// the width of coordinates, but of the ways of a period.
+/// the width of coordinates, but of the ways of a period, or there is none to choose.
 fn width(model: &Model, choices: &Options, k: u32) -> Option<Width> {
-    if model.method == "data sampling" {
+    if model.method == "data sampling" || model.is_described() {
         return None;
     }
     let bits = choices.value(&RADIX).reading().needed((1_i128 << k) - 1) + spare_bits(model, choices);

@@ -102,10 +102,12 @@ fn block(
     let wrong = |register: &str| ProofError::Counted { register: register.to_owned() };
 
     // Counted registers hold the travel of their axis, all others the same for every curve.
-    let words = |curve: &Curve| model.words(&hardware, curve).into_iter().next().unwrap_or_default();
-    let common = words(first);
+    let words = |curve: &Curve| -> Result<_, crate::models::ModelError> {
+        Ok(model.words(&hardware, curve)?.into_iter().next().unwrap_or_default())
+    };
+    let common = words(first)?;
     for curve in &own {
-        for ((register, value), (_, usual)) in words(curve).into_iter().zip(common.iter()) {
+        for ((register, value), (_, usual)) in words(curve)?.into_iter().zip(common.iter()) {
             let axis = claims.counted.iter().position(|counted| counted.name() == register);
             let expected = axis.map_or(*usual, |axis| i128::from(curve.to()[axis]).abs());
             if value != expected {
@@ -119,7 +121,7 @@ fn block(
     if let Some(register) = claims.counted.iter().find(|register| !in_binary(register)) {
         return Err(wrong(register.name()));
     }
-    let encoded = machine.encode(&hardware, &model.words(&hardware, first))?.into_iter().next().unwrap_or_default();
+    let encoded = machine.encode(&hardware, &model.words(&hardware, first)?)?.into_iter().next().unwrap_or_default();
     let (mut given, mut names, mut bounds) = (Vec::new(), Vec::new(), vec![0..0; claims.counted.len()]);
     for ((register, _), (net, bits)) in common.iter().zip(encoded) {
         let Some(axis) = claims.counted.iter().position(|counted| counted.name() == *register) else {

@@ -74,7 +74,7 @@ impl Subject {
         symbols: &[i128],
     ) -> Result<Option<Loaded>, ProofError> {
         let (_, hardware, machine) = &self.members[member];
-        let blocks = machine.encode(hardware, &self.model.words(hardware, curve))?;
+        let blocks = machine.encode(hardware, &self.model.words(hardware, curve)?)?;
         // Several blocks are several loads; the first alone is that of the kind.
         let Some(mut words) = blocks.into_iter().next() else { return Ok(None) };
         let mut symbols = symbols.to_vec();
@@ -112,7 +112,7 @@ impl Subject {
         let mut samples: BTreeMap<&str, Vec<Vec<i128>>> = BTreeMap::new();
         for (member, curve, symbols) in curves {
             let (k, hardware, _) = &self.members[*member];
-            let Some(words) = self.model.words(hardware, curve).into_iter().next() else { continue };
+            let Some(words) = self.model.words(hardware, curve)?.into_iter().next() else { continue };
             for (register, value) in words {
                 let row = [&[1_i128 << (k - 1)][..], symbols, &[value]].concat();
                 samples.entry(register).or_default().push(row);

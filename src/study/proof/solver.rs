@@ -118,7 +118,8 @@ pub fn question(
     let mut choice = Vec::new();
     for curve in &curves {
         // A word that does not fit its register: the loader refuses the geometry, and so does the question.
-        let Ok(blocks) = machine.encode(bench.hardware(), &model.words(bench.hardware(), curve)) else { continue };
+        let words = model.words(bench.hardware(), curve)?;
+        let Ok(blocks) = machine.encode(bench.hardware(), &words) else { continue };
         let [block] = &blocks[..] else { continue };
         let end: Vec<(usize, u64)> =
             curve.to().iter().enumerate().map(|(axis, &c)| (axis, c.cast_unsigned())).collect();

@@ -45,7 +45,7 @@ impl Subject {
             let curve = largest(&claims, k)?;
             let hardware = model.plan(&curve, &choices_with(model, &claims, choices, offsets, k)?)?;
             let machine = model.machine(&hardware)?;
-            machine.encode(&hardware, &model.words(&hardware, &curve))?;
+            machine.encode(&hardware, &model.words(&hardware, &curve)?)?;
             Ok((k, hardware, machine))
         };
         let mut members: Vec<(u32, Hardware, Machine)> = Vec::new();
@@ -148,7 +148,7 @@ impl Subject {
         let mut rows = Vec::new();
         for (curve, symbols) in own.take(most) {
             let Some((_, hardware, machine)) = self.members.iter().find(|(other, ..)| *other == k) else { continue };
-            let blocks = machine.encode(hardware, &self.model.words(hardware, curve))?;
+            let blocks = machine.encode(hardware, &self.model.words(hardware, curve)?)?;
             let words = blocks.into_iter().next().unwrap_or_default();
             rows.extend(self::rows(k, &symbols, machine, &words));
         }

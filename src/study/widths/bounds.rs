@@ -28,7 +28,7 @@ pub(super) fn bounds(model: &Model, machine: &Machine, set: &Geometries, extent:
     }
     // Load words follow |dx| and |dy| up or down, so that they come to their extremes at those of the box.
     let mut loaded: BTreeMap<&str, Bounds> = BTreeMap::new();
-    for (register, value) in set.curves.iter().flat_map(|curve| model.words(&set.hardware, curve)).flatten() {
+    for (register, value) in set.curves.iter().flat_map(|curve| model.words(&set.hardware, curve)).flatten().flatten() {
         let own = loaded.entry(register).or_insert((value, value));
         *own = (own.0.min(value), own.1.max(value));
     }

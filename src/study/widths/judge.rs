@@ -52,7 +52,7 @@ pub(super) fn ample(model: &'static Model, choices: &Options, extent: &Extent) -
 fn paces(model: &Model, least: &Geometries, given: &Hardware) -> BTreeMap<String, Width> {
     let Some(curve) = least.curves.first() else { return BTreeMap::new() };
     let word = |hardware: &Hardware, name: &str| {
-        let words = model.words(hardware, curve).into_iter().flatten();
+        let words = model.words(hardware, curve).into_iter().flatten().flatten();
         words.filter(|(register, _)| *register == name).map(|(_, word)| word).collect::<Vec<_>>()
     };
     let is_pace = |name: &'static str, width: Width| {

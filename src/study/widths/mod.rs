@@ -5,6 +5,7 @@
 //! sampled, by the extreme geometries.
 
 mod bounds;
+mod described;
 mod judge;
 mod simulate;
 
@@ -111,6 +112,9 @@ const LEAST_PROVED: u32 = 3;
 /// # Errors
 /// There is no such box for the model, or the hardware cannot be built.
 pub fn widths(model: &'static Model, choices: &Options, extent: &Extent, tick: Tick<'_>) -> Result<Widths, ProofError> {
+    if model.is_described() {
+        return described::widths(model, choices, extent, tick);
+    }
     let ample = judge::ample(model, choices, extent)?;
     let mut found = needed(model, &ample, extent, tick)?;
     judge::judge(model, choices, &ample, &mut found)?;

@@ -1,0 +1,183 @@
+//! A netlist with a bench file as a model, which every command takes.
+
+use std::path::Path;
+
+use super::harness::SCOPE;
+use super::{Bench, BenchError, End, Word, signal};
+use crate::models::options::{ON_OVERFLOW, STRICT, Takes, WRAPS};
+use crate::models::parts::POSITION;
+use crate::models::registers::{Declared, Rule};
+use crate::models::{
+    AXES, CurveKind, Described, Hardware, Interpolates, Machine, Model, ModelError, OnOverflow, Plan, Reg, Words, know,
+};
+use crate::nc::Curve;
+use crate::netlist::cells::{NamedNet, Op, Source};
+use crate::netlist::{Netlist, Width};
+
+/// Least bits of a position counter, so that a path that errs stays visible.
+const POSITION_BITS: u32 = 32;
+
+/// This word of a command line is the path of a netlist, and not the name of a model.
+#[must_use]
+pub fn is_netlist(word: &str) -> bool {
+    word.contains('/') || Path::new(word).extension().is_some_and(|extension| extension == "net")
+}
+
+/// The model of the hardware in this netlist, whose ports the bench file describes: the one given, or the one next to the
+/// netlist, `F.toml` of `F.net`. A pair of files is read once in a process.
+///
+/// # Errors
+/// A file cannot be read, or what the bench file says does not fit the netlist.
+pub fn model(netlist: &str, bench: Option<&Path>) -> Result<&'static Model, BenchError> {
+    // As one would give it to a command.
+    let name = match bench {
+        Some(bench) => format!("{netlist} --bench {}", bench.display()),
+        None => netlist.to_owned(),
+    };
+    if let Ok(known) = crate::models::find(&name) {
+        return Ok(known);
+    }
+    let bench: &'static Bench = Box::leak(Box::new(Bench::read(Path::new(netlist), bench)?));
+    let file = bench.file.display();
+    Ok(know(Model {
+        name: name.leak(),
+        title: format!("the netlist {netlist} with the bench file {file}").leak(),
+        method: "hardware of one's own",
+        source: netlist.to_owned().leak(),
+        registers: registers(&bench.netlist, bench.table.as_deref()),
+        options: OPTIONS,
+        claims: None,
+        interpolates: Interpolates::Described(bench),
+        hardware: |_, _| {},
+    }))
+}
+
+/// What hardware of one's own takes.
+static OPTIONS: &[&dyn Takes] = &[
+    &ON_OVERFLOW.only(
+        Some(OnOverflow::Trap),
+        &[
+            (OnOverflow::Trap, ": a load word that does not fit is refused"),
+            (OnOverflow::Wrap, ": a load word that does not fit is cut"),
+        ],
+        "what the hardware does is in its source",
+    ),
+    &STRICT,
+    &WRAPS,
+];
+
+/// The registers of a netlist, those of the step table first, and the position counters of the harness.
+fn registers(netlist: &Netlist, table: Option<&[String]>) -> &'static [&'static dyn Declared] {
+    // The leaf where it is found by it alone, after the names of the harness.
+    let of_axis = |name: &str| AXES.contains(&name) || name.strip_prefix('d').is_some_and(|axis| AXES.contains(&axis));
+    let reserved = |name: &str| of_axis(name) || super::harness::NAMES.contains(&name);
+    let name = |named: &NamedNet| match netlist.find(&named.name) {
+        Some(found) if found.net == named.net && !reserved(&named.name) => named.name.clone(),
+        _ => netlist.path(named),
+    };
+    let shown: Vec<&NamedNet> = table.into_iter().flatten().filter_map(|name| signal(netlist, name).ok()).collect();
+    let is_register = |named: &&NamedNet| matches!(netlist.cell(named.net).op, Op::Register { .. });
+    let others = netlist.names.iter().filter(is_register).filter(|named| shown.iter().all(|own| own.net != named.net));
+    let declared = |named: &NamedNet, column: bool| -> &'static dyn Declared {
+        let about = match netlist.sources.get(named.net.index()) {
+            Some(Some(Source::File { file, line, .. })) => format!("{file}:{line}"),
+            _ => "a register of the netlist".to_owned(),
+        };
+        let register = Reg::new(name(named).leak(), Rule::Planned("as in the source"), about.leak());
+        let register = if named.format.is_signed() { register.signed() } else { register };
+        Box::leak(Box::new(if column { register } else { register.hidden() }))
+    };
+    let of_table = shown.iter().map(|named| declared(named, true));
+    let all = of_table.chain(others.map(|named| declared(named, table.is_none())));
+    let position: &'static dyn Declared = &POSITION;
+    all.chain([position]).collect::<Vec<_>>().leak()
+}
+
+impl Bench {
+    /// The registers, each with its width.
+    fn widths<'a>(&'a self, model: &'a Model) -> impl Iterator<Item = (&'static str, u32)> + 'a {
+        let names = model.rows().flat_map(|row| row.names(1));
+        names.filter_map(|name| Some((*name, self.netlist.width(self.netlist.find(name)?.net).get())))
+    }
+
+    /// A word for a geometry.
+    fn value(&self, word: &Word, values: &[i128], cut: bool) -> Result<i128, ModelError> {
+        let Word { name, expression, text, width, reading } = word;
+        let wrong = |why: String| ModelError::Widths(format!("{}: {name} = {text}: {why}", self.file.display()));
+        let value = expression.value(values).map_err(wrong)?;
+        if !cut && reading.bits(*width, value).is_none() {
+            let (least, greatest) = width.range(reading.is_signed());
+            let remedy = "give a smaller geometry or another expression; --on-overflow wrap cuts it";
+            return Err(wrong(format!("{value} does not fit in its {width}, {least} to {greatest}: {remedy}")));
+        }
+        Ok(value)
+    }
+}
+
+impl Described for Bench {
+    fn curve(&self) -> CurveKind {
+        self.curve
+    }
+
+    fn plan(&self, curve: &Curve, plan: &mut Plan) -> Result<(), ModelError> {
+        if let Curve::Helix(_) | Curve::Conic(_) = curve {
+            let (model, takes) = (plan.model(), "lines, and arcs in the plane");
+            return Err(ModelError::Curve { model, takes, given: "another curve".to_owned() });
+        }
+        let model = crate::models::find(plan.model())?;
+        for (name, bits) in self.widths(model) {
+            plan.set(Reg::new(name, Rule::Planned("as in the source"), ""), bits);
+        }
+        let reach = |axis: usize| match curve {
+            Curve::Arc(arc) => {
+                let [center, radius] = [arc.center()[axis], ceiling(arc.radius())];
+                vec![center.saturating_sub(radius), center.saturating_add(radius), curve.from()[axis]]
+            }
+            _ => vec![curve.from()[axis], curve.to()[axis]],
+        };
+        for axis in 0..curve.axes() {
+            let needed = reach(axis).into_iter().map(|place| Width::needed_signed(place.into())).max().unwrap_or(1);
+            plan.set(POSITION.of(axis), (needed + 1).max(POSITION_BITS));
+        }
+        // Nothing is known of its pauses: only a machine at rest, or back where it was, is one that has stalled.
+        plan.stall_clocks = u64::MAX;
+        Ok(())
+    }
+
+    fn machine(&self, hardware: &Hardware) -> Result<Machine, ModelError> {
+        self.harnessed(hardware)
+    }
+
+    fn words(&self, hardware: &Hardware, curve: &Curve) -> Result<Vec<Words>, ModelError> {
+        let values = super::geometry::values(curve);
+        let cut = hardware.get(&ON_OVERFLOW) == OnOverflow::Wrap;
+        let mut words = Words::new();
+        for loaded in &self.loads {
+            words = words.set_input(loaded.word.name, self.value(&loaded.word, &values, cut)?);
+        }
+        if let End::Clocks { word } = &self.end {
+            let clocks = self.value(word, &values, false)?;
+            if clocks == 0 {
+                let file = self.file.display();
+                return Err(ModelError::Widths(format!(
+                    "{file}: clocks = {} is 0: a block takes 1 or more",
+                    word.text
+                )));
+            }
+            words = words.set_input(word.name, clocks);
+        }
+        let from = curve.from().iter().enumerate();
+        Ok(vec![from.fold(words, |words, (axis, &from)| words.set(POSITION.of(axis), from))])
+    }
+}
+
+/// The whole number not below a length in BLU.
+#[expect(clippy::cast_possible_truncation, reason = "a cast saturates")]
+fn ceiling(length: f64) -> i64 {
+    length.ceil() as i64
+}
+
+/// Paths of the harness are in a scope of its own.
+pub(super) fn path(netlist: &Netlist, inner: &str) -> String {
+    format!("{}.{SCOPE}.{inner}", netlist.scopes[0].name)
+}
