@@ -1,8 +1,8 @@
 //! Proofs about netlists: that registers are wide enough and that the goals hold, for every geometry of a box.
 //!
-//! There are two kinds. [`polynomial`] reads every register as a whole number and proves *every width at once*, with a
+//! There are three kinds. [`polynomial`] reads every register as a whole number and proves *every width at once*, with a
 //! certificate that is checked without a search; it is the one to try first. [`bitwise`] follows the bits of *one
-//! width*, clock by clock, for machines whose counters run by themselves.
+//! width*, clock by clock, for machines whose counters run by themselves. [`sat`] takes any netlist at its own widths.
 //!
 //! A down-counter of two bits, from netlist to certificate: for every load it never counts below 0 and it ends.
 //!
@@ -52,6 +52,7 @@
 
 pub mod bitwise;
 pub mod polynomial;
+pub mod sat;
 mod strobes;
 
 pub use bitwise::{AxisNets, Followed, KnownSample, LoadWord, Lost, Sum, follow, recount};
