@@ -79,6 +79,7 @@ invalid_by!(
     crate::own::StimulusError,
     crate::own::YosysError,
     crate::program::ProgramFailure,
+    crate::prove::sat::TooLarge,
     crate::study::StudyError,
     crate::study::proof::ProofError,
     crate::study::proof::SolverError,

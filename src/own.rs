@@ -1,8 +1,10 @@
-//! Hardware of one's own: netlists from files, run by a stimulus, or with a bench file as a model.
+//! Hardware of one's own: netlists from files, run by a stimulus, proved for every one, or with a bench file as a model.
 
 mod announce;
 mod bench;
+mod example;
 mod file;
+mod prove;
 mod sim;
 mod stimulus;
 mod yosys;
@@ -13,7 +15,8 @@ pub(crate) use bench::next_to;
 pub use bench::{BenchError, is_netlist, model};
 pub use file::{FileError, read_netlist};
 #[cfg(feature = "cli")]
-pub(crate) use file::{checked, read_text, summary};
+pub(crate) use file::{checked, read_stimulus, read_text, summary};
+pub use prove::{Counterexample, Goal, Prove, ProveReport, Verdict};
 pub use sim::{Sim, SimReport};
 pub use stimulus::{Stimulus, StimulusError};
 pub use yosys::{Source, YosysError, yosys_json};

@@ -32,7 +32,7 @@ struct Entry(Format, &'static str, &'static [&'static str], &'static [&'static s
 const TABLE: [Entry; 12] = [
     Entry(Format::Vcd, "VCD", &["vcd"], &["vcd", "merged"]),
     Entry(Format::Fst, "FST", &["fst"], &["fst"]),
-    Entry(Format::Csv, "CSV", &["csv"], &["steps", "csv"]),
+    Entry(Format::Csv, "CSV", &["csv"], &["steps", "csv", "stimulus-out"]),
     Entry(Format::Parquet, "Parquet", &["parquet"], &["parquet"]),
     Entry(Format::Json, "JSON", &["json"], &["json"]),
     Entry(Format::Svg, "SVG", &["svg"], &["plot"]),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::models::options::WRAPS;
 use crate::study::Extent;
 use crate::study::proof::symmetric_box;
 use clap::{Args, Subcommand};
@@ -9,7 +10,7 @@ use clap::{Args, Subcommand};
 use super::HardwareArgs;
 use super::endings::{Format, file_of};
 use super::names::{all_widths, listed, model_name};
-use super::values::{Narrower, parse_narrower};
+use super::values::{self, Narrower, parse_narrower};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -28,14 +29,20 @@ use super::values::{Narrower, parse_narrower};
     stepwave prove ppc-line --width 12,f=14 --travel 1000,600\n  \
     stepwave prove dda-line --preset half --certificate line.cert\n  \
     stepwave prove dpm-line --bits 12\n  \
-    stepwave prove check line.cert"
+    stepwave prove check line.cert\n  \
+    stepwave prove dda.net --set rst=0 --stimulus-out example.csv\n\n\
+    Of a netlist (a path that ends in .net or holds a /) every property is decided at its own widths: that no operator loses a\n\
+    carry that is not announced, and every assertion. Inputs take any value in every clock, but for those of --set and of\n\
+    --stimulus. A counterexample has the fewest clocks; `stepwave sim F.net --stimulus example.csv` shows it again."
 )]
 pub(crate) struct ProveArgs {
     #[command(subcommand)]
     pub(crate) check: Option<ProveCommand>,
-    /// The model; `stepwave list` shows them
+    /// The model; `stepwave list` shows them. Or a netlist: F.net
     #[arg(required = true, value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: Option<String>,
+    #[command(flatten)]
+    pub(crate) netlist: NetlistProofArgs,
     #[command(flatten)]
     pub(crate) hardware: HardwareArgs,
     /// Take registers by so many bits narrower than by default: f=1
@@ -71,6 +78,72 @@ pub(crate) struct ProveArgs {
     /// Tell the invariants that were proved, and the paths on which something could not be shown
     #[arg(long)]
     pub(crate) details: bool,
+}
+
+/// What is asked of a netlist.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Netlists")]
+pub(crate) struct NetlistProofArgs {
+    /// Prove only properties with this name, or path (may be repeated)
+    #[arg(long, value_name = "GLOB")]
+    pub(crate) goal: Vec<String>,
+    /// A constant on an input (may be repeated)
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true, value_parser = values::parse_setting)]
+    pub(crate) set: Vec<(String, String)>,
+    /// Values of inputs in the first clocks, as CSV: its inputs have them in its rows, and are free after the last
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stimulus: Option<PathBuf>,
+    /// Hold this input of --stimulus at the value of the last row (may be repeated)
+    #[arg(long, value_name = "GLOB", requires = "stimulus")]
+    pub(crate) hold: Vec<String>,
+    /// The last clock in which a violation is looked for [default: none]
+    #[arg(long, value_name = "CLOCK")]
+    pub(crate) bound: Option<u64>,
+    /// Seconds after which the search ends [default: 60]
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..=864_000))]
+    pub(crate) time: Option<u64>,
+    /// Memory at which the search ends [default: 4096]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(16..=65_536))]
+    pub(crate) memory: Option<u64>,
+    /// Write the inputs of the first counterexample as a stimulus of `stepwave sim`
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Csv]))]
+    pub(crate) stimulus_out: Option<PathBuf>,
+}
+
+impl NetlistProofArgs {
+    /// The first option that is given.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let given = [
+            (!self.goal.is_empty(), "--goal"),
+            (!self.set.is_empty(), "--set"),
+            (self.stimulus.is_some(), "--stimulus"),
+            (self.bound.is_some(), "--bound"),
+            (self.time.is_some(), "--time"),
+            (self.memory.is_some(), "--memory"),
+            (self.stimulus_out.is_some(), "--stimulus-out"),
+        ];
+        given.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
+    }
+}
+
+impl ProveArgs {
+    /// The first option that is given and that only a model takes.
+    pub(crate) fn of_models(&self) -> Option<String> {
+        let given = [
+            (!self.narrower.is_empty(), "--narrower"),
+            (self.extent.is_some(), "--box"),
+            (self.travel.is_some(), "--travel"),
+            (self.solver.is_some(), "--solver"),
+            (self.bits.is_some(), "--bits"),
+            (self.any_preset, "--any-preset"),
+            (self.certificate.is_some(), "--certificate"),
+            (self.details, "--details"),
+        ];
+        let given = given.into_iter().find(|(given, _)| *given).map(|(_, option)| option.to_owned());
+        let options = self.hardware.choices();
+        let option = options.given().iter().map(|value| value.option().name()).find(|name| *name != WRAPS.name);
+        given.or_else(|| option.map(|name| format!("--{name}")))
+    }
 }
 
 /// The box of `--travel`.

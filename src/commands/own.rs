@@ -4,12 +4,10 @@ use crate::Error;
 use crate::cli::{CheckArgs, ImportArgs, SimArgs};
 use crate::netlist::elaborate;
 use crate::output::{self, Outputs};
-use crate::own::{Sim, Source, Stimulus, checked, read_netlist, read_text, summary, yosys_json};
+use crate::own::{Sim, Source, checked, read_netlist, read_stimulus, read_text, summary, yosys_json};
 
 /// Most bytes of JSON.
 const MOST_JSON: u64 = 1 << 31;
-/// Most bytes of a stimulus.
-const MOST_CSV: u64 = 1 << 30;
 
 /// Writes the netlist of a design.
 pub(crate) fn import(args: &ImportArgs) -> Result<(), Error> {
@@ -67,12 +65,7 @@ pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
         )));
     }
     let design = read_netlist(&args.file)?;
-    let set = args.set.iter().map(|(name, value)| (name.as_str(), value.as_str()));
-    let mut stimulus = Stimulus::constants(&design, set).map_err(|error| Error::Invalid(error.to_string()))?;
-    if let Some(path) = &args.stimulus {
-        let of_file = |error: &dyn std::fmt::Display| Error::Invalid(format!("{}: {error}", path.display()));
-        stimulus = stimulus.table(&design, &read_text(path, MOST_CSV)?).map_err(|error| of_file(&error))?;
-    }
+    let stimulus = read_stimulus(&design, &args.set, args.stimulus.as_deref())?;
     let mut outputs = Outputs::reading([&args.file].into_iter().chain(&args.stimulus));
     let sim = Sim::new(design, stimulus, args.clocks)
         .engine(args.engine)
@@ -94,6 +87,9 @@ pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
         };
         for event in &events {
             text += &format!("warning: {event}\n");
+        }
+        for note in report.notes() {
+            text += &format!("note: {note}\n");
         }
         output::print(&text)?;
     }

@@ -1,5 +1,6 @@
 //! `stepwave prove`: proofs over all geometries and widths, and counterexamples.
 
+mod netlist;
 mod replay;
 mod text;
 
@@ -19,12 +20,16 @@ use super::progress::Progress;
 use crate::Error;
 use crate::cli::{ProveArgs, ProveCommand};
 use crate::output::{self, Outputs, Sink, temporary};
+use crate::own::is_netlist;
 
 /// Attempts a proof, or checks one.
 pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
     match &args.check {
         Some(ProveCommand::Check { file }) => check(file),
-        None => attempt(args),
+        None => match args.model.as_deref() {
+            Some(path) if is_netlist(path) => netlist::prove(args, Path::new(path)),
+            _ => attempt(args),
+        },
     }
 }
 
@@ -137,6 +142,12 @@ impl CertificateOutput {
 }
 
 fn attempt(args: &ProveArgs) -> Result<(), Error> {
+    if let Some(option) = args.netlist.given() {
+        let model = args.model.as_deref().unwrap_or_default();
+        return Err(Error::Invalid(format!(
+            "{option} is of a netlist, such as F.net, and {model} is a model: leave it out"
+        )));
+    }
     // Whichever is written in the end, both are tried before anything is attempted.
     let mut both = Outputs::default();
     args.certificate.iter().chain(&args.vcd).try_for_each(|path| both.claim(path).map(drop))?;

@@ -4,10 +4,14 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
+use super::Stimulus;
+use crate::Error;
 use crate::netlist::{Design, elaborate, text};
 
 /// Most bytes of a netlist in a file.
 const MOST_BYTES: u64 = 1 << 30;
+/// Most bytes of a stimulus.
+const MOST_CSV: u64 = 1 << 30;
 
 /// Why a file gives no netlist.
 #[derive(Debug, thiserror::Error)]
@@ -77,6 +81,18 @@ pub fn read_netlist(path: &Path) -> Result<Design, FileError> {
         let first = mistakes.first().cloned().unwrap_or_default();
         FileError::Wrong { file: path.display().to_string(), first, others: mistakes.len().saturating_sub(1) }
     })
+}
+
+/// Constants on inputs, and a table in a file.
+pub(crate) fn read_stimulus(
+    design: &Design,
+    set: &[(String, String)],
+    table: Option<&Path>,
+) -> Result<Stimulus, Error> {
+    let constants = Stimulus::constants(design, set.iter().map(|(name, value)| (name.as_str(), value.as_str())))?;
+    let Some(path) = table else { return Ok(constants) };
+    let text = read_text(path, MOST_CSV)?;
+    constants.table(design, &text).map_err(|error| Error::Invalid(format!("{}: {error}", path.display())))
 }
 
 /// Registers with their bits, inputs, cells.

@@ -7,11 +7,11 @@ use serde_json::json;
 
 use crate::Error;
 use crate::engine::{EngineKind, Rows, Stop, Watch};
-use crate::netlist::cells::Property;
-use crate::netlist::{Design, elaborate};
+use crate::netlist::cells::{Claim, Property};
+use crate::netlist::{Design, Netlist, elaborate};
 use crate::output::Outputs;
 use crate::report::json::{event, joined, tally as tally_json};
-use crate::testbench::{CHUNK, Columns, Observer, OverflowEvent, OverflowTally, OverflowWatch};
+use crate::testbench::{CHUNK, Columns, Observer, ObserverError, OverflowEvent, OverflowTally, OverflowWatch};
 use crate::trace::timescale::ClockTime;
 use crate::waves::{Shown, Sinks, WaveOptions, Waves};
 
@@ -41,6 +41,10 @@ pub struct SimReport {
     pub trap: Option<String>,
     /// The violations of each property that had some.
     pub tallies: Vec<OverflowTally>,
+    /// Assumptions of the source that the stimulus violates, with the first clock of each.
+    pub assumptions: Vec<(String, u64)>,
+    /// Covers of the source, with the first clock in which each is reached.
+    pub covers: Vec<(String, Option<u64>)>,
     /// The value of each named net in the last sample, in binary, by its path.
     pub last: Vec<(String, String)>,
 }
@@ -108,14 +112,16 @@ impl Sim {
         let title = format!("{}; {} clocks", self.design.netlist().scopes[0].name, self.clocks);
         let mut waves = sinks.map(|sinks| Waves::new(shown, &self.waves, sinks, time, &title)).transpose()?;
         let mut overflow = OverflowWatch::of(self.design.netlist(), &columns);
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow];
+        let mut firsts = Firsts::of(self.design.netlist(), &columns);
+        let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut firsts];
         observers.extend(waves.iter_mut().flat_map(Waves::observers));
         let Run { clocks, trap, last } = self.clocked(&columns, &mut observers)?;
         drop(observers);
         if let Some(waves) = waves {
             waves.finish(&overflow.events(), clocks, outputs)?;
         }
-        let report = SimReport { clocks, trap, tallies: overflow.tallies(), last };
+        let (assumptions, covers) = (firsts.assumptions(), firsts.covers());
+        let report = SimReport { clocks, trap, tallies: overflow.tallies(), assumptions, covers, last };
         if let Some(mut sink) = json {
             writeln!(sink, "{:#}", self.report_json(&report))?;
             sink.flush()?;
@@ -127,8 +133,8 @@ impl Sim {
     fn stops(&self) -> Result<Vec<&Property>, Error> {
         let mut stops = Vec::new();
         for glob in &self.strict {
-            let found = matching(glob, self.design.netlist().properties.iter());
-            let found = found.map_err(|why| Error::Invalid(format!("--strict {glob}: {why}")))?;
+            let all = self.design.netlist().properties.iter().filter(|property| property.claim != Claim::Cover);
+            let found = matching(glob, all).map_err(|why| Error::Invalid(format!("--strict {glob}: {why}")))?;
             if let Some(announced) = found.iter().find(|property| property.claim.is_announced()) {
                 return Err(Error::Invalid(format!(
                     "--strict {glob}: {} is announced to lose its carry: leave out --wraps, its attribute stepwave_wraps, or \
@@ -183,6 +189,9 @@ impl Sim {
             let more = json!({ "first": event(&tally.first), "source": tally.source, "text": tally.first.to_string() });
             joined(tally_json(tally), more)
         });
+        let firsts = |all: &mut dyn Iterator<Item = (&String, Option<u64>)>| {
+            all.map(|(name, clock)| json!({ "name": name, "clock": clock })).collect::<Vec<_>>()
+        };
         json!({
             "schema": 1,
             "design": self.design.netlist().scopes[0].name,
@@ -191,8 +200,56 @@ impl Sim {
             "clocks": report.clocks,
             "ending": if report.trap.is_some() { "trapped" } else { "done" },
             "events": events.collect::<Vec<_>>(),
+            "assumptions": firsts(&mut report.assumptions.iter().map(|(name, clock)| (name, Some(*clock)))),
+            "covers": firsts(&mut report.covers.iter().map(|(name, clock)| (name, *clock))),
             "last": report.last.iter().map(|(path, bits)| (path.clone(), json!(bits))).collect::<serde_json::Map<_, _>>(),
         })
+    }
+}
+
+/// When assumptions and covers are 1 for the first time.
+struct Firsts(Vec<First>);
+
+struct First {
+    name: String,
+    is_cover: bool,
+    column: usize,
+    clock: Option<u64>,
+}
+
+impl Firsts {
+    fn of(netlist: &Netlist, columns: &Columns) -> Firsts {
+        let watched = |property: &&Property| matches!(property.claim, Claim::Assumption | Claim::Cover);
+        let first = |property: &Property| First {
+            name: property.name.clone(),
+            is_cover: property.claim == Claim::Cover,
+            column: columns.index(property.never),
+            clock: None,
+        };
+        Firsts(netlist.properties.iter().filter(watched).map(first).collect())
+    }
+
+    fn assumptions(&self) -> Vec<(String, u64)> {
+        let assumed = self.0.iter().filter(|first| !first.is_cover);
+        assumed.filter_map(|first| Some((first.name.clone(), first.clock?))).collect()
+    }
+
+    fn covers(&self) -> Vec<(String, Option<u64>)> {
+        self.0.iter().filter(|first| first.is_cover).map(|first| (first.name.clone(), first.clock)).collect()
+    }
+}
+
+impl Observer for Firsts {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        for first in self.0.iter_mut().filter(|first| first.clock.is_none() && rows.any(first.column)) {
+            let found = (0..rows.len()).find(|&row| rows.value(first.column, row) == 1);
+            first.clock = found.map(|row| rows.clock(row));
+        }
+        Ok(())
     }
 }
 
@@ -216,6 +273,21 @@ impl SimReport {
     #[must_use]
     pub fn events(&self) -> Vec<String> {
         self.tallies.iter().map(OverflowTally::sentence).collect()
+    }
+
+    /// Sentences about assumptions that the stimulus violates, and about covers.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let violated = |(name, clock): &(String, u64)| {
+            format!(
+                "{name} does not hold at clock {clock}: the stimulus does what the source excludes, and what follows counts for nothing"
+            )
+        };
+        let reached = |(name, clock): &(String, Option<u64>)| match clock {
+            Some(clock) => format!("{name} is reached at clock {clock}"),
+            None => format!("{name} is never reached"),
+        };
+        self.assumptions.iter().map(violated).chain(self.covers.iter().map(reached)).collect()
     }
 
     /// Sentences that say what is wrong with the hardware: a trap, an assertion that did not hold.

@@ -77,7 +77,7 @@ pub struct Stimulus {
 }
 
 /// The inputs of a design with their names, without the name of the design.
-fn inputs(design: &Design) -> Vec<(Net, String)> {
+pub(super) fn inputs(design: &Design) -> Vec<(Net, String)> {
     let netlist = design.netlist();
     let path = |net: Net| netlist.name_of(net).map(|named| netlist.path(named));
     let inner = |path: String| path.split_once('.').map(|(_, inner)| inner.to_owned()).unwrap_or(path);

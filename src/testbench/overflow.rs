@@ -245,13 +245,13 @@ impl OverflowWatch {
     #[must_use]
     pub fn of(netlist: &Netlist, columns: &Columns) -> OverflowWatch {
         let at = |net| columns.index(net);
-        let reported = |property: &&Property| !property.claim.is_announced();
+        let reported = |property: &&Property| property.claim.is_goal();
         let watched = netlist.properties.iter().filter(reported).map(|property| {
             let operands = match property.claim {
                 Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } => {
                     Some((at(left.net), netlist.width(left.net), at(right.net), netlist.width(right.net)))
                 }
-                Claim::FitsWide { .. } | Claim::Invariant => None,
+                Claim::FitsWide { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover => None,
             };
             let source = match netlist.sources.get(property.never.index()) {
                 Some(Some(Source::File { file, line, .. })) => Some(format!("{file}:{line}")),
@@ -302,7 +302,7 @@ fn numbers(watched: &Watched, seen: &Seen) -> Option<(Operator, i128, i128, Widt
     let (operator, left, right, width, signed) = match watched.property.claim {
         Claim::NoOverflow { operation, left, right } => (operation.into(), left, right, left_width, left.signed),
         Claim::Fits { operator, left, right, width, signed, .. } => (operator, left, right, width, signed),
-        Claim::FitsWide { .. } | Claim::Invariant => return None,
+        Claim::FitsWide { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover => return None,
     };
     let (a, b) = (bits::number(left_width, a, left.signed), bits::number(right_width, b, right.signed));
     Some((operator, a, b, width, signed))

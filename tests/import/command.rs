@@ -3,6 +3,8 @@
 use std::fs;
 
 use serde_json::json;
+use stepwave::engine::{EngineKind, Rows, Watch};
+use stepwave::netlist::cells::Claim;
 
 use super::{cell, module, name, port};
 use crate::cli::{Folder, Ran};
@@ -182,4 +184,42 @@ fn the_netlist_of_the_page_on_the_text_form_is_one() {
     folder.write("counter.net", text);
     let checked = folder.good("check counter.net");
     assert!(checked.starts_with("counter: 6 cells, 1 registers of 4 bits together"), "{checked}");
+}
+
+#[test]
+fn assertions_assumptions_and_covers_become_properties() {
+    let check = |flavour: &str, condition: u32| {
+        let pins = json!({ "A": [condition], "EN": [5] });
+        let mut check = cell("$check", &[], pins);
+        check["parameters"]["FLAVOR"] = json!(flavour);
+        check
+    };
+    let cells = json!({
+        "a": cell("$assume", &[], json!({ "A": [3], "EN": [5] })),
+        "b": cell("$cover", &[], json!({ "A": [4], "EN": [5] })),
+        "c": check("assume ", 4),
+        "d": check("assert", 3),
+    });
+    let ports = json!({ "a": port("input", [3]), "b": port("input", [4]), "e": port("input", [5]) });
+    let design = super::design(&module(ports, cells, json!({ "a": name([3]), "b": name([4]), "e": name([5]) })));
+    let claims: Vec<_> =
+        design.netlist().properties.iter().map(|property| (property.name.as_str(), &property.claim)).collect();
+    let (assumption, cover) = (&Claim::Assumption, &Claim::Cover);
+    assert_eq!(
+        claims,
+        [
+            ("assume at t.v:7", assumption),
+            ("cover at t.v:7", cover),
+            ("assume at t.v:7", assumption),
+            ("assert at t.v:7", &Claim::Invariant)
+        ]
+    );
+    // Enabled with a = 1, b = 0: the first assumption holds, the second does not, and the cover is not reached.
+    let flags: Vec<_> = design.netlist().properties.iter().map(|property| property.never).collect();
+    let mut engine = EngineKind::Gates.build(&design, &Watch::default());
+    let set = |name: &str| design.netlist().find(name).expect("an input").net;
+    engine.set_input(set("a"), 1);
+    engine.set_input(set("e"), 1);
+    engine.reset(&mut Rows::new(0, 1));
+    assert_eq!(flags.iter().map(|&net| engine.value(net)).collect::<Vec<_>>(), [0, 0, 1, 0]);
 }

@@ -7,6 +7,7 @@ mod counted;
 mod fixed;
 mod induction;
 mod invariants;
+mod netlists;
 mod sat;
 mod truth;
 mod widths;

@@ -1,6 +1,6 @@
 //! BTOR2, the word-level language of hardware model checkers, of any design.
 //!
-//! A register is a state with its reset value as `init` and its next value as `next`; a property is a `bad`. Paths of
+//! A register is a state with its reset value as `init` and its next value as `next`; a property is a `bad`, an assumption a `constraint`. Paths of
 //! nets are symbols: of the first name at the line of the net, of further ones at an `output`. Step k of a model
 //! checker is sample k of an engine.
 
@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use super::words::{Symbols, Term, leaves, term};
 use super::{Checking, comment};
 use stepwave_netlist::bits::Width;
-use stepwave_netlist::cells::{Net, Netlist, Op};
+use stepwave_netlist::cells::{Claim, Net, Netlist, Op};
 use stepwave_netlist::{Design, HasMemories};
 
 /// The design as a BTOR2 model. An input that is held is a state without a first value. The same design gives the same
@@ -69,7 +69,15 @@ pub fn btor2(design: &Design, checking: &Checking<'_>) -> Result<String, HasMemo
     }
     for (property, name) in netlist.properties.iter().zip(&symbols.properties) {
         let never = model.net(property.never);
-        model.line(&format!("bad {never}"), Some(name));
+        match property.claim {
+            Claim::Cover => {}
+            Claim::Assumption => {
+                let (sort, symbol) = (model.sort(1), Some(name.as_str()));
+                let holds = model.line(&format!("not {sort} {never}"), None);
+                model.line(&format!("constraint {holds}"), symbol);
+            }
+            _ => _ = model.line(&format!("bad {never}"), Some(name)),
+        }
     }
     Ok(model.text)
 }

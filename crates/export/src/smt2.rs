@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use super::words::{Symbols, Term, leaves, term};
 use super::{Checking, comment};
 use stepwave_netlist::bits::{Bits, Width};
-use stepwave_netlist::cells::{Net, Netlist, Op};
+use stepwave_netlist::cells::{Claim, Net, Netlist, Op};
 use stepwave_netlist::{Design, HasMemories};
 
 /// The design as an SMT-LIB 2 script that asks whether a property is violated in one of the clocks 0 to `depth`: `sat`
@@ -58,6 +58,11 @@ pub fn smt2_asking(
     let violated = joined("or", "false", violated.collect());
     let name = |net: Net, clock: Option<u64>| clock.map_or_else(|| script.name(net), |clock| script.at(net, clock));
     Ok(text + "\n; The question.\n" + &ask(&violated, &name))
+}
+
+/// A solver looks for its violation.
+fn asserts(claim: &Claim) -> bool {
+    !matches!(claim, Claim::Assumption | Claim::Cover)
 }
 
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.
@@ -117,7 +122,8 @@ impl<'a> Script<'a> {
         };
         let varies = |net: &Net| !held(net) && (named(net) || !is_constant(net));
         let nexts: BTreeSet<Net> = design.registers().iter().filter_map(next).filter(varies).collect();
-        let flags: BTreeSet<Net> = netlist.properties.iter().map(|property| property.never).filter(varies).collect();
+        let claimed = netlist.properties.iter().filter(|property| asserts(&property.claim));
+        let flags: BTreeSet<Net> = claimed.map(|property| property.never).filter(varies).collect();
         let (nexts, flags) = (nexts.into_iter().collect(), flags.into_iter().collect());
         Script { netlist, symbols, registers: design.registers(), nets, nexts, flags }
     }
@@ -202,6 +208,7 @@ impl<'a> Script<'a> {
     /// One of the properties is violated. A comment after each says what it is about, up to the end of the line.
     fn violated(&self) -> String {
         let properties = self.netlist.properties.iter().zip(&self.symbols.properties);
+        let properties = properties.filter(|(property, _)| asserts(&property.claim));
         let lines = properties.map(|(property, name)| format!("(= {} #b1) ; {name}", self.read(property.never)));
         match &lines.collect::<Vec<_>>()[..] {
             [] => "false".to_owned(),
@@ -222,6 +229,15 @@ impl<'a> Script<'a> {
             Some(last) => call("edge", at(&self.nexts, last).into_iter().chain(at(self.registers, clock))),
         };
         let settled = call("settled", at(&self.nets, clock).into_iter());
-        text + &format!("(assert {entered})\n(assert {settled})\n")
+        _ = writeln!(text, "(assert {entered})\n(assert {settled})");
+        for property in self.netlist.properties.iter().filter(|property| property.claim == Claim::Assumption) {
+            // A constant without a name has no name of its own in a clock.
+            if self.nets.contains(&property.never) {
+                _ = writeln!(text, "(assert (= {} #b0))", self.at(property.never, clock));
+            } else if self.netlist.cell(property.never).op == Op::Const(1) {
+                text += "(assert false)\n";
+            }
+        }
+        text
     }
 }

@@ -311,9 +311,20 @@ pub enum Claim {
     },
     /// An invariant that the model's author claims.
     Invariant,
+    /// What the author assumes of the inputs: nothing is claimed of a run from the sample on in which it is 1.
+    Assumption,
+    /// What the author wants to see in some run: 1 in a sample that shows it, and no violation.
+    Cover,
 }
 
 impl Claim {
+    /// The net must never be 1, so that a run in which it is 1 shows a mistake: neither an assumption, nor a cover, nor what
+    /// is announced to be lost.
+    #[must_use]
+    pub fn is_goal(&self) -> bool {
+        !self.is_announced() && !matches!(self, Claim::Assumption | Claim::Cover)
+    }
+
     /// What an operator of imported hardware loses is announced: it is shown, and not reported.
     #[must_use]
     pub fn is_announced(self) -> bool {
@@ -321,7 +332,7 @@ impl Claim {
     }
 }
 
-/// A net that must never be 1. The simulator watches it, a prover proves it.
+/// A net that must never be 1, unless it is a [cover](Claim::Cover). The simulator watches it, a prover proves it.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Property {
     /// Path of the component that it is about.

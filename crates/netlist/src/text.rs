@@ -18,7 +18,7 @@
 //! `binary`, `decimal` or `states 0x1 "JUDGE" 0x2 "FEED"`.
 //! `memory 0 in 1 "ram" width 8 words 16` comes before the cells `read 0 %4`, followed by `initial 0 0x12 0x0*15`, its
 //! first words, and `write 0 enable %1 address %2 data %3 mask %4`, its ports; a mask may be missing. `property`
-//! ends in `invariant`, in the strict operation with its operands, or in `fits`, the bits that are kept of a result, their
+//! ends in `invariant`, `assumption` or `cover`, in the strict operation with its operands, or in `fits`, the bits that are kept of a result, their
 //! reading, the operation with its operands, and `wraps` where a carry is meant to be lost, or `fits-wide`, where a word has
 //! more than 64 bits, with bits and operation alone; `between-steps` in formulas with
 //! `|` between them.
@@ -136,6 +136,8 @@ impl fmt::Display for Netlist {
             write!(f, "property {:?} never {}", property.name, property.never)?;
             match property.claim {
                 Claim::Invariant => writeln!(f, " invariant")?,
+                Claim::Assumption => writeln!(f, " assumption")?,
+                Claim::Cover => writeln!(f, " cover")?,
                 Claim::Fits { operator, left, right, width, signed, wraps } => {
                     let (l, r, own) = (reading(left.signed), reading(right.signed), reading(signed));
                     let wraps = if wraps { " wraps" } else { "" };
@@ -254,11 +256,17 @@ impl Parser {
                 let never = words.net()?;
                 let claim = match words.word()? {
                     "invariant" => Claim::Invariant,
+                    "assumption" => Claim::Assumption,
+                    "cover" => Claim::Cover,
                     "fits" => words.fits()?,
                     "fits-wide" => words.fits_wide()?,
                     "add" => words.strict(Arithmetic::Add)?,
                     "sub" => words.strict(Arithmetic::Sub)?,
-                    _ => return Err("'invariant', 'fits', 'fits-wide', 'add' or 'sub'".to_owned()),
+                    _ => {
+                        return Err(
+                            "'invariant', 'assumption', 'cover', 'fits', 'fits-wide', 'add' or 'sub'".to_owned()
+                        );
+                    }
                 };
                 self.netlist.properties.push(Property { name, never, claim });
             }

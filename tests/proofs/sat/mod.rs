@@ -164,3 +164,26 @@ fn a_memory_that_is_too_large_is_refused_only_where_a_goal_depends_on_it() {
     assert_eq!(refused, Err(TooLarge { memory: "m.ram".to_owned(), bits: 65600 }));
     assert_eq!(decided(&question(vec![1])).verdicts, [Verdict::Proved { depth: 0 }]);
 }
+
+#[test]
+fn a_goal_that_is_looked_at_only_now_and_then_is_proved_by_the_order_of_registers() {
+    // A counter up to a limit; whether it is beyond is asked at any time, perhaps long after it went wrong.
+    let described = |steps: u64| {
+        let module = Module::new("limited");
+        let m = module.top();
+        let (load, step, ask) = (m.input("load", 1), m.input("step", 1), m.input("ask", 1));
+        let (limit, count) = (m.reg("limit", 16), m.reg("count", 16));
+        limit.when(load, m.input("wanted", 16)).else_hold();
+        let runs = step & !count.q.equals(limit.q);
+        count.when(load, m.lit(16, 0)).when(runs, count.q.wrapping_add(m.lit(16, steps))).else_hold();
+        m.invariant("within", !(ask & limit.q.less_than(count.q)));
+        elaborate(module.finish().expect("described")).expect("a netlist")
+    };
+    let verdict = |design: &Design| {
+        let question = Question { design, goals: vec![0], assumptions: vec![], inputs: Inputs::default() };
+        decided(&question).verdicts.remove(0)
+    };
+    assert!(matches!(verdict(&described(1)), Verdict::Proved { depth: 0..=2 }), "{:?}", verdict(&described(1)));
+    // By twos it passes an odd limit.
+    assert!(matches!(verdict(&described(2)), Verdict::Violated { clock: 2, .. }), "{:?}", verdict(&described(2)));
+}

@@ -47,6 +47,8 @@ impl Search<'_, '_> {
                     self.violated(&mut pending, sample);
                 }
                 Answer::No => self.clean(goal, sample),
+                // An invariant that is hard to look at is of no help.
+                Answer::Open if goal >= self.main => self.goals[goal].verdict = Some(Verdict::Unknown { clean: 0 }),
                 Answer::Open => {}
             }
         }
@@ -68,9 +70,13 @@ impl Search<'_, '_> {
         let (violated, others) = pending.iter().partition(|&&goal| values.of(self.flag(goal, sample)));
         *pending = others;
         let violated: Vec<usize> = violated;
-        let inputs: Vec<Vec<(Net, u64)>> = (0..=sample).map(|at| self.inputs(&values, at)).collect();
+        let found: Vec<Vec<(Net, u64)>> = match violated.iter().any(|&goal| goal < self.main) {
+            true => (0..=sample).map(|at| self.inputs(&values, at)).collect(),
+            false => Vec::new(),
+        };
         for goal in violated {
-            let (clock, inputs) = (sample as u64, inputs.clone());
+            let inputs = if goal < self.main { found.clone() } else { Vec::new() };
+            let clock = sample as u64;
             self.goals[goal].verdict = Some(Verdict::Violated { clock, inputs });
         }
     }

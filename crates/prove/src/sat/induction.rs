@@ -10,6 +10,9 @@ use super::unrolled::Unrolled;
 use super::words::differs;
 use super::{Question, Search, Verdict, assume, never};
 
+/// Samples in a row after which an invariant that is not shown is given up.
+const DEEPEST: usize = 4;
+
 /// Bits of the state on which some goals depend, and the samples that must differ in them.
 struct Cone {
     bits: Vec<usize>,
@@ -31,9 +34,13 @@ pub(super) struct Induction<'q, 't> {
 }
 
 impl<'q, 't> Induction<'q, 't> {
-    pub(super) fn new(template: &'t Template, question: &'q Question<'q>, guard: &Rc<Guard>) -> Induction<'q, 't> {
+    pub(super) fn new(
+        template: &'t Template,
+        question: &'q Question<'q>,
+        goals: usize,
+        guard: &Rc<Guard>,
+    ) -> Induction<'q, 't> {
         let mut unrolled = Unrolled::from_anywhere(template, guard);
-        let goals = question.goals.len();
         let assumed: Vec<_> = template.roots[goals..].iter().map(|&root| template.reached(&[root])).collect();
         let (mut cones, mut cone_of): (Vec<Cone>, Vec<usize>) = (Vec::new(), Vec::new());
         for &root in &template.roots[..goals] {
@@ -135,7 +142,8 @@ impl<'q, 't> Induction<'q, 't> {
                     let values = self.unrolled.sat.values();
                     let failed: Vec<usize> =
                         goals.iter().zip(&fail).filter(|(_, fail)| values.of(**fail)).map(|(&goal, _)| goal).collect();
-                    goals.retain(|goal| !failed.contains(goal) || self.separate(&values, *goal));
+                    let main = self.question.goals.len();
+                    goals.retain(|goal| !failed.contains(goal) || *goal < main && self.separate(&values, *goal));
                 }
                 // One by one: what cannot be shown so is left out.
                 Answer::Open => {
@@ -167,8 +175,12 @@ impl Search<'_, '_> {
             self.contradiction = Some((first_free + depth) as u64);
             return;
         }
-        let ready = self.open().filter(|&goal| self.goals[goal].clean >= first_free + depth).collect();
-        for goal in self.induction.attempt(ready, conflicts) {
+        let ready: Vec<usize> = self.open().filter(|&goal| self.goals[goal].clean >= first_free + depth).collect();
+        let proved = self.induction.attempt(ready.clone(), conflicts);
+        for goal in ready.into_iter().filter(|goal| *goal >= self.main && depth >= DEEPEST && !proved.contains(goal)) {
+            self.goals[goal].verdict = Some(Verdict::Unknown { clean: 0 });
+        }
+        for goal in proved {
             self.goals[goal].verdict = Some(Verdict::Proved { depth });
             self.induction.proved[goal] = true;
             never(&mut self.induction.unrolled.sat, &self.induction.unrolled.frames, goal);

@@ -8,7 +8,8 @@
 //! them in different states, are never followed by one with a violation, and the first samples of every run are free of
 //! violations, the goal is proved. Goals are tried together: each may rely on all others up to the sample before, and
 //! those that it cannot be shown of are left out until the rest holds. That is sound because in a run with a violation
-//! one of them is violated first.
+//! one of them is violated first. Invariants that random runs suggest are tried along with them: bits that do not change,
+//! bounds of registers, orders of pairs of them.
 //!
 //! ```
 //! use std::time::Duration;
@@ -34,6 +35,7 @@
 
 mod aig;
 mod bounded;
+mod candidates;
 mod induction;
 mod solver;
 mod template;
@@ -153,12 +155,16 @@ pub fn decide(
     let properties = &question.design.netlist().properties;
     let never = |&index: &usize| properties.get(index).map(|property| property.never);
     let roots: Vec<Net> = question.goals.iter().chain(&question.assumptions).filter_map(never).collect();
-    let template = Template::new(question.design, &roots)?;
+    let mut template = Template::new(question.design, &roots)?;
+    let main = question.goals.len();
+    let assumptions = template.roots[main..].to_vec();
+    let suggested = candidates::suggested(&mut template, question, &assumptions);
+    template.insert(main, &suggested);
     let guard = Rc::new(Guard::new(limits.time, limits.memory));
     let bounded = Unrolled::from_reset(&template, &guard);
-    let induction = Induction::new(&template, question, &guard);
-    let goals = question.goals.iter().map(|_| Goal { verdict: None, clean: 0 }).collect();
-    let search = Search { question, template: &template, guard, bounded, induction, goals, contradiction: None };
+    let goals: Vec<Goal> = (0..main + suggested.len()).map(|_| Goal { verdict: None, clean: 0 }).collect();
+    let induction = Induction::new(&template, question, goals.len(), &guard);
+    let search = Search { question, template: &template, guard, bounded, induction, goals, main, contradiction: None };
     Ok(search.run(limits, progress))
 }
 
@@ -175,7 +181,10 @@ struct Search<'q, 't> {
     guard: Rc<Guard>,
     bounded: Unrolled<'t>,
     induction: Induction<'q, 't>,
+    /// Those that were asked for, and invariants that may help.
     goals: Vec<Goal>,
+    /// Number of those that were asked for.
+    main: usize,
     contradiction: Option<u64>,
 }
 
@@ -185,26 +194,31 @@ impl Search<'_, '_> {
         (0..self.goals.len()).filter(|&goal| self.goals[goal].verdict.is_none())
     }
 
+    /// The same of those that were asked for.
+    fn open_main(&self) -> impl Iterator<Item = usize> + '_ {
+        self.open().take_while(|&goal| goal < self.main)
+    }
+
     /// Looks for violations and for proofs in turn, each with as many conflicts as the other has had.
     fn run(mut self, limits: &Limits, progress: &mut dyn FnMut(Progress)) -> Decision {
         let first_free = self.question.inputs.rows.len();
         let (mut clock, mut patience) = (0, PATIENCE);
         let limit = loop {
-            progress(Progress { clock: clock as u64, open: self.open().count() });
+            progress(Progress { clock: clock as u64, open: self.open_main().count() });
             let conflicts = patience.max(self.induction.conflicts() / 4);
             for sample in 0..=clock {
                 self.look(sample, conflicts);
             }
-            let base = self.open().map(|goal| self.goals[goal].clean).max();
+            let base = self.open_main().map(|goal| self.goals[goal].clean).max();
             if base.is_some_and(|base| base >= first_free + self.induction.depth()) && self.contradiction.is_none() {
                 let conflicts = PATIENCE.max(self.bounded.sat.conflicts());
                 self.induce(first_free, conflicts);
             }
             let reached = self.guard.reached();
-            if self.open().next().is_none() || reached.is_some() || self.contradiction.is_some() {
+            if self.open_main().next().is_none() || reached.is_some() || self.contradiction.is_some() {
                 break reached;
             }
-            if self.open().any(|goal| self.goals[goal].clean <= clock) {
+            if self.open_main().any(|goal| self.goals[goal].clean <= clock) {
                 patience *= 2;
             } else if limits.clock.is_some_and(|last| clock as u64 >= last) {
                 break Some(Limit::Clock);
@@ -213,9 +227,9 @@ impl Search<'_, '_> {
             }
         };
         let open = |goal: Goal| goal.verdict.unwrap_or(Verdict::Unknown { clean: goal.clean as u64 });
-        let limit = if self.goals.iter().all(|goal| goal.verdict.is_some()) { None } else { limit };
+        let limit = self.open_main().next().and(limit);
         let (depth, contradiction) = (self.induction.tried(), self.contradiction);
-        Decision { verdicts: self.goals.into_iter().map(open).collect(), depth, limit, contradiction }
+        Decision { verdicts: self.goals.into_iter().take(self.main).map(open).collect(), depth, limit, contradiction }
     }
 }
 

@@ -39,6 +39,8 @@ pub(super) struct Template {
     pub(super) inputs: Vec<(Net, Word)>,
     /// The bits that were asked for.
     pub(super) roots: Vec<Literal>,
+    /// Registers all of whose bits are in the state.
+    pub(super) registers: Vec<Word>,
     /// Nodes on which a root depends, now or after some edges, operands first.
     pub(super) cone: Vec<usize>,
 }
@@ -106,10 +108,11 @@ impl Template {
             }
             words.push(word);
         }
-        let mut state = Vec::new();
+        let (mut state, mut registers) = (Vec::new(), Vec::new());
         for (cell, now) in netlist.cells.iter().zip(&words).filter(|(_, now)| !now.is_empty()) {
             if let Op::Register { next: Some(next), reset } = cell.op {
                 push(&mut state, now, &words[next.index()], &constant(cell.width, reset));
+                registers.push(now.clone());
             }
         }
         for (memory, now) in used.iter().zip(&memories) {
@@ -120,15 +123,22 @@ impl Template {
             }
         }
         let roots = roots.iter().map(|net| words[net.index()][0]).collect();
-        let mut template = Template { graph, state, inputs, roots, cone: Vec::new() };
-        let all = template.roots.clone();
-        let (cone, kept) = template.reached(&all);
+        let mut template = Template { graph, state, inputs, roots, registers, cone: Vec::new() };
+        let (cone, kept) = template.reached(&template.roots);
         let mut number = 0..;
         template.state.retain(|_| number.next().is_some_and(|bit: usize| kept[bit]));
+        template.registers.retain(|word| word.iter().all(|bit| cone[bit.node()]));
         template.cone = (0..cone.len()).filter(|&node| cone[node]).collect();
         let reached = |word: &Word| word.iter().any(|bit| cone[bit.node()]);
         template.inputs.retain(|(_, word)| reached(word));
         Ok(template)
+    }
+
+    /// Asks for some bits more, of registers alone, before the root of this number.
+    pub(super) fn insert(&mut self, before: usize, bits: &[Literal]) {
+        self.roots.splice(before..before, bits.iter().copied());
+        let (cone, _) = self.reached(&self.roots);
+        self.cone = (0..cone.len()).filter(|&node| cone[node]).collect();
     }
 
     /// Nodes, and bits of the state by their numbers, on which some literals depend, now or after some edges.

@@ -33,7 +33,7 @@ fn inverted(a: &[Literal]) -> Word {
 }
 
 /// The difference, and whether it borrows.
-fn difference(graph: &mut Graph, a: &[Literal], b: &[Literal]) -> (Word, Literal) {
+pub(super) fn difference(graph: &mut Graph, a: &[Literal], b: &[Literal]) -> (Word, Literal) {
     let (word, carry) = sum(graph, a, &inverted(b), Literal::TRUE);
     (word, !carry)
 }
