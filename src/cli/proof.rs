@@ -7,10 +7,10 @@ use crate::study::Extent;
 use crate::study::proof::symmetric_box;
 use clap::{Args, Subcommand};
 
-use super::HardwareArgs;
 use super::endings::{Format, file_of};
 use super::names::{all_widths, listed, model_name};
 use super::values::{self, Narrower, parse_narrower};
+use super::{BenchArgs, HardwareArgs};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -33,7 +33,8 @@ use super::values::{self, Narrower, parse_narrower};
     stepwave prove dda.net --set rst=0 --stimulus-out example.csv\n\n\
     Of a netlist (a path that ends in .net or holds a /) every property is decided at its own widths: that no operator loses a\n\
     carry that is not announced, and every assertion. Inputs take any value in every clock, but for those of --set and of\n\
-    --stimulus. A counterexample has the fewest clocks; `stepwave sim F.net --stimulus example.csv` shows it again."
+    --stimulus. A counterexample has the fewest clocks; `stepwave sim F.net --stimulus example.csv` shows it again. With --box or --travel, and a\n\
+    bench file, every geometry of the box is run: stepwave prove dda.net --box 0..50x0..50"
 )]
 pub(crate) struct ProveArgs {
     #[command(subcommand)]
@@ -41,6 +42,8 @@ pub(crate) struct ProveArgs {
     /// The model; `stepwave list` shows them. Or a netlist: F.net
     #[arg(required = true, value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: Option<String>,
+    #[command(flatten)]
+    pub(crate) bench: BenchArgs,
     #[command(flatten)]
     pub(crate) netlist: NetlistProofArgs,
     #[command(flatten)]
@@ -129,20 +132,22 @@ impl NetlistProofArgs {
 impl ProveArgs {
     /// The first option that is given and that only a model takes.
     pub(crate) fn of_models(&self) -> Option<String> {
+        let options = self.hardware.choices();
+        let option = options.given().iter().map(|value| value.option().name()).find(|name| *name != WRAPS.name);
+        self.of_proofs().map(str::to_owned).or_else(|| option.map(|name| format!("--{name}")))
+    }
+
+    /// The first option that is given and that only proofs of models take.
+    pub(crate) fn of_proofs(&self) -> Option<&'static str> {
         let given = [
             (!self.narrower.is_empty(), "--narrower"),
-            (self.extent.is_some(), "--box"),
-            (self.travel.is_some(), "--travel"),
             (self.solver.is_some(), "--solver"),
             (self.bits.is_some(), "--bits"),
             (self.any_preset, "--any-preset"),
             (self.certificate.is_some(), "--certificate"),
             (self.details, "--details"),
         ];
-        let given = given.into_iter().find(|(given, _)| *given).map(|(_, option)| option.to_owned());
-        let options = self.hardware.choices();
-        let option = options.given().iter().map(|value| value.option().name()).find(|name| *name != WRAPS.name);
-        given.or_else(|| option.map(|name| format!("--{name}")))
+        given.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
     }
 }
 

@@ -1,5 +1,6 @@
 //! `stepwave prove`: proofs over all geometries and widths, and counterexamples.
 
+mod boxed;
 mod netlist;
 mod replay;
 mod text;
@@ -27,7 +28,13 @@ pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
     match &args.check {
         Some(ProveCommand::Check { file }) => check(file),
         None => match args.model.as_deref() {
-            Some(path) if is_netlist(path) => netlist::prove(args, Path::new(path)),
+            Some(path) if is_netlist(path) => {
+                let extent = args.extent.as_ref().or(args.travel.as_ref().map(|travel| &travel.0));
+                match extent {
+                    Some(extent) => boxed::prove(args, Path::new(path), extent),
+                    None => netlist::prove(args, Path::new(path)),
+                }
+            }
             _ => attempt(args),
         },
     }

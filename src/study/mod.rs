@@ -33,6 +33,7 @@
 mod boxes;
 mod columns;
 mod error;
+pub mod exhausted;
 mod hardware_cache;
 mod kform;
 mod merge;

@@ -186,6 +186,17 @@ fn every_command_takes_a_netlist_with_a_bench_file() {
     assert!(ran(&["compare", "own.net", "--to", "8,6"], 0).contains("ppc-line"));
     let widths = ran(&["widths", "own.net", "--box", "0..20x0..20"], 0);
     assert!(widths.contains("jvx            7      5"), "{widths}");
+    let proved = ran(&["prove", "own.net", "--travel", "3"], 0);
+    assert!(proved.contains("PROVED at these widths") && proved.contains("(48 geometries, exhausted)"), "{proved}");
+    fs::write(folder.path("short.toml"), bench.replace("done = \"done\"", "clocks = 64")).expect("written");
+    let missed = ran(&["prove", "own.net", "--bench", "short.toml", "--box", "1..3x0..0", "--vcd", "missed.vcd"], 1);
+    assert!(
+        missed.contains("COUNTEREXAMPLE: stepwave run own.net --bench short.toml --to 1,0 --vcd missed.vcd"),
+        "{missed}"
+    );
+    assert!(missed.contains("the end point (1, 0) was missed") && folder.path("missed.vcd").exists(), "{missed}");
+    let bits = ran(&["prove", "own.net", "--box", "2", "--bits", "3"], 2);
+    assert!(bits.contains("--bits does not go with the geometries of a box"), "{bits}");
     ran(&["export", "own.net", "--to", "8,6", "--verilog", "own.v", "--testbench", "own_tb.v"], 0);
     fs::create_dir(folder.path("waves")).expect("a folder");
     for file in ["own.net", "own.toml"] {

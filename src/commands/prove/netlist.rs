@@ -21,6 +21,12 @@ pub(super) fn prove(args: &ProveArgs, path: &Path) -> Result<(), Error> {
         let path = path.display();
         return Err(Error::Invalid(format!("{option} is of a model, and {path} is a netlist: leave it out")));
     }
+    if let Some(bench) = &args.bench.bench {
+        let bench = bench.display();
+        return Err(Error::Invalid(format!(
+            "--bench {bench} says how geometries are loaded: give some, with --box or --travel"
+        )));
+    }
     let own = &args.netlist;
     let design = read_netlist(path)?;
     let name = design.netlist().scopes[0].name.clone();

@@ -1,0 +1,68 @@
+//! `stepwave prove F.net --box …`: a netlist with a bench file, over all geometries of a box.
+
+use std::path::Path;
+
+use super::Progress;
+use crate::cli::ProveArgs;
+use crate::models::{Model, Options};
+use crate::nc::Curve;
+use crate::output::{self, Outputs};
+use crate::report::run_command;
+use crate::study::Extent;
+use crate::study::exhausted::{Exhausted, exhausted};
+use crate::waves::WaveOptions;
+use crate::{Error, Simulation};
+
+/// Runs every geometry of the box.
+pub(super) fn prove(args: &ProveArgs, netlist: &Path, extent: &Extent) -> Result<(), Error> {
+    let name = netlist.display().to_string();
+    if let Some(option) = args.netlist.given().or_else(|| args.of_proofs()) {
+        return Err(Error::Invalid(format!(
+            "{option} does not go with the geometries of a box, which are simulated: leave one of them out"
+        )));
+    }
+    let model = args.bench.model(&name)?;
+    let files = args.bench.files([&name]);
+    if let Some(vcd) = &args.vcd {
+        Outputs::reading(&files).claim(vcd)?;
+    }
+    let options = args.hardware.choices();
+    let progress = Progress::new("geometries");
+    let found = exhausted(model, &options, extent, &|more| progress.add(more));
+    progress.finish();
+    let Exhausted { simulated, all, example } = found.map_err(|error| args.hardware.explain_study(error))?;
+    let hardware = format!("{}: the geometries of {extent}\n", model.name);
+    let Some(example) = example else {
+        let what = "no operator loses a carry that is not announced, no assertion is violated, every end point is reached exactly";
+        return if all {
+            output::print(&format!("{hardware}PROVED at these widths: {what} ({simulated} geometries, exhausted)\n"))
+        } else {
+            output::print(&format!("{hardware}UNKNOWN: {simulated} extreme geometries were simulated\n"))?;
+            let sentence = "not proved: the box has too many geometries to simulate all: give a smaller one";
+            Err(Error::Check(vec![sentence.to_owned()]))
+        };
+    };
+    let (sentences, wave) = shown(args, model, &options, &example, &files)?;
+    let command = run_command(model, &example, &options);
+    output::print(&format!("{hardware}COUNTEREXAMPLE: {command}{wave}\n"))?;
+    Err(Error::Check(sentences))
+}
+
+/// What a run of a geometry says of it, with its wave if one is wanted.
+fn shown(
+    args: &ProveArgs,
+    model: &'static Model,
+    options: &Options,
+    example: &Curve,
+    files: &[std::path::PathBuf],
+) -> Result<(Vec<String>, String), Error> {
+    let waves = WaveOptions { vcd: args.vcd.clone(), ..WaveOptions::default() };
+    let simulation = Simulation::new(model, example.clone()).options(options.clone()).waves(waves);
+    let mut outputs = Outputs::reading(files);
+    let report = simulation.run_on(simulation.prepare()?.bench, &mut outputs, |_, _| Ok(()))?.report;
+    outputs.commit()?;
+    let mut sentences = report.failures();
+    sentences.extend(report.warnings());
+    let wave = args.vcd.as_ref().map_or_else(String::new, |path| format!(" --vcd {}", path.display()));
+    Ok((sentences, wave))
+}
