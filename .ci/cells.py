@@ -228,7 +228,7 @@ def check(stepwave, folder, seed, index):
     return wrong
 
 
-PASSES = "proc -noopt -norom; flatten; memory_collect; opt_clean"
+PASSES = "proc -noopt -norom; flatten; opt_clean; memory_collect; opt_clean"
 SIMLIB = [pathlib.Path(path) for path in ("/usr/share/yosys/simlib.v", "/usr/local/share/yosys/simlib.v")]
 
 

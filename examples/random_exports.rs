@@ -18,6 +18,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngSeed, TestRunner};
 use stepwave::engine::{EngineKind, Rows, Watch};
 use stepwave::export::{self, Checking, Options, Step, Stimulus};
+use stepwave::netlist::cells::NamedNet;
 use stepwave::netlist::{Bits, Design, Net, elaborate};
 use stepwave::trace::probe::Selection;
 use stepwave::trace::timescale::ClockTime;
@@ -79,10 +80,12 @@ fn models(dir: &Path, number: u64, design: &Design, stimulus: &Stimulus) -> Resu
     fs::write(file(".btor2"), export::btor2(&driven, &checking)?)?;
     fs::write(file(".smt2"), export::smt2(&driven, &checking, rows.len() as u64 - 1)?)?;
 
-    let mut table = netlist.names.iter().map(|named| netlist.path(named)).collect::<Vec<_>>().join(",") + "\n";
+    // A word of more than 64 bits has no term of its own there.
+    let narrow = || netlist.names.iter().filter(|named| !named.is_wide());
+    let mut table = narrow().map(|named| netlist.path(named)).collect::<Vec<_>>().join(",") + "\n";
     let mut equal = String::new();
     for (clock, row) in rows.iter() {
-        let values: Vec<_> = netlist.names.iter().map(|named| row[named.net.index()].to_string()).collect();
+        let values: Vec<_> = narrow().map(|named| row[named.net.index()].to_string()).collect();
         table += &(values.join(",") + "\n");
         for named in netlist.names.iter().filter(|named| netlist.name_of(named.net) == Some(named)) {
             let value = Bits::truncated(netlist.width(named.net), row[named.net.index()]);
@@ -119,7 +122,7 @@ fn stimulus(design: &Design, count: usize, runner: &mut TestRunner) -> Result<St
 }
 
 fn wave(design: &Design, stimulus: &Stimulus, time: ClockTime, out: File) -> Result<(), Box<dyn Error>> {
-    let mut columns: Vec<Net> = design.netlist().names.iter().map(|named| named.net).collect();
+    let mut columns: Vec<Net> = design.netlist().names.iter().flat_map(NamedNet::nets).collect();
     columns.sort_unstable();
     columns.dedup();
     let probes = Selection::default().probes(design, &columns)?;

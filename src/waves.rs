@@ -164,11 +164,12 @@ impl<'a> Waves<'a> {
         let steps = shown.steps.filter(|_| args.steps).map(|nets| nets.map(|net| shown.columns.index(net)));
         let window = Window { from: args.from, to: args.to, trigger, steps };
         let clk = args.clk;
-        let curves: Vec<(usize, Width)> = probes
-            .iter()
-            .filter(|probe| probe.format == Format::Analog)
-            .map(|probe| (probe.column, probe.width))
-            .collect();
+        let narrow = |probe: &Probe| match probe.columns[..] {
+            [column] => Some((column, Width::new(u64::from(probe.width)).ok()?)),
+            _ => None,
+        };
+        let curves = probes.iter().filter(|probe| probe.format == Format::Analog).filter_map(narrow);
+        let curves: Vec<(usize, Width)> = curves.collect();
         let vcd = match sinks.vcd {
             Some((path, sink)) => {
                 let header = VcdHeader { comment: title, probes: &probes, time, clk };
@@ -309,10 +310,10 @@ pub(crate) fn probes<'b>(shown: impl Into<Shown<'b>>, args: &WaveOptions) -> Res
 fn flag_column(shown: Shown<'_>, name: &str) -> Result<usize, Error> {
     let refuse = |why: String| Error::Invalid(format!("--trace-on: {why}"));
     let netlist = shown.design.netlist();
-    let net = net_named(netlist, name).map_err(refuse)?.net;
-    let width = netlist.width(net);
-    if width.get() != 1 {
-        return Err(refuse(format!("{name} has {width}, but a trigger is 1 bit wide")));
+    let named = net_named(netlist, name).map_err(refuse)?;
+    let bits = netlist.bits(named.nets());
+    if bits != 1 {
+        return Err(refuse(format!("{name} has {bits} bits, but a trigger is 1 bit wide")));
     }
-    Ok(shown.columns.index(net))
+    Ok(shown.columns.index(named.net))
 }

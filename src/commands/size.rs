@@ -46,12 +46,12 @@ impl Size {
     /// The options name no signal.
     pub(super) fn of(bench: &Testbench, args: &WaveOptions, time: ClockTime) -> Result<Size, Error> {
         let mut probes = probes(bench, args)?;
-        probes.sort_by_key(|probe| probe.column);
-        probes.dedup_by_key(|probe| probe.column);
+        probes.sort_by(|a, b| a.columns.cmp(&b.columns));
+        probes.dedup_by(|a, b| a.columns == b.columns);
         let (mut clock, mut step, mut count) = (0.0, 0.0, 0.0);
         for probe in probes {
-            let width = f64::from(probe.width.get());
-            let of_source = matches!(probe.name.as_str(), "phase" | "sum") && probe.width.get() >= RATE_BITS;
+            let width = f64::from(probe.width);
+            let of_source = matches!(probe.name.as_str(), "phase" | "sum") && probe.width >= RATE_BITS;
             if of_source {
                 // A b, a blank, a name of one character and the end of the line.
                 clock += width + 4.0;

@@ -27,14 +27,30 @@ pub(crate) fn matching<P: Borrow<Property>>(text: &str, all: impl Iterator<Item 
 /// A glob, and why it announces nothing.
 pub(crate) fn announce(netlist: &mut Netlist, globs: &[String]) -> Result<(), (String, String)> {
     for glob in globs {
+        refuse_undefined(glob, &netlist.properties).map_err(|why| (glob.clone(), why))?;
         let all = netlist.properties.iter_mut();
-        let overflows = all.filter(|property| matches!(property.claim, Claim::Fits { .. } | Claim::FitsWide { .. }));
+        let overflows = all.filter(|property| matches!(property.claim, Claim::Fits { .. }));
         let found: Vec<&mut Property> = matching(glob, overflows).map_err(|why| (glob.clone(), why))?;
         for property in found {
-            if let Claim::Fits { wraps, .. } | Claim::FitsWide { wraps, .. } = &mut property.claim {
+            if let Claim::Fits { wraps, .. } = &mut property.claim {
                 *wraps = true;
             }
         }
     }
     Ok(())
+}
+
+/// Refuses a glob that names operations without a result, and nothing that loses a carry.
+fn refuse_undefined(text: &str, all: &[Property]) -> Result<(), String> {
+    let glob = glob(text)?;
+    let mut undefined = None;
+    for property in all.iter().filter(|property| fits(&glob, &property.name)) {
+        match property.claim {
+            Claim::Fits { .. } => return Ok(()),
+            Claim::Defined { undefined: of, .. } => undefined = Some((property, of)),
+            Claim::NoOverflow { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover => {}
+        }
+    }
+    let Some((Property { name, .. }, of)) = undefined else { return Ok(()) };
+    Err(format!("{name} is watched for a {}, which has no carry to lose: leave it out", of.description()))
 }

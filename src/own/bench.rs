@@ -144,7 +144,12 @@ fn signal<'n>(netlist: &'n Netlist, name: &str) -> Result<&'n NamedNet, String> 
     let of_top = format!("{}.{name}", netlist.scopes[0].name);
     let found = netlist.names.iter().find(|named| named.name == name && named.scope == ScopeId::TOP);
     let found = found.or_else(|| netlist.names.iter().find(|named| netlist.path(named) == of_top));
-    found.map_or_else(|| net_named(netlist, name), Ok)
+    let found = found.map_or_else(|| net_named(netlist, name), Ok)?;
+    if found.is_wide() {
+        let bits = netlist.bits(found.nets());
+        return Err(format!("'{name}' has {bits} bits: a bench file takes signals of up to 64"));
+    }
+    Ok(found)
 }
 
 /// The bench file next to a netlist.

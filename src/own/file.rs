@@ -1,12 +1,13 @@
 //! Netlists in files, in the text form.
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
 use super::Stimulus;
 use crate::Error;
-use crate::netlist::{Design, elaborate, text};
+use crate::netlist::{Design, Net, elaborate, text};
 
 /// Most bytes of a netlist in a file.
 const MOST_BYTES: u64 = 1 << 30;
@@ -95,16 +96,20 @@ pub(crate) fn read_stimulus(
     constants.table(design, &text).map_err(|error| Error::Invalid(format!("{}: {error}", path.display())))
 }
 
-/// Registers with their bits, inputs, cells.
+/// Registers with their bits, inputs, cells. A word of more than 64 bits counts once.
 pub(crate) fn summary(design: &Design) -> String {
     let netlist = design.netlist();
+    let (wide, narrow): (Vec<_>, Vec<_>) = netlist.names.iter().partition(|named| named.is_wide());
+    let mut upper: HashSet<Net> = wide.into_iter().flat_map(|named| &named.above).copied().collect();
+    narrow.iter().for_each(|named| _ = upper.remove(&named.net));
+    let count = |nets: &[Net]| nets.iter().filter(|net| !upper.contains(net)).count();
     format!(
         "{}: {} cells, {} registers of {} bits together, {} inputs, {} names, {} properties",
         netlist.scopes[0].name,
         netlist.cells.len(),
-        design.registers().len(),
+        count(design.registers()),
         design.register_bits(),
-        design.inputs().len(),
+        count(design.inputs()),
         netlist.names.len(),
         netlist.properties.len()
     )

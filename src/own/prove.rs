@@ -247,7 +247,7 @@ impl Prove {
 
     /// The inputs with their nets, the lowest first, and their names.
     fn named_inputs(&self) -> Vec<(Vec<Net>, String)> {
-        inputs(&self.design).into_iter().map(|(net, name)| (vec![net], name)).collect()
+        inputs(&self.design).into_iter().map(|(named, name)| (named.nets().collect(), name)).collect()
     }
 
     /// Names of the inputs that are free after the last row.
@@ -332,6 +332,7 @@ fn clocks(count: u64) -> String {
 fn claimed(property: &Property) -> String {
     match property.claim {
         Claim::Invariant => format!("{} holds", property.name),
+        Claim::Defined { undefined, .. } => format!("{}: no {}", property.name, undefined.description()),
         _ => format!("{} does not overflow", property.name),
     }
 }

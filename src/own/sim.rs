@@ -176,10 +176,8 @@ impl Sim {
         }
         drain(&mut rows, observers)?;
         let netlist = self.design.netlist();
-        let last = netlist.names.iter().map(|named| {
-            let width = netlist.width(named.net).get() as usize;
-            (netlist.path(named), format!("{:0width$b}", engine.value(named.net)))
-        });
+        let digits = |named| netlist.digits(named, |net| engine.value(net));
+        let last = netlist.names.iter().map(|named| (netlist.path(named), digits(named)));
         let trap = stop.and_then(|index| strict.get(index)).map(|property| property.name.clone());
         Ok(Run { clocks: engine.clock(), trap, last: last.collect() })
     }

@@ -1,6 +1,11 @@
 //! Values of inputs, clock by clock, from CSV.
 
+use std::collections::HashSet;
+
+use num_bigint::{BigInt, Sign};
+
 use crate::netlist::bits::Bits;
+use crate::netlist::cells::{NamedNet, Op};
 use crate::netlist::{Design, Net, did_you_mean};
 
 /// Why a stimulus does not fit a design.
@@ -59,16 +64,17 @@ pub enum StimulusError {
         /// Its width.
         width: u32,
         /// Least value, as a signed number.
-        least: i128,
+        least: String,
         /// Greatest value, as an unsigned number.
-        greatest: i128,
+        greatest: String,
     },
     /// There is no first line.
     #[error("the first line must name inputs, separated by commas")]
     Empty,
 }
 
-/// Values of inputs: row 0 in the sample after reset, row k from right after edge k on; the last is held.
+/// Values of inputs: row 0 in the sample after reset, row k from right after edge k on; the last is held. An input of more
+/// than 64 bits is several nets.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Stimulus {
     constants: Vec<(Net, u64)>,
@@ -76,16 +82,25 @@ pub struct Stimulus {
     rows: Vec<Vec<u64>>,
 }
 
-/// The inputs of a design with their names, without the name of the design.
-pub(super) fn inputs(design: &Design) -> Vec<(Net, String)> {
+/// The inputs of a design, each with its nets and with its path without the name of the design.
+pub(super) fn inputs(design: &Design) -> Vec<(&NamedNet, String)> {
     let netlist = design.netlist();
-    let path = |net: Net| netlist.name_of(net).map(|named| netlist.path(named));
     let inner = |path: String| path.split_once('.').map(|(_, inner)| inner.to_owned()).unwrap_or(path);
-    design.inputs().iter().filter_map(|&net| Some((net, inner(path(net)?)))).collect()
+    let is_input = |net: Net| matches!(netlist.cell(net).op, Op::Input);
+    let mut taken: HashSet<Net> = HashSet::new();
+    let mut found: Vec<(&NamedNet, String)> = Vec::new();
+    for named in netlist.names.iter().filter(|named| named.nets().all(is_input)) {
+        if !named.nets().any(|net| taken.contains(&net)) {
+            taken.extend(named.nets());
+            found.push((named, inner(netlist.path(named))));
+        }
+    }
+    found.sort_by_key(|(named, _)| named.net);
+    found
 }
 
-/// A number in decimal, or with 0x or 0b in front; a minus sign may come first.
-pub(super) fn parsed(text: &str) -> Option<i128> {
+/// Sign, digits in lower case, and base of a number: decimal, or with 0x or 0b in front; a minus sign may come first.
+fn digits(text: &str) -> Option<(bool, String, u32)> {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(digits) => (true, digits),
         None => (false, text),
@@ -97,27 +112,51 @@ pub(super) fn parsed(text: &str) -> Option<i128> {
         _ => (lower.as_str(), 10),
     };
     // `from_str_radix` takes a sign of its own.
-    if digits.is_empty() || !digits.chars().all(|c| c.is_digit(radix)) {
-        return None;
-    }
-    let value = i128::from_str_radix(digits, radix).ok()?;
+    let good = !digits.is_empty() && digits.chars().all(|c| c.is_digit(radix));
+    good.then(|| (negative, digits.to_owned(), radix))
+}
+
+/// A number of up to 127 bits in decimal, or with 0x or 0b in front; a minus sign may come first.
+pub(super) fn parsed(text: &str) -> Option<i128> {
+    let (negative, digits, radix) = digits(text)?;
+    let value = i128::from_str_radix(&digits, radix).ok()?;
     Some(if negative { -value } else { value })
 }
 
-fn value(design: &Design, net: Net, name: &str, text: &str, place: &str) -> Result<u64, StimulusError> {
+/// The value of each net of an input, the lowest first, appended to `values`.
+fn value(
+    design: &Design,
+    input: &NamedNet,
+    name: &str,
+    text: &str,
+    place: &str,
+    values: &mut Vec<u64>,
+) -> Result<(), StimulusError> {
     let (place, name) = (place.to_owned(), name.to_owned());
-    let width = design.netlist().width(net);
-    let Some(value) = parsed(text) else {
+    let netlist = design.netlist();
+    if let (false, Some(value)) = (input.is_wide(), parsed(text))
+        && let Some(bits) = Bits::exact(netlist.width(input.net), value, value < 0)
+    {
+        values.push(bits.value());
+        return Ok(());
+    }
+    let Some((negative, digits, radix)) = digits(text) else {
         return Err(StimulusError::Number { place, name, text: text.to_owned() });
     };
-    Bits::exact(width, value, value < 0).map(Bits::value).ok_or_else(|| StimulusError::TooWide {
-        place,
-        name,
-        value: text.to_owned(),
-        width: width.get(),
-        least: width.range(true).0,
-        greatest: width.range(false).1,
-    })
+    let width = netlist.bits(input.nets());
+    let magnitude = BigInt::parse_bytes(digits.as_bytes(), radix).unwrap_or_default();
+    let value = if negative { -magnitude } else { magnitude };
+    let count = |bits: u32| BigInt::from(1) << bits;
+    let (least, greatest) = (-count(width - 1), count(width) - 1);
+    if value < least || value > greatest {
+        let (least, greatest, value) = (least.to_string(), greatest.to_string(), text.to_owned());
+        return Err(StimulusError::TooWide { place, name, value, width, least, greatest });
+    }
+    let value = if value.sign() == Sign::Minus { value + count(width) } else { value };
+    let mut parts = value.to_u64_digits().1;
+    parts.resize(input.nets().count(), 0);
+    values.extend(parts);
+    Ok(())
 }
 
 impl Stimulus {
@@ -132,8 +171,10 @@ impl Stimulus {
         let mut stimulus = Stimulus::default();
         for (name, text) in given {
             let place = format!("--set {name}={text}");
-            let net = stimulus.input(design, name, &place)?;
-            stimulus.constants.push((net, value(design, net, name, text, &place)?));
+            let input = stimulus.input(design, name, &place)?;
+            let mut values = Vec::new();
+            value(design, input, name, text, &place, &mut values)?;
+            stimulus.constants.extend(input.nets().zip(values));
         }
         Ok(stimulus)
     }
@@ -148,9 +189,11 @@ impl Stimulus {
         let (line, head) = lines.next().ok_or(StimulusError::Empty)?;
         let head = head.trim_start_matches('\u{feff}');
         let names: Vec<&str> = head.split(',').map(unquoted).collect();
+        let mut inputs = Vec::new();
         for name in &names {
-            let net = self.input(design, name, &format!("line {line}"))?;
-            self.columns.push(net);
+            let input = self.input(design, name, &format!("line {line}"))?;
+            self.columns.extend(input.nets());
+            inputs.push(input);
         }
         for (line, row) in lines {
             let texts: Vec<&str> = row.split(',').map(unquoted).collect();
@@ -158,17 +201,19 @@ impl Stimulus {
                 return Err(StimulusError::Row { line, given: texts.len(), wanted: names.len() });
             }
             let place = format!("line {line}");
-            let columns = self.columns.iter().zip(&names).zip(texts);
-            let row = columns.map(|((&net, name), text)| value(design, net, name, text, &place));
-            self.rows.push(row.collect::<Result<_, _>>()?);
+            let mut values = Vec::with_capacity(self.columns.len());
+            for ((input, name), text) in inputs.iter().zip(&names).zip(texts) {
+                value(design, input, name, text, &place, &mut values)?;
+            }
+            self.rows.push(values);
         }
         Ok(self)
     }
 
     /// The input of this name, which has no value yet.
-    fn input(&self, design: &Design, name: &str, place: &str) -> Result<Net, StimulusError> {
+    fn input<'d>(&self, design: &'d Design, name: &str, place: &str) -> Result<&'d NamedNet, StimulusError> {
         let inputs = inputs(design);
-        let Some((net, _)) = inputs.iter().find(|(_, own)| own == name) else {
+        let Some((input, _)) = inputs.iter().find(|(_, own)| own == name) else {
             let names: Vec<&str> = inputs.iter().map(|(_, name)| name.as_str()).collect();
             return Err(StimulusError::NoInput {
                 place: place.to_owned(),
@@ -178,10 +223,10 @@ impl Stimulus {
             });
         };
         let constants = self.constants.iter().map(|(net, _)| net);
-        if constants.chain(&self.columns).any(|other| other == net) {
+        if constants.chain(&self.columns).any(|other| *other == input.net) {
             return Err(StimulusError::Twice { place: place.to_owned(), name: name.to_owned() });
         }
-        Ok(*net)
+        Ok(input)
     }
 
     /// Rows of the table.

@@ -121,7 +121,8 @@ fn script(source: &Source, files: &[PathBuf], json: &Path) -> Result<String, Yos
         }
         script.push('\n');
     }
-    script += "proc -noopt -norom\nflatten\nmemory_collect\nopt_clean\n";
+    // Only cleaned processes have constant enables of what `initial` writes into a memory.
+    script += "proc -noopt -norom\nflatten\nopt_clean\nmemory_collect\nopt_clean\n";
     script += &format!("write_json {}\n", quoted("file", json)?);
     Ok(script)
 }

@@ -1,5 +1,6 @@
 //! The JSON report.
 
+use num_bigint::BigInt;
 use serde_json::{Map, Value, json};
 use stepwave_models::CutWord;
 use stepwave_models::options::{Takes, WIDTH};
@@ -18,6 +19,15 @@ fn number(value: i128) -> Value {
         return json!(value);
     }
     u64::try_from(value).map_or_else(|_| json!(value as f64), |value| json!(value))
+}
+
+/// A number of any size as JSON: one beyond 64 bits as a text of its digits.
+fn large(value: &BigInt) -> Value {
+    match (i64::try_from(value), u64::try_from(value)) {
+        (Ok(value), _) => json!(value),
+        (_, Ok(value)) => json!(value),
+        _ => json!(value.to_string()),
+    }
 }
 
 /// The word of a choice as JSON: a number where it is one.
@@ -47,8 +57,34 @@ pub(crate) fn event(event: &OverflowEvent) -> Value {
                 "needed_width": if exact < 0 && !signed { Value::Null } else { json!(needed) },
             })
         }
-        OverflowEvent::Wide { component, bits, operation, clock } => {
-            json!({ "component": component, "clock": clock, "width": bits, "operation": operation.name() })
+        OverflowEvent::Wide { component, bits, signed, operation, left, right, clock } => {
+            json!({
+                "component": component,
+                "clock": clock,
+                "width": bits,
+                "signed": signed,
+                "operation": operation.name(),
+                "left": large(left),
+                "right": large(right),
+                "exact": event.exact_wide().as_ref().map(large),
+                "needed_width": event.needed_wide(),
+            })
+        }
+        OverflowEvent::Undefined { component, undefined, operand, clock } => {
+            let name = undefined.name();
+            match undefined.memory() {
+                None => {
+                    json!({ "component": component, "clock": clock, "operation": name, "left": large(operand), "right": 0 })
+                }
+                Some((first, words)) => json!({
+                    "component": component,
+                    "clock": clock,
+                    "operation": name,
+                    "address": large(operand),
+                    "first": first,
+                    "words": words,
+                }),
+            }
         }
         OverflowEvent::Invariant { component, clock } => json!({ "component": component, "clock": clock }),
     }

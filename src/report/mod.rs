@@ -226,6 +226,9 @@ impl Report {
         let (component, clock) = (tally.first.component(), tally.first.clock());
         let times = if tally.count == 1 { "once".to_owned() } else { format!("{} times", tally.count) };
         let did = match (&tally.first, self.hardware.get(&ON_OVERFLOW)) {
+            (OverflowEvent::Undefined { undefined, .. }, _) => {
+                return format!("{}: {component} {times}, first at clock {clock}", undefined.description());
+            }
             (OverflowEvent::Invariant { .. }, _) => {
                 return format!("invariant {component} did not hold {times}, first at clock {clock}");
             }
@@ -334,6 +337,7 @@ fn remedy(event: &OverflowEvent, hardware: &Hardware) -> String {
         (OverflowEvent::Overflow { .. } | OverflowEvent::Wide { .. }, _) => {
             "; go on with --on-overflow wrap or saturate".to_owned()
         }
+        (OverflowEvent::Undefined { .. }, _) => String::new(),
         (OverflowEvent::Invariant { .. }, _) => ": the model is wrong, please report this".to_owned(),
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use stepwave_models::Machine;
-use stepwave_netlist::cells::{Claim, Op};
+use stepwave_netlist::cells::{NamedNet, Op};
 use stepwave_netlist::{Design, Net, Netlist};
 
 /// Nets in the order of a row, each once.
@@ -24,7 +24,7 @@ impl Columns {
     #[must_use]
     pub fn of_design(design: &Design) -> Columns {
         let netlist = design.netlist();
-        Columns::of_nets(netlist, netlist.names.iter().map(|named| named.net))
+        Columns::of_nets(netlist, netlist.names.iter().flat_map(NamedNet::nets))
     }
 
     /// What is looked at where no wave is written: every named register, the ports of the step table, and the operands
@@ -32,7 +32,7 @@ impl Columns {
     #[must_use]
     pub fn without_wave(machine: &Machine) -> Columns {
         let netlist = machine.design.netlist();
-        let names = netlist.names.iter().map(|named| named.net);
+        let names = netlist.names.iter().flat_map(NamedNet::nets);
         let registers = names.filter(|&net| matches!(netlist.cell(net).op, Op::Register { .. }));
         let table = machine.table.iter().map(|(_, port)| port);
         let strobes = [&machine.loaded, &machine.stepped].into_iter();
@@ -46,10 +46,7 @@ impl Columns {
         nets.for_each(|net| columns.add(net));
         for property in &netlist.properties {
             columns.add(property.never);
-            if let Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } = property.claim {
-                columns.add(left.net);
-                columns.add(right.net);
-            }
+            property.claim.nets().into_iter().for_each(|net| columns.add(net));
         }
         columns
     }

@@ -11,7 +11,7 @@ pub(crate) fn net_named<'n>(netlist: &'n Netlist, name: &str) -> Result<&'n Name
     let end = format!(".{name}");
     let all = netlist.names.iter().map(|named| (netlist.path(named), named));
     let mut found: Vec<(String, &NamedNet)> = all.filter(|(path, _)| path == name || path.ends_with(&end)).collect();
-    found.dedup_by_key(|(_, named)| named.net);
+    found.dedup_by(|(_, a), (_, b)| a.nets().eq(b.nets()));
     match found.as_slice() {
         [] => {
             let known = netlist.names.iter().map(|named| named.name.as_str());

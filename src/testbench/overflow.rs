@@ -1,6 +1,10 @@
 //! Overflow events: which component, which operands, what exactly, when, and how wide it would have had to be.
 
+mod big;
+
 use std::fmt;
+
+use num_bigint::BigInt;
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -8,8 +12,8 @@ use stepwave_engine::Rows;
 use stepwave_models::Machine;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_netlist::bits;
-use stepwave_netlist::cells::{Claim, Operator, Property, Source};
-use stepwave_netlist::{Netlist, OnOverflow, Width, elaborate};
+use stepwave_netlist::cells::{Claim, Operator, Property, Source, Undefined, Word};
+use stepwave_netlist::{Net, Netlist, OnOverflow, Width, elaborate};
 
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Columns, Observer, ObserverError, Testbench};
@@ -43,8 +47,25 @@ pub enum OverflowEvent {
         component: String,
         /// Bits that are kept.
         bits: u32,
+        /// They are read as two's complement.
+        signed: bool,
         /// What was computed.
         operation: Operator,
+        /// First operand.
+        left: BigInt,
+        /// Second operand.
+        right: BigInt,
+        /// Clock of the sample.
+        clock: u64,
+    },
+    /// Imported hardware took the result of an operation that has none.
+    Undefined {
+        /// Path of what takes it, or of the memory.
+        component: String,
+        /// The operation.
+        undefined: Undefined,
+        /// The dividend, or the address.
+        operand: BigInt,
         /// Clock of the sample.
         clock: u64,
     },
@@ -64,6 +85,7 @@ impl OverflowEvent {
         match self {
             OverflowEvent::Overflow { component, .. }
             | OverflowEvent::Wide { component, .. }
+            | OverflowEvent::Undefined { component, .. }
             | OverflowEvent::Invariant { component, .. } => component,
         }
     }
@@ -74,8 +96,15 @@ impl OverflowEvent {
         match self {
             OverflowEvent::Overflow { clock, .. }
             | OverflowEvent::Wide { clock, .. }
+            | OverflowEvent::Undefined { clock, .. }
             | OverflowEvent::Invariant { clock, .. } => *clock,
         }
+    }
+
+    /// The operation without a result that it is about.
+    #[must_use]
+    pub fn undefined(&self) -> Option<Undefined> {
+        if let OverflowEvent::Undefined { undefined, .. } = self { Some(*undefined) } else { None }
     }
 
     /// The exact result, and the width that would have held it.
@@ -85,40 +114,94 @@ impl OverflowEvent {
         let exact = operation.exact(*left, *right)?;
         Some((exact, Width::needed(exact, *signed)))
     }
+
+    /// The exact result of a [`Wide`](OverflowEvent::Wide) one, where it has no more than 2^16 bits.
+    #[must_use]
+    pub fn exact_wide(&self) -> Option<BigInt> {
+        let OverflowEvent::Wide { operation, left, right, .. } = self else { return None };
+        big::exact(*operation, left, right)
+    }
+
+    /// Bits that would have held that result; `None` where none would.
+    #[must_use]
+    pub fn needed_wide(&self) -> Option<u64> {
+        let OverflowEvent::Wide { signed, .. } = self else { return None };
+        big::needed(&self.exact_wide()?, *signed)
+    }
 }
 
 impl fmt::Display for OverflowEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let OverflowEvent::Wide { component, bits, operation, clock } = self {
-            let name = operation.name();
-            return write!(
-                f,
-                "overflow of {component} at clock {clock}: the exact result of {name} does not fit in {bits} bits"
-            );
+        let (component, clock) = (self.component(), self.clock());
+        match self {
+            OverflowEvent::Overflow { width, signed, operation, left, right, .. } => {
+                let (least, greatest) = width.range(*signed);
+                let sum = [left, right].map(i128::to_string);
+                let Some((exact, needed)) = self.exact() else {
+                    let computed = computed(*operation, &sum);
+                    return write!(f, "overflow of {component} at clock {clock}: {computed} has more than 127 bits");
+                };
+                let needed = (*signed || exact >= 0).then_some(u64::from(needed));
+                let width = (width.to_string(), [least, greatest].map(|end| end.to_string()));
+                sentence(f, self, &computed(*operation, &sum), &exact.to_string(), width, needed)
+            }
+            OverflowEvent::Wide { bits, signed, operation, left, right, .. } => {
+                let sum = [left, right].map(BigInt::to_string);
+                let Some(exact) = self.exact_wide() else {
+                    let (computed, most) = (computed(*operation, &sum), big::MOST_BITS);
+                    return write!(f, "overflow of {component} at clock {clock}: {computed} has more than {most} bits");
+                };
+                let width = (format!("{bits} bits"), big::range(*bits, *signed).map(|end| end.to_string()));
+                let needed = big::needed(&exact, *signed);
+                sentence(f, self, &computed(*operation, &sum), &exact.to_string(), width, needed)
+            }
+            OverflowEvent::Undefined { undefined, operand, .. } => match undefined.memory() {
+                None => {
+                    let sign = if *undefined == Undefined::Quotient { '/' } else { '%' };
+                    write!(f, "division by zero of {component} at clock {clock}: {operand} {sign} 0")
+                }
+                Some((first, words)) => {
+                    let (name, last) = (undefined.name(), u128::from(first) + u128::from(words) - 1);
+                    write!(
+                        f,
+                        "{name} outside of {component} at clock {clock}: address {operand}; it has {words} words \
+                         ({first} to {last})"
+                    )
+                }
+            },
+            OverflowEvent::Invariant { .. } => write!(f, "invariant {component} does not hold at clock {clock}"),
         }
-        let OverflowEvent::Overflow { component, width, signed, operation, left, right, clock } = self else {
-            return write!(f, "invariant {} does not hold at clock {}", self.component(), self.clock());
-        };
-        let (least, greatest) = width.range(*signed);
-        let sign = operation.sign();
-        let in_brackets = |value: i128| if value < 0 { format!("({value})") } else { value.to_string() };
-        let computed = match operation {
-            Operator::Neg => format!("-{}", in_brackets(*left)),
-            _ => format!("{left} {sign} {}", in_brackets(*right)),
-        };
-        let Some((exact, needed)) = self.exact() else {
-            return write!(f, "overflow of {component} at clock {clock}: {computed} has more than 127 bits");
-        };
-        write!(
-            f,
-            "overflow of {component} at clock {clock}: {computed} = {exact} does not fit in its {width} \
-             ({least} to {greatest}); "
-        )?;
-        if exact < 0 && !signed {
-            f.write_str("no unsigned width would hold it")
-        } else {
-            write!(f, "{needed} bits would hold it")
-        }
+    }
+}
+
+/// An operation in figures.
+fn computed(operation: Operator, [left, right]: &[String; 2]) -> String {
+    let in_brackets = |value: &String| if value.starts_with('-') { format!("({value})") } else { value.clone() };
+    match operation {
+        Operator::Neg => format!("-{}", in_brackets(left)),
+        _ => format!("{left} {} {}", operation.sign(), in_brackets(right)),
+    }
+}
+
+/// What was computed does not fit: with the exact result, the width and its least and greatest number, and the bits that
+/// would hold it.
+fn sentence(
+    f: &mut fmt::Formatter<'_>,
+    event: &OverflowEvent,
+    computed: &str,
+    exact: &str,
+    (width, [least, greatest]): (String, [String; 2]),
+    needed: Option<u64>,
+) -> fmt::Result {
+    let (component, clock) = (event.component(), event.clock());
+    write!(
+        f,
+        "overflow of {component} at clock {clock}: {computed} = {exact} does not fit in its {width} \
+         ({least} to {greatest}); "
+    )?;
+    match needed {
+        None => f.write_str("no unsigned width would hold it"),
+        Some(needed) => write!(f, "{needed} bits would hold it"),
     }
 }
 
@@ -183,7 +266,15 @@ struct Watched {
     property: Property,
     source: Option<String>,
     never: usize,
-    operands: Option<(usize, Width, usize, Width)>,
+    operands: Operands,
+}
+
+/// Where the operands of a property are: the columns and widths of two nets, or of two words of which one, or the result,
+/// has more than 64 bits.
+enum Operands {
+    None,
+    Nets(usize, Width, usize, Width),
+    Words([Vec<(usize, u32)>; 2]),
 }
 
 /// A violation as it was seen.
@@ -193,6 +284,9 @@ struct Seen {
     clock: u64,
     /// Bits of both operands, where the property has some.
     operands: Option<(u64, u64)>,
+    /// Those of words: of all nets of the first, then of the second.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    words: Vec<u64>,
 }
 
 /// The violations of one property.
@@ -209,10 +303,15 @@ impl Tally {
 
     fn count(&mut self, watched: &Watched, seen: &Seen) {
         self.count += 1;
-        let needed = numbers(watched, seen).and_then(|(operation, left, right, _, signed)| {
-            let exact = operation.exact(left, right)?;
-            (signed || exact >= 0).then(|| Width::needed(exact, signed))
-        });
+        let needed = match event(watched, seen) {
+            OverflowEvent::Overflow { operation, left, right, signed, .. } => operation
+                .exact(left, right)
+                .and_then(|exact| (signed || exact >= 0).then(|| Width::needed(exact, signed))),
+            OverflowEvent::Wide { operation, left, right, signed, .. } => big::exact(operation, &left, &right)
+                .and_then(|exact| big::needed(&exact, signed))
+                .and_then(|needed| u32::try_from(needed).ok()),
+            OverflowEvent::Undefined { .. } | OverflowEvent::Invariant { .. } => None,
+        };
         self.needed = self.needed.zip(needed).map(|(before, now)| before.max(now));
         if self.first.is_none() {
             self.first = Some(seen.clone());
@@ -247,11 +346,16 @@ impl OverflowWatch {
         let at = |net| columns.index(net);
         let reported = |property: &&Property| property.claim.is_goal();
         let watched = netlist.properties.iter().filter(reported).map(|property| {
-            let operands = match property.claim {
-                Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } => {
-                    Some((at(left.net), netlist.width(left.net), at(right.net), netlist.width(right.net)))
-                }
-                Claim::FitsWide { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover => None,
+            let pair = |a: Net, b: Net| Operands::Nets(at(a), netlist.width(a), at(b), netlist.width(b));
+            let word = |word: &Word| word.nets.iter().map(|&net| (at(net), netlist.width(net).get())).collect();
+            let operands = match &property.claim {
+                Claim::NoOverflow { left, right, .. } => pair(left.net, right.net),
+                Claim::Fits { left, right, bits, .. } => match (&left.nets[..], &right.nets[..]) {
+                    ([a], [b]) if *bits <= Width::MAX.get() => pair(*a, *b),
+                    _ => Operands::Words([word(left), word(right)]),
+                },
+                Claim::Defined { operand, .. } => Operands::Words([word(operand), Vec::new()]),
+                Claim::Invariant | Claim::Assumption | Claim::Cover => Operands::None,
             };
             let source = match netlist.sources.get(property.never.index()) {
                 Some(Some(Source::File { file, line, .. })) => Some(format!("{file}:{line}")),
@@ -276,7 +380,10 @@ impl OverflowWatch {
         let mut found: Vec<OverflowTally> = Vec::new();
         for (watched, tally) in self.watched.iter().zip(&self.tallies) {
             let Some(first) = tally.first.as_ref().map(|seen| event(watched, seen)) else { continue };
-            match found.iter_mut().find(|known| known.first.component() == first.component()) {
+            let alike = |known: &&mut OverflowTally| {
+                known.first.component() == first.component() && known.first.undefined() == first.undefined()
+            };
+            match found.iter_mut().find(alike) {
                 None => {
                     let source = watched.source.clone();
                     found.push(OverflowTally { count: tally.count, first, needed: tally.needed, source });
@@ -296,29 +403,46 @@ impl OverflowWatch {
     }
 }
 
-/// What a property says of a result: the operator, both operands as numbers, the bits that are kept and their reading.
-fn numbers(watched: &Watched, seen: &Seen) -> Option<(Operator, i128, i128, Width, bool)> {
-    let ((_, left_width, _, right_width), (a, b)) = watched.operands.zip(seen.operands)?;
-    let (operator, left, right, width, signed) = match watched.property.claim {
-        Claim::NoOverflow { operation, left, right } => (operation.into(), left, right, left_width, left.signed),
-        Claim::Fits { operator, left, right, width, signed, .. } => (operator, left, right, width, signed),
-        Claim::FitsWide { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover => return None,
-    };
-    let (a, b) = (bits::number(left_width, a, left.signed), bits::number(right_width, b, right.signed));
-    Some((operator, a, b, width, signed))
-}
-
 fn event(watched: &Watched, seen: &Seen) -> OverflowEvent {
     let (component, clock) = (watched.property.name.clone(), seen.clock);
-    match (numbers(watched, seen), watched.property.claim) {
-        (Some((operation, left, right, width, signed)), _) => {
-            OverflowEvent::Overflow { component, width, signed, operation, left, right, clock }
+    let narrow = |signs: [bool; 2]| match (&watched.operands, seen.operands) {
+        (Operands::Nets(_, a, _, b), Some((left, right))) => {
+            Some((bits::number(*a, left, signs[0]), bits::number(*b, right, signs[1]), *a))
         }
-        (None, Claim::FitsWide { operator, bits, .. }) => {
-            OverflowEvent::Wide { component, bits, operation: operator, clock }
+        _ => None,
+    };
+    match &watched.property.claim {
+        Claim::NoOverflow { operation, left, right } => {
+            if let Some((a, b, width)) = narrow([left.signed, right.signed]) {
+                let (operation, signed) = ((*operation).into(), left.signed);
+                return OverflowEvent::Overflow { component, width, signed, operation, left: a, right: b, clock };
+            }
         }
-        (None, _) => OverflowEvent::Invariant { component, clock },
+        Claim::Fits { operator, left, right, bits, signed, .. } => {
+            let (operation, signed) = (*operator, *signed);
+            let width = Width::new(u64::from(*bits)).unwrap_or(Width::MAX);
+            if let Some((left, right, _)) = narrow([left.signed, right.signed]) {
+                return OverflowEvent::Overflow { component, width, signed, operation, left, right, clock };
+            }
+            if let Operands::Words([a, b]) = &watched.operands {
+                let (first, second) = seen.words.split_at(a.len().min(seen.words.len()));
+                let [left, right] = [(left, a, first), (right, b, second)].map(|(word, columns, values)| {
+                    let bits = columns.iter().map(|(_, bits)| bits).sum();
+                    big::number(values, bits, word.signed)
+                });
+                return OverflowEvent::Wide { component, bits: *bits, signed, operation, left, right, clock };
+            }
+        }
+        Claim::Defined { undefined, operand } => {
+            if let Operands::Words([columns, _]) = &watched.operands {
+                let bits = columns.iter().map(|(_, bits)| bits).sum();
+                let operand = big::number(&seen.words, bits, operand.signed);
+                return OverflowEvent::Undefined { component, undefined: *undefined, operand, clock };
+            }
+        }
+        Claim::Invariant | Claim::Assumption | Claim::Cover => {}
     }
+    OverflowEvent::Invariant { component, clock }
 }
 
 impl Observer for OverflowWatch {
@@ -350,8 +474,15 @@ impl Observer for OverflowWatch {
                 if rows.value(watched.never, row) == 0 {
                     continue;
                 }
-                let operands = watched.operands.map(|(a, _, b, _)| (rows.value(a, row), rows.value(b, row)));
-                let seen = Seen { property, clock: rows.clock(row), operands };
+                let (mut operands, mut words) = (None, Vec::new());
+                match &watched.operands {
+                    Operands::None => {}
+                    Operands::Nets(a, _, b, _) => operands = Some((rows.value(*a, row), rows.value(*b, row))),
+                    Operands::Words(both) => {
+                        words.extend(both.iter().flatten().map(|(column, _)| rows.value(*column, row)));
+                    }
+                }
+                let seen = Seen { property, clock: rows.clock(row), operands, words };
                 self.count += 1;
                 self.tallies[property].count(watched, &seen);
                 if self.seen.len() < KEPT {

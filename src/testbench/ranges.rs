@@ -114,7 +114,8 @@ impl RangeWatch {
         let mut watch = RangeWatch { registers: Vec::new(), watched: Vec::new() };
         for named in &netlist.names {
             let cell = netlist.cell(named.net);
-            if matches!(cell.op, Op::Register { .. }) {
+            // The extremes of a word of several columns are not known.
+            if matches!(cell.op, Op::Register { .. }) && !named.is_wide() {
                 let (column, moved) = (bench.columns().index(named.net), moved(netlist, named.net));
                 watch.watched.push(Watched { column, seen: None, moved });
                 watch.registers.push(RegisterRange {

@@ -133,6 +133,10 @@ impl Trace {
 
     fn find(&self, signal: &str) -> Result<(&NamedNet, &[u64]), Error> {
         let named = net_named(&self.netlist, signal).map_err(Error::Invalid)?;
+        if named.is_wide() {
+            let bits = self.netlist.bits(named.nets());
+            return Err(Error::Invalid(format!("{signal} has {bits} bits, which exceeds 64 bits: see it in a wave")));
+        }
         let unseen = || Error::Invalid(format!("{signal} is not recorded"));
         let column = self.nets.iter().position(|seen| *seen == named.net).ok_or_else(unseen)?;
         Ok((named, &self.values[column]))

@@ -161,22 +161,6 @@ fn a_trap_names_the_strict_property_and_not_one_that_came_before() {
 }
 
 #[test]
-fn a_wide_overflow_is_reported_with_its_bits() {
-    let folder = Folder::new();
-    folder.write(
-        "w.net",
-        "netlist w\n%0:1 = input\nname %0 in 0 \"a\" unsigned\nproperty \"w.acc\" never %0 fits-wide 87 add\n",
-    );
-    let ran = folder.run_words(&["sim", "w.net", "--set", "a=1", "--clocks", "1"]);
-    assert_eq!(ran.code, 0);
-    assert!(
-        ran.out.contains("overflow of w.acc at clock 0: the exact result of add does not fit in 87 bits (2 times)"),
-        "{}",
-        ran.out
-    );
-}
-
-#[test]
 fn the_netlist_of_the_page_on_the_text_form_is_one() {
     let page = include_str!("../../docs/netlist.md");
     let text = page.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a netlist");

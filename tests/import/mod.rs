@@ -5,6 +5,8 @@ mod cells;
 mod command;
 mod overflow;
 mod refused;
+mod undefined;
+mod wide;
 
 use serde_json::{Value, json};
 use stepwave::engine::{EngineKind, Rows, Watch};
@@ -40,15 +42,17 @@ fn design(text: &str) -> Design {
 }
 
 /// The samples of some signals by their names, in some clocks, which are the same on every engine; inputs change as given.
+/// A word of more than 64 bits has a column for each of its nets, the lowest first.
 fn samples(design: &Design, signals: &[&str], inputs: &[&[(&str, u64)]]) -> Vec<Vec<u64>> {
     let netlist = design.netlist();
-    let net = |name: &str| netlist.find(name).unwrap_or_else(|| panic!("no {name}")).net;
-    let watch = Watch { columns: signals.iter().map(|name| net(name)).collect(), stops: Vec::new() };
+    let named = |name: &str| netlist.find(name).unwrap_or_else(|| panic!("no {name}"));
+    let columns = signals.iter().flat_map(|name| named(name).nets()).collect();
+    let watch = Watch { columns, stops: Vec::new() };
     let runs = EngineKind::ALL.map(|kind| {
         let mut engine = kind.build(design, &watch);
-        let mut rows = Rows::new(signals.len(), inputs.len());
+        let mut rows = Rows::new(watch.columns.len(), inputs.len());
         for (clock, row) in inputs.iter().enumerate() {
-            row.iter().for_each(|(name, value)| engine.set_input(net(name), *value));
+            row.iter().for_each(|(name, value)| engine.set_input(named(name).net, *value));
             match clock {
                 0 => engine.reset(&mut rows),
                 _ => _ = engine.run(1, &mut rows),

@@ -176,7 +176,7 @@ fn a_strict_cell_claims_what_it_adds_under_the_path_of_its_left_operand() {
     let left = Operand { net: net(&design, "m.axis.x"), signed: true };
     let step = net(&design, "step");
     let claim = |operation, signed| Claim::NoOverflow { operation, left, right: Operand { net: step, signed } };
-    let claims: Vec<(&str, Claim)> = netlist.properties.iter().map(|p| (p.name.as_str(), p.claim)).collect();
+    let claims: Vec<(&str, Claim)> = netlist.properties.iter().map(|p| (p.name.as_str(), p.claim.clone())).collect();
     let want = [("m.axis.x", claim(Arithmetic::Add, false)), ("m.axis.x", claim(Arithmetic::Sub, true))];
     assert_eq!(claims, want);
     let flags: Vec<Net> = netlist.properties.iter().map(|property| property.never).collect();

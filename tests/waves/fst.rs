@@ -11,8 +11,9 @@ use stepwave_trace::fst::FstHeader;
 use stepwave_trace::probe::Selection;
 use stepwave_trace::timescale::ClockTime;
 
+use super::own_designs::wide;
 use super::written::read;
-use super::{Case, Folder, Shown, cases, compare, compare_clock, record};
+use super::{Case, Folder, Shown, cases, compare, compare_clock, record, record_design};
 
 fn fst(case: &Case) -> Vec<u8> {
     let bench = Testbench::new(find(case.model).unwrap(), &case.curve, &case.choices).unwrap();
@@ -70,6 +71,25 @@ fn a_net_with_two_names_changes_under_both() {
     assert_eq!(changes("m.alias"), changes("m.inner.count"));
     assert_eq!((changes("m.alias").len(), changes("m.inverse").len()), (21, 21));
     assert_eq!(changes("m.alias")[3].1, "011");
+}
+
+#[test]
+fn words_of_more_than_64_bits_are_one_variable() {
+    let design = wide();
+    let columns: Vec<_> = design.netlist().nets().collect();
+    let probes = Selection::default().probes(&design, &columns).unwrap();
+    for clk in [true, false] {
+        let header = FstHeader { probes: &probes, time: ClockTime::from_hz(1e6).unwrap(), clk };
+        let mut body = header.write(Cursor::new(Vec::new())).unwrap();
+        let mut engine = EngineKind::Word.build(&design, &Watch { columns: columns.clone(), stops: vec![] });
+        let mut rows = Rows::new(columns.len(), 901);
+        engine.reset(&mut rows);
+        engine.run(900, &mut rows);
+        body.rows(&rows, 0..rows.len()).unwrap();
+        let shown = read(&body.finish().unwrap().into_inner());
+        let recording = record_design(&design, 900, EngineKind::Word);
+        compare("the FST", &shown, &recording.signals, 0, 900);
+    }
 }
 
 #[test]

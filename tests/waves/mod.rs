@@ -24,6 +24,7 @@ use stepwave_trace::vcd::VcdHeader;
 
 use crate::cli::Folder;
 use cases::{Case, cases, line};
+pub(crate) use written::read;
 
 /// Ticks of one clock at 1 MHz, in units of 100 ns.
 const TICKS: u64 = 10;
@@ -54,16 +55,19 @@ struct Truth {
 }
 
 impl Truth {
-    fn of(netlist: &Netlist, named: &NamedNet, column: usize, rows: &[Vec<u64>]) -> Truth {
-        let cell = netlist.cell(named.net);
-        let width = cell.width.get() as usize;
+    fn of(netlist: &Netlist, named: &NamedNet, column: impl Fn(Net) -> usize, rows: &[Vec<u64>]) -> Truth {
+        let all = |of_kind: fn(&Op) -> bool| named.nets().all(|net| of_kind(&netlist.cell(net).op));
+        let digits = |row: &Vec<u64>| {
+            let part = |net| format!("{:01$b}", row[column(net)], netlist.width(net).get() as usize);
+            named.nets().collect::<Vec<_>>().into_iter().rev().map(part).collect()
+        };
         Truth {
             path: netlist.path(named),
-            width: cell.width.get(),
+            width: named.nets().map(|net| netlist.width(net).get()).sum(),
             signed: named.format.is_signed(),
-            register: matches!(cell.op, Op::Register { .. }),
-            constant: matches!(cell.op, Op::Const(_)),
-            samples: rows.iter().map(|row| format!("{:0width$b}", row[column])).collect(),
+            register: all(|op| matches!(op, Op::Register { .. })),
+            constant: all(|op| matches!(op, Op::Const(_))),
+            samples: rows.iter().map(digits).collect(),
         }
     }
 
@@ -106,7 +110,7 @@ fn record(case: &Case, engine: EngineKind) -> Recording {
 
 /// Runs a design without inputs for this many clocks, in blocks of 100 samples.
 fn record_design(design: &Design, clocks: u64, engine: EngineKind) -> Recording {
-    let mut columns: Vec<Net> = design.netlist().names.iter().map(|named| named.net).collect();
+    let mut columns: Vec<Net> = design.netlist().names.iter().flat_map(NamedNet::nets).collect();
     columns.sort();
     columns.dedup();
     let mut rows = Rows::new(columns.len(), 100);
@@ -140,7 +144,7 @@ fn recording(
     run(&mut keep, &mut wave);
     let netlist = design.netlist();
     let column = |net| columns.iter().position(|column| *column == net).expect(GOOD);
-    let truth = |named: &NamedNet| Truth::of(netlist, named, column(named.net), &keep.0);
+    let truth = |named: &NamedNet| Truth::of(netlist, named, column, &keep.0);
     Recording {
         signals: netlist.names.iter().map(truth).collect(),
         samples: keep.0.len() as u64,
@@ -149,25 +153,25 @@ fn recording(
 }
 
 /// A variable as a reader shows it.
-struct Variable {
-    kind: String,
-    width: u32,
-    range: Option<(i64, i64)>,
+pub(crate) struct Variable {
+    pub(crate) kind: String,
+    pub(crate) width: u32,
+    pub(crate) range: Option<(i64, i64)>,
     /// Times and values, as bits.
-    changes: Vec<(u64, String)>,
+    pub(crate) changes: Vec<(u64, String)>,
 }
 
 impl Variable {
     /// The value at a time, changes at this very time included.
-    fn at(&self, time: u64) -> Option<&str> {
+    pub(crate) fn at(&self, time: u64) -> Option<&str> {
         let count = self.changes.partition_point(|(changed, _)| *changed <= time);
         Some(self.changes[count.checked_sub(1)?].1.as_str())
     }
 }
 
 /// A wave as a reader shows it: variables by path.
-struct Shown {
-    variables: HashMap<String, Variable>,
+pub(crate) struct Shown {
+    pub(crate) variables: HashMap<String, Variable>,
     last_time: u64,
 }
 

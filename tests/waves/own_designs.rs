@@ -103,3 +103,56 @@ fn nets_that_rest_for_long_and_move_once_read_back() {
         assert_eq!(changes.len() as u64, 1 + 3000 / (1 << bit), "bit {bit}: one line a change");
     }
 }
+
+/// Words of 138, 131 and 65 bits: one that moves always, one whose parts move once each, and one that never does.
+pub(super) const WIDE: &str = "netlist m
+scope 1 in 0 \"inner\"
+%0:10 = register reset 0x0 next %11
+%1:64 = register reset 0xfffffffffffffff0 next %13
+%2:64 = register reset 0x1 next %14
+%3:64 = register reset 0x0 next %20
+%4:64 = register reset 0x0 next %21
+%5:3 = register reset 0x0 next %22
+%6:10 = const 0x1
+%7:64 = const 0x9e3779b97f4a7c15
+%8:10 = const 0x64
+%9:10 = const 0x165
+%10:10 = const 0x2bc
+%11:10 = add %0 %6
+%12:1 = equal %0 %8
+%13:64 = add %1 %7
+%14:64 = xor %2 %13
+%15:1 = equal %0 %9
+%16:1 = equal %0 %10
+%17:64 = not %3
+%18:64 = not %4
+%19:3 = not %5
+%20:64 = mux %12 %17 %3
+%21:64 = mux %15 %18 %4
+%22:3 = mux %16 %19 %5
+%23:1 = const 0x1
+name %1 %2 %0 in 0 \"busy\" signed
+name %3 %4 %5 in 1 \"rest\" unsigned
+name %3 in 1 \"low\" unsigned
+name %3 %4 %5 in 0 \"far\" binary
+name %7 %23 in 0 \"still\" unsigned
+name %3 %23 in 0 \"mixed\" unsigned
+";
+
+/// [`WIDE`] as a design.
+pub(super) fn wide() -> stepwave_netlist::Design {
+    elaborate(stepwave_netlist::text::parse(WIDE).unwrap()).unwrap()
+}
+
+#[test]
+fn words_of_more_than_64_bits_are_one_variable() {
+    let design = wide();
+    for engine in EngineKind::ALL {
+        let recording = record_design(&design, 900, engine);
+        let shown = read(&recording.vcd);
+        compare(engine.name(), &shown, &recording.signals, 0, 900);
+        let changes = |path: &str| shown.variables[path].changes.len();
+        assert_eq!((changes("m.busy"), changes("m.inner.rest"), changes("m.far")), (901, 4, 4));
+        assert_eq!((changes("m.still"), changes("m.mixed")), (1, 2));
+    }
+}

@@ -9,7 +9,7 @@ use wellen::{SignalRef, TimescaleUnit};
 use super::{Case, Recording, Shown, Variable, cases, compare, compare_clock, line, record};
 
 /// Reads a wave with `wellen`, without any code of this project.
-pub(super) fn read(vcd: &[u8]) -> Shown {
+pub(crate) fn read(vcd: &[u8]) -> Shown {
     let mut wave = wellen::simple::read_from_reader(Cursor::new(vcd.to_vec())).expect("a wave");
     let ids: Vec<SignalRef> = wave.hierarchy().signals().collect();
     wave.load_signals(&ids);

@@ -217,14 +217,14 @@ impl<'a> Loader<'a> {
     /// The netlist with the names and properties of the old one.
     fn netlist(self, old: &Netlist, shift: usize) -> Netlist {
         let go = |net| shifted(net, shift);
-        let mut names: Vec<NamedNet> = old.names.iter().map(|n| NamedNet { net: go(n.net), ..n.clone() }).collect();
+        let mut names: Vec<NamedNet> = old.names.iter().map(|named| named.map(go)).collect();
         let in_top = old.names.iter().filter(|named| named.scope == ScopeId::TOP).map(|named| named.name.clone());
         let inner =
             old.scopes.iter().filter(|scope| scope.parent == Some(ScopeId::TOP)).map(|scope| scope.name.clone());
         let name = claim(&mut in_top.chain(inner).collect::<HashSet<String>>(), "loader");
         let scope = ScopeId(u32::try_from(old.scopes.len()).unwrap_or(u32::MAX));
         for (name, net) in [("step", self.step), ("age", self.age)] {
-            names.push(NamedNet { net, scope, name: name.to_owned(), format: Format::Unsigned });
+            names.push(NamedNet { net, above: Vec::new(), scope, name: name.to_owned(), format: Format::Unsigned });
         }
         let mut scopes = old.scopes.clone();
         scopes.push(ScopeData { parent: Some(ScopeId::TOP), name });

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use std::fmt::Write as _;
 
 use super::Options;
-use super::verilog::names::{Names, claim, escaped};
+use super::verilog::names::{Names, Port, claim, escaped};
 use super::verilog::{header, vector};
 use stepwave_netlist::Design;
 use stepwave_netlist::bits::Bits;
@@ -153,10 +153,10 @@ pub fn testbench(design: &Design, options: &Options<'_>, stimulus: &Stimulus, ti
 fn declarations(bench: &Bench<'_>) -> String {
     let mut text = format!("    reg {};\n", bench.clk);
     for (net, name) in &bench.inputs {
-        _ = writeln!(text, "    reg {}{name};", vector(bench.netlist.width(*net), false));
+        _ = writeln!(text, "    reg {}{name};", vector(bench.netlist.width(*net).get(), false));
     }
     for (net, name) in &bench.outputs {
-        _ = writeln!(text, "    wire {}{name};", vector(bench.netlist.width(*net), false));
+        _ = writeln!(text, "    wire {}{name};", vector(bench.netlist.width(*net).get(), false));
     }
     let Bench { step, age, clocks, quiet, .. } = bench;
     _ = writeln!(
@@ -172,7 +172,19 @@ fn instance(bench: &Bench<'_>) -> String {
     let mut ports = vec![format!(".{}({})", bench.names.clk, bench.clk), format!(".{}(1'b0)", bench.names.rst)];
     let inside = bench.names.inputs.iter().chain(&bench.names.outputs);
     let outside = bench.inputs.iter().chain(&bench.outputs);
-    ports.extend(inside.zip(outside).map(|(port, (_, name))| format!(".{}({name})", port.name)));
+    let pairs: Vec<_> = inside.zip(outside).collect();
+    for (port, (_, name)) in &pairs {
+        match &port.word {
+            None => ports.push(format!(".{}({name})", port.name)),
+            Some(word) if word.low > 0 => {}
+            Some(word) => {
+                // The highest part first.
+                let of_word = |other: &Port| other.word.as_ref().is_some_and(|other| other.entry == word.entry);
+                let parts = pairs.iter().rev().filter(|(port, _)| of_word(port)).map(|(_, (_, name))| name.as_str());
+                ports.push(format!(".{}({{{}}})", word.name, parts.collect::<Vec<_>>().join(", ")));
+            }
+        }
+    }
     let ports = ports.join(",\n        ");
     format!(
         "    /* verilator tracing_on */\n    {} {} (\n        {ports}\n    );\n    /* verilator tracing_off */\n\n",

@@ -19,7 +19,6 @@ use self::layout::{Form, Layout};
 use self::names::Names;
 use super::Options;
 use stepwave_netlist::Design;
-use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Net, Op, ScopeId};
 
 /// The head of both kinds of file.
@@ -33,9 +32,9 @@ pub(super) fn header(comment: &[String]) -> String {
 }
 
 /// `signed [3:0] ` or so, between the kind of a net and its name.
-pub(super) fn vector(width: Width, signed: bool) -> String {
+pub(super) fn vector(bits: u32, signed: bool) -> String {
     let sign = if signed { "signed " } else { "" };
-    let range = if width.get() > 1 { format!("[{}:0] ", width.get() - 1) } else { String::new() };
+    let range = if bits > 1 { format!("[{}:0] ", bits - 1) } else { String::new() };
     format!("{sign}{range}")
 }
 
@@ -61,7 +60,7 @@ pub fn verilog(design: &Design, options: &Options<'_>) -> String {
     for &net in module.writer.hidden.borrow().iter() {
         let entry = names.first(net).unwrap_or_default();
         let path = module.writer.name(net, ScopeId::TOP);
-        let vector = vector(netlist.width(net), netlist.names[entry].format.is_signed());
+        let vector = vector(netlist.width(net).get(), netlist.names[entry].format.is_signed());
         _ = writeln!(text, "    wire {vector}{} = {path};", names.unnamed(net));
     }
     text + &module.arrays() + &body + "endmodule\n"
@@ -91,8 +90,15 @@ impl Module<'_> {
             (if register && port.own { "output reg" } else { "output wire" }, port)
         });
         for (kind, port) in inputs.chain(outputs) {
-            let signed = self.names.first(port.net).is_some_and(|entry| netlist.names[entry].format.is_signed());
-            let line = format!("{kind} {}{}", vector(netlist.width(port.net), signed), port.name);
+            let entry = port.word.as_ref().map(|word| word.entry).or(self.names.first(port.net));
+            let signed = entry.is_some_and(|entry| netlist.names[entry].format.is_signed());
+            let (bits, name) = match &port.word {
+                // The lowest part declares the word.
+                Some(word) if word.low > 0 => continue,
+                Some(word) => (netlist.bits(netlist.names[word.entry].nets()), &word.name),
+                None => (netlist.width(port.net).get(), &port.name),
+            };
+            let line = format!("{kind} {}{name}", vector(bits, signed));
             if port.own { shown.push(line) } else { hidden.push(line) }
         }
         // An escaped name brings the blank that ends it.
@@ -133,7 +139,7 @@ impl Module<'_> {
                 continue;
             }
             let value = match self.names.inputs.iter().find(|port| port.net == net) {
-                Some(port) if port.own => continue,
+                Some(port) if port.own && port.word.is_none() => continue,
                 Some(port) => port.name.clone(),
                 None => self.writer.value(net, scope).text,
             };
@@ -153,7 +159,7 @@ impl Module<'_> {
     /// Vector and name of a declared net.
     fn declared(&self, net: Net) -> String {
         let netlist = self.design.netlist();
-        let width = netlist.width(net);
+        let width = netlist.width(net).get();
         match self.names.first(net) {
             Some(entry) => vector(width, netlist.names[entry].format.is_signed()) + &self.names.named[entry],
             None => vector(width, false) + &self.names.unnamed(net),
@@ -165,12 +171,19 @@ impl Module<'_> {
         let netlist = self.design.netlist();
         let mut text = String::new();
         for (index, entry) in netlist.names.iter().enumerate() {
-            if entry.scope == scope && self.names.first(entry.net) != Some(index) {
-                let vector = vector(netlist.width(entry.net), entry.format.is_signed());
+            let port = scope == ScopeId::TOP && self.names.is_own_port(index);
+            if entry.scope == scope && entry.is_wide() && !port {
+                let vector = vector(netlist.bits(entry.nets()), entry.format.is_signed());
+                let parts: Vec<String> = entry.nets().rev().map(|net| self.writer.read(net, scope).text).collect();
+                let (name, parts) = (&self.names.named[index], parts.join(", "));
+                text += &indented(depth, &format!("wire {vector}{name} = {{{parts}}};"));
+            } else if entry.scope == scope && !entry.is_wide() && self.names.first(entry.net) != Some(index) {
+                let vector = vector(netlist.width(entry.net).get(), entry.format.is_signed());
                 let value = self.writer.name(entry.net, scope);
                 text += &indented(depth, &format!("wire {vector}{} = {value};", self.names.named[index]));
-            } else if entry.scope == scope && scope != ScopeId::TOP && self.names.is_escaped(index) {
-                let vector = vector(netlist.width(entry.net), entry.format.is_signed());
+            } else if entry.scope == scope && !entry.is_wide() && scope != ScopeId::TOP && self.names.is_escaped(index)
+            {
+                let vector = vector(netlist.width(entry.net).get(), entry.format.is_signed());
                 let (further, value) = (self.names.unnamed(entry.net), self.writer.name(entry.net, scope));
                 text += &indented(depth, &format!("wire {vector}{further} = {value};"));
             }

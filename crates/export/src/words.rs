@@ -5,7 +5,7 @@
 
 use std::collections::HashSet;
 
-use stepwave_netlist::cells::{Net, Netlist, Op, Property};
+use stepwave_netlist::cells::{NamedNet, Net, Netlist, Op, Property};
 
 /// An operator in both languages.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -126,7 +126,7 @@ pub(super) fn term(netlist: &Netlist, net: Net) -> Term {
 
 /// What nets and properties are called.
 pub(super) struct Symbols {
-    /// Of each net: its first path, if it has a name.
+    /// Of each net: its first path, if it has a name; `path.86_64` of a part of a word of more than 64 bits.
     pub(super) nets: Vec<Option<String>>,
     /// Further paths of nets that have one.
     pub(super) further: Vec<(Net, String)>,
@@ -139,7 +139,7 @@ impl Symbols {
     pub(super) fn new(netlist: &Netlist) -> Symbols {
         let mut nets: Vec<Option<String>> = vec![None; netlist.cells.len()];
         let (mut further, mut taken) = (Vec::new(), HashSet::new());
-        for named in &netlist.names {
+        for named in netlist.names.iter().filter(|named| !named.is_wide()) {
             let path = netlist.path(named);
             taken.insert(path.clone());
             match &mut nets[named.net.index()] {
@@ -156,6 +156,12 @@ impl Symbols {
             free.unwrap_or(name)
         };
         let properties = netlist.properties.iter().map(property).collect();
+        for named in netlist.names.iter().filter(|named| named.is_wide()) {
+            for (low, net) in (0u32..).step_by(NamedNet::PART as usize).zip(named.nets()) {
+                let high = low + netlist.width(net).get() - 1;
+                nets[net.index()].get_or_insert_with(|| format!("{}.{high}_{low}", netlist.path(named)));
+            }
+        }
         Symbols { nets, further, properties }
     }
 }

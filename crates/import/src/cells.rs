@@ -12,6 +12,31 @@ pub(crate) fn is_bitwise(kind: &str) -> bool {
     matches!(kind, "$not" | "$pos" | "$and" | "$or" | "$xor" | "$xnor" | "$mux" | "$pmux" | "$bwmux" | "$buf")
 }
 
+/// Cells whose result bits depend on the operand bits of the same place and below, or from there on: arithmetic.
+pub(crate) fn is_splittable(kind: &str) -> bool {
+    is_bitwise(kind) || is_sum(kind) || is_shift(kind)
+}
+
+/// A result bit depends on the operand bits of its place and below.
+fn is_sum(kind: &str) -> bool {
+    matches!(kind, "$add" | "$sub" | "$neg" | "$mul")
+}
+
+fn is_shift(kind: &str) -> bool {
+    matches!(kind, "$shl" | "$sshl" | "$shr" | "$sshr")
+}
+
+/// The bits of operand A (or B of a sum), of this many, on which a bit of the result depends.
+pub(crate) fn lane_of(kind: &str, lane: usize, bits: usize) -> std::ops::RangeInclusive<usize> {
+    // A narrower operand is extended by its last bit, or by zeros.
+    let own = lane.min(bits.saturating_sub(1));
+    match kind {
+        "$shr" | "$sshr" => own..=bits.saturating_sub(1),
+        kind if is_sum(kind) || is_shift(kind) => 0..=own,
+        _ => own..=own,
+    }
+}
+
 /// Clocked cells other than memories.
 pub(crate) fn is_register(kind: &str) -> bool {
     matches!(
@@ -81,8 +106,31 @@ impl Design<'_> {
         }
     }
 
-    /// The result of a combinational cell, or one bit of that of a bitwise cell.
+    /// One bit of the result of a cell of arithmetic, out of the operand bits on which it depends.
+    fn arithmetic_lane(&mut self, cell: &Cell, lane: usize) -> Word {
+        let (a, b, a_signed) = (cell.pin("A"), cell.pin("B"), cell.flag("A_SIGNED"));
+        let signed = a_signed && (cell.kind == "$neg" || cell.flag("B_SIGNED"));
+        let (result, bit) = if is_sum(&cell.kind) {
+            let [x, y] = [a, b].map(|wires| self.operand(wires, lane + 1, signed, None));
+            let result = if cell.kind == "$neg" { self.builder.negate(&x) } else { self.two(&cell.kind, &x, &y) };
+            (result, lane)
+        } else {
+            let left = matches!(cell.kind.as_str(), "$shl" | "$sshl");
+            let wires = stretched(a, a.len().max(cell.pin("Y").len()), a_signed);
+            let word = self.word(if left { &wires[..=lane] } else { &wires[lane..] });
+            let amount = self.word(b);
+            let result = self.builder.shift(&word, &amount, left, a_signed && cell.kind == "$sshr");
+            (result, if left { lane } else { 0 })
+        };
+        let net = self.builder.bit(&result, u32::try_from(bit).unwrap_or(0));
+        Word { parts: vec![net], width: 1 }
+    }
+
+    /// The result of a combinational cell, or one bit of that of a splittable cell.
     pub(crate) fn logic(&mut self, name: &str, cell: &Cell, lane: Option<usize>) -> Result<Word, ImportError> {
+        if let Some(lane) = lane.filter(|_| !is_bitwise(&cell.kind)) {
+            return Ok(self.arithmetic_lane(cell, lane));
+        }
         let (a, b) = (cell.pin("A"), cell.pin("B"));
         let (width, a_signed) = (cell.pin("Y").len(), cell.flag("A_SIGNED"));
         let signed = a_signed && cell.flag("B_SIGNED");

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use stepwave_netlist::Net;
 use stepwave_netlist::cells::Source;
 
-use crate::cells::{is_bitwise, is_register, is_remark, refusal};
+use crate::cells::{is_bitwise, is_register, is_remark, is_splittable, lane_of, refusal};
 use crate::error::CellPlace;
 use crate::json::{Cell, Module, Wire};
 use crate::word::{Bit, Builder, Word};
@@ -29,7 +29,7 @@ pub(crate) struct Node<'a> {
 pub(crate) enum Part {
     /// All of a combinational cell.
     Whole,
-    /// One bit of the result of a bitwise cell.
+    /// One bit of the result of a cell that can be taken apart.
     Lane(usize),
     /// The output of a register that an asynchronous control can change.
     Output,
@@ -214,23 +214,25 @@ impl<'a> Design<'a> {
             if left.is_empty() {
                 return Ok(order.into_iter().map(|index| nodes[index].clone()).collect());
             }
-            // A word may depend on itself where none of its bits does.
-            let splits = |node: &Node<'_>| {
-                node.part == Part::Whole && is_bitwise(&node.cell.kind) && node.cell.pin("Y").len() > 1
+            // A word may depend on itself where none of its bits does; arithmetic is taken apart only where nothing else is.
+            let looped = self.looped(&nodes, &left)?;
+            let splits = |node: &Node<'_>, sums: bool| {
+                let kind = node.cell.kind.as_str();
+                let fits = if sums { is_splittable(kind) } else { is_bitwise(kind) };
+                node.part == Part::Whole && fits && node.cell.pin("Y").len() > 1
             };
-            if !left.iter().any(|&index| splits(&nodes[index])) {
-                return Err(self.loop_through(&nodes, &left));
+            let any = |sums: bool| looped.iter().any(|&index| splits(&nodes[index], sums));
+            if !any(true) {
+                return Err(self.loop_through(&nodes, &looped));
             }
-            let in_loop: Vec<bool> = {
-                let mut marks = vec![false; nodes.len()];
-                left.iter().for_each(|&index| marks[index] = true);
-                marks
-            };
+            let sums = !any(false);
+            let mut in_loop = vec![false; nodes.len()];
+            looped.iter().for_each(|&index| in_loop[index] = true);
             nodes = nodes
                 .into_iter()
                 .zip(in_loop)
                 .flat_map(|(node, looped)| {
-                    let lanes = if looped && splits(&node) { node.cell.pin("Y").len() } else { 0 };
+                    let lanes = if looped && splits(&node, sums) { node.cell.pin("Y").len() } else { 0 };
                     let single = (lanes == 0).then(|| node.clone());
                     single
                         .into_iter()
@@ -265,6 +267,33 @@ impl<'a> Design<'a> {
         }
         let left = (0..nodes.len()).filter(|&index| waiting[index] > 0).collect();
         Ok((order, left))
+    }
+
+    /// Of nodes in loops or after them, those that are in loops or between them.
+    fn looped(&self, nodes: &[Node<'a>], left: &[usize]) -> Result<Vec<usize>, ImportError> {
+        let drivers = self.drivers(nodes)?;
+        let mut among = vec![false; nodes.len()];
+        left.iter().for_each(|&index| among[index] = true);
+        let from = |index: usize| {
+            let mut from: Vec<usize> = nodes[index].inputs().iter().filter_map(|wire| driver(&drivers, wire)).collect();
+            from.sort_unstable();
+            from.dedup();
+            from
+        };
+        // How many of them read each.
+        let mut readers = vec![0usize; nodes.len()];
+        left.iter().flat_map(|&index| from(index)).for_each(|index| readers[index] += 1);
+        let mut ends: Vec<usize> = left.iter().copied().filter(|&index| readers[index] == 0).collect();
+        while let Some(end) = ends.pop() {
+            among[end] = false;
+            for before in from(end).into_iter().filter(|&before| among[before]) {
+                readers[before] -= 1;
+                if readers[before] == 0 {
+                    ends.push(before);
+                }
+            }
+        }
+        Ok(left.iter().copied().filter(|&index| among[index]).collect())
     }
 
     fn drivers(&self, nodes: &[Node<'a>]) -> Result<HashMap<u32, usize>, ImportError> {
@@ -339,13 +368,15 @@ impl<'a> Node<'a> {
             }
             Part::Lane(lane) => {
                 let width = cell.pin("Y").len().max(1);
-                let lane_of = |pin: &'static str| match (cell.kind.as_str(), pin) {
-                    ("$pmux", "B") => cell.pin(pin).iter().skip(lane).step_by(width).collect(),
-                    ("$mux" | "$pmux", "S") => cell.pin(pin).iter().collect(),
-                    // An operand that is narrower is extended by its last bit, or by zeros.
-                    _ => cell.pin(pin).get(lane).or_else(|| cell.pin(pin).last()).into_iter().collect::<Vec<_>>(),
+                let of_pin = |pin: &'static str| -> Vec<&'a Wire> {
+                    let wires = cell.pin(pin);
+                    match (cell.kind.as_str(), pin) {
+                        ("$pmux", "B") => wires.iter().skip(lane).step_by(width).collect(),
+                        ("$mux" | "$pmux", "S") | ("$shl" | "$sshl" | "$shr" | "$sshr", "B") => wires.iter().collect(),
+                        (kind, _) => wires.get(lane_of(kind, lane, wires.len())).into_iter().flatten().collect(),
+                    }
                 };
-                ["A", "B", "S"].into_iter().flat_map(lane_of).collect()
+                ["A", "B", "S"].into_iter().flat_map(of_pin).collect()
             }
             Part::Output => pins(&["ARST", "ALOAD", "AD", "SET", "CLR"]),
             Part::Port(port) => {

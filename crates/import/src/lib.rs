@@ -1,7 +1,7 @@
 //! Hardware of one's own: the word-level cells that Yosys writes as JSON (`write_json`) become a netlist.
 //!
 //! Widths and operators are what the author wrote. A word of more than 64 bits becomes parts of 64, the least significant
-//! first. The design has one clock, whose edge the netlist's own clock is; a bit that is unknown (x) is 0 unless the
+//! first, under one name. The design has one clock, whose edge the netlist's own clock is; a bit that is unknown (x) is 0 unless the
 //! [`Options`] say otherwise.
 
 mod cells;
@@ -14,6 +14,7 @@ mod names;
 mod overflow;
 mod properties;
 mod registers;
+mod undefined;
 mod word;
 
 use stepwave_netlist::cells::{Netlist, Op};
@@ -87,7 +88,9 @@ pub fn import(text: &str, options: &Options) -> Result<Imported, ImportError> {
     design.clock_memories();
     design.name_nets(&mut scopes, clock.as_ref().map(|(_, net)| *net));
     design.assertions();
-    design.overflows(&mut scopes);
+    let mut readers = design.readers();
+    design.overflows(&mut scopes, &mut readers);
+    design.undefined(&mut scopes, &mut readers);
     let Design { builder, notes, .. } = design;
     Ok(Imported { netlist: builder.netlist, clock: clock.map(|(clock, _)| clock), notes })
 }

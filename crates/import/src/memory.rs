@@ -33,20 +33,22 @@ pub(crate) fn values(bits: &[bool]) -> Vec<u64> {
 #[derive(Debug)]
 pub(crate) struct Parts {
     first: u32,
+    /// Path of the memory without the name of the design.
+    pub(crate) path: String,
     reads: Vec<Option<Word>>,
 }
 
 /// What a parameter says that is a number from 0 on.
-fn size(cell: &Cell, parameter: &str) -> usize {
+pub(crate) fn size(cell: &Cell, parameter: &str) -> usize {
     cell.number(parameter).and_then(|number| usize::try_from(number).ok()).unwrap_or(0)
 }
 
-fn is_memory(cell: &Cell) -> bool {
+pub(crate) fn is_memory(cell: &Cell) -> bool {
     cell.kind == "$mem_v2"
 }
 
 /// A bit of a parameter that has one for each port.
-fn flag(cell: &Cell, parameter: &str, port: usize) -> bool {
+pub(crate) fn flag(cell: &Cell, parameter: &str, port: usize) -> bool {
     cell.bits(parameter).get(port) == Some(&'1')
 }
 
@@ -92,7 +94,9 @@ impl Design<'_> {
                 digits.resize(width, 'x');
                 reads.push(Some(self.held(&digits)));
             }
-            self.memory.insert(name.clone(), Parts { first, reads });
+            let path = format!("{}.{own}", self.builder.netlist.scope_path(scope));
+            let path = path.split_once('.').map_or(path.as_str(), |(_, inner)| inner).to_owned();
+            self.memory.insert(name.clone(), Parts { first, path, reads });
         }
         Ok(())
     }
@@ -119,7 +123,7 @@ impl Design<'_> {
         }
     }
 
-    fn port_control(&mut self, cell: &Cell, pin: &str, port: usize) -> Net {
+    pub(crate) fn port_control(&mut self, cell: &Cell, pin: &str, port: usize) -> Net {
         match cell.pin(pin).get(port) {
             Some(wire) => self.word(std::slice::from_ref(wire)).parts[0],
             None => self.builder.number(0, 1).parts[0],

@@ -85,17 +85,9 @@ impl Design<'_> {
             let word = self.word(&of.bits);
             let (scope, own) = scopes.place(&mut self.builder.netlist.scopes, name);
             let format = if of.is_signed() { Format::Signed } else { Format::Unsigned };
-            let single = word.parts.len() == 1;
-            for (part, &net) in word.parts.iter().enumerate() {
-                let name = if single {
-                    own.clone()
-                } else {
-                    let low = 64 * part;
-                    scopes.fresh(scope, &format!("{own}_{}_{low}", (low + 63).min(of.bits.len() - 1)))
-                };
-                let signed = format == Format::Signed && part + 1 == word.parts.len();
-                let format = if signed { Format::Signed } else { Format::Unsigned };
-                self.builder.netlist.names.push(NamedNet { net, scope, name, format });
+            if let Some((&net, above)) = word.parts.split_first() {
+                let above = above.to_vec();
+                self.builder.netlist.names.push(NamedNet { net, above, scope, name: own, format });
             }
         }
     }

@@ -11,7 +11,8 @@ use std::collections::{HashMap, HashSet};
 
 use stepwave_netlist::Net;
 use stepwave_netlist::bits::Width;
-use stepwave_netlist::cells::{Claim, Format, NamedNet, Operand, Operator, Property, ScopeData, ScopeId};
+use stepwave_netlist::cells::Word as Operand;
+use stepwave_netlist::cells::{Claim, Format, NamedNet, Operator, Property, ScopeData, ScopeId};
 
 use crate::cells::is_register;
 use crate::design::Design;
@@ -34,8 +35,8 @@ struct Reader<'a> {
 /// Who reads each numbered net, and which nets are outputs of the design.
 pub(crate) struct Readers<'a> {
     of: HashMap<u32, Vec<Reader<'a>>>,
-    /// When the result of a cell is taken, by its name; `None` while it is being worked out.
-    taken: HashMap<&'a str, Option<Net>>,
+    /// When the result of a cell is taken, by its name and the port of a memory; `None` while it is being worked out.
+    taken: HashMap<(&'a str, usize), Option<Net>>,
     outputs: HashSet<u32>,
     /// Bits that anything reads.
     read: HashSet<u32>,
@@ -49,10 +50,9 @@ struct Read {
 }
 
 impl Read {
-    /// It, for a claim that keeps numbers.
-    fn operand(&self) -> Option<Operand> {
-        let [net] = self.word.parts[..] else { return None };
-        Some(Operand { net, signed: self.signed })
+    /// It, for a claim.
+    fn operand(&self) -> Operand {
+        Operand { nets: self.word.parts.clone(), signed: self.signed }
     }
 }
 
@@ -108,7 +108,7 @@ impl Readers<'_> {
         }
     }
 
-    fn is_read(&self, wire: &Wire) -> bool {
+    pub(crate) fn is_read(&self, wire: &Wire) -> bool {
         matches!(wire, Wire::Net(net) if self.read.contains(net))
     }
 }
@@ -141,8 +141,7 @@ impl<'a> Design<'a> {
     }
 
     /// A property for every operator whose result may not fit.
-    pub(crate) fn overflows(&mut self, scopes: &mut Scopes) {
-        let mut readers = self.readers();
+    pub(crate) fn overflows(&mut self, scopes: &mut Scopes, readers: &mut Readers<'a>) {
         let module = self.module;
         let arithmetic = |kind: &str| matches!(kind, "$add" | "$sub" | "$neg" | "$mul" | "$shl" | "$sshl");
         let mut flags: Vec<(String, Net)> = Vec::new();
@@ -150,8 +149,8 @@ impl<'a> Design<'a> {
             let y = cell.pin("Y");
             let kept = y.iter().rposition(|wire| readers.is_read(wire)).map_or(0, |last| last + 1);
             self.at(cell);
-            let target = self.target(&y[..kept], &readers);
-            if let Some((never, claim)) = self.lost(name, cell, kept, &target, &mut readers) {
+            let target = self.target(&y[..kept], readers);
+            if let Some((never, claim)) = self.lost(name, cell, kept, &target, readers) {
                 let operator = cell.kind.trim_start_matches('$');
                 let place = cell.place().map_or_else(|| name.clone(), |place| format!("{}:{}", place.file, place.line));
                 let target = if target.name.is_empty() { format!("{place} {operator}") } else { target.name };
@@ -160,15 +159,21 @@ impl<'a> Design<'a> {
                 self.builder.netlist.properties.push(Property { name: path, never, claim });
             }
         }
+        self.show_flags(scopes, "overflow", flags);
+    }
+
+    /// Names the nets of some properties in a scope of their own.
+    pub(crate) fn show_flags(&mut self, scopes: &mut Scopes, scope: &str, flags: Vec<(String, Net)>) {
         if flags.is_empty() {
             return;
         }
-        let (_, own) = scopes.place(&mut self.builder.netlist.scopes, "overflow");
+        let (_, own) = scopes.place(&mut self.builder.netlist.scopes, scope);
         let scope = ScopeId(u32::try_from(self.builder.netlist.scopes.len()).unwrap_or(u32::MAX));
         self.builder.netlist.scopes.push(ScopeData { parent: Some(ScopeId::TOP), name: own });
         for (name, net) in flags {
             let name = scopes.fresh(scope, &crate::names::cleaned(&name));
-            self.builder.netlist.names.push(NamedNet { net, scope, name, format: Format::Unsigned });
+            let (above, format) = (Vec::new(), Format::Unsigned);
+            self.builder.netlist.names.push(NamedNet { net, above, scope, name, format });
         }
     }
 
@@ -207,11 +212,8 @@ impl<'a> Design<'a> {
         let outside = self.outside(operator, &a, &b, bits, signed);
         let taken = self.cell_taken(name, cell, readers);
         let never = self.builder.and(outside, taken);
-        let claim = match (a.operand(), b.operand(), Width::new(u64::from(bits))) {
-            (Some(left), Some(right), Ok(width)) => Claim::Fits { operator, left, right, width, signed, wraps },
-            _ => Claim::FitsWide { operator, bits, wraps },
-        };
-        Some((never, claim))
+        let (left, right) = (a.operand(), b.operand());
+        Some((never, Claim::Fits { operator, left, right, bits, signed, wraps }))
     }
 
     fn operand_read(&mut self, wires: &[Wire], signed: bool) -> Option<Read> {
@@ -224,7 +226,7 @@ impl<'a> Design<'a> {
     }
 
     /// Least and greatest number that is on these wires, up to 64 of them.
-    fn numbers(&self, wires: &[Wire], signed: bool) -> Option<[i128; 2]> {
+    pub(crate) fn numbers(&self, wires: &[Wire], signed: bool) -> Option<[i128; 2]> {
         // Zeros above are not part of the number.
         let zeros = wires.iter().rev().take_while(|wire| **wire == Wire::Constant("0".to_owned())).count();
         let width = Width::new((wires.len() - if signed { 0 } else { zeros }).max(1) as u64).ok()?;
@@ -280,7 +282,7 @@ impl<'a> Design<'a> {
     }
 
     /// What the result of a cell is for.
-    fn target(&self, bits: &[Wire], readers: &Readers<'a>) -> Target {
+    pub(crate) fn target(&self, bits: &[Wire], readers: &Readers<'a>) -> Target {
         let of = |bits: &[Wire]| {
             let mut names = self.module.netnames.iter().filter(|(_, name)| !name.is_hidden());
             let found = names.find(|(_, name)| {
@@ -306,17 +308,22 @@ impl<'a> Design<'a> {
     }
 
     /// When the result of a cell is taken.
-    fn cell_taken(&mut self, name: &'a str, cell: &'a Cell, readers: &mut Readers<'a>) -> Net {
+    pub(crate) fn cell_taken(&mut self, name: &'a str, cell: &'a Cell, readers: &mut Readers<'a>) -> Net {
+        self.bits_taken((name, 0), cell.pin("Y"), readers)
+    }
+
+    /// When bits are taken that are a result of a cell; `key` is its name and the port of a memory.
+    pub(crate) fn bits_taken(&mut self, key: (&'a str, usize), bits: &[Wire], readers: &mut Readers<'a>) -> Net {
         let always = self.builder.number(1, 1).parts[0];
-        match readers.taken.get(name) {
+        match readers.taken.get(&key) {
             Some(Some(net)) => return *net,
             Some(None) => return always,
             None => {}
         }
-        readers.taken.insert(name, None);
+        readers.taken.insert(key, None);
         let mut all: Vec<(&'a str, &'a str, &'a Cell, usize)> = Vec::new();
         let mut output = false;
-        for wire in cell.pin("Y") {
+        for wire in bits {
             let Wire::Net(net) = wire else { continue };
             output |= readers.outputs.contains(net);
             let width = |reader: &Reader<'a>| reader.cell.pin("Y").len().max(1);
@@ -340,7 +347,7 @@ impl<'a> Design<'a> {
             let own = self.reader_takes(name, pin, reader, slot, readers);
             taken = self.builder.or(taken, own);
         }
-        readers.taken.insert(name, Some(taken));
+        readers.taken.insert(key, Some(taken));
         taken
     }
 
@@ -385,8 +392,8 @@ impl<'a> Design<'a> {
 }
 
 /// What a result drives: its name, its declared sign, and whether it is announced to wrap.
-struct Target {
-    name: String,
+pub(crate) struct Target {
+    pub(crate) name: String,
     signed: bool,
     wraps: bool,
 }

@@ -6,14 +6,18 @@
 
 mod check;
 mod memory;
+mod name;
 mod source;
+mod undefined;
 
-use crate::bits::{Reading, Width};
+use crate::bits::Width;
 use crate::formula::Clause;
 pub use crate::operator::Operator;
 
 pub use memory::{HasMemories, Memory, WritePort};
+pub use name::{Format, NamedNet, Word};
 pub use source::Source;
+pub use undefined::Undefined;
 
 /// A net, named by the cell that drives it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -195,54 +199,6 @@ pub struct ScopeData {
     pub name: String,
 }
 
-/// How a person wants to read a named net.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum Format {
-    /// Unsigned decimal.
-    Unsigned,
-    /// Two's-complement decimal.
-    Signed,
-    /// Two's-complement decimal, drawn as a curve.
-    Analog,
-    /// Ones and zeros.
-    Binary,
-    /// Decimal digits, 4 bits each.
-    Decimal,
-    /// A name for each value.
-    States(Vec<(u64, String)>),
-}
-
-impl Format {
-    /// Read as two's complement.
-    #[must_use]
-    pub fn is_signed(&self) -> bool {
-        self.reading().is_signed()
-    }
-
-    /// What number the bits mean.
-    #[must_use]
-    pub fn reading(&self) -> Reading {
-        match self {
-            Format::Signed | Format::Analog => Reading::Signed,
-            Format::Decimal => Reading::Decimal,
-            Format::Unsigned | Format::Binary | Format::States(_) => Reading::Unsigned,
-        }
-    }
-}
-
-/// A name for a net; a net may have several.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub struct NamedNet {
-    /// The net.
-    pub net: Net,
-    /// Scope that the name belongs to.
-    pub scope: ScopeId,
-    /// The name, unique in its scope.
-    pub name: String,
-    /// How to show it.
-    pub format: Format,
-}
-
 /// What a strict cell does when its exact result does not fit.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum OnOverflow {
@@ -274,7 +230,7 @@ pub struct Operand {
 }
 
 /// Where a property comes from.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Claim {
     /// A strict cell: the exact result fits in the register that `left` stands for.
     NoOverflow {
@@ -290,24 +246,22 @@ pub enum Claim {
         /// Operator.
         operator: Operator,
         /// First operand.
-        left: Operand,
+        left: Word,
         /// Second operand; constant 0 of a negation.
-        right: Operand,
+        right: Word,
         /// Bits that are kept.
-        width: Width,
+        bits: u32,
         /// They are read as two's complement.
         signed: bool,
         /// The author announces that what does not fit is meant to be lost.
         wraps: bool,
     },
-    /// The same of a result or operands of more than 64 bits, whose numbers are not kept.
-    FitsWide {
-        /// Operator.
-        operator: Operator,
-        /// Bits that are kept.
-        bits: u32,
-        /// The author announces that what does not fit is meant to be lost.
-        wraps: bool,
+    /// Imported hardware never takes the result of an operation that has none by the rules of its language.
+    Defined {
+        /// The operation.
+        undefined: Undefined,
+        /// The dividend, or the address.
+        operand: Word,
     },
     /// An invariant that the model's author claims.
     Invariant,
@@ -327,8 +281,36 @@ impl Claim {
 
     /// What an operator of imported hardware loses is announced: it is shown, and not reported.
     #[must_use]
-    pub fn is_announced(self) -> bool {
-        matches!(self, Claim::Fits { wraps: true, .. } | Claim::FitsWide { wraps: true, .. })
+    pub fn is_announced(&self) -> bool {
+        matches!(self, Claim::Fits { wraps: true, .. })
+    }
+
+    /// The same claim about other nets. This is the only list of its nets.
+    #[must_use]
+    pub fn map(self, mut go: impl FnMut(Net) -> Net) -> Claim {
+        match self {
+            Claim::NoOverflow { operation, mut left, mut right } => {
+                (left.net, right.net) = (go(left.net), go(right.net));
+                Claim::NoOverflow { operation, left, right }
+            }
+            Claim::Fits { operator, left, right, bits, signed, wraps } => {
+                let (left, right) = (left.map(&mut go), right.map(go));
+                Claim::Fits { operator, left, right, bits, signed, wraps }
+            }
+            Claim::Defined { undefined, operand } => Claim::Defined { undefined, operand: operand.map(go) },
+            same @ (Claim::Invariant | Claim::Assumption | Claim::Cover) => same,
+        }
+    }
+
+    /// All nets that it is about.
+    #[must_use]
+    pub fn nets(&self) -> Vec<Net> {
+        let mut nets = Vec::new();
+        let _ = self.clone().map(|net| {
+            nets.push(net);
+            net
+        });
+        nets
     }
 }
 
@@ -432,6 +414,7 @@ impl Netlist {
         let names = [("left", left_shown, left.signed), ("right", right_shown, right.signed), ("exact", exact, true)];
         netlist.names.extend(names.map(|(name, net, signed)| NamedNet {
             net,
+            above: Vec::new(),
             scope,
             name: name.to_owned(),
             format: shown(signed),
@@ -461,13 +444,13 @@ impl Netlist {
         format!("{}.{}", self.scope_path(memory.scope), memory.name)
     }
 
-    /// The first name given to a net.
+    /// The first name given to a net, of those that are given to no other.
     #[must_use]
     pub fn name_of(&self, net: Net) -> Option<&NamedNet> {
-        self.names.iter().find(|named| named.net == net)
+        self.names.iter().find(|named| named.net == net && !named.is_wide())
     }
 
-    /// The net of this name, given as leaf name or as dotted path.
+    /// The name itself, given as leaf name or as dotted path.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<&NamedNet> {
         self.names.iter().find(|named| named.name == name || self.path(named) == name)

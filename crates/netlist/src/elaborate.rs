@@ -110,7 +110,8 @@ pub fn elaborate(netlist: Netlist) -> Result<Design, Diagnostics> {
 
 fn check(netlist: &Netlist) -> Vec<Diagnostic> {
     let count = netlist.cells.len();
-    let nowhere = |named: &&NamedNet| named.net.index() >= count || named.scope.index() >= netlist.scopes.len();
+    let nowhere =
+        |named: &&NamedNet| named.nets().any(|net| net.index() >= count) || named.scope.index() >= netlist.scopes.len();
     let mut ghosts: Vec<Diagnostic> = netlist.names.iter().filter(nowhere).map(ghost).collect();
     for memory in &netlist.memories {
         let mut nets = memory.writes.iter().flat_map(|port| port.nets());
@@ -169,7 +170,16 @@ fn check_names(netlist: &Netlist, report: &mut impl FnMut(Code, Place, String)) 
     let scopes = netlist.scopes.iter().enumerate();
     let scopes = scopes.map(|(index, scope)| (scope.parent, scope.name.as_str(), format!("scope {index}")));
     let nets = netlist.names.iter();
-    let nets = nets.map(|named| (Some(named.scope), named.name.as_str(), format!("net {}", named.net)));
+    let nets = nets.map(|named| {
+        let all: Vec<String> = named.nets().map(|net| net.to_string()).collect();
+        (Some(named.scope), named.name.as_str(), format!("net {}", all.join(" ")))
+    });
+    for named in &netlist.names {
+        let nets: Vec<Net> = named.nets().collect();
+        if let Some(message) = netlist.word_mistake(&nets) {
+            report(Code::WidthMismatch, Place::Component(netlist.path(named)), message);
+        }
+    }
     // The scope or net of each name.
     let mut used: HashMap<(Option<ScopeId>, &str), String> = HashMap::new();
     for (scope, name, bearer) in scopes.chain(nets).chain(memories) {
@@ -196,10 +206,17 @@ fn check_properties(netlist: &Netlist, report: &mut impl FnMut(Code, Place, Stri
         } else if netlist.width(property.never) != Width::ONE {
             report(Code::NotOneBit, place.clone(), "a property is 1 bit wide".to_owned());
         }
-        if let Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } = property.claim
-            && left.net.max(right.net).index() >= count
-        {
+        if property.claim.nets().iter().any(|net| net.index() >= count) {
             report(Code::Order, place, "an operand of the property does not exist".to_owned());
+        } else {
+            let words = match &property.claim {
+                Claim::Fits { left, right, .. } => vec![left, right],
+                Claim::Defined { operand, .. } => vec![operand],
+                Claim::NoOverflow { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover => Vec::new(),
+            };
+            for message in words.into_iter().filter_map(|word| netlist.word_mistake(&word.nets)) {
+                report(Code::WidthMismatch, place.clone(), message);
+            }
         }
     }
 }
@@ -212,7 +229,7 @@ fn ghost(named: &NamedNet) -> Diagnostic {
 /// Marks what a register, a memory, a property or a name depends on.
 fn live_cells(netlist: &Netlist) -> Vec<bool> {
     let mut live = vec![false; netlist.cells.len()];
-    let mut pending: Vec<Net> = netlist.names.iter().map(|named| named.net).collect();
+    let mut pending: Vec<Net> = netlist.names.iter().flat_map(NamedNet::nets).collect();
     pending.extend(netlist.properties.iter().map(|property| property.never));
     pending.extend(netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()));
     for cell in &netlist.cells {

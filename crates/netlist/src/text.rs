@@ -19,9 +19,10 @@
 //! `memory 0 in 1 "ram" width 8 words 16` comes before the cells `read 0 %4`, followed by `initial 0 0x12 0x0*15`, its
 //! first words, and `write 0 enable %1 address %2 data %3 mask %4`, its ports; a mask may be missing. `property`
 //! ends in `invariant`, `assumption` or `cover`, in the strict operation with its operands, or in `fits`, the bits that are kept of a result, their
-//! reading, the operation with its operands, and `wraps` where a carry is meant to be lost, or `fits-wide`, where a word has
-//! more than 64 bits, with bits and operation alone; `between-steps` in formulas with
-//! `|` between them.
+//! reading, the operation with its operands, and `wraps` where a carry is meant to be lost; or in `quotient %1 signed`,
+//! `remainder`, a division by 0 and its dividend, `read %3 unsigned words 10 from 0` or `write`, an address outside of a
+//! memory; `between-steps` in formulas with `|` between them. The nets of a word of more than 64 bits follow each other, the lowest first: `name %7 %8 in 0
+//! "acc" signed`.
 //! Text in quotes is escaped as in Rust.
 
 mod memory;
@@ -31,7 +32,9 @@ use std::fmt::{self, Write as _};
 use std::sync::Arc;
 
 use crate::bits::Width;
-use crate::cells::{Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Property, ScopeData, ScopeId, Source};
+use crate::cells::{
+    Arithmetic, Cell, Claim, Format, NamedNet, Net, Netlist, Op, Property, ScopeData, ScopeId, Source, Word,
+};
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::formula::{Clause, Formula};
 use words::{Words, digits};
@@ -107,6 +110,11 @@ impl fmt::Display for Format {
     }
 }
 
+/// Nets, each after a blank.
+fn list(nets: impl Iterator<Item = Net>) -> String {
+    nets.map(|net| format!(" {net}")).collect()
+}
+
 fn reading(signed: bool) -> &'static str {
     if signed { "signed" } else { "unsigned" }
 }
@@ -130,22 +138,27 @@ impl fmt::Display for Netlist {
             writeln!(f)?;
         }
         for named in &self.names {
-            writeln!(f, "name {} in {} {:?} {}", named.net, named.scope.0, named.name, named.format)?;
+            writeln!(f, "name{} in {} {:?} {}", list(named.nets()), named.scope.0, named.name, named.format)?;
         }
         for property in &self.properties {
             write!(f, "property {:?} never {}", property.name, property.never)?;
-            match property.claim {
+            match &property.claim {
                 Claim::Invariant => writeln!(f, " invariant")?,
                 Claim::Assumption => writeln!(f, " assumption")?,
                 Claim::Cover => writeln!(f, " cover")?,
-                Claim::Fits { operator, left, right, width, signed, wraps } => {
-                    let (l, r, own) = (reading(left.signed), reading(right.signed), reading(signed));
-                    let wraps = if wraps { " wraps" } else { "" };
-                    let (word, width) = (operator.name(), width.get());
-                    writeln!(f, " fits {width} {own} {word} {} {l} {} {r}{wraps}", left.net, right.net)?;
+                Claim::Fits { operator, left, right, bits, signed, wraps } => {
+                    let operand = |word: &Word| list(word.nets.iter().copied()) + " " + reading(word.signed);
+                    let (left, right, own) = (operand(left), operand(right), reading(*signed));
+                    let wraps = if *wraps { " wraps" } else { "" };
+                    writeln!(f, " fits {bits} {own} {}{left}{right}{wraps}", operator.name())?;
                 }
-                Claim::FitsWide { operator, bits, wraps } => {
-                    writeln!(f, " fits-wide {bits} {}{}", operator.name(), if wraps { " wraps" } else { "" })?;
+                Claim::Defined { undefined, operand } => {
+                    let (nets, sign) = (list(operand.nets.iter().copied()), reading(operand.signed));
+                    write!(f, " {}{nets} {sign}", undefined.name())?;
+                    match undefined.memory() {
+                        Some((first, words)) => writeln!(f, " words {words} from {first}")?,
+                        None => writeln!(f)?,
+                    }
                 }
                 Claim::NoOverflow { operation, left, right } => {
                     let word = match operation {
@@ -243,12 +256,12 @@ impl Parser {
             "initial" => self.initial(words)?,
             "write" => self.write(words)?,
             "name" => {
-                let net = words.net()?;
+                let (net, above) = (words.net()?, words.further_nets()?);
                 words.keyword("in")?;
                 let scope = ScopeId(words.number()?);
                 let name = words.quoted()?;
                 let format = words.format()?;
-                self.netlist.names.push(NamedNet { net, scope, name, format });
+                self.netlist.names.push(NamedNet { net, above, scope, name, format });
             }
             "property" => {
                 let name = words.quoted()?;
@@ -259,14 +272,9 @@ impl Parser {
                     "assumption" => Claim::Assumption,
                     "cover" => Claim::Cover,
                     "fits" => words.fits()?,
-                    "fits-wide" => words.fits_wide()?,
                     "add" => words.strict(Arithmetic::Add)?,
                     "sub" => words.strict(Arithmetic::Sub)?,
-                    _ => {
-                        return Err(
-                            "'invariant', 'assumption', 'cover', 'fits', 'fits-wide', 'add' or 'sub'".to_owned()
-                        );
-                    }
+                    word => words.defined(word)?,
                 };
                 self.netlist.properties.push(Property { name, never, claim });
             }

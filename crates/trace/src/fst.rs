@@ -16,6 +16,7 @@ use super::moves::{Moves, SPAN};
 use super::probe::Probe;
 use super::timescale::ClockTime;
 use super::vcd::{digits, has_range, variable_type};
+use super::wide::Wide;
 use stepwave_netlist::Rows;
 
 /// Bytes of changes that are gathered in memory before a section of the file is written.
@@ -48,6 +49,7 @@ struct Declared<W: Write + Seek> {
     body: FstBodyWriter<W>,
     clk: Option<FstSignalId>,
     changes: Vec<Change>,
+    wide: Wide<FstSignalId>,
 }
 
 /// Takes samples, block by block.
@@ -56,6 +58,9 @@ pub struct FstBody<W: Write + Seek> {
     clk: Option<FstSignalId>,
     changes: Vec<Change>,
     moves: Moves,
+    wide: Wide<FstSignalId>,
+    /// Room for the digits of the widest word.
+    digits: Vec<u8>,
     ticks: u64,
     /// Place of the first block of changes in the file.
     first_section: u64,
@@ -89,11 +94,13 @@ impl FstHeader<'_> {
         let empty = self.declare(Cursor::new(Vec::new())).and_then(|empty| empty.body.finish()).map_err(io_error)?;
         let first_section =
             first_section(empty.get_ref()).ok_or_else(|| io::Error::other("the FST header is broken"))?;
-        let Declared { mut body, clk, changes } = self.declare(out).map_err(io_error)?;
+        let Declared { mut body, clk, changes, wide } = self.declare(out).map_err(io_error)?;
         // Only changes are handed over.
         body.set_deduplicate(false);
         let moves = Moves::new(changes.iter().map(|change| change.column).collect());
-        Ok(FstBody { body, clk, changes, moves, ticks: self.time.ticks(), first_section, written: None })
+        let (ticks, written) = (self.time.ticks(), None);
+        let digits = vec![0; wide.words().map(|(_, width)| width).max().unwrap_or(0)];
+        Ok(FstBody { body, clk, changes, moves, wide, digits, ticks, first_section, written })
     }
 
     fn declare<W: Write + Seek>(&self, out: W) -> Result<Declared<W>, FstWriteError> {
@@ -107,6 +114,7 @@ impl FstHeader<'_> {
         let mut head = FstHeaderWriter::new(out, &info)?;
         let mut open: Vec<&str> = Vec::new();
         let mut changes: Vec<Change> = Vec::new();
+        let mut wide: Vec<(&Probe, FstSignalId)> = Vec::new();
         let mut clk = None;
         let top = self.probes.first().map_or("top", |probe| probe.scopes[0].as_str());
         if self.clk {
@@ -125,19 +133,25 @@ impl FstHeader<'_> {
                 head.scope(scope, "", FstScopeType::Module)?;
                 open.push(scope);
             }
-            let width = probe.width.get();
+            let width = probe.width;
             let name = if has_range(probe) { format!("{} [{}:0]", probe.name, width - 1) } else { probe.name.clone() };
-            let known = changes.iter().find(|change| change.column == probe.column).map(|change| change.id);
+            let narrow = |column: usize| changes.iter().find(|change| change.column == column).map(|change| change.id);
+            let known = match probe.columns[..] {
+                [column] => narrow(column),
+                _ => wide.iter().find(|(other, _)| other.columns == probe.columns).map(|(_, id)| *id),
+            };
             let bits = FstSignalType::bit_vec(width);
             let id = head.var(name, bits, fst_type(probe), FstVarDirection::Implicit, known)?;
-            if known.is_none() {
-                changes.push(Change { column: probe.column, width, id });
+            match probe.columns[..] {
+                _ if known.is_some() => {}
+                [column] => changes.push(Change { column, width, id }),
+                _ => wide.push((probe, id)),
             }
         }
         for _ in 0..open.len() {
             head.up_scope()?;
         }
-        Ok(Declared { body: head.finish()?, clk, changes })
+        Ok(Declared { body: head.finish()?, clk, changes, wide: Wide::new(wide) })
     }
 }
 
@@ -170,6 +184,7 @@ impl<W: Write + Seek> FstBody<W> {
         for start in range.clone().step_by(SPAN) {
             let end = range.end.min(start + SPAN);
             self.moves.scan(rows, start..end);
+            self.wide.scan(rows, start..end);
             for row in start..end {
                 self.row(clock(row), rows, row, row - start).map_err(io_error)?;
             }
@@ -190,6 +205,11 @@ impl<W: Write + Seek> FstBody<W> {
             let now = rows.value(change.column, row);
             self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
         }
+        self.wide.start(rows, row);
+        let words = self.wide.words().len();
+        for word in 0..words {
+            self.wide_change(word, rows, row)?;
+        }
         if let (Some(clk), true) = (self.clk, clock > 0) {
             self.body.time_change(clock * self.ticks + self.ticks / 2)?;
             self.body.signal_change(clk, b"0")?;
@@ -201,7 +221,9 @@ impl<W: Write + Seek> FstBody<W> {
     fn row(&mut self, clock: u64, rows: &Rows, row: usize, sample: usize) -> Result<(), FstWriteError> {
         let time = clock * self.ticks;
         let groups = self.changes.chunks(SPAN).enumerate();
-        if self.clk.is_some() || groups.clone().any(|(group, _)| self.moves.bits(group, sample) != 0) {
+        let words = 0..self.wide.words().len();
+        let quiet = groups.clone().all(|(group, _)| self.moves.bits(group, sample) == 0);
+        if self.clk.is_some() || !quiet || words.clone().any(|word| self.wide.moves(word, sample)) {
             self.body.time_change(time)?;
         }
         if let Some(clk) = self.clk {
@@ -216,11 +238,24 @@ impl<W: Write + Seek> FstBody<W> {
                 self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
             }
         }
+        for word in words {
+            if self.wide.moves(word, sample) {
+                self.wide_change(word, rows, row)?;
+            }
+        }
         if let Some(clk) = self.clk {
             self.body.time_change(time + self.ticks / 2)?;
             self.body.signal_change(clk, b"0")?;
         }
         Ok(())
+    }
+
+    /// Writes the value of a word of more than 64 bits.
+    fn wide_change(&mut self, word: usize, rows: &Rows, row: usize) -> Result<(), FstWriteError> {
+        let (id, width) = self.wide.word(word);
+        let digits = &mut self.digits[..width];
+        self.wide.digits(word, rows, row, digits);
+        self.body.signal_change(id, digits)
     }
 
     /// Ends the wave with a time that makes the last cycle visible, and gives the output back.

@@ -21,7 +21,6 @@ use std::fmt::Write as _;
 use super::probe::{Probe, Role};
 use super::timescale::ClockTime;
 use super::vcd::has_range;
-use stepwave_netlist::bits::{Bits, Width};
 use stepwave_netlist::cells::Format;
 
 /// Flags of a row, as GTKWave writes them.
@@ -118,8 +117,9 @@ pub fn side_files(view: &View<'_>) -> Vec<SideFile> {
 }
 
 /// One line a state: the bits as GTKWave shows them in binary, and the name.
-fn state_names(width: Width, names: &[(u64, String)]) -> String {
-    names.iter().map(|(value, name)| format!("{} {name}\n", Bits::truncated(width, *value))).collect()
+fn state_names(width: u32, names: &[(u64, String)]) -> String {
+    let mask = u64::MAX >> 64u32.saturating_sub(width);
+    names.iter().map(|(value, name)| format!("{:01$b} {name}\n", value & mask, width as usize)).collect()
 }
 
 fn save_file(view: &View<'_>, states: &[(&[(u64, String)], SideFile)]) -> String {
@@ -192,9 +192,9 @@ fn signals_width(view: &View<'_>) -> usize {
 
 /// Letters of the longest value that a row can show.
 fn longest_value(probe: &Probe) -> usize {
-    let bits = probe.width.get();
-    // Of n bits, at most as many digits as 2^n has.
-    let digits = |bits: u32| (1_u128 << bits).to_string().len();
+    let bits = probe.width;
+    // Of n bits, at most as many digits as 2^n has; the logarithm of 2 is 0.30103.
+    let digits = |bits: u32| bits as usize * 30_103 / 100_000 + 1;
     match &probe.format {
         Format::States(names) => {
             names.iter().map(|(_, name)| name.chars().count()).max().unwrap_or(0).max(bits as usize)
@@ -208,7 +208,7 @@ fn longest_value(probe: &Probe) -> usize {
 
 /// GTKWave's own name.
 fn shown_name(name: &str, probe: &Probe) -> String {
-    if has_range(probe) { format!("{name}[{}:0]", probe.width.get() - 1) } else { name.to_owned() }
+    if has_range(probe) { format!("{name}[{}:0]", probe.width - 1) } else { name.to_owned() }
 }
 
 /// Rows of height of a curve: in proportion to its range, with the number for the greatest range with which all are
@@ -233,7 +233,7 @@ fn analog_rows(view: &View<'_>, probe: &Probe) -> u64 {
         ranges.iter().filter(|(_, range)| *range > 0).map(of).max().unwrap_or(0)
     };
     let rows = ANALOG_ROWS.min_by_key(|&rows| (off(rows), rows.abs_diff(USUAL_ROWS))).unwrap_or(USUAL_ROWS);
-    let own = ranges.iter().find(|(column, _)| *column == probe.column);
+    let own = ranges.iter().find(|(column, _)| probe.columns == [*column]);
     own.map_or(USUAL_ROWS, |(_, range)| rounded(rows, *range))
 }
 
@@ -287,7 +287,7 @@ fn row(line: &mut impl FnMut(&str), view: &View<'_>, probe: &Probe, states: &[(&
                 Format::Signed => flag::SIGNED,
                 // A digit of 4 bits looks alike in both.
                 Format::Decimal => flag::HEXADECIMAL,
-                Format::Unsigned if probe.width.get() > 1 || probe.role == Role::Constant => flag::UNSIGNED,
+                Format::Unsigned if probe.width > 1 || probe.role == Role::Constant => flag::UNSIGNED,
                 _ => flag::BINARY,
             });
             if probe.role == Role::Flag {
@@ -328,17 +328,15 @@ fn zoom_and_markers(view: &View<'_>, pixels: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stepwave_netlist::cells::Net;
 
-    fn probe(scopes: &[&str], name: &str, bits: u64, format: Format, role: Role) -> Probe {
+    fn probe(scopes: &[&str], name: &str, width: u32, format: Format, role: Role) -> Probe {
         Probe {
             scopes: scopes.iter().map(|&scope| scope.to_owned()).collect(),
             name: name.to_owned(),
-            net: Net(0),
-            width: Width::new(bits).unwrap(),
+            width,
             format,
             role,
-            column: 0,
+            columns: vec![0],
         }
     }
 

@@ -11,3 +11,4 @@ pub mod probe;
 pub mod read;
 pub mod timescale;
 pub mod vcd;
+mod wide;

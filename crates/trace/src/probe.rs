@@ -5,7 +5,6 @@ use std::collections::{HashMap, HashSet};
 use globset::GlobMatcher;
 
 use crate::pattern::{fits, glob};
-use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Format, Net, Op};
 use stepwave_netlist::did_you_mean;
 use stepwave_netlist::{Design, Netlist};
@@ -32,16 +31,14 @@ pub struct Probe {
     pub scopes: Vec<String>,
     /// Its own name.
     pub name: String,
-    /// The net shown.
-    pub net: Net,
     /// Number of bits.
-    pub width: Width,
+    pub width: u32,
     /// How to show it.
     pub format: Format,
     /// What drives it.
     pub role: Role,
-    /// Column of the net in the rows that the wave is written from.
-    pub column: usize,
+    /// Columns of its nets in the rows that the wave is written from: of a word of more than 64 bits, the lowest 64 first.
+    pub columns: Vec<usize>,
 }
 
 impl Probe {
@@ -134,19 +131,20 @@ impl Selection {
         let mut probes = Vec::new();
         for scope in depth_first(netlist) {
             for named in netlist.names.iter().filter(|named| named.scope.index() == scope) {
-                let Some(&column) = column_of.get(&named.net) else { continue };
+                let columns = named.nets().map(|net| column_of.get(&net).copied()).collect::<Option<Vec<usize>>>();
+                let Some(columns) = columns else { continue };
                 if !self.keeps(&scopes[scope], &named.name) {
                     continue;
                 }
-                let cell = netlist.cell(named.net);
+                let first = role(netlist.cell(named.net).op, flags.contains(&named.net));
+                let alike = named.above.iter().all(|&net| role(netlist.cell(net).op, false) == first);
                 probes.push(Probe {
                     scopes: scopes[scope].clone(),
                     name: named.name.clone(),
-                    net: named.net,
-                    width: cell.width,
+                    width: netlist.bits(named.nets()),
                     format: named.format.clone(),
-                    role: role(cell.op, flags.contains(&named.net)),
-                    column,
+                    role: if alike { first } else { Role::Wire },
+                    columns,
                 });
             }
         }

@@ -16,6 +16,7 @@ use ::vcd::{IdCode, ReferenceIndex, VarType, Writer};
 use super::moves::{Moves, SPAN};
 use super::probe::{Probe, Role};
 use super::timescale::ClockTime;
+use super::wide::Wide;
 use stepwave_netlist::Rows;
 use text::{Line, Stamps, Tail, WINDOW};
 
@@ -44,6 +45,13 @@ struct Change {
     line: Line,
 }
 
+/// What the header declares: the lines of the clock's edges, the variables of at most 64 bits, and the others.
+struct Declared {
+    clk: Option<[Tail; 2]>,
+    changes: Vec<Change>,
+    wide: Wide<Tail>,
+}
+
 /// Takes samples, one after another.
 pub struct VcdBody<W: Write> {
     out: W,
@@ -52,6 +60,7 @@ pub struct VcdBody<W: Write> {
     filled: usize,
     changes: Vec<Change>,
     moves: Moves,
+    wide: Wide<Tail>,
     /// Value lines of the clock, high and low, if it is dumped.
     clk: Option<[Tail; 2]>,
     /// Times of the next rising edge and of the falling one after it.
@@ -73,7 +82,7 @@ pub(super) fn variable_type(probe: &Probe) -> VarType {
 
 /// A bit range follows the name of a vector, except where viewers want the bare name.
 pub(super) fn has_range(probe: &Probe) -> bool {
-    probe.width.get() > 1 && probe.role != Role::Constant && !probe.format.is_signed()
+    probe.width > 1 && probe.role != Role::Constant && !probe.format.is_signed()
 }
 
 impl VcdHeader<'_> {
@@ -87,10 +96,12 @@ impl VcdHeader<'_> {
         writeln!(head.writer(), "$version stepwave {} $end", env!("CARGO_PKG_VERSION"))?;
         writeln!(head.writer(), "$comment schema 1; clock {} Hz; {} $end", self.time.hz(), self.comment)?;
         head.timescale(self.time.magnitude(), self.time.unit())?;
-        let (clk, changes) = self.declarations(&mut head)?;
+        let Declared { clk, changes, wide } = self.declarations(&mut head)?;
         head.enddefinitions()?;
         out.write_all(head.writer())?;
         let longest: usize = changes.iter().map(|change| change.line.len()).sum();
+        // A `b`, the digits, and a tail.
+        let longest = longest + wide.words().map(|(_, width)| width + WINDOW).sum::<usize>();
         let ticks = self.time.ticks();
         Ok(VcdBody {
             out,
@@ -99,6 +110,7 @@ impl VcdHeader<'_> {
             filled: 0,
             moves: Moves::new(changes.iter().map(|change| change.column).collect()),
             changes,
+            wide,
             clk,
             rise: Stamps::new(ticks),
             fall: Stamps::new(ticks),
@@ -107,12 +119,13 @@ impl VcdHeader<'_> {
         })
     }
 
-    /// Declares the clock and every probe in its scope: the lines of the clock's edges, and those of the changes.
-    fn declarations(&self, head: &mut Writer<Vec<u8>>) -> io::Result<(Option<[Tail; 2]>, Vec<Change>)> {
+    /// Declares the clock and every probe in its scope.
+    fn declarations(&self, head: &mut Writer<Vec<u8>>) -> io::Result<Declared> {
         let mut open: Vec<String> = Vec::new();
         let mut changes: Vec<Change> = Vec::new();
         let mut next = IdCode::FIRST;
-        let mut ids: Vec<(usize, IdCode)> = Vec::new();
+        let mut wide: Vec<(&Probe, Tail)> = Vec::new();
+        let mut ids: Vec<(&[usize], IdCode)> = Vec::new();
         let mut clk = None;
         let top = self.probes.first().map_or_else(|| "top".to_owned(), |probe| probe.scopes[0].clone());
         if self.clk {
@@ -132,24 +145,26 @@ impl VcdHeader<'_> {
                 head.add_module(scope)?;
                 open.push(scope.clone());
             }
-            let width = probe.width.get();
-            let known = ids.iter().find(|(column, _)| *column == probe.column).map(|(_, id)| *id);
+            let width = probe.width;
+            let known = ids.iter().find(|(columns, _)| *columns == probe.columns).map(|(_, id)| *id);
             let id = known.unwrap_or(next);
-            let top_bit = i32::try_from(width).unwrap_or(64) - 1;
+            let top_bit = i32::try_from(width).unwrap_or(i32::MAX) - 1;
             let index = has_range(probe).then_some(ReferenceIndex::Range(top_bit, 0));
             head.var_def(variable_type(probe), width, id, &probe.name, index)?;
             if known.is_none() {
-                ids.push((probe.column, id));
+                ids.push((&probe.columns, id));
                 next = next.next();
                 let scalar = width == 1 && !probe.format.is_signed();
-                let line = Line::new(width, scalar, &id.to_string());
-                changes.push(Change { column: probe.column, line });
+                match probe.columns[..] {
+                    [column] => changes.push(Change { column, line: Line::new(width, scalar, &id.to_string()) }),
+                    _ => wide.push((probe, Tail::new(&format!(" {id}\n")))),
+                }
             }
         }
         for _ in 0..open.len() {
             head.upscope()?;
         }
-        Ok((clk, changes))
+        Ok(Declared { clk, changes, wide: Wide::new(wide) })
     }
 }
 
@@ -170,6 +185,7 @@ impl<W: Write> VcdBody<W> {
         for start in range.clone().step_by(SPAN) {
             let end = range.end.min(start + SPAN);
             self.moves.scan(rows, start..end);
+            self.wide.scan(rows, start..end);
             for row in start..end {
                 self.row(rows, row, row - start);
                 self.spill()?;
@@ -202,6 +218,10 @@ impl<W: Write> VcdBody<W> {
             change.line.put(rows.value(change.column, row), window(&mut self.buffer, self.filled));
             self.filled += change.line.len();
         }
+        self.wide.start(rows, row);
+        for word in 0..self.wide.words().len() {
+            self.filled += wide_line(&self.wide, word, rows, row, &mut self.buffer[self.filled..]);
+        }
         self.text(b"$end\n");
         self.rise.advance();
         // Before the first rising edge the clock is low anyway.
@@ -226,6 +246,11 @@ impl<W: Write> VcdBody<W> {
                 bits &= bits - 1;
                 change.line.put(rows.value(change.column, row), window(buffer, at));
                 at += change.line.len();
+            }
+        }
+        for word in 0..self.wide.words().len() {
+            if self.wide.moves(word, sample) {
+                at += wide_line(&self.wide, word, rows, row, &mut buffer[at..]);
             }
         }
         match self.clk {
@@ -266,6 +291,14 @@ impl<W: Write> VcdBody<W> {
         self.out.flush()?;
         Ok(self.out)
     }
+}
+
+/// Writes the line of a word of more than 64 bits at the start of `out`; returns its length.
+fn wide_line(wide: &Wide<Tail>, word: usize, rows: &Rows, row: usize, out: &mut [u8]) -> usize {
+    let (tail, width) = wide.word(word);
+    out[0] = b'b';
+    wide.digits(word, rows, row, &mut out[1..=width]);
+    1 + width + tail.put(&mut out[1 + width..])
 }
 
 /// Room for a line. The buffer holds the longest row after any place where a row may begin.

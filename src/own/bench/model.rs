@@ -76,7 +76,8 @@ fn registers(netlist: &Netlist, table: Option<&[String]>) -> &'static [&'static 
         _ => netlist.path(named),
     };
     let shown: Vec<&NamedNet> = table.into_iter().flatten().filter_map(|name| signal(netlist, name).ok()).collect();
-    let is_register = |named: &&NamedNet| matches!(netlist.cell(named.net).op, Op::Register { .. });
+    // The values of a word of more than 64 bits are in waves alone.
+    let is_register = |named: &&NamedNet| !named.is_wide() && matches!(netlist.cell(named.net).op, Op::Register { .. });
     let others = netlist.names.iter().filter(is_register).filter(|named| shown.iter().all(|own| own.net != named.net));
     let declared = |named: &NamedNet, column: bool| -> &'static dyn Declared {
         let about = match netlist.sources.get(named.net.index()) {

@@ -138,7 +138,9 @@ impl Resolver<'_> {
     /// The input of this name, which nothing else drives.
     fn input(&self, name: &str, driven: &mut Vec<(Net, String)>, by: &str) -> Result<&NamedNet, Refusal> {
         let is_input = |named: &&NamedNet| matches!(self.netlist.cell(named.net).op, Op::Input);
-        let found = signal(self.netlist, name).ok().filter(is_input).ok_or_else(|| {
+        let known = self.netlist.names.iter().any(|named| named.name == name && named.is_wide());
+        let found = if known { Some(signal(self.netlist, name)?) } else { signal(self.netlist, name).ok() };
+        let found = found.filter(is_input).ok_or_else(|| {
             let inputs = self.netlist.names.iter().filter(is_input).map(|named| named.name.as_str());
             let inputs: Vec<&str> = inputs.collect();
             let hint = did_you_mean(name, inputs.iter().copied());

@@ -4,9 +4,9 @@
 //! of the first, so that every recipe describes a netlist without mistakes.
 
 use proptest::prelude::*;
-use stepwave_netlist::cells::Format;
+use stepwave_netlist::cells::{Format, NamedNet, Net, ScopeId};
 use stepwave_netlist::dsl::{Memory, Module, Register, Scope, Signal};
-use stepwave_netlist::{Netlist, OnOverflow};
+use stepwave_netlist::{Netlist, OnOverflow, Width};
 
 /// A random netlist.
 #[derive(Clone, Debug)]
@@ -217,7 +217,20 @@ pub(crate) fn build(recipe: &Recipe) -> Netlist {
     for (index, &holds) in recipe.invariants.iter().enumerate() {
         kitchen.scope(index).invariant(ODD_NAMES[usize::from(holds) % ODD_NAMES.len()], kitchen.flag(holds));
     }
-    module.finish().unwrap()
+    with_words(module.finish().unwrap())
+}
+
+/// The netlist with names of words of more than 64 bits, where it has nets of 64 bits: of two of them and of the last net.
+fn with_words(mut netlist: Netlist) -> Netlist {
+    let parts: Vec<Net> = netlist.nets().filter(|&net| netlist.width(net) == Width::MAX).collect();
+    let Some((&first, &last)) = parts.first().zip(parts.last()) else { return netlist };
+    let Some(top) = netlist.nets().last() else { return netlist };
+    let scopes = u32::try_from(netlist.scopes.len()).unwrap();
+    for (index, above, format) in [(0, vec![top], Format::Signed), (1, vec![last, top], Format::Unsigned)] {
+        let scope = ScopeId((index + top.0) % scopes);
+        netlist.names.push(NamedNet { net: first, above, scope, name: format!("w{index}"), format });
+    }
+    netlist
 }
 
 /// Signals made so far, and the scopes that they are spread over.

@@ -182,7 +182,7 @@ impl Layout {
         let mut cut = vec![false; netlist.cells.len()];
         let mut root = vec![false; netlist.cells.len()];
         for named in &netlist.names {
-            root[named.net.index()] = true;
+            named.nets().for_each(|net| root[net.index()] = true);
         }
         for port in names.inputs.iter().chain(&names.outputs) {
             root[port.net.index()] = true;
@@ -242,6 +242,9 @@ impl Layout {
         }
         for net in netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()) {
             join(&mut places[net.index()], ScopeId::TOP);
+        }
+        for named in netlist.names.iter().filter(|named| named.is_wide()) {
+            named.nets().for_each(|net| join(&mut places[net.index()], named.scope));
         }
         for port in &names.outputs {
             join(&mut places[port.net.index()], ScopeId::TOP);

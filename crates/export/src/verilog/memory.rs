@@ -32,7 +32,7 @@ impl Module<'_> {
     pub(super) fn arrays(&self) -> String {
         let memories = self.design.netlist().memories.iter().zip(&self.names.memories);
         let array = |(memory, name): (&Memory, &String)| {
-            indented(1, &format!("reg {}{name} [0:{}];", vector(memory.width, false), memory.size - 1))
+            indented(1, &format!("reg {}{name} [0:{}];", vector(memory.width.get(), false), memory.size - 1))
         };
         memories.map(array).collect()
     }

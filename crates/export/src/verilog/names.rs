@@ -8,7 +8,7 @@ use std::collections::HashSet;
 
 use crate::Options;
 use crate::keywords::is_keyword;
-use stepwave_netlist::cells::{Net, Netlist, Op, ScopeId};
+use stepwave_netlist::cells::{NamedNet, Net, Netlist, Op, ScopeId};
 use stepwave_netlist::dsl::is_identifier;
 
 /// A port of the module.
@@ -17,6 +17,18 @@ pub(crate) struct Port {
     pub(crate) name: String,
     /// It is the net's own name in the top scope; otherwise the net is joined to it.
     pub(crate) own: bool,
+    /// The word of more than 64 bits of which it is a part; `name` is then a range of it.
+    pub(crate) word: Option<WordPort>,
+}
+
+/// A port of more than 64 bits.
+#[derive(Clone)]
+pub(crate) struct WordPort {
+    /// Its entry in `Netlist::names`.
+    pub(crate) entry: usize,
+    pub(crate) name: String,
+    /// The lowest bit of the part.
+    pub(crate) low: u32,
 }
 
 /// Every name of the module.
@@ -58,6 +70,21 @@ pub(crate) fn claim(taken: &mut HashSet<String>, name: &str) -> String {
     free
 }
 
+/// The names of words whose parts are all inputs without other names, once for every input.
+fn input_words(netlist: &Netlist, first: &[Option<usize>]) -> Vec<usize> {
+    let mut seen = HashSet::new();
+    let part = |net: Net| matches!(netlist.cell(net).op, Op::Input) && first[net.index()].is_none();
+    let words = netlist.names.iter().enumerate().filter(|(_, entry)| entry.is_wide() && entry.nets().all(part));
+    words
+        .filter(|(_, entry)| {
+            let free = entry.nets().all(|net| !seen.contains(&net));
+            seen.extend(entry.nets());
+            free
+        })
+        .map(|(index, _)| index)
+        .collect()
+}
+
 impl Names {
     pub(crate) fn new(netlist: &Netlist, options: &Options<'_>) -> Names {
         let mut taken = vec![HashSet::new(); netlist.scopes.len()];
@@ -65,7 +92,9 @@ impl Names {
         let mut named = Vec::new();
         for (index, entry) in netlist.names.iter().enumerate() {
             named.push(claim(&mut taken[entry.scope.index()], &entry.name));
-            first[entry.net.index()].get_or_insert(index);
+            if !entry.is_wide() {
+                first[entry.net.index()].get_or_insert(index);
+            }
         }
         let mut scopes = vec![claim(&mut HashSet::new(), &netlist.scopes[0].name)];
         for scope in &netlist.scopes[1..] {
@@ -81,22 +110,40 @@ impl Names {
         let rst = claim(&mut everywhere, "rst");
         let mut port = |net: Net, may_own: bool| -> Port {
             let Some(index) = first[net.index()] else {
-                return Port { net, name: claim(&mut everywhere, &format!("n{}", net.index())), own: false };
+                let name = claim(&mut everywhere, &format!("n{}", net.index()));
+                return Port { net, name, own: false, word: None };
             };
             let entry = &netlist.names[index];
             if may_own && entry.scope == ScopeId::TOP {
-                return Port { net, name: named[index].clone(), own: true };
+                return Port { net, name: named[index].clone(), own: true, word: None };
             }
             let path = netlist.path(entry);
             let inner = path.split_once('.').map_or(path.as_str(), |(_, inner)| inner);
-            Port { net, name: claim(&mut everywhere, inner), own: false }
+            Port { net, name: claim(&mut everywhere, inner), own: false, word: None }
         };
         let is_input = |net: Net| matches!(netlist.cell(net).op, Op::Input);
-        let inputs = netlist.nets().filter(|&net| is_input(net)).map(|net| port(net, true)).collect();
+        let words = input_words(netlist, &first);
+        let mut inputs: Vec<Port> = netlist
+            .nets()
+            .filter(|net| {
+                is_input(*net) && !words.iter().any(|entry| netlist.names[*entry].nets().any(|of| of == *net))
+            })
+            .map(|net| port(net, true))
+            .collect();
         let mut seen = HashSet::new();
         let outputs = options.outputs.iter().filter(|&&net| seen.insert(net));
         let outputs = outputs.map(|&net| port(net, !is_input(net))).collect();
         let inner = |path: &str| path.split_once('.').map_or(path, |(_, inner)| inner).to_owned();
+        for entry in words {
+            let of = &netlist.names[entry];
+            let own = of.scope == ScopeId::TOP;
+            let name = if own { named[entry].clone() } else { claim(&mut everywhere, &inner(&netlist.path(of))) };
+            let name = escaped(&name);
+            for (low, net) in (0u32..).step_by(NamedNet::PART as usize).zip(of.nets()) {
+                let range = format!("{name}[{}:{low}]", low + netlist.width(net).get() - 1);
+                inputs.push(Port { net, name: range, own, word: Some(WordPort { entry, name: name.clone(), low }) });
+            }
+        }
         let paths = netlist.memories.iter().map(|memory| inner(&netlist.memory_path(memory)));
         let memories = paths.map(|path| claim(&mut everywhere, &path)).collect();
         let index = claim(&mut everywhere, "i");
@@ -126,6 +173,11 @@ impl Names {
     /// The entry in `Netlist::names` by which a net is meant.
     pub(crate) fn first(&self, net: Net) -> Option<usize> {
         self.first[net.index()]
+    }
+
+    /// The entry is an input of more than 64 bits of the top scope.
+    pub(super) fn is_own_port(&self, entry: usize) -> bool {
+        self.inputs.iter().any(|port| port.own && port.word.as_ref().is_some_and(|word| word.entry == entry))
     }
 
     /// The name is a reserved word.

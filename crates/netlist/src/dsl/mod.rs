@@ -280,7 +280,7 @@ impl<'m> Scope<'m> {
     pub fn show(self, name: &str, signal: Signal<'m>, format: Format) -> Signal<'m> {
         self.claim_name(name);
         let signal = self.own(signal);
-        let named = NamedNet { net: signal.net(), scope: self.id, name: name.to_owned(), format };
+        let named = NamedNet { net: signal.net(), above: Vec::new(), scope: self.id, name: name.to_owned(), format };
         self.module.state.borrow_mut().netlist.names.push(named);
         signal
     }

@@ -82,7 +82,7 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
         *port = port.map(|net| map[net.index()]);
     }
     for named in &mut new.names {
-        named.net = map[named.net.index()];
+        *named = named.map(|net| map[net.index()]);
     }
     for property in &mut new.properties {
         move_property(property, |net| map[net.index()]);
@@ -93,9 +93,5 @@ pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
 /// A property about other nets.
 pub fn move_property(property: &mut Property, go: impl Fn(Net) -> Net) {
     property.never = go(property.never);
-    if let Claim::NoOverflow { left, right, .. } | Claim::Fits { left, right, .. } = &mut property.claim {
-        for operand in [left, right] {
-            operand.net = go(operand.net);
-        }
-    }
+    property.claim = std::mem::replace(&mut property.claim, Claim::Invariant).map(go);
 }

@@ -3,8 +3,7 @@
 use std::str::CharIndices;
 
 use super::{BINARY, Expected};
-use crate::bits::Width;
-use crate::cells::{Arithmetic, Claim, Format, Net, Op, Operand, Operator};
+use crate::cells::{Arithmetic, Claim, Format, Net, Op, Operand, Operator, Undefined, Word};
 
 /// A number, written in digits and nothing else.
 pub(super) fn digits(word: &str, radix: u32) -> Option<u64> {
@@ -104,14 +103,49 @@ impl<'a> Words<'a> {
     }
 
     pub(super) fn fits(&mut self) -> Result<Claim, Expected> {
-        let width = Width::new(self.number()?).map_err(|error| format!("a width of 1 to 64 bits ({error})"))?;
+        let bits = self.number().ok().filter(|bits| *bits > 0).ok_or("a number of bits from 1 on")?;
         let (signed, operator) = (self.signed()?, self.operator()?);
-        let (left, right) = self.operands()?;
-        Ok(Claim::Fits { operator, left, right, width, signed, wraps: self.wraps()? })
+        let (left, right) = (self.operand_word()?, self.operand_word()?);
+        Ok(Claim::Fits { operator, left, right, bits, signed, wraps: self.wraps()? })
     }
 
-    pub(super) fn fits_wide(&mut self) -> Result<Claim, Expected> {
-        Ok(Claim::FitsWide { bits: self.number()?, operator: self.operator()?, wraps: self.wraps()? })
+    /// An operation without a result, by its word.
+    pub(super) fn defined(&mut self, word: &str) -> Result<Claim, Expected> {
+        let known = ["quotient", "remainder", "read", "write"];
+        if !known.contains(&word) {
+            return Err(
+                "'invariant', 'assumption', 'cover', 'fits', 'add', 'sub', 'quotient', 'remainder', 'read' or 'write'"
+                    .to_owned(),
+            );
+        }
+        let operand = self.operand_word()?;
+        let undefined = match word {
+            "quotient" => Undefined::Quotient,
+            "remainder" => Undefined::Remainder,
+            _ => {
+                self.keyword("words")?;
+                let words = self.number()?;
+                self.keyword("from")?;
+                let first = self.number()?;
+                if word == "read" { Undefined::Read { first, words } } else { Undefined::Write { first, words } }
+            }
+        };
+        Ok(Claim::Defined { undefined, operand })
+    }
+
+    fn operand_word(&mut self) -> Result<Word, Expected> {
+        let mut nets = vec![self.net()?];
+        nets.extend(self.further_nets()?);
+        Ok(Word { nets, signed: self.signed()? })
+    }
+
+    /// The nets that follow.
+    pub(super) fn further_nets(&mut self) -> Result<Vec<Net>, Expected> {
+        let mut nets = Vec::new();
+        while self.rest.starts_with('%') {
+            nets.push(self.net()?);
+        }
+        Ok(nets)
     }
 
     fn operator(&mut self) -> Result<Operator, Expected> {
