@@ -232,6 +232,11 @@ def main():
         "serv": lambda: (serv, "serving", "i_clk", {"i_rst": reset(1)}, 4000, [], True),
         "vexriscv-min": lambda: ([vex + "VexRiscv_Min.v"], "VexRiscv", "clk", {"reset": reset(1), "externalResetVector": lambda k: 0}, 2000, [], True),
         "vexriscv": lambda: ([vex + "VexRiscv.v"], "VexRiscv", "clk", {"reset": reset(1), "externalResetVector": lambda k: 0}, 130, [], True),
+        # Commands at times, of any speed, with and without a limit of acceleration.
+        "litexcnc": lambda: ([folder / "stepgen.v"], "stepgen", "sys_clk", {
+            "sys_rst": reset(1), "reset_in": lambda k: int(k % 1500 > 1490), "enable_in": lambda k: int(k % 2000 < 1900),
+            "write": lambda k: int(k % 300 == 20), "acceleration_in": lambda k: 0 if k % 900 < 500 else 1 << 30,
+        }, 6000),
     }
     for name, design in designs.items():
         if not wanted or name in wanted:

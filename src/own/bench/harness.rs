@@ -11,18 +11,28 @@
 //! after that takes the words. A pulse moves the position at the edge that follows it.
 
 use super::file::Strobe;
-use super::model::path;
 use super::{Bench, End, Pulses, Wire};
 use crate::models::options::{STRICT, WRAPS};
 use crate::models::parts::{Block, POSITION, axis_counter, axis_scope};
 use crate::models::{Hardware, Machine, ModelError, Port};
-use crate::netlist::cells::Op;
+use crate::netlist::cells::{Op, ScopeId};
 use crate::netlist::dsl::{Module, Scope, Signal};
 use crate::netlist::{Net, Netlist, Width, elaborate};
 use crate::own::{announce, matching};
 
-/// The scope of the harness.
-pub(super) const SCOPE: &str = "bench";
+/// The scope of the harness: a name that the top of the netlist does not have.
+pub(super) fn scope(netlist: &Netlist) -> String {
+    let mut scope = "bench".to_owned();
+    let of_top = |parent: Option<ScopeId>| parent == Some(ScopeId::TOP);
+    while netlist.scopes.iter().any(|other| of_top(other.parent) && other.name == scope)
+        || netlist.names.iter().any(|named| named.scope == ScopeId::TOP && named.name == scope)
+        || netlist.memories.iter().any(|memory| memory.scope == ScopeId::TOP && memory.name == scope)
+    {
+        scope.push('_');
+    }
+    scope
+}
+
 /// Names in the harness that a register of the netlist may have too.
 pub(super) const NAMES: [&str; 14] = [
     "load",
@@ -96,7 +106,8 @@ impl Bench {
     }
 
     fn ports(&self, netlist: Netlist, hardware: &Hardware, traps: Vec<Net>) -> Result<Machine, ModelError> {
-        let find = |inner: &str| Port::of(&netlist, &path(&netlist, inner));
+        let (top, scope) = (netlist.scopes[0].name.clone(), scope(&self.netlist));
+        let find = |inner: &str| Port::of(&netlist, &format!("{top}.{scope}.{inner}"));
         let axis = |letter: &str, name: String| find(&format!("axis_{letter}.{name}"));
         let letters = || hardware.letters().iter();
         let mut inputs: std::collections::BTreeMap<String, Port> = Default::default();
@@ -135,7 +146,7 @@ impl Bench {
 
     /// The hardware of the harness, and what it drives.
     fn wired(&self, module: &Module, hardware: &Hardware) -> Vec<(Net, Drive)> {
-        let m = module.top().scope(SCOPE);
+        let m = module.top().scope(&scope(&self.netlist));
         let block = Block::new(m);
         let mut drives: Vec<(Net, Drive)> =
             self.constants.iter().map(|&(net, value)| (net, Drive::Constant(value))).collect();

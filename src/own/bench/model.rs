@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use super::harness::SCOPE;
 use super::{Bench, BenchError, End, Word, signal};
 use crate::models::options::{ON_OVERFLOW, STRICT, Takes, WRAPS};
 use crate::models::parts::POSITION;
@@ -176,9 +175,4 @@ impl Described for Bench {
 #[expect(clippy::cast_possible_truncation, reason = "a cast saturates")]
 fn ceiling(length: f64) -> i64 {
     length.ceil() as i64
-}
-
-/// Paths of the harness are in a scope of its own.
-pub(super) fn path(netlist: &Netlist, inner: &str) -> String {
-    format!("{}.{SCOPE}.{inner}", netlist.scopes[0].name)
 }
