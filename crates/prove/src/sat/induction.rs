@@ -10,6 +10,8 @@ use super::unrolled::Unrolled;
 use super::words::differs;
 use super::{Question, Search, Verdict, assume, never};
 
+/// Nodes that are looked at for invariants that were suggested, in one attempt.
+const WORK: usize = 4_000_000;
 /// Samples in a row after which an invariant that is not shown is given up.
 const DEEPEST: usize = 4;
 
@@ -127,24 +129,29 @@ impl<'q, 't> Induction<'q, 't> {
         found
     }
 
-    /// Those of some goals that hold in every sample after as many without a violation, each relying on the others.
+    /// Those of some goals that hold in every sample after as many without a violation, each relying on the others. Where
+    /// invariants that were only suggested make it long, they are left out.
     fn attempt(&mut self, mut goals: Vec<usize>, conflicts: u64) -> Vec<usize> {
         let most = self.conflicts().saturating_add(conflicts);
+        let main = self.question.goals.len();
+        let mut rounds = (WORK / (self.unrolled.sat.graph.len() + 1)).clamp(8, 400);
         while !goals.is_empty() {
             let held: Vec<Literal> = goals.iter().map(|&goal| self.holds[goal]).collect();
             let fail: Vec<Literal> = goals.iter().map(|&goal| self.fails(goal)).collect();
             let left = most.saturating_sub(self.conflicts());
             let any = self.unrolled.sat.graph.any(fail.iter().copied());
             let question = |flag: Literal| [&[flag], held.as_slice()].concat();
+            rounds = rounds.saturating_sub(1);
             match self.unrolled.sat.ask(&question(any), left) {
                 Answer::No => break,
                 Answer::Yes => {
                     let values = self.unrolled.sat.values();
                     let failed: Vec<usize> =
                         goals.iter().zip(&fail).filter(|(_, fail)| values.of(**fail)).map(|(&goal, _)| goal).collect();
-                    let main = self.question.goals.len();
                     goals.retain(|goal| !failed.contains(goal) || *goal < main && self.separate(&values, *goal));
+                    goals.retain(|goal| rounds > 0 || *goal < main);
                 }
+                Answer::Open if goals.iter().any(|&goal| goal >= main) => goals.retain(|&goal| goal < main),
                 // One by one: what cannot be shown so is left out.
                 Answer::Open => {
                     let each = (conflicts / (goals.len() as u64 + 1)).max(100);
