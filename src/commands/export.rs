@@ -1,9 +1,11 @@
 //! `stepwave export`.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 use crate::export::{self, Checking, Options, Stimulus};
 use crate::models::CutWord;
+use crate::netlist::cells::Source;
 use crate::netlist::{Design, Net};
 use crate::simulation::Simulation;
 use crate::testbench::Testbench;
@@ -41,7 +43,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let outputs = bench.outputs();
     let options = Options { comment: &comment, outputs: &outputs };
     let own = args.bench.files(&args.model);
-    let mut files = Outputs::reading(args.program.iter().chain(&own));
+    let sources = source_files(bench.design());
+    let mut files = Outputs::reading(args.program.iter().chain(&own).chain(&sources));
     if let Some(path) = &args.netlist {
         files.write(path, &bench.design().netlist().to_string())?;
     }
@@ -72,6 +75,16 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let quiet = files.uses_stdout();
     files.commit()?;
     if quiet { Ok(()) } else { output::print(&notes) }
+}
+
+/// The files that hardware of one's own was imported from.
+fn source_files(design: &Design) -> BTreeSet<PathBuf> {
+    let sources = design.netlist().sources.iter().flatten();
+    let files = sources.filter_map(|source| match source {
+        Source::File { file, .. } => Some(PathBuf::from(&**file)),
+        Source::Rust { .. } => None,
+    });
+    files.collect()
 }
 
 /// A model with a geometry, and what is to be said of that.

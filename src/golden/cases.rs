@@ -48,7 +48,9 @@ impl Listed {
             None => words.push("run".into()),
         }
         // A netlist of one's own is in the folder, as a program is.
-        let path = |(index, word): (usize, &String)| match index == 0 && is_netlist(word) {
+        let of_folder =
+            |index: usize| index == 0 && is_netlist(&self.args[0]) || index > 0 && self.args[index - 1] == "--bench";
+        let path = |(index, word): (usize, &String)| match of_folder(index) {
             true => folder.join(word).into(),
             false => word.into(),
         };

@@ -122,7 +122,8 @@ fn script(source: &Source, files: &[PathBuf], json: &Path) -> Result<String, Yos
         script.push('\n');
     }
     // Only cleaned processes have constant enables of what `initial` writes into a memory.
-    script += "proc -noopt -norom\nflatten\nopt_clean\nmemory_collect\nopt_clean\n";
+    // A register that no output reads is the author's all the same.
+    script += "proc -noopt -norom\nflatten\nsetattr -set keep 1 t:$*ff*\nopt_clean\nmemory_collect\nopt_clean\n";
     script += &format!("write_json {}\n", quoted("file", json)?);
     Ok(script)
 }

@@ -62,7 +62,8 @@ impl Testbench {
     /// These steps, and what ends one of them and a run of this machine, `alone` if it is of one geometry.
     fn sequence(&self, steps: Vec<Step>, alone: bool) -> Stimulus {
         let machine = &self.machine;
-        let never = if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap { self.properties() } else { Vec::new() };
+        let never =
+            if self.hardware.get(&ON_OVERFLOW) == OnOverflow::Trap { machine.traps.clone() } else { Vec::new() };
         let done = machine.buffer.map_or(vec![machine.done.net], |ports| vec![ports.call, ports.at_end]);
         let nets = machine.pulses.iter().map(|port| port.net).collect();
         let stall = alone.then_some(Stall { nets, clocks: self.hardware.stall_clocks });

@@ -136,3 +136,78 @@ fn a_carry_out_of_63_64_65_and_87_bits_is_an_event_in_its_clock() {
         assert_eq!(&stepwave::netlist::text::parse(&text).expect("the same"), design.netlist());
     }
 }
+
+/// An enabled register of the sum of a product of two inputs of 2 bits, named as given; all cells are signed or not.
+fn product_and_sum(signed: bool, enabled_by: u32) -> stepwave::netlist::Design {
+    let signs: &[&str] = if signed { &["A_SIGNED", "B_SIGNED"] } else { &[] };
+    let cells = json!({
+        "mul": cell("$mul", signs, json!({ "A": [4, 5], "B": [6, 7], "Y": [10, 11, 12, 13] })),
+        "add": cell("$add", signs, json!({ "A": [14, 15, 16, 17], "B": [10, 11, 12, 13], "Y": [20, 21, 22, 23] })),
+        "ff": cell("$dffe", &["CLK_POLARITY", "EN_POLARITY"],
+            json!({ "CLK": [2], "EN": [enabled_by], "D": [20, 21, 22, 23], "Q": [14, 15, 16, 17] })),
+    });
+    let inputs = json!({ "clk": port("input", [2]), "en": port("input", [3]), "a": port("input", [4, 5]), "b": port("input", [6, 7]) });
+    let mut ports = inputs.clone();
+    ports["q"] = port("output", [14, 15, 16, 17]);
+    let mut names =
+        json!({ "clk": name([2]), "en": name([3]), "a": name([4, 5]), "b": name([6, 7]), "q": name([14, 15, 16, 17]) });
+    for net in ["a", "b", "q"] {
+        names[net]["signed"] = json!(u8::from(signed));
+    }
+    design(&module(ports, cells, names))
+}
+
+#[test]
+fn a_part_of_a_signed_expression_that_nobody_has_named_is_signed() {
+    let design = product_and_sum(true, 3);
+    let paths: Vec<&str> = design.netlist().properties.iter().map(|property| property.name.as_str()).collect();
+    // -2 * -2 = 4 has 4 bits as a signed number, whatever the operands are.
+    assert_eq!(paths, ["t.q"]);
+    // q + a * b with -1 and 1, a negative product, in each clock.
+    let row = &[("en", 1), ("a", 3), ("b", 1)][..];
+    let rows = samples(&design, &["t.q", "t.overflow.q"], &[row; 6]);
+    assert!(rows.iter().all(|row| row[1] == 0), "{rows:?}");
+    assert_eq!(rows[3][0], 13);
+}
+
+#[test]
+fn what_other_logic_makes_of_a_result_is_taken_where_the_logic_is() {
+    // a * b of 4 bits is added to q; the sum is taken only while `en` is 1.
+    let cells = json!({
+        "inner": cell("$add", &[], json!({ "A": [4, 5], "B": [6, 7], "Y": [10, 11] })),
+        "not": cell("$not", &[], json!({ "A": [10, 11], "Y": [20, 21] })),
+        "ff": cell("$dffe", &["CLK_POLARITY", "EN_POLARITY"], json!({ "CLK": [2], "EN": [3], "D": [20, 21], "Q": [14, 15] })),
+    });
+    let ports = json!({ "clk": port("input", [2]), "en": port("input", [3]), "a": port("input", [4, 5]), "b": port("input", [6, 7]),
+        "q": port("output", [14, 15]) });
+    let names = json!({ "clk": name([2]), "en": name([3]), "a": name([4, 5]), "b": name([6, 7]), "q": name([14, 15]) });
+    let design = design(&module(ports, cells, names));
+    let flag = design.netlist().names.iter().find(|named| named.name.contains("add")).expect("a flag");
+    let path = design.netlist().path(flag);
+    let (on, off) = (&[("en", 1), ("a", 3), ("b", 3)][..], &[("en", 0), ("a", 3), ("b", 3)][..]);
+    let rows = samples(&design, &[&path], &[off, off, on, on, off]);
+    assert_eq!(rows, [[0], [0], [1], [1], [0]]);
+}
+
+#[test]
+fn what_yosys_makes_of_an_index_is_not_an_operator_of_the_author() {
+    let mut text = counter(cell("$add", &[], json!({ "A": [4, 5], "B": ["1"], "Y": [6, 7] })), names());
+    text = text.replace(r#""add":{"#, r#""$add$t.v:0$7":{"#);
+    assert!(text.contains("$add$t.v:0$7"));
+    assert!(design(&text).netlist().properties.is_empty());
+}
+
+#[test]
+fn a_result_has_the_name_of_its_own_scope_and_not_of_a_word_that_it_is_a_part_of() {
+    let add = cell("$add", &[], json!({ "A": [4, 5], "B": ["1"], "Y": [6, 7] }));
+    let mut all = names();
+    all["dbg"] = name([4, 5, 3]);
+    all["outer"] = name([4, 5]);
+    all["s2.x"] = name([4, 5]);
+    all["s2.x"]["signed"] = json!(1);
+    let text = counter(add, all).replace(r#""add":{"#, r#""$flatten\\s2.$add$t.v:7$3":{"#);
+    let design = design(&text);
+    let property = &design.netlist().properties[0];
+    assert_eq!(property.name, "t.s2.x");
+    assert!(matches!(property.claim, Claim::Fits { signed: true, .. }));
+}

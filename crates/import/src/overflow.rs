@@ -2,8 +2,9 @@
 //!
 //! False alarms are what makes people switch such checks off, so:
 //! - only bits that something reads count as kept, and a carry that is read elsewhere is kept;
-//! - a result is taken where multiplexers and enables let it through into a register, an output or other logic:
-//!   `t == 9 ? 0 : t + 1` never takes what it drops;
+//! - a result is taken where multiplexers and enables let it, and what other logic makes of it, through into a register or
+//!   an output: `t == 9 ? 0 : t + 1` never takes what it drops;
+//! - what nobody has named is read as its operands are, so that parts of a signed expression are signed;
 //! - what cannot overflow for any values of its operands has no event;
 //! - `(* stepwave_wraps *)` on the net or register announces that a carry is meant to be lost.
 
@@ -12,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 use stepwave_netlist::Net;
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::Word as Operand;
-use stepwave_netlist::cells::{Claim, Format, NamedNet, Operator, Property, ScopeData, ScopeId};
+use stepwave_netlist::cells::{Claim, Format, NamedNet, Op, Operator, Property, ScopeData, ScopeId};
 
 use crate::cells::is_register;
 use crate::design::Design;
@@ -40,7 +41,12 @@ pub(crate) struct Readers<'a> {
     outputs: HashSet<u32>,
     /// Bits that anything reads.
     read: HashSet<u32>,
+    /// Cells one after another that are being looked at.
+    depth: usize,
 }
+
+/// Logic of more cells one after another is taken to take what it reads.
+const DEEPEST: usize = 400;
 
 /// An operand as numbers: its word, its reading, and the least and greatest number that it can be, up to 64 bits.
 struct Read {
@@ -135,7 +141,7 @@ impl<'a> Design<'a> {
             Wire::Constant(_) => None,
         });
         let (taken, outputs, read) = (HashMap::new(), outputs.collect(), HashSet::new());
-        let mut readers = Readers { of, taken, outputs, read };
+        let mut readers = Readers { of, taken, outputs, read, depth: 0 };
         readers.find_read(module.cells.values());
         readers
     }
@@ -148,8 +154,12 @@ impl<'a> Design<'a> {
         for (name, cell) in module.cells.iter().filter(|(_, cell)| arithmetic(&cell.kind)) {
             let y = cell.pin("Y");
             let kept = y.iter().rposition(|wire| readers.is_read(wire)).map_or(0, |last| last + 1);
+            // Yosys has made it of an index, and not the author.
+            if name.contains(":0$") || cell.place().is_some_and(|place| place.line == 0) {
+                continue;
+            }
             self.at(cell);
-            let target = self.target(&y[..kept], readers);
+            let target = self.target(name, &y[..kept], readers);
             if let Some((never, claim)) = self.lost(name, cell, kept, &target, readers) {
                 let operator = cell.kind.trim_start_matches('$');
                 let place = cell.place().map_or_else(|| name.clone(), |place| format!("{}:{}", place.file, place.line));
@@ -203,7 +213,9 @@ impl<'a> Design<'a> {
             Operator::Neg => self.operand_read(&[Wire::Constant("0".to_owned())], false)?,
             _ => self.operand_read(cell.pin("B"), is_signed(cell.pin("B"), both && !shift) && !shift)?,
         };
-        let (signed, wraps) = (target.signed, target.wraps);
+        // What nobody has named is read as its operands are.
+        let unnamed = both || a.signed && (b.signed || matches!(operator, Operator::Neg | Operator::ShiftLeft));
+        let (signed, wraps) = (target.signed.unwrap_or(unnamed), target.wraps);
         let results = a.range.zip(b.range).and_then(|(a, b)| operator.range(a, b));
         if results.is_some_and(|(low, high)| holds(kept, signed, low) && holds(kept, signed, high)) {
             return None;
@@ -211,7 +223,8 @@ impl<'a> Design<'a> {
         let bits = u32::try_from(kept).unwrap_or(u32::MAX);
         let outside = self.outside(operator, &a, &b, bits, signed);
         let taken = self.cell_taken(name, cell, readers);
-        let never = self.builder.and(outside, taken);
+        // A bit of its own, so that it has the line of this operator.
+        let never = self.builder.push(Op::And(outside, taken), 1);
         let (left, right) = (a.operand(), b.operand());
         Some((never, Claim::Fits { operator, left, right, bits, signed, wraps }))
     }
@@ -281,14 +294,22 @@ impl<'a> Design<'a> {
         self.builder.invert(same)
     }
 
-    /// What the result of a cell is for.
-    pub(crate) fn target(&self, bits: &[Wire], readers: &Readers<'a>) -> Target {
+    /// What the result of a cell of this name is for.
+    pub(crate) fn target(&self, cell: &str, bits: &[Wire], readers: &Readers<'a>) -> Target {
+        // `$flatten\\s2.$sub$…` is of the scope s2.
+        let inner = cell.strip_prefix("$flatten").map_or("", |rest| rest.trim_start_matches('\\'));
+        let scope = inner.rsplit_once(".$").map_or("", |(scope, _)| scope);
         let of = |bits: &[Wire]| {
-            let mut names = self.module.netnames.iter().filter(|(_, name)| !name.is_hidden());
-            let found = names.find(|(_, name)| {
+            let names = self.module.netnames.iter().filter(|(_, name)| !name.is_hidden());
+            let found = names.filter(|(_, name)| {
                 name.bits.starts_with(bits) || bits.starts_with(&name.bits) && name.bits.len() + 1 >= bits.len()
             });
-            found.map(|(name, of)| Target { name: name.clone(), signed: of.is_signed(), wraps: of.has(WRAPS) })
+            // Its own bits rather than a part of others, and what is declared where the operator is.
+            let found = found.min_by_key(|(name, of)| {
+                let outer = name.rsplit_once('.').map_or("", |(outer, _)| outer);
+                (of.bits != bits, outer != scope, of.bits.len())
+            });
+            found.map(|(name, of)| Target { name: name.clone(), signed: Some(of.is_signed()), wraps: of.has(WRAPS) })
         };
         let mut bits = bits.to_vec();
         for _ in 0..16 {
@@ -304,7 +325,7 @@ impl<'a> Design<'a> {
             let low = if reader.cell.kind == "$pmux" { reader.at % out.len().max(1) } else { reader.at };
             bits = out.iter().skip(low).take(bits.len()).cloned().collect();
         }
-        Target { name: String::new(), signed: false, wraps: false }
+        Target { name: String::new(), signed: None, wraps: false }
     }
 
     /// When the result of a cell is taken.
@@ -372,9 +393,13 @@ impl<'a> Design<'a> {
                 self.word(std::slice::from_ref(select)).parts[0]
             }
             (kind, "D") if is_register(kind) => return self.clocked_in(cell),
+            // Other logic takes what its own result is taken for.
+            _ if readers.depth < DEEPEST && !cell.pin("Y").is_empty() => always,
             _ => return always,
         };
+        readers.depth += 1;
         let after = self.cell_taken(name, cell, readers);
+        readers.depth -= 1;
         self.builder.and(chosen, after)
     }
 
@@ -394,7 +419,8 @@ impl<'a> Design<'a> {
 /// What a result drives: its name, its declared sign, and whether it is announced to wrap.
 pub(crate) struct Target {
     pub(crate) name: String,
-    signed: bool,
+    /// Its declared sign; nothing where nobody has named it.
+    signed: Option<bool>,
     wraps: bool,
 }
 

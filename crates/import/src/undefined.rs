@@ -77,7 +77,7 @@ impl<'a> Design<'a> {
         let some = self.builder.any(&divisor);
         let (zero, taken) = (self.builder.invert(some), self.cell_taken(name, cell, readers));
         let never = self.both(zero, taken);
-        let mut path = self.target(&y[..kept], readers).name;
+        let mut path = self.target(name, &y[..kept], readers).name;
         if path.is_empty() {
             let place = cell.place().map_or_else(|| name.to_owned(), |place| format!("{}:{}", place.file, place.line));
             path = format!("{place} {}", cell.kind.trim_start_matches('$'));

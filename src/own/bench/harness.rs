@@ -24,7 +24,8 @@ use crate::own::{announce, matching};
 pub(super) fn scope(netlist: &Netlist) -> String {
     let mut scope = "bench".to_owned();
     let of_top = |parent: Option<ScopeId>| parent == Some(ScopeId::TOP);
-    while netlist.scopes.iter().any(|other| of_top(other.parent) && other.name == scope)
+    while netlist.scopes[0].name == scope
+        || netlist.scopes.iter().any(|other| of_top(other.parent) && other.name == scope)
         || netlist.names.iter().any(|named| named.scope == ScopeId::TOP && named.name == scope)
         || netlist.memories.iter().any(|memory| memory.scope == ScopeId::TOP && memory.name == scope)
     {
