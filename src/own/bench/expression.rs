@@ -360,7 +360,10 @@ mod tests {
             ("(dx", "')' is missing at its end"),
             ("dx dy", "an operator is missing before 'dy'"),
             ("dx ? 1", "':' and what there is otherwise is missing at its end"),
-            ("ddx", "there is no 'ddx', did you mean 'dx'?; there are: dx dy, and the functions abs min max sign bits"),
+            (
+                "ddx",
+                "there is no 'ddx' (did you mean 'dx'?); there are: dx dy, and the functions abs min max sign bits",
+            ),
             ("abs dx", "'(' after the function abs is missing before 'dx'"),
             ("abs(dx, 1)", "abs takes one number, not 2"),
             ("max(dx)", "max takes two numbers or more"),
