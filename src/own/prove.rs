@@ -30,7 +30,7 @@ use super::{Sim, Stimulus, announce, matching};
 /// let design = elaborate(text::parse(text)?)?;
 /// let report = Prove::new(design).run()?;
 /// let Verdict::Counterexample(example) = &report.goals[0].verdict else { panic!("{report:?}") };
-/// assert_eq!((example.clock, example.stimulus.as_str()), (3, "step\n1\n1\n1\n0\n"));
+/// assert_eq!((example.clock, example.stimulus.as_str()), (3, "step\n1\n1\n1\n1\n"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
