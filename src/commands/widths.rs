@@ -99,11 +99,11 @@ fn table(model: &Model, found: &Widths) -> String {
         );
     }
     if found.faults > 0 {
-        let _ = writeln!(
-            text,
-            "\n{} geometries overflow or never end at the default widths and are left out",
-            found.faults
-        );
+        let what = match model.is_described() {
+            true => "cannot be loaded or do not end; what registers held until then counts",
+            false => "overflow or never end at the default widths and are left out",
+        };
+        let _ = writeln!(text, "\n{} geometries {what}", found.faults);
     }
     if found.cut > 0 {
         let _ = writeln!(text, "\n{} geometries were followed for their first clocks only", found.cut);

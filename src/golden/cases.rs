@@ -1,6 +1,6 @@
 //! The cases of a folder: `cases.toml`, and that no case leaves its folder.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -50,9 +50,12 @@ impl Listed {
         // A netlist of one's own is in the folder, as a program is.
         let of_folder =
             |index: usize| index == 0 && is_netlist(&self.args[0]) || index > 0 && self.args[index - 1] == "--bench";
-        let path = |(index, word): (usize, &String)| match of_folder(index) {
-            true => folder.join(word).into(),
-            false => word.into(),
+        let path = |(index, word): (usize, &String)| -> OsString {
+            match word.strip_prefix("--bench=") {
+                _ if of_folder(index) => folder.join(word).into(),
+                Some(bench) => [OsStr::new("--bench="), folder.join(bench).as_os_str()].into_iter().collect(),
+                None => word.into(),
+            }
         };
         words.extend(self.args.iter().enumerate().map(path));
         let files = ["--vcd".into(), vcd.into_os_string(), "--steps".into(), steps.into_os_string()];

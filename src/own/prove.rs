@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::Error;
 use crate::engine::{EngineKind, Watch};
-use crate::netlist::cells::{Claim, Property, Source};
+use crate::netlist::cells::{Claim, Property};
 use crate::netlist::{Design, Net, elaborate};
 use crate::output::Outputs;
 use crate::prove::sat::{self, Decision, Inputs, Limit, Limits, Question};
@@ -186,10 +186,7 @@ impl Prove {
                     Verdict::Counterexample(self.replayed(property, *clock, example)?)
                 }
             };
-            let source = match netlist.sources.get(property.never.index()) {
-                Some(Some(Source::File { file, line, .. })) => Some(format!("{file}:{line}")),
-                _ => None,
-            };
+            let source = netlist.line_of(property.never);
             report.goals.push(Goal { name: property.name.clone(), claim: claimed(property), source, verdict });
         }
         self.write(&report, outputs)?;

@@ -115,7 +115,7 @@ pub fn title(model: &Model, hardware: &Hardware, curve: &Curve) -> String {
     let choice = |takes: &&'static dyn Takes| format!("{} {}", takes.name(), hardware.text(takes.option()));
     let choices: Vec<_> = model.options.iter().map(choice).collect();
     // A netlist is the same wherever it is.
-    let name = if model.is_described() { file_name(model.name) } else { model.name };
+    let name = if model.is_described() { file_name(model.source) } else { model.name };
     format!("{name}; {}; {}", geometry(curve), choices.join("; "))
 }
 

@@ -31,9 +31,7 @@ impl Report {
 
     /// The registers with a choice of width.
     fn chosen(&self) -> impl Iterator<Item = &RegisterRange> {
-        let widths = &self.hardware.widths;
-        let has = |name: &str| widths.contains_key(name);
-        self.ranges.iter().filter(move |range| has(&range.name) || has(&range.path))
+        self.ranges.iter().filter(|range| self.hardware.widths.contains_key(range.name.as_str()))
     }
 
     /// What they needed of it.

@@ -7,12 +7,11 @@ use stepwave_nc::Curve;
 
 use super::boxes::{Extent, Geometries};
 use super::proof::ProofError;
+use super::widths::LIMIT;
 use crate::testbench::{Ending, OverflowWatch, Testbench};
 
 /// Runs that are made at once.
 const CHUNK: usize = 1 << 10;
-/// Clocks after which a run is given up.
-const LIMIT: u64 = 1 << 24;
 
 /// What the runs of a box came to.
 #[derive(Clone, Debug)]

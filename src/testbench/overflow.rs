@@ -12,7 +12,7 @@ use stepwave_engine::Rows;
 use stepwave_models::Machine;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_netlist::bits;
-use stepwave_netlist::cells::{Claim, Operator, Property, Source, Undefined, Word};
+use stepwave_netlist::cells::{Claim, Operator, Property, Undefined, Word};
 use stepwave_netlist::{Net, Netlist, OnOverflow, Width, elaborate};
 
 use super::checkpoint::{GREATEST, Memory, recalled};
@@ -357,10 +357,7 @@ impl OverflowWatch {
                 Claim::Defined { operand, .. } => Operands::Words([word(operand), Vec::new()]),
                 Claim::Invariant | Claim::Assumption | Claim::Cover => Operands::None,
             };
-            let source = match netlist.sources.get(property.never.index()) {
-                Some(Some(Source::File { file, line, .. })) => Some(format!("{file}:{line}")),
-                _ => None,
-            };
+            let source = netlist.line_of(property.never);
             Watched { property: property.clone(), source, never: at(property.never), operands }
         });
         let mode = OnOverflow::Wrap;

@@ -14,7 +14,7 @@ use super::{Observer, ObserverError, Testbench};
 /// What a register held during a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RegisterRange {
-    /// Name without path.
+    /// Name without path; with it where hardware has several registers of the name.
     pub name: String,
     /// Dotted path.
     pub path: String,
@@ -111,6 +111,7 @@ impl RangeWatch {
     #[must_use]
     pub fn new(bench: &Testbench) -> RangeWatch {
         let netlist = bench.design().netlist();
+        let widths = &bench.hardware().widths;
         let mut watch = RangeWatch { registers: Vec::new(), watched: Vec::new() };
         for named in &netlist.names {
             let cell = netlist.cell(named.net);
@@ -118,9 +119,14 @@ impl RangeWatch {
             if matches!(cell.op, Op::Register { .. }) && !named.is_wide() {
                 let (column, moved) = (bench.columns().index(named.net), moved(netlist, named.net));
                 watch.watched.push(Watched { column, seen: None, moved });
+                // Where another register has its name, or it is known by its path, that is its name here.
+                let (leaf, path) = (&named.name, netlist.path(named));
+                let known = |name: &str| widths.contains_key(name);
+                let taken = known(leaf) && watch.registers.iter().any(|other| other.name == *leaf);
+                let name = if known(&path) || taken { path.clone() } else { leaf.clone() };
                 watch.registers.push(RegisterRange {
-                    name: named.name.clone(),
-                    path: netlist.path(named),
+                    name,
+                    path,
                     width: cell.width,
                     reading: named.format.reading(),
                     least: 0,

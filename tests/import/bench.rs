@@ -311,3 +311,55 @@ pulse = "py"
     let refused = Simulation::new(own, line([-1, 3])).run().expect_err("a negative word");
     assert!(refused.to_string().contains("load.nx = dx: -1 does not fit in its 4 bits, 0 to 15"), "{refused}");
 }
+
+#[test]
+fn registers_of_one_name_in_several_scopes_and_in_the_harness_are_kept_apart() {
+    // `count` counts the clocks of a block, `s2.count` two of them, `x` and `go` are names of the harness too.
+    let module = Module::new("twice");
+    let m = module.top();
+    let (start, end) = (m.input("start", 1), m.input("n", 4));
+    let (count, go) = (m.reg("count", 6), m.reg("go", 1));
+    let more = !count.q.slice(0, 4).equals(end);
+    go.when(start, m.lit(1, 1)).when(more, go.q).otherwise(m.lit(1, 0));
+    let pulse = m.name("pulse", go.q & more);
+    count.when(start, m.lit(6, 0)).when(pulse, count.q.wrapping_add(m.lit(6, 1))).else_hold();
+    let inner = m.scope("s2").reg("count", 6);
+    inner.when(start, m.lit(6, 0)).when(pulse, inner.q.wrapping_add(m.lit(6, 2))).else_hold();
+    let x = m.reg("x", 6);
+    x.when(pulse, x.q.wrapping_add(m.lit(6, 3))).else_hold();
+    m.name("ready", !go.q);
+    m.name("zero", m.lit(1, 0));
+    let text = module.finish().expect("a netlist").to_string();
+    let bench = "load = { n = \"dx\" }\nstart = \"start\"\ndone = \"ready\"\n[axis.x]\npulse = \"pulse\"\n[axis.y]\npulse = \"zero\"\n";
+    let folder = Folder::new();
+    fs::create_dir(folder.path("a b")).expect("a folder");
+    fs::write(folder.path("a b").join("t.net"), text).expect("written");
+    fs::write(folder.path("a b").join("b.toml"), bench).expect("written");
+    let words = ["widths", "a b/t.net", "--bench", "a b/b.toml", "--box", "1..9x0..0", "--json"];
+    let ran = folder.run_words(&words);
+    assert_eq!(ran.code, 0, "{ran:?}");
+    let found: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
+    let registers = found["registers"].as_array().expect("registers");
+    let of =
+        |name: &str| registers.iter().find(|register| register["name"] == name).unwrap_or_else(|| panic!("{name}"));
+    // The greatest values of nine pulses, and the bits that they need.
+    for (name, greatest, needed) in
+        [("count", 9, 4), ("twice.s2.count", 18, 5), ("twice.x", 27, 5), ("go", 1, 1), ("x", 9, 5)]
+    {
+        assert_eq!((&of(name)["greatest"], &of(name)["needed"]), (&greatest.into(), &needed.into()), "{name}");
+    }
+    let command = of("twice.x")["one_bit_below"].as_str().expect("a command");
+    assert_eq!(command, "stepwave run 'a b/t.net' --bench 'a b/b.toml' --to 6,0");
+    let again = folder.run_words(&["run", "a b/t.net", "--bench", "a b/b.toml", "--to", "6,0", "--vcd", "t.vcd"]);
+    assert!(again.out.contains("twice.x 5/6") && again.out.contains("twice.s2.count 4/6"), "{again:?}");
+    let wave = fs::read_to_string(folder.path("t.vcd")).expect("a wave");
+    assert!(wave.contains("t.net; line"), "{}", &wave[..300]);
+    // A case of a folder finds both files there, in two words or in one.
+    let case = |args: &str| format!("[[case]]\nname = \"line\"\nargs = [\"t.net\", {args}, \"--to\", \"8,0\"]\n");
+    for args in ["\"--bench\", \"b.toml\"", "\"--bench=b.toml\""] {
+        fs::write(folder.path("a b").join("cases.toml"), case(args)).expect("written");
+        let recorded = folder.run_words(&["golden", "record", "a b"]);
+        assert_eq!(recorded.code, 0, "{recorded:?}");
+        assert_eq!(folder.run_words(&["golden", "check", "a b"]).code, 0);
+    }
+}

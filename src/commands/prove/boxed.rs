@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Progress;
 use crate::cli::ProveArgs;
-use crate::models::{Model, Options};
+use crate::models::{CurveKind, Model, Options};
 use crate::nc::Curve;
 use crate::output::{self, Outputs};
 use crate::report::run_command;
@@ -31,7 +31,12 @@ pub(super) fn prove(args: &ProveArgs, netlist: &Path, extent: &Extent) -> Result
     let found = exhausted(model, &options, extent, &|more| progress.add(more));
     progress.finish();
     let Exhausted { simulated, all, example } = found.map_err(|error| args.hardware.explain_study(error))?;
-    let hardware = format!("{}: the geometries of {extent}\n", model.name);
+    let what = match model.curve() {
+        CurveKind::Line { .. } => "lines from the origin",
+        CurveKind::Arc => "arcs about the origin inside a quadrant, with both ends on the circle",
+        _ => "lines from the origin, and arcs about it inside a quadrant with both ends on the circle",
+    };
+    let hardware = format!("{}: {what}, of the box {extent}\n", model.name);
     let Some(example) = example else {
         let what = "no operator loses a carry that is not announced, no assertion is violated, every end point is reached exactly";
         return if all {

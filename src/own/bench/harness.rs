@@ -34,24 +34,6 @@ pub(super) fn scope(netlist: &Netlist) -> String {
     scope
 }
 
-/// Names in the harness that a register of the netlist may have too.
-pub(super) const NAMES: [&str; 14] = [
-    "load",
-    "preset_position",
-    "busy",
-    "done",
-    "loaded",
-    "stepped",
-    "go",
-    "pending",
-    "reset_left",
-    "started",
-    "alive",
-    "start",
-    "before",
-    "clocks_left",
-];
-
 /// What drives a port of the netlist.
 enum Drive {
     Constant(u64),
@@ -74,7 +56,7 @@ impl Bench {
             reason,
         };
         announce(&mut netlist, &wraps).map_err(|(glob, why)| refused(WRAPS.name, &glob, why))?;
-        let (own_names, own_properties) = (netlist.names.len(), netlist.properties.len());
+        let own_properties = netlist.properties.len();
         let inputs: Vec<Net> = elaborate(netlist.clone())?.inputs().to_vec();
         let module = Module::continuing(netlist);
         let drives = self.wired(&module, hardware);
@@ -89,8 +71,6 @@ impl Bench {
                 None => Op::Const(0),
             };
         }
-        // The harness first, so that its ports are found by their names.
-        netlist.names.rotate_left(own_names);
         let mut traps: Vec<Net> = netlist.properties[own_properties..].iter().map(|property| property.never).collect();
         let strict = self.strict.iter().cloned().chain(hardware.get(&STRICT));
         for glob in strict {

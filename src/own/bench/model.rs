@@ -10,7 +10,7 @@ use crate::models::{
     AXES, CurveKind, Described, Hardware, Interpolates, Machine, Model, ModelError, OnOverflow, Plan, Reg, Words, know,
 };
 use crate::nc::Curve;
-use crate::netlist::cells::{NamedNet, Op, Source};
+use crate::netlist::cells::{NamedNet, Op};
 use crate::netlist::{Netlist, Width};
 
 /// Least bits of a position counter, so that a path that errs stays visible.
@@ -30,8 +30,8 @@ pub fn is_netlist(word: &str) -> bool {
 pub fn model(netlist: &str, bench: Option<&Path>) -> Result<&'static Model, BenchError> {
     // As one would give it to a command.
     let name = match bench {
-        Some(bench) => format!("{netlist} --bench {}", bench.display()),
-        None => netlist.to_owned(),
+        Some(bench) => format!("{} --bench {}", quoted(netlist), quoted(&bench.display().to_string())),
+        None => quoted(netlist),
     };
     if let Ok(known) = crate::models::find(&name) {
         return Ok(known);
@@ -51,6 +51,12 @@ pub fn model(netlist: &str, bench: Option<&Path>) -> Result<&'static Model, Benc
     }))
 }
 
+/// A path as a shell reads it.
+fn quoted(path: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "._-/+,:@%".contains(c);
+    if path.chars().all(plain) { path.to_owned() } else { format!("'{}'", path.replace('\'', r"'\''")) }
+}
+
 /// What hardware of one's own takes.
 static OPTIONS: &[&dyn Takes] = &[
     &ON_OVERFLOW.only(
@@ -67,11 +73,9 @@ static OPTIONS: &[&dyn Takes] = &[
 
 /// The registers of a netlist, those of the step table first, and the position counters of the harness.
 fn registers(netlist: &Netlist, table: Option<&[String]>) -> &'static [&'static dyn Declared] {
-    // The leaf where it is found by it alone, after the names of the harness.
-    let of_axis = |name: &str| AXES.contains(&name) || name.strip_prefix('d').is_some_and(|axis| AXES.contains(&axis));
-    let reserved = |name: &str| of_axis(name) || super::harness::NAMES.contains(&name);
+    // The leaf where it is found by it alone, and no axis of the harness is called so.
     let name = |named: &NamedNet| match netlist.find(&named.name) {
-        Some(found) if found.net == named.net && !reserved(&named.name) => named.name.clone(),
+        Some(found) if found.net == named.net && !AXES.contains(&named.name.as_str()) => named.name.clone(),
         _ => netlist.path(named),
     };
     let shown: Vec<&NamedNet> = table.into_iter().flatten().filter_map(|name| signal(netlist, name).ok()).collect();
@@ -79,10 +83,7 @@ fn registers(netlist: &Netlist, table: Option<&[String]>) -> &'static [&'static 
     let is_register = |named: &&NamedNet| !named.is_wide() && matches!(netlist.cell(named.net).op, Op::Register { .. });
     let others = netlist.names.iter().filter(is_register).filter(|named| shown.iter().all(|own| own.net != named.net));
     let declared = |named: &NamedNet, column: bool| -> &'static dyn Declared {
-        let about = match netlist.sources.get(named.net.index()) {
-            Some(Some(Source::File { file, line, .. })) => format!("{file}:{line}"),
-            _ => "a register of the netlist".to_owned(),
-        };
+        let about = netlist.line_of(named.net).unwrap_or_else(|| "a register of the netlist".to_owned());
         let register = Reg::new(name(named).leak(), Rule::Planned("as in the source"), about.leak());
         let register = if named.format.is_signed() { register.signed() } else { register };
         Box::leak(Box::new(if column { register } else { register.hidden() }))
@@ -100,17 +101,18 @@ impl Bench {
         names.filter_map(|name| Some((*name, self.netlist.width(self.netlist.find(name)?.net).get())))
     }
 
-    /// A word for a geometry.
-    fn value(&self, word: &Word, values: &[i128], cut: bool) -> Result<i128, ModelError> {
+    /// A word for a geometry, which must fit where there is a remedy for one that does not.
+    fn value(&self, word: &Word, values: &[i128], remedy: Option<&str>) -> Result<i128, ModelError> {
         let Word { name, expression, text, width, reading } = word;
         let wrong = |why: String| ModelError::Widths(format!("{}: {name} = {text}: {why}", self.file.display()));
         let value = expression.value(values).map_err(wrong)?;
-        if !cut && reading.bits(*width, value).is_none() {
-            let (least, greatest) = width.range(reading.is_signed());
-            let remedy = "give a smaller geometry or another expression; --on-overflow wrap cuts it";
-            return Err(wrong(format!("{value} does not fit in its {width}, {least} to {greatest}: {remedy}")));
+        match remedy {
+            Some(remedy) if reading.bits(*width, value).is_none() => {
+                let (least, greatest) = width.range(reading.is_signed());
+                Err(wrong(format!("{value} does not fit in its {width}, {least} to {greatest}: {remedy}")))
+            }
+            _ => Ok(value),
         }
-        Ok(value)
     }
 }
 
@@ -150,13 +152,16 @@ impl Described for Bench {
 
     fn words(&self, hardware: &Hardware, curve: &Curve) -> Result<Vec<Words>, ModelError> {
         let values = super::geometry::values(curve);
-        let cut = hardware.get(&ON_OVERFLOW) == OnOverflow::Wrap;
+        let remedy = match hardware.get(&ON_OVERFLOW) {
+            OnOverflow::Wrap => None,
+            _ => Some("give a smaller geometry or another expression; --on-overflow wrap cuts it"),
+        };
         let mut words = Words::new();
         for loaded in &self.loads {
-            words = words.set_input(loaded.word.name, self.value(&loaded.word, &values, cut)?);
+            words = words.set_input(loaded.word.name, self.value(&loaded.word, &values, remedy)?);
         }
         if let End::Clocks { word } = &self.end {
-            let clocks = self.value(word, &values, false)?;
+            let clocks = self.value(word, &values, Some("give another expression"))?;
             if clocks == 0 {
                 let file = self.file.display();
                 return Err(ModelError::Widths(format!(

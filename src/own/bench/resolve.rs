@@ -155,10 +155,7 @@ impl Resolver<'_> {
 
     /// A 1-bit signal, or its complement, which has a ! in front.
     fn wire(&self, text: &str) -> Result<Wire, Refusal> {
-        let (inverted, name) = match text.strip_prefix('!') {
-            Some(name) => (true, name.trim()),
-            None => (false, text.trim()),
-        };
+        let (inverted, name) = inverted(text);
         let net = self.named(name)?.net;
         self.one_bit(net, name)?;
         Ok(Wire { net, inverted })
@@ -214,10 +211,7 @@ impl Resolver<'_> {
     fn start(&self, name: &Spanned<String>, driven: &mut Vec<(Net, String)>) -> Result<Wire, BenchError> {
         let text = name.get_ref();
         let mut wire = || {
-            let (inverted, port) = match text.strip_prefix('!') {
-                Some(port) => (true, port.trim()),
-                None => (false, text.trim()),
-            };
+            let (inverted, port) = inverted(text);
             let net = self.input(port, driven, "start")?.net;
             self.one_bit(net, port)?;
             Ok(Wire { net, inverted })
@@ -303,7 +297,7 @@ impl Resolver<'_> {
         match (&axis.step, &axis.pulse, (&axis.up, &axis.down), &axis.quadrature, &axis.position) {
             (Some(name), None, (None, None), None, None) => strobe(name, true),
             (None, Some(name), (None, None), None, None) => {
-                let net = self.named(name.trim_start_matches('!').trim())?.net;
+                let net = self.named(inverted(name).1)?.net;
                 if self.netlist.width(net).get() > 1 { alone(Pulses::Signed(net)) } else { strobe(name, false) }
             }
             (None, None, (Some(up), Some(down)), None, None) => {
@@ -345,6 +339,12 @@ impl Resolver<'_> {
             },
         }
     }
+}
+
+/// Whether a name has a ! in front, and the name.
+fn inverted(text: &str) -> (bool, &str) {
+    let name = text.trim().strip_prefix('!');
+    (name.is_some(), name.unwrap_or(text).trim())
 }
 
 fn does_not_fit(text: &str, width: Width, reading: Reading) -> Refusal {

@@ -91,7 +91,7 @@ fn run(model: &Model, bench: &Testbench, curve: &Curve, tick: Tick<'_>) -> Optio
     tick(1);
     let (tallies, widths) = (overflows.tallies(), &bench.hardware().widths);
     let held = ranges.finish().into_iter().filter_map(|range| {
-        let name = widths.get_key_value(range.name.as_str()).or_else(|| widths.get_key_value(range.path.as_str()));
+        let name = widths.get_key_value(range.name.as_str());
         let of_range = tallies.iter().find(|tally| tally.first.component() == range.path && !tally.is_assertion());
         // What no unsigned width holds needs a sign at least.
         let results = of_range.map_or(1, |tally| tally.needed.unwrap_or(range.width.get() + 1));

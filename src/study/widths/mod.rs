@@ -20,8 +20,9 @@ use super::boxes::{Extent, Geometries, check_simulated};
 use super::kform::KForm;
 use super::proof::{Narrower, ProofError, Subject};
 use crate::testbench::Testbench;
+pub(super) use simulate::LIMIT;
 pub use simulate::ranges_alone;
-use simulate::{LIMIT, Runs, Seen, simulate, too_narrow};
+use simulate::{Runs, Seen, simulate, too_narrow};
 
 /// How the width of a register is known to be enough, and to be least.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

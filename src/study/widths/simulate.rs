@@ -15,7 +15,7 @@ use super::{Tick, Witness};
 use crate::testbench::{Ending, RangeWatch, Testbench};
 
 /// Clocks after which a run is given up.
-pub(super) const LIMIT: u64 = 1 << 24;
+pub(in crate::study) const LIMIT: u64 = 1 << 24;
 /// Clocks of a single run one bit below, at most, where a proof says how it ends.
 const SHOWN: u64 = 1 << 20;
 /// Single runs whose ranges are kept at once.

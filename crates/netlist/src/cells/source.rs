@@ -4,6 +4,8 @@ use std::fmt;
 use std::panic::Location;
 use std::sync::Arc;
 
+use super::{Net, Netlist};
+
 /// A source line.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum Source {
@@ -51,5 +53,16 @@ impl Source {
 impl fmt::Display for Source {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}", self.file(), self.line())
+    }
+}
+
+impl Netlist {
+    /// `file:line` of the source that a net was imported from.
+    #[must_use]
+    pub fn line_of(&self, net: Net) -> Option<String> {
+        match self.sources.get(net.index()) {
+            Some(Some(source @ Source::File { .. })) => Some(source.to_string()),
+            _ => None,
+        }
     }
 }
