@@ -35,7 +35,8 @@ pub(crate) fn run(args: &WidthsArgs) -> Result<(), Error> {
 /// What is wrong with a width that is given, in a sentence.
 fn too_narrow(model: &Model, register: &RegisterWidth) -> String {
     let RegisterWidth { name, given, needed, .. } = register;
-    let needs = format!("{name} of {given} bits is too narrow, it needs {needed}");
+    let more = if register.known == Known::AtLeast { " or more" } else { "" };
+    let needs = format!("{name} of {given} bits is too narrow, it needs {needed}{more}");
     match &register.fault {
         Some(fault) => format!("{needs}: {}", command(model, fault)),
         None if register.known != Known::Enough || *given < register.shown => needs,
@@ -50,6 +51,7 @@ fn known(register: &RegisterWidth) -> &'static str {
         Known::Exhaustive => "exhaustive",
         Known::Sampled => "sampled",
         Known::Enough => "enough",
+        Known::AtLeast => "at least",
     }
 }
 
@@ -104,6 +106,10 @@ fn table(model: &Model, found: &Widths) -> String {
             false => "overflow or never end at the default widths and are left out",
         };
         let _ = writeln!(text, "\n{} geometries {what}", found.faults);
+    }
+    if found.registers.iter().any(|register| register.known == Known::AtLeast) {
+        text +=
+            "\nat least: results did not fit, and what the register held after the first says nothing of a wider one\n";
     }
     if found.cut > 0 {
         let _ = writeln!(text, "\n{} geometries were followed for their first clocks only", found.cut);

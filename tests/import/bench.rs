@@ -6,6 +6,7 @@ use std::fs;
 use stepwave::models::{OnOverflow, Options, find};
 use stepwave::nc::{Arc, Curve, Direction, Line};
 use stepwave::netlist::Netlist;
+use stepwave::netlist::cells::{Claim, Operator, Property, Word};
 use stepwave::netlist::dsl::Module;
 use stepwave::report::Report;
 use stepwave::{Simulation, own};
@@ -362,4 +363,79 @@ fn registers_of_one_name_in_several_scopes_and_in_the_harness_are_kept_apart() {
         assert_eq!(recorded.code, 0, "{recorded:?}");
         assert_eq!(folder.run_words(&["golden", "check", "a b"]).code, 0);
     }
+}
+
+/// Hardware that counts its pulses in two bits, as an import would have it.
+fn narrow(folder: &Folder) {
+    let module = Module::new("t");
+    let m = module.top();
+    let (start, end) = (m.input("start", 1), m.input("n", 4));
+    let (left, narrow) = (m.reg("left", 4), m.reg("narrow", 2));
+    let pulse = m.name("pulse", left.q.is_nonzero());
+    left.when(start, end).when(pulse, left.q.wrapping_sub(m.lit(4, 1))).else_hold();
+    let one = m.lit(2, 1);
+    narrow.when(start, m.lit(2, 0)).when(pulse, narrow.q.wrapping_add(one)).else_hold();
+    let never = pulse & !start & narrow.q.equals(m.lit(2, 3));
+    m.name("ready", !pulse);
+    m.name("zero", m.lit(1, 0));
+    let [left, right] = [narrow.q, one].map(|signal| Word { nets: vec![signal.net()], signed: false });
+    let claim = Claim::Fits { operator: Operator::Add, left, right, bits: 2, signed: false, wraps: false };
+    let property = Property { name: "t.narrow".to_owned(), never: never.net(), claim };
+    let mut netlist = module.finish().expect("a netlist");
+    netlist.properties.push(property);
+    fs::write(folder.path("t.net"), netlist.to_string()).expect("written");
+    let bench = "load = { n = \"dx\" }\nstart = \"start\"\ndone = \"ready\"\n[axis.x]\npulse = \"pulse\"\n[axis.y]\npulse = \"zero\"\n";
+    fs::write(folder.path("t.toml"), bench).expect("written");
+}
+
+#[test]
+fn an_overflow_of_own_hardware_is_reported_traps_or_is_announced_as_the_user_says() {
+    let folder = Folder::new();
+    narrow(&folder);
+    let ran = |words: &str, code: i32| {
+        let ran = folder.run_words(&words.split(' ').collect::<Vec<_>>());
+        assert_eq!(ran.code, code, "{words}: {ran:?}");
+        ran.out + &ran.err
+    };
+    // The go at clock 1, the first pulse at 2, the fourth at 5.
+    let event = "overflow of t.narrow at clock 5: 3 + 1 = 4 does not fit in its 2 bits (0 to 3); 3 bits would hold it";
+    let run = ran("run t.net --to 9,0", 0);
+    assert!(run.contains(&format!("warning: {event} (2 times, 3 bits would hold all)")), "{run}");
+    let strict = ran("run t.net --to 9,0 --strict narrow", 1);
+    assert!(
+        strict.contains("stopped by an overflow at (3, 0)") && strict.contains(&format!("stepwave: {event}\n")),
+        "{strict}"
+    );
+    let wraps = ran("run t.net --to 9,0 --wraps narrow", 0);
+    assert!(!wraps.contains("overflow"), "{wraps}");
+    assert!(ran("run t.net --to 9,0 --wraps narrow --strict narrow", 2).contains("announced to lose its carry"));
+    assert!(
+        ran("run t.net --to 9,0 --strict nothing", 2)
+            .contains("it matches no property that it can be of; there are: t.narrow")
+    );
+    // Lanes see what a run sees.
+    let sweep = ran("sweep t.net --to-grid 1..9x0..0 --csv -", 0);
+    let overflows = |row: &str| row.split(',').nth(15).map(str::to_owned);
+    let found: Vec<Option<String>> = sweep.lines().skip(1).map(overflows).collect();
+    assert_eq!(found.iter().flatten().collect::<Vec<_>>(), ["0", "0", "0", "1", "1", "1", "1", "2", "2"], "{sweep}");
+    assert_eq!(ran("sweep t.net --to-grid 1..9x0..0 --strict narrow --csv -", 0).matches(",trapped,").count(), 6);
+    // What nine pulses need of a wider counter no run of this one shows.
+    let widths = ran("widths t.net --box 1..9x0..0", 1);
+    assert!(
+        widths.contains("narrow of 2 bits is too narrow, it needs 3 or more: stepwave run t.net --to 4,0"),
+        "{widths}"
+    );
+    assert!(widths.contains("at least: results did not fit"), "{widths}");
+    assert!(ran("widths t.net --box 1..3x0..0", 0).contains("narrow         2      2"));
+    assert!(ran("prove t.net --box 1..3x0..0", 0).contains("PROVED at these widths"));
+    assert!(ran("prove t.net --box 1..9x0..0", 1).contains("COUNTEREXAMPLE: stepwave run t.net --to 4,0\n"));
+    assert!(ran("prove t.net --box 1..9x0..0 --wraps narrow", 0).contains("(9 geometries, exhausted)"));
+    // An exported test bench ends where the run does.
+    let bench = |options: &str| {
+        ran(&format!("export t.net --to 9,0{options} --testbench tb.v"), 0);
+        let text = fs::read_to_string(folder.path("tb.v")).expect("a test bench");
+        text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(bench(""), bench(" --wraps narrow"));
+    assert_ne!(bench(""), bench(" --strict narrow"));
 }

@@ -23,6 +23,8 @@ struct Held {
     least: i128,
     greatest: i128,
     needed: u32,
+    /// A result did not fit.
+    lost: bool,
 }
 
 /// What a run came to: each register by name; nothing where it cannot be loaded.
@@ -61,6 +63,7 @@ pub(super) fn widths(
                 if held.needed > all.needed {
                     (all.needed, *worst) = (held.needed, place);
                 }
+                all.lost |= held.lost;
                 (all.least, all.greatest) = (all.least.min(held.least), all.greatest.max(held.greatest));
             }
         }
@@ -75,7 +78,7 @@ pub(super) fn widths(
             needed: held.needed,
             shown: held.needed,
             range: (held.least, held.greatest),
-            known,
+            known: if held.lost { Known::AtLeast } else { known },
             fault: (held.needed > given).then(|| witness.clone()),
             witness: (held.needed > 1).then_some(witness),
         }
@@ -95,7 +98,8 @@ fn run(model: &Model, bench: &Testbench, curve: &Curve, tick: Tick<'_>) -> Optio
         let of_range = tallies.iter().find(|tally| tally.first.component() == range.path && !tally.is_assertion());
         // What no unsigned width holds needs a sign at least.
         let results = of_range.map_or(1, |tally| tally.needed.unwrap_or(range.width.get() + 1));
-        let held = Held { least: range.least, greatest: range.greatest, needed: range.needed().max(results) };
+        let needed = range.needed().max(results);
+        let held = Held { least: range.least, greatest: range.greatest, needed, lost: of_range.is_some() };
         name.map(|(name, _)| (*name, held))
     });
     let (ended, cut) = (outcome.ending == Ending::Done, outcome.ending == Ending::Limit);

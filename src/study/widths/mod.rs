@@ -37,6 +37,8 @@ pub enum Known {
     Sampled,
     /// Proved to be enough, but no run is known that needs it.
     Enough,
+    /// Results did not fit, and what the register held after the first says nothing of a wider one: more may be needed.
+    AtLeast,
 }
 
 /// A run that a register is too narrow for.
