@@ -19,8 +19,8 @@ use crate::waves::WaveOptions;
     stepwave import dda.vhd --top dda -o dda.net\n\
     Verilog is read by Yosys, VHDL by GHDL and Yosys; nothing is optimised, so that widths are those of the source. JSON\n\
     that was made elsewhere needs no Yosys here:\n  \
-    yosys -p 'read_verilog -sv dda.v; hierarchy -check -top dda; proc -noopt -norom; flatten; opt_clean;\n           \
-    memory_collect; opt_clean; write_json dda.json'\n  \
+    yosys -p 'read_verilog -sv dda.v; hierarchy -check -top dda; proc -noopt -norom; flatten;\n           \
+    chformal -early; opt_clean; memory_collect; opt_clean; write_json dda.json'\n  \
     stepwave import --json dda.json -o dda.net")]
 #[command(group(clap::ArgGroup::new("source").required(true)))]
 pub(crate) struct ImportArgs {

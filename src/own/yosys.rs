@@ -122,8 +122,9 @@ fn script(source: &Source, files: &[PathBuf], json: &Path) -> Result<String, Yos
         script.push('\n');
     }
     // Only cleaned processes have constant enables of what `initial` writes into a memory.
-    // A register that no output reads is the author's all the same.
-    script += "proc -noopt -norom\nflatten\nsetattr -set keep 1 t:$*ff*\nopt_clean\nmemory_collect\nopt_clean\n";
+    // What is claimed at an edge is of the sample before it, not of a register after it. A register that no output reads is
+    // the author's all the same.
+    script += "proc -noopt -norom\nflatten\nchformal -early\nsetattr -set keep 1 t:$*ff*\nopt_clean\nmemory_collect\nopt_clean\n";
     script += &format!("write_json {}\n", quoted("file", json)?);
     Ok(script)
 }
