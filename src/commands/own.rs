@@ -1,5 +1,8 @@
 //! `stepwave import`, `check` and `sim`: hardware of one's own.
 
+use std::io::Write as _;
+use std::path::Path;
+
 use crate::Error;
 use crate::cli::{CheckArgs, ImportArgs, SimArgs};
 use crate::netlist::elaborate;
@@ -74,8 +77,12 @@ pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
         .wraps(&args.wraps)?
         .waves(args.trace.clone())
         .json(args.json.clone());
-    let report = sim.staged(&mut outputs)?;
-    let quiet = outputs.uses_stdout();
+    // What the hardware prints must not be mixed with a file.
+    let files = [&args.trace.vcd, &args.trace.fst, &args.json];
+    let quiet = files.into_iter().flatten().any(|file| file == Path::new("-"));
+    let mut screen = output::Screen::new(quiet);
+    let report = sim.staged(&mut outputs, &mut screen)?;
+    screen.flush()?;
     outputs.commit()?;
     let events = report.events();
     if !quiet {

@@ -48,7 +48,7 @@ fn refuse_undefined(text: &str, all: &[Property]) -> Result<(), String> {
         match property.claim {
             Claim::Fits { .. } => return Ok(()),
             Claim::Defined { undefined: of, .. } => undefined = Some((property, of)),
-            Claim::NoOverflow { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover => {}
+            Claim::NoOverflow { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover | Claim::Print { .. } => {}
         }
     }
     let Some((Property { name, .. }, of)) = undefined else { return Ok(()) };

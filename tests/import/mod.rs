@@ -4,6 +4,7 @@ mod bench;
 mod cells;
 mod command;
 mod overflow;
+mod printed;
 mod refused;
 mod undefined;
 mod wide;

@@ -169,3 +169,16 @@ fn exports_have_assumptions_as_constraints_and_no_cover() {
     // Of every clock from 0 to 3.
     assert_eq!(script.lines().filter(|line| line.starts_with("(assert (= ")).count(), 4, "{script}");
 }
+
+#[test]
+fn exports_claim_nothing_of_a_carry_that_is_announced_to_be_lost() {
+    let text = "netlist t\n%0:2 = input\n%1:2 = register reset 0x0 next %2\n%2:2 = add %1 %0\n%3:1 = carry %1 %0\n\
+                name %1 in 0 \"phase\" unsigned\nproperty \"t.phase\" never %3 fits 2 unsigned add %1 unsigned %0 unsigned";
+    for (end, claims) in [("\n", 1), (" wraps\n", 0)] {
+        let design = elaborate(text::parse(&format!("{text}{end}")).expect("text")).expect("a netlist");
+        let model = btor2(&design, &Checking::default()).expect("no memory");
+        assert_eq!(model.matches(" bad ").count(), claims, "{model}");
+        let script = smt2(&design, &Checking::default(), 1).expect("no memory");
+        assert_eq!(script.matches("; never.t.phase").count(), claims, "{script}");
+    }
+}

@@ -70,13 +70,13 @@ pub fn btor2(design: &Design, checking: &Checking<'_>) -> Result<String, HasMemo
     for (property, name) in netlist.properties.iter().zip(&symbols.properties) {
         let never = model.net(property.never);
         match property.claim {
-            Claim::Cover => {}
             Claim::Assumption => {
                 let (sort, symbol) = (model.sort(1), Some(name.as_str()));
                 let holds = model.line(&format!("not {sort} {never}"), None);
                 model.line(&format!("constraint {holds}"), symbol);
             }
-            _ => _ = model.line(&format!("bad {never}"), Some(name)),
+            ref claim if claim.is_goal() => _ = model.line(&format!("bad {never}"), Some(name)),
+            _ => {}
         }
     }
     Ok(model.text)

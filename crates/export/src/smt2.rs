@@ -60,11 +60,6 @@ pub fn smt2_asking(
     Ok(text + "\n; The question.\n" + &ask(&violated, &name))
 }
 
-/// A solver looks for its violation.
-fn asserts(claim: &Claim) -> bool {
-    !matches!(claim, Claim::Assumption | Claim::Cover)
-}
-
 /// Writing to a string cannot fail, so results of `writeln!` are dropped.
 struct Script<'a> {
     netlist: &'a Netlist,
@@ -122,7 +117,7 @@ impl<'a> Script<'a> {
         };
         let varies = |net: &Net| !held(net) && (named(net) || !is_constant(net));
         let nexts: BTreeSet<Net> = design.registers().iter().filter_map(next).filter(varies).collect();
-        let claimed = netlist.properties.iter().filter(|property| asserts(&property.claim));
+        let claimed = netlist.properties.iter().filter(|property| property.claim.is_goal());
         let flags: BTreeSet<Net> = claimed.map(|property| property.never).filter(varies).collect();
         let (nexts, flags) = (nexts.into_iter().collect(), flags.into_iter().collect());
         Script { netlist, symbols, registers: design.registers(), nets, nexts, flags }
@@ -208,7 +203,7 @@ impl<'a> Script<'a> {
     /// One of the properties is violated. A comment after each says what it is about, up to the end of the line.
     fn violated(&self) -> String {
         let properties = self.netlist.properties.iter().zip(&self.symbols.properties);
-        let properties = properties.filter(|(property, _)| asserts(&property.claim));
+        let properties = properties.filter(|(property, _)| property.claim.is_goal());
         let lines = properties.map(|(property, name)| format!("(= {} #b1) ; {name}", self.read(property.never)));
         match &lines.collect::<Vec<_>>()[..] {
             [] => "false".to_owned(),

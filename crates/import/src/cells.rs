@@ -9,7 +9,8 @@ use crate::word::Word;
 
 /// Cells whose result bits depend on the operand bits of the same place alone: they can be taken apart bit by bit.
 pub(crate) fn is_bitwise(kind: &str) -> bool {
-    matches!(kind, "$not" | "$pos" | "$and" | "$or" | "$xor" | "$xnor" | "$mux" | "$pmux" | "$bwmux" | "$buf")
+    let kinds = ["$not", "$pos", "$and", "$or", "$xor", "$xnor", "$bweqx", "$mux", "$pmux", "$bwmux", "$buf"];
+    kinds.contains(&kind)
 }
 
 /// Cells whose result bits depend on the operand bits of the same place and below, or from there on: arithmetic.
@@ -156,6 +157,10 @@ impl Design<'_> {
                 let (quotient, rest) = self.builder.divide(&x, &y, signed, cell.kind.ends_with("floor"));
                 let result = if cell.kind.starts_with("$div") { quotient } else { rest };
                 self.builder.fit(&result, bits, signed)
+            }
+            "$bweqx" => {
+                let [x, y] = [a, b].map(|wires| self.operand(wires, width, false, lane));
+                self.two("$xnor", &x, &y)
             }
             "$lt" | "$le" | "$gt" | "$ge" | "$eq" | "$ne" | "$eqx" | "$nex" => {
                 let wide = a.len().max(b.len());

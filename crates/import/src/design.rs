@@ -99,11 +99,7 @@ impl<'a> Design<'a> {
             Some(Wire::Net(net)) => self.names.get(net).map(|name| name.split('[').next().unwrap_or(name).to_owned()),
             _ => None,
         };
-        CellPlace {
-            kind: cell.kind.clone(),
-            name: driven.unwrap_or_else(|| name.to_owned()),
-            source: cell.place().map(|place| format!("{}:{}", place.file, place.line)),
-        }
+        CellPlace { kind: cell.kind.clone(), name: driven.unwrap_or_else(|| name.to_owned()), source: cell.line() }
     }
 
     /// What is wrong with a cell.

@@ -96,16 +96,23 @@ pub(crate) struct Place {
     pub(crate) column: u32,
 }
 
-/// The first place of an attribute `src` that is a line: `a.v:0.0-0.0|a.v:11.5-11.98`.
+/// The place of an attribute `src` that is a line of the cell's own: `a.v:0.0-0.0|a.v:11.5-11.98`.
+///
+/// Of a cell in a module that was flattened, older versions of Yosys list the places of its instances too; as they join
+/// them, its own is in the middle. An instance that is left keeps its place as `instance_src`.
 fn place(attributes: &BTreeMap<String, Value>) -> Option<Place> {
-    let Some(Value::Text(text)) = attributes.get("src") else { return None };
-    text.split('|').find_map(|place| {
-        let (file, range) = place.rsplit_once(':')?;
-        let from = range.split('-').next()?;
-        let (line, column) = from.split_once('.').unwrap_or((from, "0"));
-        let (line, column) = (line.parse().ok()?, column.parse().ok()?);
-        (line > 0).then(|| Place { file: file.to_owned(), line, column })
-    })
+    let text = attributes.get("src").or(attributes.get("instance_src"));
+    let Some(Value::Text(text)) = text else { return None };
+    let places: Vec<Option<Place>> = text.split('|').map(one_place).collect();
+    places.get(places.len() / 2).cloned().flatten().or_else(|| places.into_iter().flatten().next())
+}
+
+fn one_place(text: &str) -> Option<Place> {
+    let (file, range) = text.rsplit_once(':')?;
+    let from = range.split('-').next()?;
+    let (line, column) = from.split_once('.').unwrap_or((from, "0"));
+    let (line, column) = (line.parse().ok()?, column.parse().ok()?);
+    (line > 0).then(|| Place { file: file.to_owned(), line, column })
 }
 
 impl Module {
@@ -158,6 +165,11 @@ impl Cell {
 
     pub(crate) fn place(&self) -> Option<Place> {
         place(&self.attributes)
+    }
+
+    /// The line of the source: `FILE:LINE`.
+    pub(crate) fn line(&self) -> Option<String> {
+        self.place().map(|place| format!("{}:{}", place.file, place.line))
     }
 }
 

@@ -87,7 +87,7 @@ pub fn import(text: &str, options: &Options) -> Result<Imported, ImportError> {
     }
     design.clock_memories();
     design.name_nets(&mut scopes, clock.as_ref().map(|(_, net)| *net));
-    design.assertions();
+    design.assertions(clock.as_ref().map(|(_, net)| *net));
     let mut readers = design.readers();
     design.overflows(&mut scopes, &mut readers);
     design.undefined(&mut scopes, &mut readers);

@@ -124,7 +124,8 @@ impl<'a> Design<'a> {
     pub(crate) fn readers(&self) -> Readers<'a> {
         let mut of: HashMap<u32, Vec<Reader<'a>>> = HashMap::new();
         let module = self.module;
-        for (name, cell) in &module.cells {
+        // What only a text shows is not part of the hardware.
+        for (name, cell) in module.cells.iter().filter(|(_, cell)| cell.kind != "$print") {
             for (pin, wires) in
                 cell.connections.iter().filter(|(pin, _)| !matches!(pin.as_str(), "Y" | "Q" | "RD_DATA"))
             {

@@ -12,6 +12,7 @@ mod undefined;
 
 use crate::bits::Width;
 use crate::formula::Clause;
+use crate::message::Message;
 pub use crate::operator::Operator;
 
 pub use memory::{HasMemories, Memory, WritePort};
@@ -269,14 +270,23 @@ pub enum Claim {
     Assumption,
     /// What the author wants to see in some run: 1 in a sample that shows it, and no violation.
     Cover,
+    /// A text of the author's: printed at the edge after a sample in which the net is 1, and no violation.
+    Print {
+        /// The text.
+        message: Message,
+        /// The numbers in it.
+        numbers: Vec<Word>,
+        /// It is printed once, before the first edge, if the net is 1 in sample 0.
+        once: bool,
+    },
 }
 
 impl Claim {
-    /// The net must never be 1, so that a run in which it is 1 shows a mistake: neither an assumption, nor a cover, nor what
-    /// is announced to be lost.
+    /// The net must never be 1, so that a run in which it is 1 shows a mistake: neither an assumption, nor a cover, nor a
+    /// text, nor what is announced to be lost.
     #[must_use]
     pub fn is_goal(&self) -> bool {
-        !self.is_announced() && !matches!(self, Claim::Assumption | Claim::Cover)
+        !self.is_announced() && !matches!(self, Claim::Assumption | Claim::Cover | Claim::Print { .. })
     }
 
     /// What an operator of imported hardware loses is announced: it is shown, and not reported.
@@ -298,6 +308,9 @@ impl Claim {
                 Claim::Fits { operator, left, right, bits, signed, wraps }
             }
             Claim::Defined { undefined, operand } => Claim::Defined { undefined, operand: operand.map(go) },
+            Claim::Print { message, numbers, once } => {
+                Claim::Print { message, numbers: numbers.into_iter().map(|word| word.map(&mut go)).collect(), once }
+            }
             same @ (Claim::Invariant | Claim::Assumption | Claim::Cover) => same,
         }
     }
@@ -314,7 +327,7 @@ impl Claim {
     }
 }
 
-/// A net that must never be 1, unless it is a [cover](Claim::Cover). The simulator watches it, a prover proves it.
+/// A net that must never be 1, if its claim is a [goal](Claim::is_goal). The simulator watches it, a prover proves it.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Property {
     /// Path of the component that it is about.

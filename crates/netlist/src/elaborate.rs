@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::bits::Width;
-use crate::cells::{Claim, HasMemories, NamedNet, Net, Netlist, Op, ScopeId};
+use crate::cells::{Claim, HasMemories, NamedNet, Net, Netlist, Op, ScopeId, Word};
 use crate::diag::{Code, Diagnostic, Diagnostics, Place};
 use crate::dsl::is_identifier;
 
@@ -212,8 +212,19 @@ fn check_properties(netlist: &Netlist, report: &mut impl FnMut(Code, Place, Stri
             let words = match &property.claim {
                 Claim::Fits { left, right, .. } => vec![left, right],
                 Claim::Defined { operand, .. } => vec![operand],
+                Claim::Print { numbers, .. } => numbers.iter().collect(),
                 Claim::NoOverflow { .. } | Claim::Invariant | Claim::Assumption | Claim::Cover => Vec::new(),
             };
+            if let Claim::Print { message, numbers, .. } = &property.claim {
+                let bits = |word: &Word| netlist.bits(word.nets.iter().copied());
+                if !message.numbers().eq(numbers.iter().map(bits)) {
+                    report(
+                        Code::WidthMismatch,
+                        place.clone(),
+                        "the text shows other widths than its numbers have".to_owned(),
+                    );
+                }
+            }
             for message in words.into_iter().filter_map(|word| netlist.word_mistake(&word.nets)) {
                 report(Code::WidthMismatch, place.clone(), message);
             }
@@ -231,6 +242,8 @@ fn live_cells(netlist: &Netlist) -> Vec<bool> {
     let mut live = vec![false; netlist.cells.len()];
     let mut pending: Vec<Net> = netlist.names.iter().flat_map(NamedNet::nets).collect();
     pending.extend(netlist.properties.iter().map(|property| property.never));
+    // Operands of operators are read by them; the numbers of a text by nothing else.
+    pending.extend(netlist.properties.iter().flat_map(|property| property.claim.nets()));
     pending.extend(netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()));
     for cell in &netlist.cells {
         if let Op::Register { next: Some(next), .. } = cell.op {

@@ -31,6 +31,7 @@ pub mod diag;
 pub mod dsl;
 mod elaborate;
 pub mod formula;
+pub mod message;
 mod nearest;
 mod operator;
 pub mod passes;

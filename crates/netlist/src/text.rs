@@ -115,6 +115,11 @@ fn list(nets: impl Iterator<Item = Net>) -> String {
     nets.map(|net| format!(" {net}")).collect()
 }
 
+/// The nets of a word and its reading, after a blank.
+fn operand(word: &Word) -> String {
+    list(word.nets.iter().copied()) + " " + reading(word.signed)
+}
+
 fn reading(signed: bool) -> &'static str {
     if signed { "signed" } else { "unsigned" }
 }
@@ -146,15 +151,18 @@ impl fmt::Display for Netlist {
                 Claim::Invariant => writeln!(f, " invariant")?,
                 Claim::Assumption => writeln!(f, " assumption")?,
                 Claim::Cover => writeln!(f, " cover")?,
+                Claim::Print { message, numbers, once } => {
+                    write!(f, " print {}{:?}", if *once { "once " } else { "" }, message.to_string())?;
+                    numbers.iter().try_for_each(|word| f.write_str(&self::operand(word)))?;
+                    writeln!(f)?;
+                }
                 Claim::Fits { operator, left, right, bits, signed, wraps } => {
-                    let operand = |word: &Word| list(word.nets.iter().copied()) + " " + reading(word.signed);
                     let (left, right, own) = (operand(left), operand(right), reading(*signed));
                     let wraps = if *wraps { " wraps" } else { "" };
                     writeln!(f, " fits {bits} {own} {}{left}{right}{wraps}", operator.name())?;
                 }
                 Claim::Defined { undefined, operand } => {
-                    let (nets, sign) = (list(operand.nets.iter().copied()), reading(operand.signed));
-                    write!(f, " {}{nets} {sign}", undefined.name())?;
+                    write!(f, " {}{}", undefined.name(), self::operand(operand))?;
                     match undefined.memory() {
                         Some((first, words)) => writeln!(f, " words {words} from {first}")?,
                         None => writeln!(f)?,
@@ -271,6 +279,7 @@ impl Parser {
                     "invariant" => Claim::Invariant,
                     "assumption" => Claim::Assumption,
                     "cover" => Claim::Cover,
+                    "print" => words.print()?,
                     "fits" => words.fits()?,
                     "add" => words.strict(Arithmetic::Add)?,
                     "sub" => words.strict(Arithmetic::Sub)?,

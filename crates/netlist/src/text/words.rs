@@ -4,6 +4,7 @@ use std::str::CharIndices;
 
 use super::{BINARY, Expected};
 use crate::cells::{Arithmetic, Claim, Format, Net, Op, Operand, Operator, Undefined, Word};
+use crate::message::Message;
 
 /// A number, written in digits and nothing else.
 pub(super) fn digits(word: &str, radix: u32) -> Option<u64> {
@@ -114,7 +115,7 @@ impl<'a> Words<'a> {
         let known = ["quotient", "remainder", "read", "write"];
         if !known.contains(&word) {
             return Err(
-                "'invariant', 'assumption', 'cover', 'fits', 'add', 'sub', 'quotient', 'remainder', 'read' or 'write'"
+                "'invariant', 'assumption', 'cover', 'print', 'fits', 'add', 'sub', 'quotient', 'remainder', 'read' or 'write'"
                     .to_owned(),
             );
         }
@@ -131,6 +132,20 @@ impl<'a> Words<'a> {
             }
         };
         Ok(Claim::Defined { undefined, operand })
+    }
+
+    /// A text that is printed, and its numbers.
+    pub(super) fn print(&mut self) -> Result<Claim, Expected> {
+        let once = self.rest.starts_with("once");
+        if once {
+            self.keyword("once")?;
+        }
+        let message = Message::parse(&self.quoted()?)?;
+        let mut numbers = Vec::new();
+        while self.rest.starts_with('%') {
+            numbers.push(self.operand_word()?);
+        }
+        Ok(Claim::Print { message, numbers, once })
     }
 
     fn operand_word(&mut self) -> Result<Word, Expected> {
