@@ -78,6 +78,41 @@ fn the_sign_of_the_register_and_a_sign_extension_by_hand_decide_what_fits() {
 }
 
 #[test]
+fn a_power_is_an_event_where_its_exact_result_does_not_fit() {
+    let (x, y, q): (Vec<u32>, Vec<u32>, Vec<u32>) = ((10..14).collect(), (20..28).collect(), (30..38).collect());
+    for (signed, exponent) in
+        [(false, 3), (true, 3), (false, 2), (true, 2), (true, 8), (true, 101), (false, 100), (true, 1)]
+    {
+        let ones: &[&str] = if signed { &["A_SIGNED"] } else { &[] };
+        let constant: Vec<String> = (0..7).map(|bit| (exponent >> bit & 1).to_string()).collect();
+        let cells = json!({
+            "pow": cell("$pow", ones, json!({ "A": x, "B": constant, "Y": y })),
+            "ff": cell("$dff", &["CLK_POLARITY"], json!({ "CLK": [2], "D": y, "Q": q })),
+        });
+        let ports = json!({ "clk": port("input", [2]), "x": port("input", x.clone()), "q": port("output", q.clone()) });
+        let mut names = json!({ "clk": name([2]), "x": name(x.clone()), "q": name(q.clone()) });
+        names["q"]["signed"] = json!(i32::from(signed));
+        let design = design(&module(ports, cells, names));
+        let fits = |x: u64| {
+            let x = if signed && x > 7 { i128::from(x) - 16 } else { i128::from(x) };
+            let exact = x.checked_pow(exponent);
+            exact.is_some_and(|exact| if signed { (-128..128).contains(&exact) } else { (0..256).contains(&exact) })
+        };
+        let [property] = design.netlist().properties.as_slice() else {
+            assert!((0..16).all(fits), "{signed} {exponent}");
+            continue;
+        };
+        let Claim::Fits { operator, .. } = &property.claim else { panic!() };
+        assert_eq!(operator.sign(), "**");
+        let inputs: Vec<[(&str, u64); 1]> = (0..16).map(|x| [("t.x", x)]).collect();
+        let inputs: Vec<&[(&str, u64)]> = inputs.iter().map(|row| row.as_slice()).collect();
+        for (x, row) in (0..16).zip(samples(&design, &["t.overflow.q"], &inputs)) {
+            assert_eq!(row[0] == 0, fits(x), "{signed} {x} ** {exponent}");
+        }
+    }
+}
+
+#[test]
 fn an_attribute_of_the_register_announces_that_it_wraps() {
     let add = cell("$add", &[], json!({ "A": [4, 5], "B": ["1"], "Y": [6, 7] }));
     let mut wraps = names();

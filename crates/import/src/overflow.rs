@@ -150,7 +150,7 @@ impl<'a> Design<'a> {
     /// A property for every operator whose result may not fit.
     pub(crate) fn overflows(&mut self, scopes: &mut Scopes, readers: &mut Readers<'a>) {
         let module = self.module;
-        let arithmetic = |kind: &str| matches!(kind, "$add" | "$sub" | "$neg" | "$mul" | "$shl" | "$sshl");
+        let arithmetic = |kind: &str| matches!(kind, "$add" | "$sub" | "$neg" | "$mul" | "$pow" | "$shl" | "$sshl");
         let mut flags: Vec<(String, Net)> = Vec::new();
         for (name, cell) in module.cells.iter().filter(|(_, cell)| arithmetic(&cell.kind)) {
             let y = cell.pin("Y");
@@ -205,24 +205,36 @@ impl<'a> Design<'a> {
             "$sub" => Operator::Sub,
             "$neg" => Operator::Neg,
             "$mul" => Operator::Mul,
+            "$pow" => Operator::Power,
             _ => Operator::ShiftLeft,
         };
         let shift = operator == Operator::ShiftLeft;
-        let both = cell.flag("A_SIGNED") && (operator == Operator::Neg || shift || cell.flag("B_SIGNED"));
+        let power = operator == Operator::Power;
+        let of_left = matches!(operator, Operator::Neg | Operator::ShiftLeft | Operator::Power);
+        let both = cell.flag("A_SIGNED") && (of_left || cell.flag("B_SIGNED"));
         let a = self.operand_read(cell.pin("A"), is_signed(cell.pin("A"), both))?;
         let b = match operator {
             Operator::Neg => self.operand_read(&[Wire::Constant("0".to_owned())], false)?,
+            // An exponent that is imported is not negative.
+            Operator::Power => self.operand_read(cell.pin("B"), false)?,
             _ => self.operand_read(cell.pin("B"), is_signed(cell.pin("B"), both && !shift) && !shift)?,
         };
         // What nobody has named is read as its operands are.
-        let unnamed = both || a.signed && (b.signed || matches!(operator, Operator::Neg | Operator::ShiftLeft));
+        let unnamed = both || a.signed && (b.signed || of_left);
         let (signed, wraps) = (target.signed.unwrap_or(unnamed), target.wraps);
         let results = a.range.zip(b.range).and_then(|(a, b)| operator.range(a, b));
         if results.is_some_and(|(low, high)| holds(kept, signed, low) && holds(kept, signed, high)) {
             return None;
         }
         let bits = u32::try_from(kept).unwrap_or(u32::MAX);
-        let outside = self.outside(operator, &a, &b, bits, signed);
+        let outside = match b.range {
+            // Of a constant exponent alone.
+            Some([least, exponent]) if power && least == exponent && exponent > 1 => {
+                self.power_outside(&a, exponent, bits, signed)
+            }
+            _ if power => return None,
+            _ => self.outside(operator, &a, &b, bits, signed),
+        };
         let taken = self.cell_taken(name, cell, readers);
         // A bit of its own, so that it has the line of this operator.
         let never = self.builder.push(Op::And(outside, taken), 1);
@@ -293,6 +305,34 @@ impl<'a> Design<'a> {
         let shown = self.builder.fit(&cut, wide, signed);
         let same = self.builder.equal(&shown, &exact);
         self.builder.invert(same)
+    }
+
+    /// The same of a power, without more bits than those of the base that can matter.
+    fn power_outside(&mut self, base: &Read, exponent: i128, kept: u32, signed: bool) -> Net {
+        // What is neither 0, 1 nor -1 has with such an exponent more bits than are kept: the least that is odd or even too.
+        let most = i128::from(kept) + 2;
+        let exponent = exponent.min(most + (exponent - most).rem_euclid(2));
+        let exponent = u32::try_from(exponent).unwrap_or(0);
+        // A base that does not fit in these bits, of which one is a sign, overflows.
+        let narrow = (kept + 1).div_ceil(exponent.max(1)) + 2;
+        let all = self.builder.fit(&base.word, base.word.width.max(narrow) + 1, base.signed);
+        let low = self.builder.fit(&all, narrow, false);
+        let back = self.builder.fit(&low, all.width, true);
+        let small = self.builder.equal(&back, &all);
+        let wide = (narrow * exponent).max(kept) + 2;
+        let factor = self.builder.fit(&low, wide, true);
+        let mut exact = self.builder.number(1, wide);
+        for bit in (0..u32::BITS - exponent.leading_zeros()).rev() {
+            exact = self.builder.mul(&exact, &exact);
+            if exponent >> bit & 1 == 1 {
+                exact = self.builder.mul(&exact, &factor);
+            }
+        }
+        let cut = self.builder.fit(&exact, kept, false);
+        let shown = self.builder.fit(&cut, wide, signed);
+        let same = self.builder.equal(&shown, &exact);
+        let fits = self.builder.and(small, same);
+        self.builder.invert(fits)
     }
 
     /// What the result of a cell of this name is for.

@@ -15,6 +15,8 @@ pub enum Operator {
     Mul,
     /// left * 2^right
     ShiftLeft,
+    /// left^right, of an exponent that is not negative
+    Power,
 }
 
 impl From<Arithmetic> for Operator {
@@ -28,7 +30,8 @@ impl From<Arithmetic> for Operator {
 
 impl Operator {
     /// Every operator.
-    pub const ALL: [Operator; 5] = [Operator::Add, Operator::Sub, Operator::Neg, Operator::Mul, Operator::ShiftLeft];
+    pub const ALL: [Operator; 6] =
+        [Operator::Add, Operator::Sub, Operator::Neg, Operator::Mul, Operator::ShiftLeft, Operator::Power];
 
     /// Its word in the text form and in reports.
     #[must_use]
@@ -39,6 +42,7 @@ impl Operator {
             Operator::Neg => "neg",
             Operator::Mul => "mul",
             Operator::ShiftLeft => "shift-left",
+            Operator::Power => "power",
         }
     }
 
@@ -50,6 +54,7 @@ impl Operator {
             Operator::Sub | Operator::Neg => "-",
             Operator::Mul => "*",
             Operator::ShiftLeft => "<<",
+            Operator::Power => "**",
         }
     }
 
@@ -67,12 +72,21 @@ impl Operator {
                     u32::try_from(right).ok().and_then(|bits| 1i128.checked_shl(bits)).filter(|factor| *factor > 0);
                 left.checked_mul(factor?)
             }
+            // Of larger exponents: 0, 1 and -1 by whether it is odd; of all others the result has more bits.
+            Operator::Power if right > 128 => left.checked_pow(128 + u32::from(right % 2 == 1)),
+            Operator::Power => u32::try_from(right).ok().and_then(|exponent| left.checked_pow(exponent)),
         }
     }
 
     /// Least and greatest exact result of operands in these ranges; `None` where one has more than 127 bits.
     #[must_use]
     pub fn range(self, left: [i128; 2], right: [i128; 2]) -> Option<(i128, i128)> {
+        let (mut left, mut right) = (left.to_vec(), right.to_vec());
+        if self == Operator::Power {
+            // Even powers are least at 0, and of negative numbers the greatest exponent that is odd counts, too.
+            left.extend((left[0] < 0 && left[1] > 0).then_some(0));
+            right.extend((right[0] < right[1]).then_some(right[1] - 1));
+        }
         let corners = left.iter().flat_map(|&left| right.iter().map(move |&right| self.exact(left, right)));
         let corners: Vec<i128> = corners.collect::<Option<_>>()?;
         Some((corners.iter().copied().min()?, corners.iter().copied().max()?))
@@ -100,6 +114,9 @@ mod tests {
         assert_eq!(Operator::ShiftLeft.exact(1, 126), Some(1 << 126));
         assert_eq!(Operator::ShiftLeft.exact(1, 127), None);
         assert_eq!(Operator::Mul.exact(i128::MAX, 2), None);
+        assert_eq!(Operator::Power.exact(-2, 126), Some(1 << 126));
+        assert_eq!((Operator::Power.exact(2, 127), Operator::Power.exact(-3, 1 << 40)), (None, None));
+        assert_eq!((Operator::Power.exact(-1, (1 << 40) + 1), Operator::Power.exact(0, 0)), (Some(-1), Some(1)));
         assert_eq!(Operator::ShiftLeft.exact(0, 1 << 40), Some(0));
     }
 }

@@ -22,6 +22,13 @@ pub(super) fn exact(operator: Operator, left: &BigInt, right: &BigInt) -> Option
         Operator::Neg => -left,
         Operator::Mul => left * right,
         Operator::ShiftLeft if *left == BigInt::ZERO => BigInt::ZERO,
+        Operator::Power if left.bits() <= 1 => {
+            left.pow(u32::from(right.bit(0)) + 2 * u32::from(*right > BigInt::from(1)))
+        }
+        Operator::Power => {
+            let exponent = u32::try_from(right).ok().filter(|by| u64::from(*by) * left.bits() <= MOST_BITS)?;
+            left.pow(exponent)
+        }
         Operator::ShiftLeft => left << u64::try_from(right).ok().filter(|by| by + left.bits() <= MOST_BITS)?,
     })
 }
@@ -68,8 +75,11 @@ mod tests {
     #[test]
     fn exact_results_are_those_of_the_operators_where_they_have_127_bits() {
         for operator in Operator::ALL {
-            for (left, right) in [(0, 5), (7, 3), (-4, 1), (-9, 60), (1 << 62, 40)] {
+            for (left, right) in
+                [(0, 5), (7, 3), (-4, 1), (-9, 60), (1 << 62, 40), (-1, 41), (0, 0), (1, 200), (0, 3), (-7, 1)]
+            {
                 let got = exact(operator, &BigInt::from(left), &BigInt::from(right));
+                let got = got.filter(|number| number.bits() < 128);
                 assert_eq!(got, operator.exact(left, right).map(BigInt::from), "{operator:?} {left} {right}");
             }
         }

@@ -166,7 +166,7 @@ impl<'a> Words<'a> {
     fn operator(&mut self) -> Result<Operator, Expected> {
         let word = self.word()?;
         let operator = Operator::ALL.into_iter().find(|operator| operator.name() == word);
-        operator.ok_or_else(|| "'add', 'sub', 'neg', 'mul' or 'shift-left'".to_owned())
+        operator.ok_or_else(|| "'add', 'sub', 'neg', 'mul', 'shift-left' or 'power'".to_owned())
     }
 
     /// The word `wraps`, or the end.
