@@ -32,8 +32,8 @@ use super::{BenchArgs, HardwareArgs};
     stepwave prove check line.cert\n  \
     stepwave prove dda.net --set rst=0 --stimulus-out example.csv\n\n\
     Of a netlist (a path that ends in .net or holds a /) every property is decided at its own widths: that no operator loses a\n\
-    carry that is not announced, and every assertion. Inputs take any value in every clock, but for those of --set and of\n\
-    --stimulus. A counterexample has the fewest clocks; `stepwave sim F.net --stimulus example.csv` shows it again. With --box or --travel, and a\n\
+    carry that is not announced, and every assertion. Inputs take any value in every clock, but for those of --set, of\n\
+    --stimulus, and of the reset and the constants of a bench file (F.toml next to F.net, or --bench; --no-bench leaves it out). A counterexample has the fewest clocks; `stepwave sim F.net --stimulus example.csv` shows it again. With --box or --travel, and a\n\
     bench file, every geometry of the box is run: stepwave prove dda.net --box 0..50x0..50"
 )]
 pub(crate) struct ProveArgs {
@@ -59,10 +59,11 @@ pub(crate) struct ProveArgs {
     /// The geometries: those with ends within ±X and ±Y (default: X), in whole BLU
     #[arg(long, value_name = "X[,Y]", conflicts_with = "extent", allow_hyphen_values = true, value_parser = parse_travel)]
     pub(crate) travel: Option<Travel>,
-    /// Ask an SMT solver too, which reads SMT-LIB 2 from its input, about every geometry of --bits (default 2): 'z3 -in'
+    /// Ask an SMT solver too, which reads SMT-LIB 2 from its input, about every geometry of --bits (default 2): 'z3 -in'.
+    /// Of a netlist: the questions that the verdicts rest on
     #[arg(long, value_name = "COMMAND")]
     pub(crate) solver: Option<String>,
-    /// Seconds after which the solver is stopped
+    /// Seconds after which the solver is stopped, for each question
     #[arg(long, value_name = "SECONDS", default_value_t = 60, requires = "solver")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=86_400))]
     pub(crate) solver_seconds: u64,
@@ -111,6 +112,12 @@ pub(crate) struct NetlistProofArgs {
     /// Write the inputs of the first counterexample as a stimulus of `stepwave sim`
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Csv]))]
     pub(crate) stimulus_out: Option<PathBuf>,
+    /// Look at runs that the bench file next to the netlist does not allow, too
+    #[arg(long, conflicts_with = "bench")]
+    pub(crate) no_bench: bool,
+    /// Write the verdicts as JSON
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json]))]
+    pub(crate) json: Option<PathBuf>,
 }
 
 impl NetlistProofArgs {
@@ -124,6 +131,8 @@ impl NetlistProofArgs {
             (self.time.is_some(), "--time"),
             (self.memory.is_some(), "--memory"),
             (self.stimulus_out.is_some(), "--stimulus-out"),
+            (self.json.is_some(), "--json"),
+            (self.no_bench, "--no-bench"),
         ];
         given.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
     }
@@ -134,7 +143,8 @@ impl ProveArgs {
     pub(crate) fn of_models(&self) -> Option<String> {
         let options = self.hardware.choices();
         let option = options.given().iter().map(|value| value.option().name()).find(|name| *name != WRAPS.name);
-        self.of_proofs().map(str::to_owned).or_else(|| option.map(|name| format!("--{name}")))
+        let of_proofs = self.of_proofs().filter(|option| *option != "--solver");
+        of_proofs.map(str::to_owned).or_else(|| option.map(|name| format!("--{name}")))
     }
 
     /// The first option that is given and that only proofs of models take.

@@ -1,5 +1,6 @@
 //! A bench file: what the ports of a netlist mean, so that it runs geometries as a model does.
 
+mod conditions;
 mod expression;
 mod file;
 mod geometry;
@@ -18,6 +19,7 @@ use crate::netlist::cells::{NamedNet, ScopeId};
 use crate::netlist::{Net, Netlist, Width};
 use crate::testbench::net_named;
 
+pub(crate) use conditions::{Conditions, Fixed};
 pub use model::{is_netlist, model};
 
 /// Why a bench file does not describe hardware.
@@ -84,6 +86,10 @@ struct Word {
     text: String,
     width: Width,
     reading: Reading,
+    /// Bits of the input, whether it is signed, and which of its nets of up to 64 bits takes the word, the lowest first.
+    bits: u32,
+    of_signed: bool,
+    part: u32,
 }
 
 /// An input, and the word on it.
@@ -106,6 +112,8 @@ enum Pulses {
     Quadrature([Wire; 2]),
     /// A counter of pulses, of any width.
     Position(Net),
+    /// It never pulses: the y axis of a machine of one axis, as a geometry has two.
+    Still,
 }
 
 /// A netlist whose ports have a meaning.
@@ -140,14 +148,19 @@ struct Reset {
 }
 
 /// The signal of this name: of the top, by its path, or by the end of it.
-fn signal<'n>(netlist: &'n Netlist, name: &str) -> Result<&'n NamedNet, String> {
+fn word<'n>(netlist: &'n Netlist, name: &str) -> Result<&'n NamedNet, String> {
     let of_top = format!("{}.{name}", netlist.scopes[0].name);
     let found = netlist.names.iter().find(|named| named.name == name && named.scope == ScopeId::TOP);
     let found = found.or_else(|| netlist.names.iter().find(|named| netlist.path(named) == of_top));
-    let found = found.map_or_else(|| net_named(netlist, name), Ok)?;
+    found.map_or_else(|| net_named(netlist, name), Ok)
+}
+
+/// The same of up to 64 bits.
+fn signal<'n>(netlist: &'n Netlist, name: &str) -> Result<&'n NamedNet, String> {
+    let found = word(netlist, name)?;
     if found.is_wide() {
         let bits = netlist.bits(found.nets());
-        return Err(format!("'{name}' has {bits} bits: a bench file takes signals of up to 64"));
+        return Err(format!("'{name}' has {bits} bits: of signals that are not inputs a bench file takes up to 64"));
     }
     Ok(found)
 }

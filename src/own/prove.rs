@@ -1,7 +1,10 @@
 //! The recipe of a proof about a netlist at its own widths: netlist and inputs in; a verdict for every property out.
 
+mod report;
+mod second;
+
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::Error;
@@ -13,6 +16,14 @@ use crate::prove::sat::{self, Decision, Inputs, Limit, Limits, Question};
 use crate::trace::pattern::{fits, glob};
 use crate::waves::WaveOptions;
 
+use report::{claimed, clocks};
+
+use second::Solver;
+
+pub use report::{BenchReport, Counterexample, Goal, ProveReport, Verdict};
+pub use second::SecondOpinion;
+
+use super::bench::{Conditions, Fixed};
 use super::example::Example;
 use super::stimulus::inputs;
 use super::{Sim, Stimulus, announce, matching};
@@ -43,63 +54,9 @@ pub struct Prove {
     limits: Limits,
     vcd: Option<PathBuf>,
     csv: Option<PathBuf>,
-}
-
-/// Verdicts about a netlist.
-#[derive(Clone, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub struct ProveReport {
-    /// Of each property that is to be proved.
-    pub goals: Vec<Goal>,
-    /// Inputs that are free in some sample.
-    pub free: Vec<String>,
-    /// Assumptions of the source: runs that violate one are not looked at.
-    pub assumed: Vec<String>,
-    /// Why goals are open, if some are.
-    pub open: Option<String>,
-}
-
-/// A property and its verdict.
-#[derive(Clone, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub struct Goal {
-    /// Path of the component that it is about.
-    pub name: String,
-    /// What is claimed, in words.
-    pub claim: String,
-    /// `file:line` of its source, of imported hardware.
-    pub source: Option<String>,
-    /// What is known of it.
-    pub verdict: Verdict,
-}
-
-/// What is known of a property.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub enum Verdict {
-    /// No run violates it.
-    Proved {
-        /// Clocks in a row without a violation that exclude one in the next.
-        induction: usize,
-    },
-    /// A run violates it, as the simulator has shown.
-    Counterexample(Counterexample),
-    /// It is open.
-    Unknown {
-        /// The last clock up to which no run violates it, if there is one.
-        clean: Option<u64>,
-    },
-}
-
-/// A run with a violation; no run has one in an earlier clock.
-#[derive(Clone, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub struct Counterexample {
-    /// The clock of the violation.
-    pub clock: u64,
-    /// What the simulator says of it.
-    pub event: String,
-    /// The values of all inputs as CSV, a row a clock from clock 0 on: a [stimulus](Stimulus::table).
-    pub stimulus: String,
+    json: Option<PathBuf>,
+    solver: Option<Solver>,
+    bench: Option<(PathBuf, Vec<Fixed>, Vec<String>)>,
 }
 
 impl Prove {
@@ -107,7 +64,18 @@ impl Prove {
     pub fn new(design: Design) -> Prove {
         let limits = Limits { time: Duration::from_secs(60), memory: 4 << 30, clock: None };
         let stimulus = Stimulus::default();
-        Prove { design, stimulus, hold: Vec::new(), goals: Vec::new(), limits, vcd: None, csv: None }
+        Prove {
+            design,
+            stimulus,
+            hold: Vec::new(),
+            goals: Vec::new(),
+            limits,
+            vcd: None,
+            csv: None,
+            json: None,
+            solver: None,
+            bench: None,
+        }
     }
 
     /// With inputs that are constant, and a table whose inputs have its values in its rows and are free after the last.
@@ -150,6 +118,27 @@ impl Prove {
         Prove { csv: path, ..self }
     }
 
+    /// Of the runs that a bench file allows: its reset, its constants and its assumptions hold, and what its `wraps` names
+    /// is not a goal. Inputs that the stimulus has are not the bench file's.
+    ///
+    /// # Errors
+    /// The file cannot be read, or what it says does not fit the netlist.
+    pub fn bench(self, file: &Path) -> Result<Prove, Error> {
+        let Conditions { netlist, fixed, wraps } = Conditions::read(self.design.netlist(), file)?;
+        Ok(Prove { design: elaborate(netlist)?, bench: Some((file.to_owned(), fixed, wraps)), ..self })
+    }
+
+    /// With a second opinion of another solver, whose command gets SMT-LIB 2 on its input, within this time for each
+    /// question.
+    pub fn solver(self, command: &str, limit: Duration) -> Prove {
+        Prove { solver: Some(Solver { command: command.to_owned(), limit }), ..self }
+    }
+
+    /// With the report as JSON in this file.
+    pub fn json(self, path: Option<PathBuf>) -> Prove {
+        Prove { json: path, ..self }
+    }
+
     /// Decides what the limits allow, and writes every file that is asked for.
     ///
     /// # Errors
@@ -172,10 +161,21 @@ impl Prove {
         let assumptions = assumptions.filter(|(_, property)| property.claim == Claim::Assumption);
         let assumptions: Vec<usize> = assumptions.map(|(index, _)| index).collect();
         let question = Question { design: &self.design, goals, assumptions, inputs };
-        let decision = sat::decide(&question, &self.limits, progress)?;
+        let (decision, second) = match &self.solver {
+            None => (sat::decide(&question, &self.limits, progress)?, None),
+            Some(solver) => {
+                let (decision, queries) = sat::decide_with_queries(&question, &self.limits, progress)?;
+                let second = solver.ask(&question, &decision, &queries)?;
+                (decision, Some(second))
+            }
+        };
         let assumed = question.assumptions.iter().map(|&index| netlist.properties[index].name.clone()).collect();
         let (free, open) = (self.free(&question), self.open(&decision));
-        let mut report = ProveReport { goals: Vec::new(), free, assumed, open };
+        let bench = self.bench_report();
+        let Decision { depth: induction, limit, clock: bound, .. } = decision;
+        let design = netlist.scopes[0].name.clone();
+        let mut report =
+            ProveReport { design, goals: Vec::new(), free, assumed, bound, induction, limit, open, second, bench };
         for (&index, verdict) in question.goals.iter().zip(&decision.verdicts) {
             let property = &netlist.properties[index];
             let verdict = match verdict {
@@ -224,9 +224,8 @@ impl Prove {
             return Err(Error::Invalid(format!("the input {net} has no name: give it one, so that it can be shown")));
         }
         let constant = || self.stimulus.held();
-        let rows: Vec<Vec<_>> =
-            (0..self.stimulus.rows()).map(|row| constant().chain(self.stimulus.row(row)).collect()).collect();
-        let last: Vec<_> = self.stimulus.row(rows.len().wrapping_sub(1)).collect();
+        let given = self.stimulus.rows();
+        let last: Vec<_> = self.stimulus.row(given.wrapping_sub(1)).collect();
         let mut later: Vec<_> = constant().collect();
         for text in &self.hold {
             let glob = glob(text).map_err(|why| Error::Invalid(format!("--hold {text}: {why}")))?;
@@ -239,7 +238,32 @@ impl Prove {
             }
             later.extend(found.into_iter().filter(|input| !constant().any(|other| other == *input)));
         }
+        // What the bench file fixes, too, and in how many clocks one of them has not its last value.
+        let first = self.fixed().map(|fixed| usize::try_from(fixed.clocks).unwrap_or(usize::MAX)).max().unwrap_or(0);
+        let row = |row: usize| {
+            let own = self.fixed().flat_map(|fixed| fixed.values((row as u64) < fixed.clocks));
+            match row < given {
+                true => constant().chain(self.stimulus.row(row)).chain(own).collect(),
+                false => later.iter().copied().chain(own).collect(),
+            }
+        };
+        let rows: Vec<Vec<_>> = (0..given.max(first)).map(row).collect();
+        later.extend(self.fixed().flat_map(|fixed| fixed.values(false)));
         Ok(Inputs { rows, later })
+    }
+
+    /// What the bench file fixes of inputs that the stimulus does not have.
+    fn fixed(&self) -> impl Iterator<Item = &Fixed> {
+        let all = self.bench.iter().flat_map(|(_, fixed, _)| fixed);
+        all.filter(|fixed| !self.stimulus.inputs().any(|net| fixed.has(net)))
+    }
+
+    /// The bench file, and what it says in words.
+    fn bench_report(&self) -> Option<BenchReport> {
+        let (file, _, wraps) = self.bench.as_ref()?;
+        let wraps = wraps.iter().map(|glob| format!("{glob} may lose carries"));
+        let says = self.fixed().map(|fixed| fixed.about.clone()).chain(wraps).collect();
+        Some(BenchReport { file: file.display().to_string(), says })
     }
 
     /// The inputs with their nets, the lowest first, and their names.
@@ -294,7 +318,8 @@ impl Prove {
         let report = Sim::new(elaborate(alone)?, table, clock).run()?;
         match report.tallies.first() {
             Some(tally) if shown && tally.first.clock() == clock => {
-                Ok(Counterexample { clock, event: tally.first.to_string(), stimulus })
+                let (event, violation) = (tally.first.to_string(), tally.first.clone());
+                Ok(Counterexample { clock, event, violation, stimulus })
             }
             _ => Err(Error::Invalid(format!(
                 "a mistake of stepwave itself: the simulator does not show the violation of {} at clock {clock}; please \
@@ -304,8 +329,13 @@ impl Prove {
         }
     }
 
-    /// Writes the inputs and the wave of the first counterexample.
+    /// Writes the report, and the inputs and the wave of the first counterexample.
     fn write(&self, report: &ProveReport, outputs: &mut Outputs) -> Result<(), Error> {
+        if let Some(path) = &self.json {
+            let mut sink = outputs.open(path)?;
+            writeln!(sink, "{:#}", report.json())?;
+            sink.flush()?;
+        }
         let Some(example) = report.counterexamples().next() else { return Ok(()) };
         if let Some(path) = &self.csv {
             let mut sink = outputs.open(path)?;
@@ -318,83 +348,5 @@ impl Prove {
             Sim::new(self.design.clone(), table, example.clock).waves(waves).staged(outputs, &mut std::io::sink())?;
         }
         Ok(())
-    }
-}
-
-fn clocks(count: u64) -> String {
-    if count == 1 { "1 clock".to_owned() } else { format!("{count} clocks") }
-}
-
-/// What a property claims, in words.
-fn claimed(property: &Property) -> String {
-    match property.claim {
-        Claim::Invariant => format!("{} holds", property.name),
-        Claim::Defined { undefined, .. } => format!("{}: no {}", property.name, undefined.description()),
-        _ => format!("{} does not overflow", property.name),
-    }
-}
-
-impl ProveReport {
-    /// The counterexamples, in the order of the goals.
-    pub fn counterexamples(&self) -> impl Iterator<Item = &Counterexample> {
-        self.goals.iter().filter_map(|goal| match &goal.verdict {
-            Verdict::Counterexample(example) => Some(example),
-            _ => None,
-        })
-    }
-
-    /// Every goal is proved.
-    #[must_use]
-    pub fn is_proved(&self) -> bool {
-        self.goals.iter().all(|goal| matches!(goal.verdict, Verdict::Proved { .. }))
-    }
-
-    /// Sentences that say what is wrong with the hardware or not known of it.
-    #[must_use]
-    pub fn failures(&self) -> Vec<String> {
-        let refuted = |goal: &Goal| match &goal.verdict {
-            Verdict::Counterexample(example) => Some(placed(goal, &example.event)),
-            _ => None,
-        };
-        let open: Vec<&str> = self
-            .goals
-            .iter()
-            .filter(|goal| matches!(goal.verdict, Verdict::Unknown { .. }))
-            .map(|goal| goal.claim.as_str())
-            .collect();
-        let open = (!open.is_empty()).then(|| match &self.open {
-            Some(why) => format!("not decided: {}; {why}", open.join(", ")),
-            None => format!("not decided: {}", open.join(", ")),
-        });
-        self.goals.iter().filter_map(refuted).chain(open).collect()
-    }
-}
-
-/// A sentence with the line of the source, where it does not name it anyway.
-fn placed(goal: &Goal, sentence: &str) -> String {
-    match &goal.source {
-        Some(source) if !sentence.contains(source.as_str()) => format!("{source}: {sentence}"),
-        _ => sentence.to_owned(),
-    }
-}
-
-impl Goal {
-    /// The verdict in a line.
-    #[must_use]
-    pub fn line(&self) -> String {
-        match &self.verdict {
-            Verdict::Proved { induction } => {
-                let how = match induction {
-                    0 => "in any state".to_owned(),
-                    before => format!("by induction over {}", clocks(*before as u64)),
-                };
-                format!("PROVED at these widths: {}", placed(self, &format!("{} ({how})", self.claim)))
-            }
-            Verdict::Counterexample(example) => format!("COUNTEREXAMPLE: {}", placed(self, &example.event)),
-            Verdict::Unknown { clean } => {
-                let clean = clean.map_or_else(String::new, |clean| format!(" (no violation up to clock {clean})"));
-                format!("UNKNOWN: {}", placed(self, &(self.claim.clone() + &clean)))
-            }
-        }
     }
 }

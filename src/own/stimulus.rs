@@ -6,7 +6,7 @@ use num_bigint::{BigInt, Sign};
 
 use crate::netlist::bits::Bits;
 use crate::netlist::cells::{NamedNet, Op};
-use crate::netlist::{Design, Net, did_you_mean};
+use crate::netlist::{Design, Net, Netlist, did_you_mean};
 
 /// Why a stimulus does not fit a design.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -124,8 +124,8 @@ pub(super) fn parsed(text: &str) -> Option<i128> {
 }
 
 /// The value of each net of an input, the lowest first, appended to `values`.
-fn value(
-    design: &Design,
+pub(super) fn value(
+    netlist: &Netlist,
     input: &NamedNet,
     name: &str,
     text: &str,
@@ -133,7 +133,6 @@ fn value(
     values: &mut Vec<u64>,
 ) -> Result<(), StimulusError> {
     let (place, name) = (place.to_owned(), name.to_owned());
-    let netlist = design.netlist();
     if let (false, Some(value)) = (input.is_wide(), parsed(text))
         && let Some(bits) = Bits::exact(netlist.width(input.net), value, value < 0)
     {
@@ -173,7 +172,7 @@ impl Stimulus {
             let place = format!("--set {name}={text}");
             let input = stimulus.input(design, name, &place)?;
             let mut values = Vec::new();
-            value(design, input, name, text, &place, &mut values)?;
+            value(design.netlist(), input, name, text, &place, &mut values)?;
             stimulus.constants.extend(input.nets().zip(values));
         }
         Ok(stimulus)
@@ -203,7 +202,7 @@ impl Stimulus {
             let place = format!("line {line}");
             let mut values = Vec::with_capacity(self.columns.len());
             for ((input, name), text) in inputs.iter().zip(&names).zip(texts) {
-                value(design, input, name, text, &place, &mut values)?;
+                value(design.netlist(), input, name, text, &place, &mut values)?;
             }
             self.rows.push(values);
         }
@@ -233,6 +232,11 @@ impl Stimulus {
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Nets of all inputs that it has values for.
+    pub(super) fn inputs(&self) -> impl Iterator<Item = Net> + '_ {
+        self.constants.iter().map(|(net, _)| *net).chain(self.columns.iter().copied())
     }
 
     /// Inputs that do not change.

@@ -22,7 +22,7 @@ fn number(value: i128) -> Value {
 }
 
 /// A number of any size as JSON: one beyond 64 bits as a text of its digits.
-fn large(value: &BigInt) -> Value {
+pub(crate) fn large(value: &BigInt) -> Value {
     match (i64::try_from(value), u64::try_from(value)) {
         (Ok(value), _) => json!(value),
         (_, Ok(value)) => json!(value),

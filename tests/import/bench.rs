@@ -439,3 +439,17 @@ fn an_overflow_of_own_hardware_is_reported_traps_or_is_announced_as_the_user_say
     assert_eq!(bench(""), bench(" --wraps narrow"));
     assert_ne!(bench(""), bench(" --strict narrow"));
 }
+
+#[test]
+fn a_machine_of_one_axis_never_pulses_along_y() {
+    let folder = Folder::new();
+    let bench = format!("max_axes = 1\n{DDA}[axis.x]\npulse = \"dx\"\n");
+    let reaches = |to: [i64; 2]| {
+        let model = written(&folder, &netlist("dda-line", &line([127, 127]), "--width 7", |_, _| {}), &bench);
+        let report = run(model, &line(to), "");
+        (report.outcome.reached == to.to_vec(), report.outcome.pulses.clone())
+    };
+    assert_eq!(reaches([100, 0]), (true, vec![100, 0]));
+    assert_eq!(reaches([-3, 0]), (true, vec![3, 0]));
+    assert!(!reaches([100, 60]).0);
+}

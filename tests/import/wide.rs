@@ -153,3 +153,50 @@ fn a_wide_input_is_one_port_of_exported_verilog_and_a_wide_name_one_net() {
         assert!(text.expect("no memories").contains("t.acc.86_64"));
     }
 }
+
+#[test]
+fn a_bench_file_loads_and_sets_inputs_of_more_than_64_bits() {
+    // A register of 70 bits that takes an input, and compares with another one.
+    let (d, k, q): (Vec<u32>, Vec<u32>, Vec<u32>) = ((100..170).collect(), (200..270).collect(), (300..370).collect());
+    let cells = json!({
+        "ff": cell("$dff", &["CLK_POLARITY"], json!({ "CLK": [2], "D": d, "Q": q })),
+        "eq": cell("$eq", &[], json!({ "A": q, "B": k, "Y": [3] })),
+        "zero": cell("$and", &[], json!({ "A": [3], "B": ["0"], "Y": [4] })),
+    });
+    let names = json!({
+        "d": { "hide_name": 0, "bits": d, "signed": 1, "attributes": {} }, "k": name(k.clone()), "q": name(q.clone()),
+        "same": name([3]), "none": name([4]),
+    });
+    let ports = json!({
+        "clk": port("input", [2]), "d": port("input", d.clone()), "k": port("input", k.clone()),
+        "same": port("output", [3]), "none": port("output", [4]), "q": port("output", q.clone()),
+    });
+    let folder = Folder::new();
+    folder.write("t.json", &module(ports, cells, names));
+    folder.good("import --json t.json -o t.net");
+    let bench = |load: &str, set: &str| {
+        let axes = "[axis.x]\npulse = \"same\"\n[axis.y]\npulse = \"none\"\n";
+        let text = format!("clocks = 4\nload = {{ d = \"{load}\" }}\nset = {{ k = \"{set}\" }}\n{axes}");
+        folder.write("t.toml", &text);
+    };
+    // The pulses say that both are the same, in five clocks from the edge on that takes the word.
+    let same = |load: &str, set: &str| {
+        bench(load, set);
+        folder.run("run t.net --to 5,0").out.contains("end point (5, 0) reached exactly")
+    };
+    assert!(same("dx << 64 | 5", "0x50000000000000005"));
+    assert!(!same("dx << 64 | 5", "0x50000000000000004") && !same("dx << 64 | 5", "0x40000000000000005"));
+    assert!(same("-dx", "-5") && same("-dx", "0x3ffffffffffffffffb"));
+    for (load, set, said) in [
+        ("dx << 68", "0", "load.d[63:0] = dx << 68: 1475739525896764129280 does not fit in the 70 bits of its input"),
+        ("dx", "0x400000000000000000", "does not fit in 'k', which has 70 bits"),
+        ("dx", "five", "'five' is not a value for 'k'"),
+    ] {
+        bench(load, set);
+        let ran = folder.run("run t.net --to 5,0");
+        assert!(ran.code == 2 && ran.err.contains(said), "{load} {set}: {}", ran.err);
+    }
+    bench("dx << 68", "0");
+    let ran = folder.run("run t.net --to 5,0 --on-overflow wrap");
+    assert!(ran.code != 2, "{}", ran.err);
+}

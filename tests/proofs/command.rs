@@ -160,7 +160,7 @@ fn bad_input_is_refused_in_a_sentence() {
 
 /// A solver of this name in the folder, which says this and reads nothing.
 #[cfg(unix)]
-fn solver(folder: &Folder, says: &str) -> String {
+pub(super) fn solver(folder: &Folder, says: &str) -> String {
     use std::os::unix::fs::PermissionsExt;
     let path = folder.path("solver");
     std::fs::write(&path, format!("#!/bin/sh\necho '{says}'\n")).unwrap();

@@ -61,6 +61,76 @@ fn a_counterexample_is_run_again_from_its_stimulus_and_has_a_wave() {
 }
 
 #[test]
+fn the_verdicts_are_written_as_json() {
+    let folder = decade(3);
+    fs::write(folder.path("in.csv"), "rst\n0\n").expect("written");
+    let ran = prove(&folder, &["--stimulus", "in.csv", "--hold", "rst", "--json", "-"]);
+    assert_eq!(ran.code, 1);
+    let json: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON alone");
+    let event =
+        "overflow of decade.count at clock 6: 7 + 1 = 8 does not fit in its 3 bits (0 to 7); 4 bits would hold it";
+    let rows = vec![serde_json::json!([1, 0]); 7];
+    assert_eq!(
+        json,
+        serde_json::json!({
+            "schema": 1, "design": "decade", "verdict": "counterexample", "bound": 6, "induction": 5, "limit": null,
+            "free": ["go"], "assumptions": [], "bench": null, "solver": null,
+            "goals": [
+                {
+                    "name": "decade.count", "claim": "decade.count does not overflow", "source": null,
+                    "verdict": "counterexample", "clock": 6, "text": event,
+                    "event": {
+                        "component": "decade.count", "clock": 6, "width": 3, "signed": false, "operation": "add",
+                        "left": 7, "right": 1, "exact": 8, "needed_width": 4
+                    },
+                    "stimulus": { "inputs": ["go", "rst"], "rows": rows },
+                },
+                {
+                    "name": "decade.below_ten", "claim": "decade.below_ten holds", "source": null, "verdict": "proved",
+                    "induction": 0
+                },
+            ],
+            "failures": [event],
+        })
+    );
+    let ran = prove(&folder, &["--bound", "4", "--goal", "*.count", "--json", "out.json"]);
+    assert_eq!(ran.code, 1);
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path("out.json")).expect("written")).expect("JSON");
+    let [verdict, bound, limit, goal] = [&json["verdict"], &json["bound"], &json["limit"], &json["goals"][0]["bound"]];
+    assert_eq!((verdict, bound, limit, goal), (&"unknown".into(), &4.into(), &"bound".into(), &4.into()));
+    let ran = folder.run_words(&["prove", "ppc-line", "--json", "out.json"]);
+    assert!(ran.err.contains("--json is of a netlist, such as F.net, and ppc-line is a model"), "{}", ran.err);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_solver_that_disagrees_with_a_verdict_is_reported() {
+    let folder = decade(4);
+    let solver = super::command::solver;
+    let command = solver(&folder, "unsat");
+    let ran = prove(&folder, &["--solver", &command, "--json", "out.json"]);
+    assert_eq!((ran.code, ran.err.as_str()), (0, ""));
+    let last = ran.out.lines().last().unwrap_or_default();
+    assert!(last.starts_with(&format!("{command} agrees: ")), "{}", ran.out);
+    let json = fs::read_to_string(folder.path("out.json")).expect("written");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!((&json["solver"]["differs"], &json["solver"]["command"]), (&serde_json::json!([]), &command.into()));
+    let command = solver(&folder, "sat");
+    let ran = prove(&folder, &["--solver", &command]);
+    assert_eq!(ran.code, 1);
+    assert!(
+        ran.err.starts_with(&format!("stepwave: {command} disagrees (no violation, word by word; ")),
+        "{}",
+        ran.err
+    );
+    let ran = prove(&folder, &["--solver", "sleep 300", "--solver-seconds", "1", "--goal", "*.count"]);
+    assert_eq!(ran.code, 0);
+    let last = ran.out.lines().last().unwrap_or_default();
+    assert!(last.starts_with("sleep 300 agrees in 0 of ") && last.ends_with(" in time"), "{}", ran.out);
+}
+
+#[test]
 fn inputs_are_fixed_in_the_rows_of_a_stimulus_and_free_after_them_unless_held() {
     let folder = decade(3);
     fs::write(folder.path("in.csv"), "go,rst\n0,1\n0,1\n0,0\n").expect("written");
@@ -91,6 +161,60 @@ fn what_a_bound_leaves_open_is_unknown_with_the_clock_that_was_reached() {
         "{}",
         ran.err
     );
+}
+
+#[test]
+fn a_bench_file_says_which_runs_are_looked_at() {
+    let folder = decade(3);
+    let bench = |text: &str| fs::write(folder.path("t.toml"), text).expect("written");
+    bench("reset = { port = \"rst\", clocks = 2 }\n");
+    let ran = prove(&folder, &[]);
+    assert!(
+        ran.out.starts_with(
+            "decade: every run from reset on; free inputs: go\nbench file t.toml: rst = 1 up to clock 1, then 0\n"
+        ),
+        "{}",
+        ran.out
+    );
+    // Cleared at the edges 1 and 2.
+    assert!(ran.err.contains("overflow of decade.count at clock 9"), "{}", ran.err);
+    // Inputs of the command line are not those of the bench file.
+    let ran = prove(&folder, &["--set", "rst=0"]);
+    assert!(ran.out.contains("\nbench file t.toml: it fixes no input\n"), "{}", ran.out);
+    assert!(ran.err.contains("overflow of decade.count at clock 6"), "{}", ran.err);
+    fs::write(folder.path("in.csv"), "go\n0\n0\n0\n0\n1\n").expect("written");
+    let ran = prove(&folder, &["--stimulus", "in.csv"]);
+    assert!(ran.err.contains("overflow of decade.count at clock 11"), "{}", ran.err);
+    fs::write(folder.path("in.csv"), "go\n1\n").expect("written");
+    let ran = prove(&folder, &["--stimulus", "in.csv", "--hold", "go", "--goal", "*.count"]);
+    assert!(ran.err.contains("overflow of decade.count at clock 9"), "{}", ran.err);
+    let ran = prove(&folder, &["--no-bench"]);
+    assert!(ran.out.starts_with("decade: every run from reset on; free inputs: go, rst\nCOUNTER"), "{}", ran.out);
+    // Constants, assumptions of either sense, and carries that may be lost.
+    bench("set = { go = 0 }\n");
+    let ran = prove(&folder, &["--json", "-"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let json: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
+    assert_eq!(json["bench"], serde_json::json!({ "file": "t.toml", "says": ["go = 0"] }));
+    for assumption in ["!go", "rst"] {
+        bench(&format!("assume = [\"{assumption}\"]\n"));
+        let ran = prove(&folder, &[]);
+        assert_eq!(ran.code, 0, "{}", ran.err);
+        let said = format!("\nassumed in every clock: assume {assumption}\nPROVED");
+        assert!(ran.out.contains(&said), "{}", ran.out);
+    }
+    for (text, said) in [
+        ("assume = [\"gone\"]", "t.toml:1: assume: there is no signal 'gone'"),
+        ("assume = [\"count\"]", "t.toml:1: assume: 'count' has 3 bits where a signal of 1 bit is needed"),
+        ("wraps = [\"gone\"]", "wraps = [\"gone\"]: it matches no property"),
+        ("reset = { port = \"go\" }\nset = { go = 1 }", "the input 'go' is driven by `reset` already"),
+    ] {
+        bench(text);
+        let ran = prove(&folder, &[]);
+        assert!(ran.code == 2 && ran.err.contains(said), "{text}: {}", ran.err);
+    }
+    let ran = prove(&folder, &["--bench", "none.toml"]);
+    assert!(ran.code == 2 && ran.err.contains("cannot read none.toml"), "{}", ran.err);
 }
 
 #[test]

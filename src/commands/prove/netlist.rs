@@ -9,7 +9,7 @@ use crate::Error;
 use crate::cli::ProveArgs;
 use crate::models::options::WRAPS;
 use crate::output::{self, Outputs};
-use crate::own::{Counterexample, Prove, ProveReport, Verdict, read_netlist, read_stimulus};
+use crate::own::{BenchReport, Counterexample, Prove, ProveReport, Verdict, next_to, read_netlist, read_stimulus};
 use crate::prove::sat::Limits;
 
 /// Rows of a counterexample that are shown.
@@ -21,30 +21,31 @@ pub(super) fn prove(args: &ProveArgs, path: &Path) -> Result<(), Error> {
         let path = path.display();
         return Err(Error::Invalid(format!("{option} is of a model, and {path} is a netlist: leave it out")));
     }
-    if let Some(bench) = &args.bench.bench {
-        let bench = bench.display();
-        return Err(Error::Invalid(format!(
-            "--bench {bench} says how geometries are loaded: give some, with --box or --travel"
-        )));
-    }
     let own = &args.netlist;
+    let bench = args.bench.bench.clone().or_else(|| Some(next_to(path)).filter(|file| !own.no_bench && file.exists()));
     let design = read_netlist(path)?;
     let name = design.netlist().scopes[0].name.clone();
     let stimulus = read_stimulus(&design, &own.set, own.stimulus.as_deref())?;
     let time = Duration::from_secs(own.time.unwrap_or(60));
     let limits = Limits { time, memory: own.memory.unwrap_or(4096) << 20, clock: own.bound };
-    let proof = Prove::new(design)
-        .stimulus(stimulus)
-        .hold(own.hold.clone())
+    let mut proof = Prove::new(design).stimulus(stimulus).hold(own.hold.clone());
+    if let Some(bench) = &bench {
+        proof = proof.bench(bench)?;
+    }
+    proof = proof
         .wraps(&args.hardware.choices().value(&WRAPS))?
         .goals(own.goal.clone())
         .limits(limits)
         .csv(own.stimulus_out.clone())
-        .vcd(args.vcd.clone());
-    let outputs = || Outputs::reading([path].into_iter().chain(own.stimulus.as_deref()));
+        .vcd(args.vcd.clone())
+        .json(own.json.clone());
+    if let Some(command) = &args.solver {
+        proof = proof.solver(command, Duration::from_secs(args.solver_seconds));
+    }
+    let outputs = || Outputs::reading([path].into_iter().chain(own.stimulus.as_deref()).chain(bench.as_deref()));
     // Both are tried before anything is attempted.
     let mut tried = outputs();
-    own.stimulus_out.iter().chain(&args.vcd).try_for_each(|path| tried.claim(path).map(drop))?;
+    own.stimulus_out.iter().chain(&args.vcd).chain(&own.json).try_for_each(|path| tried.claim(path).map(drop))?;
     let mut outputs = outputs();
     let progress = Progress::new("clocks");
     let report = proof.staged(&mut outputs, &mut |at| progress.set(at.clock))?;
@@ -62,6 +63,10 @@ pub(super) fn prove(args: &ProveArgs, path: &Path) -> Result<(), Error> {
 fn shown(name: &str, report: &ProveReport) -> String {
     let free = if report.free.is_empty() { "none".to_owned() } else { report.free.join(", ") };
     let mut text = format!("{name}: every run from reset on; free inputs: {free}\n");
+    if let Some(BenchReport { file, says }) = &report.bench {
+        let says = if says.is_empty() { "it fixes no input".to_owned() } else { says.join("; ") };
+        let _ = writeln!(text, "bench file {file}: {says}");
+    }
     if !report.assumed.is_empty() {
         let _ = writeln!(text, "assumed in every clock: {}", report.assumed.join(", "));
     }
@@ -70,6 +75,9 @@ fn shown(name: &str, report: &ProveReport) -> String {
         if let Verdict::Counterexample(example) = &goal.verdict {
             text += &inputs(example);
         }
+    }
+    if let Some(second) = &report.second {
+        let _ = writeln!(text, "{}", second.line());
     }
     text
 }

@@ -28,6 +28,8 @@ pub(super) struct File {
     pub(super) clocks: Option<Spanned<Value>>,
     pub(super) step: Option<Spanned<String>>,
     pub(super) table: Option<Spanned<Vec<String>>>,
+    /// Signals that are 1 in every clock of the runs that a proof without geometries looks at.
+    pub(super) assume: Option<Spanned<Vec<String>>>,
     /// Overflows that end a run.
     #[serde(default)]
     pub(super) strict: Vec<String>,

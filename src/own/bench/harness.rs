@@ -230,6 +230,7 @@ fn decoded<'m>(m: Scope<'m>, pulses: Pulses, alive: Signal<'m>) -> (Signal<'m>, 
         if edges { pulse & !before(m, name, pulse) } else { pulse }
     };
     match pulses {
+        Pulses::Still => (m.lit(1, 0), m.lit(1, 0)),
         Pulses::Strobe { pulse, negative, edges } => {
             (strobe("before", pulse, edges), negative.map_or(m.lit(1, 0), |negative| wire(m, negative)))
         }

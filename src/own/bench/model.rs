@@ -103,16 +103,36 @@ impl Bench {
 
     /// A word for a geometry, which must fit where there is a remedy for one that does not.
     fn value(&self, word: &Word, values: &[i128], remedy: Option<&str>) -> Result<i128, ModelError> {
-        let Word { name, expression, text, width, reading } = word;
+        let Word { name, expression, text, width, reading, .. } = word;
         let wrong = |why: String| ModelError::Widths(format!("{}: {name} = {text}: {why}", self.file.display()));
         let value = expression.value(values).map_err(wrong)?;
         match remedy {
-            Some(remedy) if reading.bits(*width, value).is_none() => {
+            Some(remedy) if word.bits > width.get() && !word.holds(value) => {
+                let bits = word.bits;
+                Err(wrong(format!("{value} does not fit in the {bits} bits of its input: {remedy}")))
+            }
+            Some(remedy) if word.bits <= width.get() && reading.bits(*width, value).is_none() => {
                 let (least, greatest) = width.range(reading.is_signed());
                 Err(wrong(format!("{value} does not fit in its {width}, {least} to {greatest}: {remedy}")))
             }
-            _ => Ok(value),
+            _ => Ok(word.own_part(value)),
         }
+    }
+}
+
+impl Word {
+    /// A number fits in an input of more than 64 bits, of which this is a part.
+    fn holds(&self, value: i128) -> bool {
+        let is_signed = self.of_signed;
+        let above = value >> (self.bits - u32::from(is_signed)).min(i128::BITS - 1);
+        above == 0 || is_signed && above == -1
+    }
+
+    /// The part of a number that its net takes.
+    fn own_part(&self, value: i128) -> i128 {
+        let low = self.part * Width::MAX.get();
+        let part = value >> low.min(i128::BITS - 1);
+        if low + self.width.get() < self.bits { part & i128::from(self.width.mask()) } else { part }
     }
 }
 

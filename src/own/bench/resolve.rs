@@ -7,13 +7,13 @@ use toml::Spanned;
 use super::expression::Expression;
 use super::file::{Axis, Count, Curves, File, Strobe, Value};
 use super::geometry::{names, of_arcs};
-use super::{Bench, BenchError, End, Loaded, Pulses, Reset, Wire, Word, next_to, signal};
+use super::{Bench, BenchError, End, Loaded, Pulses, Reset, Wire, Word, next_to, signal, word};
 use crate::models::{AXES, CurveKind};
 use crate::netlist::bits::{Bits, Reading};
 use crate::netlist::cells::{NamedNet, Op};
 use crate::netlist::{Net, Netlist, Width, did_you_mean};
 use crate::own::file::{read_netlist, read_text};
-use crate::own::stimulus::parsed;
+use crate::own::stimulus::{self, parsed};
 
 /// Most bytes of a bench file.
 const MOST_BYTES: u64 = 1 << 20;
@@ -22,14 +22,29 @@ const MOST_LISTED: usize = 24;
 /// Bits of the counter of clocks of a block.
 const CLOCK_BITS: u32 = 62;
 
+/// Inputs that have a driver, each with the key that says so.
+type Driven = Vec<(Net, String)>;
+/// A constant on an input: its name, and the values of its nets.
+type Constant<'f> = (&'f str, Vec<(Net, u64)>);
+
 /// What is wrong with a value, in words; its place is added where it is known.
 type Refusal = String;
 
-struct Resolver<'a> {
-    netlist: &'a Netlist,
-    names: Vec<String>,
-    file: String,
-    text: &'a str,
+pub(super) struct Resolver<'a> {
+    pub(super) netlist: &'a Netlist,
+    pub(super) names: Vec<String>,
+    pub(super) file: String,
+    pub(super) text: &'a str,
+}
+
+/// The text of a bench file, and what is written in it.
+pub(super) fn read_form(file: &Path) -> Result<(String, File), BenchError> {
+    let text = read_text(file, MOST_BYTES)?;
+    let form = toml::from_str(&text).map_err(|error: toml::de::Error| {
+        let message = error.to_string().trim_end().to_owned();
+        BenchError::Form { file: file.display().to_string(), message }
+    })?;
+    Ok((text, form))
 }
 
 impl Bench {
@@ -44,12 +59,8 @@ impl Bench {
             let [netlist, bench] = [netlist, file.as_path()].map(|path| path.display().to_string());
             return Err(BenchError::Missing { netlist, bench });
         }
-        let text = read_text(&file, MOST_BYTES)?;
+        let (text, form) = read_form(&file)?;
         let name = file.display().to_string();
-        let form: File = toml::from_str(&text).map_err(|error: toml::de::Error| {
-            let message = error.to_string().trim_end().to_owned();
-            BenchError::Form { file: name.clone(), message }
-        })?;
         let netlist = design.netlist();
         Resolver { netlist, names: names(), file: name, text: &text }.bench(form, file)
     }
@@ -63,7 +74,7 @@ impl Resolver<'_> {
     }
 
     /// The error of what is missing.
-    fn missing(&self, message: &str) -> BenchError {
+    pub(super) fn missing(&self, message: &str) -> BenchError {
         BenchError::Form { file: self.file.clone(), message: message.to_owned() }
     }
 
@@ -79,17 +90,14 @@ impl Resolver<'_> {
             return Err(self.at(clock, message));
         }
         let axes = self.axes(&form)?;
-        let mut driven: Vec<(Net, String)> = Vec::new();
+        let mut driven: Driven = Vec::new();
         let reset = form.reset.as_ref().map(|reset| self.reset(reset, &mut driven)).transpose()?;
-        let mut constants = Vec::new();
-        for (name, value) in &form.set {
-            let constant = self.constant(name, value.get_ref(), &mut driven);
-            constants.push(constant.map_err(|message| self.at(value, format!("set {name}: {message}")))?);
-        }
+        let constants = self.constants(&form, &mut driven)?.into_iter().flat_map(|(_, nets)| nets).collect();
+        self.assumed(&form)?;
         let mut loads = Vec::new();
         for (name, value) in &form.load {
             let loaded = self.loaded(name, value.get_ref(), &mut driven);
-            loads.push(loaded.map_err(|message| self.at(value, format!("load {name}: {message}")))?);
+            loads.extend(loaded.map_err(|message| self.at(value, format!("load {name}: {message}")))?);
         }
         let start = form.start.as_ref().map(|name| self.start(name, &mut driven)).transpose()?;
         let end = self.end(&form)?;
@@ -136,11 +144,9 @@ impl Resolver<'_> {
     }
 
     /// The input of this name, which nothing else drives.
-    fn input(&self, name: &str, driven: &mut Vec<(Net, String)>, by: &str) -> Result<&NamedNet, Refusal> {
-        let is_input = |named: &&NamedNet| matches!(self.netlist.cell(named.net).op, Op::Input);
-        let known = self.netlist.names.iter().any(|named| named.name == name && named.is_wide());
-        let found = if known { Some(signal(self.netlist, name)?) } else { signal(self.netlist, name).ok() };
-        let found = found.filter(is_input).ok_or_else(|| {
+    fn input(&self, name: &str, driven: &mut Driven, by: &str) -> Result<&NamedNet, Refusal> {
+        let is_input = |named: &&NamedNet| named.nets().all(|net| matches!(self.netlist.cell(net).op, Op::Input));
+        let found = word(self.netlist, name).ok().filter(is_input).ok_or_else(|| {
             let inputs = self.netlist.names.iter().filter(is_input).map(|named| named.name.as_str());
             let inputs: Vec<&str> = inputs.collect();
             let hint = did_you_mean(name, inputs.iter().copied());
@@ -156,22 +162,20 @@ impl Resolver<'_> {
     /// A 1-bit signal, or its complement, which has a ! in front.
     fn wire(&self, text: &str) -> Result<Wire, Refusal> {
         let (inverted, name) = inverted(text);
-        let net = self.named(name)?.net;
-        self.one_bit(net, name)?;
+        let net = self.one_bit(self.named(name)?, name)?;
         Ok(Wire { net, inverted })
     }
 
-    fn one_bit(&self, net: Net, name: &str) -> Result<(), Refusal> {
-        match self.netlist.width(net).get() {
-            1 => Ok(()),
+    fn one_bit(&self, named: &NamedNet, name: &str) -> Result<Net, Refusal> {
+        match self.netlist.bits(named.nets()) {
+            1 => Ok(named.net),
             bits => Err(format!("'{name}' has {bits} bits where a signal of 1 bit is needed")),
         }
     }
 
-    fn reset(&self, reset: &super::file::Reset, driven: &mut Vec<(Net, String)>) -> Result<Reset, BenchError> {
+    pub(super) fn reset(&self, reset: &super::file::Reset, driven: &mut Driven) -> Result<Reset, BenchError> {
         let name = reset.port.get_ref();
-        let input = self.input(name, driven, "reset").map(|named| named.net);
-        let input = input.and_then(|net| self.one_bit(net, name).map(|()| net));
+        let input = self.input(name, driven, "reset").and_then(|named| self.one_bit(named, name));
         let input = input.map_err(|message| self.at(&reset.port, format!("reset: {message}")))?;
         let active = match reset.active.get_ref() {
             0 => false,
@@ -187,33 +191,75 @@ impl Resolver<'_> {
         Ok(Reset { input, active, clocks })
     }
 
-    fn constant(&self, name: &str, value: &Value, driven: &mut Vec<(Net, String)>) -> Result<(Net, u64), Refusal> {
+    /// The constants on inputs, each with the values of its nets.
+    pub(super) fn constants<'f>(&self, form: &'f File, driven: &mut Driven) -> Result<Vec<Constant<'f>>, BenchError> {
+        let constant = |(name, value): (&'f String, &Spanned<Value>)| {
+            let constant = self.constant(name, value.get_ref(), driven);
+            let constant = constant.map_err(|message| self.at(value, format!("set {name}: {message}")))?;
+            Ok((name.as_str(), constant))
+        };
+        form.set.iter().map(constant).collect()
+    }
+
+    fn constant(&self, name: &str, value: &Value, driven: &mut Driven) -> Result<Vec<(Net, u64)>, Refusal> {
         let named = self.input(name, driven, "set")?;
-        let (text, width) = (value.text(), self.netlist.width(named.net));
+        let text = value.text();
+        if named.is_wide() {
+            let mut values = Vec::new();
+            // It has its own words for the place.
+            stimulus::value(self.netlist, named, name, text.trim(), "value", &mut values)
+                .map_err(|error| error.to_string())?;
+            return Ok(named.nets().zip(values).collect());
+        }
+        let width = self.netlist.width(named.net);
         let number = parsed(text.trim()).ok_or_else(|| format!("'{text}' is not a number: give 12, 0x1f or 0b101"))?;
         let bits =
             Bits::exact(width, number, number < 0).ok_or_else(|| does_not_fit(&text, width, named.format.reading()))?;
-        Ok((named.net, bits.value()))
+        Ok(vec![(named.net, bits.value())])
     }
 
-    fn loaded(&self, name: &str, value: &Value, driven: &mut Vec<(Net, String)>) -> Result<Loaded, Refusal> {
+    /// The signals that are assumed to be 1, as they are written.
+    pub(super) fn assumed<'f>(&self, form: &'f File) -> Result<Vec<(&'f str, Wire)>, BenchError> {
+        let Some(assume) = &form.assume else { return Ok(Vec::new()) };
+        let wire = |text: &'f String| {
+            let wire = self.wire(text).map_err(|message| self.at(assume, format!("assume: {message}")))?;
+            Ok((text.as_str(), wire))
+        };
+        assume.get_ref().iter().map(wire).collect()
+    }
+
+    fn loaded(&self, name: &str, value: &Value, driven: &mut Driven) -> Result<Vec<Loaded>, Refusal> {
         let named = self.input(name, driven, "load")?;
-        let (width, reading) = (self.netlist.width(named.net), named.format.reading());
-        Ok(Loaded { input: named.net, word: self.word(&format!("load.{name}"), value, width, reading)? })
+        let (reading, bits) = (named.format.reading(), self.netlist.bits(named.nets()));
+        let mut loaded = Vec::new();
+        for (part, input) in (0..).zip(named.nets()) {
+            let width = self.netlist.width(input);
+            let low = part * Width::MAX.get();
+            let (path, reading) = match (named.is_wide(), low + width.get() < bits) {
+                (false, _) => (format!("load.{name}"), reading),
+                // Of what is not the top of a word the sign is above.
+                (true, true) => (format!("load.{name}[{}:{low}]", low + width.get() - 1), Reading::Unsigned),
+                (true, false) => (format!("load.{name}[{}:{low}]", bits - 1), reading),
+            };
+            let of_signed = named.format.reading().is_signed();
+            let word = Word { bits, of_signed, part, ..self.word(&path, value, width, reading)? };
+            loaded.push(Loaded { input, word });
+        }
+        Ok(loaded)
     }
 
     fn word(&self, name: &str, value: &Value, width: Width, reading: Reading) -> Result<Word, Refusal> {
         let text = value.text();
         let expression = Expression::parse(&text, &self.names).map_err(|why| format!("'{text}': {why}"))?;
-        Ok(Word { name: name.to_owned().leak(), expression, text, width, reading })
+        let (name, bits) = (name.to_owned().leak(), width.get());
+        Ok(Word { name, expression, text, width, reading, bits, of_signed: reading.is_signed(), part: 0 })
     }
 
-    fn start(&self, name: &Spanned<String>, driven: &mut Vec<(Net, String)>) -> Result<Wire, BenchError> {
+    fn start(&self, name: &Spanned<String>, driven: &mut Driven) -> Result<Wire, BenchError> {
         let text = name.get_ref();
         let mut wire = || {
             let (inverted, port) = inverted(text);
-            let net = self.input(port, driven, "start")?.net;
-            self.one_bit(net, port)?;
+            let net = self.one_bit(self.input(port, driven, "start")?, port)?;
             Ok(Wire { net, inverted })
         };
         wire().map_err(|message: Refusal| self.at(name, format!("start: {message}")))
@@ -259,21 +305,22 @@ impl Resolver<'_> {
             let pulses = self.pulses(axis.get_ref());
             axes.push(pulses.map_err(|message| self.at(axis, format!("axis {letter}: {message}")))?);
         }
-        if axes.len() < 2 {
+        let own = axes.len();
+        if own == 0 {
             return Err(self.missing(
-                "it says how fewer than two axes pulse: add [axis.x] and [axis.y], each with step and direction, pulse, up \
-                 and down, quadrature, or position",
+                "it does not say how an axis pulses: add [axis.x] and others, each with step and direction, pulse, up and \
+                 down, quadrature, or position",
             ));
         }
+        axes.resize(own.max(2), Pulses::Still);
         if let Some(most) = &form.max_axes {
             let count = *most.get_ref();
-            if !(2..=axes.len() as u64).contains(&count) {
-                let have = axes.len();
-                return Err(
-                    self.at(most, format!("max_axes = {count}: give 2 to {have}, as many as there are [axis.…]"))
-                );
+            if !(own.min(2) as u64..=own as u64).contains(&count) {
+                let give = if own < 2 { "1".to_owned() } else { format!("2 to {own}") };
+                let message = format!("max_axes = {count}: give {give}, as many as there are [axis.…]");
+                return Err(self.at(most, message));
             }
-            axes.truncate(usize::try_from(count).unwrap_or(axes.len()));
+            axes.truncate(usize::try_from(count).unwrap_or(own).max(2));
         }
         Ok(axes)
     }

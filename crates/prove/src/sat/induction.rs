@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::rc::Rc;
 
 use super::aig::Literal;
+use super::second::Batch;
 use super::solver::{Answer, Guard, Values};
 use super::template::Template;
 use super::unrolled::Unrolled;
@@ -67,6 +68,11 @@ impl<'q, 't> Induction<'q, 't> {
         }
         let holds = (0..goals).map(|_| unrolled.sat.graph.variable()).collect();
         Induction { question, unrolled, cones, cone_of, holds, proved: vec![false; goals] }
+    }
+
+    /// Bits of the state on which a goal depends.
+    pub(super) fn cone(&self, goal: usize) -> &[usize] {
+        &self.cones[self.cone_of[goal]].bits
     }
 
     pub(super) fn conflicts(&self) -> u64 {
@@ -186,6 +192,9 @@ impl Search<'_, '_> {
         let proved = self.induction.attempt(ready.clone(), conflicts);
         for goal in ready.into_iter().filter(|goal| *goal >= self.main && depth >= DEEPEST && !proved.contains(goal)) {
             self.goals[goal].verdict = Some(Verdict::Unknown { clean: 0 });
+        }
+        if !proved.is_empty() {
+            self.batches.push(Batch { depth, goals: proved.clone() });
         }
         for goal in proved {
             self.goals[goal].verdict = Some(Verdict::Proved { depth });

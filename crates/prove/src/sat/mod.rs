@@ -37,6 +37,7 @@ mod aig;
 mod bounded;
 mod candidates;
 mod induction;
+mod second;
 mod solver;
 mod template;
 mod unrolled;
@@ -48,9 +49,11 @@ use std::time::Duration;
 use stepwave_netlist::{Design, Net};
 
 use induction::Induction;
+use second::Batch;
 use solver::{Guard, Sat};
 use unrolled::Unrolled;
 
+pub use second::Query;
 pub use solver::Limit;
 pub use template::{MOST_MEMORY_BITS, TooLarge};
 
@@ -125,6 +128,8 @@ pub struct Decision {
     pub verdicts: Vec<Verdict>,
     /// Samples in a row of the longest induction that was tried; `None` where none was.
     pub depth: Option<usize>,
+    /// The last clock in which a violation was looked for of every goal that was open then, if there is one.
+    pub clock: Option<u64>,
     /// What ended the search before all goals were decided.
     pub limit: Option<Limit>,
     /// No run meets the assumptions up to this clock: nothing later can be said.
@@ -152,6 +157,27 @@ pub fn decide(
     limits: &Limits,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Decision, TooLarge> {
+    Ok(searched(question, limits, progress, false)?.0)
+}
+
+/// The same with the questions that the verdicts rest on, for another solver.
+///
+/// # Errors
+/// As [`decide`].
+pub fn decide_with_queries(
+    question: &Question<'_>,
+    limits: &Limits,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<(Decision, Vec<Query>), TooLarge> {
+    searched(question, limits, progress, true)
+}
+
+fn searched(
+    question: &Question<'_>,
+    limits: &Limits,
+    progress: &mut dyn FnMut(Progress),
+    asks: bool,
+) -> Result<(Decision, Vec<Query>), TooLarge> {
     let properties = &question.design.netlist().properties;
     let never = |&index: &usize| properties.get(index).map(|property| property.never);
     let roots: Vec<Net> = question.goals.iter().chain(&question.assumptions).filter_map(never).collect();
@@ -164,8 +190,12 @@ pub fn decide(
     let bounded = Unrolled::from_reset(&template, &guard);
     let goals: Vec<Goal> = (0..main + suggested.len()).map(|_| Goal { verdict: None, clean: 0 }).collect();
     let induction = Induction::new(&template, question, goals.len(), &guard);
-    let search = Search { question, template: &template, guard, bounded, induction, goals, main, contradiction: None };
-    Ok(search.run(limits, progress))
+    let (batches, contradiction) = (Vec::new(), None);
+    let mut search =
+        Search { question, template: &template, guard, bounded, induction, goals, main, batches, contradiction };
+    let limit = search.run(limits, progress);
+    let queries = if asks { search.queries() } else { Vec::new() };
+    Ok((search.decision(limit), queries))
 }
 
 /// A goal while it is looked at.
@@ -185,6 +215,8 @@ struct Search<'q, 't> {
     goals: Vec<Goal>,
     /// Number of those that were asked for.
     main: usize,
+    /// What was proved, in its order.
+    batches: Vec<Batch>,
     contradiction: Option<u64>,
 }
 
@@ -200,10 +232,10 @@ impl Search<'_, '_> {
     }
 
     /// Looks for violations and for proofs in turn, each with as many conflicts as the other has had.
-    fn run(mut self, limits: &Limits, progress: &mut dyn FnMut(Progress)) -> Decision {
+    fn run(&mut self, limits: &Limits, progress: &mut dyn FnMut(Progress)) -> Option<Limit> {
         let first_free = self.question.inputs.rows.len();
         let (mut clock, mut patience) = (0, PATIENCE);
-        let limit = loop {
+        loop {
             progress(Progress { clock: clock as u64, open: self.open_main().count() });
             let conflicts = patience.max(self.induction.conflicts() / 4);
             for sample in 0..=clock {
@@ -216,20 +248,27 @@ impl Search<'_, '_> {
             }
             let reached = self.guard.reached();
             if self.open_main().next().is_none() || reached.is_some() || self.contradiction.is_some() {
-                break reached;
+                return reached;
             }
             if self.open_main().any(|goal| self.goals[goal].clean <= clock) {
                 patience *= 2;
             } else if limits.clock.is_some_and(|last| clock as u64 >= last) {
-                break Some(Limit::Clock);
+                return Some(Limit::Clock);
             } else {
                 clock += 1;
             }
-        };
+        }
+    }
+
+    /// The verdicts, after this limit.
+    fn decision(self, limit: Option<Limit>) -> Decision {
+        let looked = self.open_main().map(|goal| self.goals[goal].clean).min().unwrap_or(self.bounded.frames.len());
+        let clock = (looked as u64).checked_sub(1);
         let open = |goal: Goal| goal.verdict.unwrap_or(Verdict::Unknown { clean: goal.clean as u64 });
         let limit = self.open_main().next().and(limit);
         let (depth, contradiction) = (self.induction.tried(), self.contradiction);
-        Decision { verdicts: self.goals.into_iter().take(self.main).map(open).collect(), depth, limit, contradiction }
+        let verdicts = self.goals.into_iter().take(self.main).map(open).collect();
+        Decision { verdicts, depth, clock, limit, contradiction }
     }
 }
 
