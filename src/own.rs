@@ -17,7 +17,7 @@ pub use bench::{BenchError, is_netlist, model};
 pub use file::{FileError, read_netlist};
 #[cfg(feature = "cli")]
 pub(crate) use file::{checked, read_stimulus, read_text, summary};
-pub use prove::{BenchReport, Counterexample, Goal, Prove, ProveReport, SecondOpinion, Verdict};
+pub use prove::{BenchReport, Counterexample, Goal, Prove, ProveReport, SecondOpinion, SolverLanguage, Verdict};
 pub use sim::{Sim, SimReport};
 pub use stimulus::{Stimulus, StimulusError};
 pub use yosys::{Source, YosysError, yosys_json};

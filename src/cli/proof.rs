@@ -115,6 +115,9 @@ pub(crate) struct NetlistProofArgs {
     /// Look at runs that the bench file next to the netlist does not allow, too
     #[arg(long, conflicts_with = "bench")]
     pub(crate) no_bench: bool,
+    /// The command of --solver reads clauses in the form of DIMACS, as SAT solvers do, and not SMT-LIB 2
+    #[arg(long, requires = "solver")]
+    pub(crate) dimacs: bool,
     /// Write the verdicts as JSON
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json]))]
     pub(crate) json: Option<PathBuf>,
@@ -133,6 +136,7 @@ impl NetlistProofArgs {
             (self.stimulus_out.is_some(), "--stimulus-out"),
             (self.json.is_some(), "--json"),
             (self.no_bench, "--no-bench"),
+            (self.dimacs, "--dimacs"),
         ];
         given.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
     }

@@ -22,6 +22,7 @@ use crate::Error;
 use crate::cli::{ProveArgs, ProveCommand};
 use crate::output::{self, Outputs, Sink, temporary};
 use crate::own::is_netlist;
+use crate::study::Extent;
 
 /// Attempts a proof, or checks one.
 pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
@@ -31,13 +32,23 @@ pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
             Some(path) if is_netlist(path) => {
                 let extent = args.extent.as_ref().or(args.travel.as_ref().map(|travel| &travel.0));
                 match extent {
-                    Some(extent) => boxed::prove(args, Path::new(path), extent),
+                    Some(extent) => boxed::prove(args, path, extent),
                     None => netlist::prove(args, Path::new(path)),
                 }
             }
-            _ => attempt(args),
+            _ => match unclaimed(args)? {
+                Some((name, extent)) => boxed::prove(args, name, &extent),
+                None => attempt(args),
+            },
         },
     }
+}
+
+/// A model whose author claims nothing, of given widths, with its box: every geometry is run.
+fn unclaimed(args: &ProveArgs) -> Result<Option<(&'static str, Extent)>, Error> {
+    let asked = proposition(args)?;
+    let extent = if asked.model.claims.is_none() { asked.bounds() } else { None };
+    Ok(extent.map(|extent| (asked.model.name, extent)))
 }
 
 /// Prints a text, unless standard output is where a file goes.

@@ -21,7 +21,7 @@ use report::{claimed, clocks};
 use second::Solver;
 
 pub use report::{BenchReport, Counterexample, Goal, ProveReport, Verdict};
-pub use second::SecondOpinion;
+pub use second::{SecondOpinion, SolverLanguage};
 
 use super::bench::{Conditions, Fixed};
 use super::example::Example;
@@ -128,10 +128,10 @@ impl Prove {
         Ok(Prove { design: elaborate(netlist)?, bench: Some((file.to_owned(), fixed, wraps)), ..self })
     }
 
-    /// With a second opinion of another solver, whose command gets SMT-LIB 2 on its input, within this time for each
-    /// question.
-    pub fn solver(self, command: &str, limit: Duration) -> Prove {
-        Prove { solver: Some(Solver { command: command.to_owned(), limit }), ..self }
+    /// With a second opinion of another solver, whose command reads this language from its input, within this time for
+    /// each question.
+    pub fn solver(self, command: &str, language: SolverLanguage, limit: Duration) -> Prove {
+        Prove { solver: Some(Solver { command: command.to_owned(), language, limit }), ..self }
     }
 
     /// With the report as JSON in this file.

@@ -116,3 +116,25 @@ fn bad_boxes_and_options_that_contradict_each_other_are_refused() {
         assert!(ran.err.contains(hint) && ran.err.lines().count() == 1, "{words}: {ran:?}");
     }
 }
+
+#[test]
+fn a_model_that_claims_nothing_is_run_over_a_box() {
+    let folder = Folder::new();
+    let printed = folder.good("prove stepgen --width 8 --box 0..5x0..5");
+    let head = "stepgen --width 8: lines from the origin, of the box 0..5x0..5\nPROVED at these widths: no operator loses a carry";
+    assert!(printed.starts_with(head) && printed.ends_with(" (35 geometries, exhausted)\n"), "{printed}");
+    assert_eq!(
+        folder.good("prove stepgen --width 3").lines().next(),
+        Some("stepgen --width 3: lines from the origin, with coordinates of 3 bits")
+    );
+    let ran = folder.run("prove stepgen --width 8,acc=5 --box 0..5x0..5");
+    assert!(ran.code == 1 && ran.out.contains("\nCOUNTEREXAMPLE: stepwave run stepgen --to "), "{ran:?}");
+    assert!(ran.err.contains("overflow of stepgen."), "{ran:?}");
+    for (words, hint) in [
+        ("prove stepgen", "no box of geometries over which something is claimed"),
+        ("prove stepgen --width 8 --certificate a.cert", "--certificate does not go with the geometries of a box"),
+    ] {
+        let ran = folder.run(words);
+        assert!(ran.code == 2 && ran.err.contains(hint), "{words}: {ran:?}");
+    }
+}

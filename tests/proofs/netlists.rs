@@ -116,6 +116,12 @@ fn a_solver_that_disagrees_with_a_verdict_is_reported() {
     let json = fs::read_to_string(folder.path("out.json")).expect("written");
     let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
     assert_eq!((&json["solver"]["differs"], &json["solver"]["command"]), (&serde_json::json!([]), &command.into()));
+    let command = solver(&folder, "c a solver\nc\ns UNSATISFIABLE");
+    let ran = prove(&folder, &["--solver", &command, "--dimacs"]);
+    assert_eq!((ran.code, ran.err.as_str()), (0, ""), "{}", ran.out);
+    let command = solver(&folder, "c a solver\ns SATISFIABLE");
+    let ran = prove(&folder, &["--solver", &command, "--dimacs"]);
+    assert!(ran.code == 1 && ran.err.contains(" disagrees (no violation in the first "), "{}", ran.err);
     let command = solver(&folder, "sat");
     let ran = prove(&folder, &["--solver", &command]);
     assert_eq!(ran.code, 1);

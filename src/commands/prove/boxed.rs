@@ -1,12 +1,12 @@
-//! `stepwave prove F.net --box …`: a netlist with a bench file, over all geometries of a box.
-
-use std::path::Path;
+//! `stepwave prove F.net --box …`: a netlist with a bench file, or a model whose author claims nothing, over all geometries of
+//! a box.
 
 use super::Progress;
 use crate::cli::ProveArgs;
 use crate::models::{CurveKind, Model, Options};
 use crate::nc::Curve;
 use crate::output::{self, Outputs};
+use crate::own::is_netlist;
 use crate::report::run_command;
 use crate::study::Extent;
 use crate::study::exhausted::{Exhausted, exhausted};
@@ -14,15 +14,14 @@ use crate::waves::WaveOptions;
 use crate::{Error, Simulation};
 
 /// Runs every geometry of the box.
-pub(super) fn prove(args: &ProveArgs, netlist: &Path, extent: &Extent) -> Result<(), Error> {
-    let name = netlist.display().to_string();
+pub(super) fn prove(args: &ProveArgs, name: &str, extent: &Extent) -> Result<(), Error> {
     if let Some(option) = args.netlist.given().or_else(|| args.of_proofs()) {
         return Err(Error::Invalid(format!(
             "{option} does not go with the geometries of a box, which are simulated: leave one of them out"
         )));
     }
-    let model = args.bench.model(&name)?;
-    let files = args.bench.files([&name]);
+    let model = args.bench.model(name)?;
+    let files = args.bench.files([&name.to_owned()]);
     if let Some(vcd) = &args.vcd {
         Outputs::reading(&files).claim(vcd)?;
     }
@@ -34,9 +33,17 @@ pub(super) fn prove(args: &ProveArgs, netlist: &Path, extent: &Extent) -> Result
     let what = match model.curve() {
         CurveKind::Line { .. } => "lines from the origin",
         CurveKind::Arc => "arcs about the origin inside a quadrant, with both ends on the circle",
-        _ => "lines from the origin, and arcs about it inside a quadrant with both ends on the circle",
+        CurveKind::Move => "lines from the origin, and arcs about it inside a quadrant with both ends on the circle",
+        CurveKind::Conic => "conics about the origin",
+        CurveKind::Helix => "helices about the origin",
     };
-    let hardware = format!("{}: {what}, of the box {extent}\n", model.name);
+    // Of a netlist no option changes the hardware.
+    let choices = if is_netlist(name) { Vec::new() } else { options.words() };
+    let of = match extent {
+        Extent::Bits(bits) => format!("with coordinates of {bits} bits"),
+        Extent::Grid(grid) => format!("of the box {grid}"),
+    };
+    let hardware = format!("{}: {what}, {of}\n", [vec![model.name.to_owned()], choices].concat().join(" "));
     let Some(example) = example else {
         let what = "no operator loses a carry that is not announced, no assertion is violated, every end point is reached exactly";
         return if all {
@@ -68,6 +75,11 @@ fn shown(
     outputs.commit()?;
     let mut sentences = report.failures();
     sentences.extend(report.warnings());
+    if sentences.is_empty() {
+        // Hardware that is as wide as this geometry alone needs.
+        let command = run_command(model, example, options);
+        sentences.push(format!("it fails on the hardware of the whole box, and not on that of {command}"));
+    }
     let wave = args.vcd.as_ref().map_or_else(String::new, |path| format!(" --vcd {}", path.display()));
     Ok((sentences, wave))
 }

@@ -9,7 +9,9 @@ use crate::Error;
 use crate::cli::ProveArgs;
 use crate::models::options::WRAPS;
 use crate::output::{self, Outputs};
-use crate::own::{BenchReport, Counterexample, Prove, ProveReport, Verdict, next_to, read_netlist, read_stimulus};
+use crate::own::{
+    BenchReport, Counterexample, Prove, ProveReport, SolverLanguage, Verdict, next_to, read_netlist, read_stimulus,
+};
 use crate::prove::sat::Limits;
 
 /// Rows of a counterexample that are shown.
@@ -40,7 +42,8 @@ pub(super) fn prove(args: &ProveArgs, path: &Path) -> Result<(), Error> {
         .vcd(args.vcd.clone())
         .json(own.json.clone());
     if let Some(command) = &args.solver {
-        proof = proof.solver(command, Duration::from_secs(args.solver_seconds));
+        let language = if own.dimacs { SolverLanguage::Dimacs } else { SolverLanguage::Smt2 };
+        proof = proof.solver(command, language, Duration::from_secs(args.solver_seconds));
     }
     let outputs = || Outputs::reading([path].into_iter().chain(own.stimulus.as_deref()).chain(bench.as_deref()));
     // Both are tried before anything is attempted.

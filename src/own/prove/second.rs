@@ -13,11 +13,20 @@ use crate::output::temporary;
 use crate::prove::sat::{Decision, Query, Question, Verdict};
 use crate::study::proof::{Answer, SolverError, ask};
 
+/// What a solver reads from its input.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum SolverLanguage {
+    /// SMT-LIB 2.
+    Smt2,
+    /// Clauses in the form of DIMACS.
+    Dimacs,
+}
+
 /// A solver, and how long it may take for a question.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Solver {
-    /// Its command, which reads SMT-LIB 2 from its input.
     pub(super) command: String,
+    pub(super) language: SolverLanguage,
     pub(super) limit: Duration,
 }
 
@@ -46,10 +55,15 @@ impl Solver {
         decision: &Decision,
         queries: &[Query],
     ) -> Result<SecondOpinion, Error> {
-        let Solver { command, limit } = self;
+        let Solver { command, language, limit } = self;
         let mut opinion = SecondOpinion { command: command.clone(), asked: 0, answered: 0, differs: Vec::new() };
-        let words = in_words(question, decision).map(|script| ("no violation, word by word".to_owned(), script, false));
-        let bits = queries.iter().map(|query| (query.about.clone(), query.smt2(), query.satisfiable));
+        let is_words = *language == SolverLanguage::Smt2;
+        let words = is_words.then(|| in_words(question, decision)).flatten();
+        let words = words.map(|script| ("no violation, word by word".to_owned(), script, false));
+        let bits = queries.iter().map(|query| {
+            let script = if is_words { query.smt2() } else { query.dimacs() };
+            (query.about.clone(), script, query.satisfiable)
+        });
         for (about, script, satisfiable) in words.into_iter().chain(bits) {
             opinion.asked += 1;
             match ask(command, &script, *limit, &temporary::attend) {

@@ -18,6 +18,8 @@ const MOST: usize = 4096;
 const LISTED: u32 = 7;
 /// Most clocks that one question is about.
 const DEEPEST: u64 = 2000;
+/// Most bytes of what a solver says that are read.
+const MOST_SAID: u64 = 1 << 20;
 
 /// A question for a solver.
 #[derive(Clone, Debug)]
@@ -198,12 +200,10 @@ pub fn ask(command: &str, script: &str, limit: Duration, attend: Attend<'_>) -> 
     std::thread::spawn(move || input.map(|mut input| input.write_all(owned.as_bytes())));
     let (sender, receiver) = std::sync::mpsc::channel();
     std::thread::spawn(move || {
-        let mut said = String::new();
-        let read = output.map_or(Ok(0), |output| BufReader::new(output).take(1 << 12).read_line(&mut said));
         // Nobody listens any more after the limit.
-        let _ = sender.send(read.map(|_| said));
+        let _ = sender.send(output.map_or_else(|| Ok(String::new()), answer_of));
     });
-    // The first line is the answer.
+    // The first line that is not a comment is the answer.
     let said = receiver.recv_timeout(limit);
     let ended = end(&mut child, attend);
     let Ok(said) = said else {
@@ -211,10 +211,21 @@ pub fn ask(command: &str, script: &str, limit: Duration, attend: Attend<'_>) -> 
     };
     let said = said.and_then(|said| ended.map(|_| said)).map_err(failed)?;
     match said.lines().next().map(str::trim) {
-        Some("sat") => Ok(Answer::Sat),
-        Some("unsat") => Ok(Answer::Unsat),
+        Some("sat" | "s SATISFIABLE" | "SATISFIABLE") => Ok(Answer::Sat),
+        Some("unsat" | "s UNSATISFIABLE" | "UNSATISFIABLE") => Ok(Answer::Unsat),
         first => Err(SolverError::Answer { command: command.to_owned(), said: first.unwrap_or_default().to_owned() }),
     }
+}
+
+/// The first line that a solver says and that is not a comment, as SAT solvers begin with.
+fn answer_of(output: impl Read) -> std::io::Result<String> {
+    for line in BufReader::new(output).take(MOST_SAID).lines() {
+        let line = line?;
+        if line != "c" && !line.starts_with("c ") {
+            return Ok(line);
+        }
+    }
+    Ok(String::new())
 }
 
 /// Ends a solver and what it has started.

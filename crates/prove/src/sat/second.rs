@@ -26,6 +26,17 @@ pub struct Query {
 }
 
 impl Query {
+    /// The formula in the form of DIMACS, which SAT solvers read.
+    #[must_use]
+    pub fn dimacs(&self) -> String {
+        let mut text = format!("c {}\np cnf {} {}\n", self.about, self.variables, self.clauses.len());
+        for clause in &self.clauses {
+            clause.iter().for_each(|literal| text += &format!("{literal} "));
+            text += "0\n";
+        }
+        text
+    }
+
     /// The formula as a script in SMT-LIB 2, which ends with the question.
     #[must_use]
     pub fn smt2(&self) -> String {
@@ -245,6 +256,10 @@ mod tests {
             // The last clause is the violation.
             assert!(is_satisfiable(*variables, &clauses[..clauses.len() - 1]), "{about}");
         }
-        assert!(queries[1].smt2().ends_with("(check-sat)\n"));
+        let few =
+            Query { about: "few".to_owned(), satisfiable: true, variables: 2, clauses: vec![vec![1, -2], vec![2]] };
+        assert_eq!(few.dimacs(), "c few\np cnf 2 2\n1 -2 0\n2 0\n");
+        let text = few.smt2();
+        assert!(text.ends_with("(assert (or false v1 (not v2)))\n(assert (or false v2))\n(check-sat)\n"), "{text}");
     }
 }
