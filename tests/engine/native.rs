@@ -6,7 +6,8 @@ use stepwave_netlist::Design;
 
 use crate::netlist::{design, net};
 
-/// Toggles, a ring of four beats, registers that load in one beat only, and a counter that now and then does something.
+/// Toggles, a ring of four beats, registers that load in one beat only, a counter that now and then does something, and a
+/// memory whose two ports write in different beats, some addresses being outside.
 fn machine() -> Design {
     design(|m| {
         let [hold, load] = ["hold", "load"].map(|name| m.input(name, 1));
@@ -23,6 +24,11 @@ fn machine() -> Design {
         late.when(full & ring.q.bit(3), late.q.wrapping_add(m.lit(2, 1))).else_hold();
         let held = m.reg("held", 8).reset(9);
         held.when(load, word).else_hold();
+        let log = m.memory("log", 8, 13).initial([7, 0, 9]);
+        m.name("logged", log.read(count.q.slice(0, 4)));
+        m.name("first", log.read(m.lit(1, 0)));
+        log.write(ring.q.bit(1), count.q.slice(1, 4), count.q, None);
+        log.write(full & toggle.q, late.q, word, Some(count.q));
         m.name("stop", full & ring.q.bit(2) & toggle.q);
     })
 }

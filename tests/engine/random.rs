@@ -12,7 +12,7 @@ use stepwave_netlist::cells::{NamedNet, Op};
 use stepwave_netlist::passes::simplify;
 use stepwave_netlist::{Design, Net, elaborate, text};
 
-use recipe::{build, recipe, value};
+use recipe::{build, recipe, recipe_of, value};
 
 /// What a test bench does to an engine.
 #[derive(Clone, Debug)]
@@ -157,6 +157,21 @@ proptest! {
         for kind in EngineKind::ALL {
             assert_same(&design, &script, &gates, &play(&design, kind, &script), kind.name())?;
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(config(10))]
+
+    #[test]
+    fn netlists_of_a_thousand_cells_are_the_same_in_every_engine(
+        recipe in recipe_of(800..1200), script in script(), warm_up in 0u64..4,
+    ) {
+        let design = elaborate(build(&recipe)).unwrap();
+        let gates = play(&design, EngineKind::Gates, &script);
+        assert_same(&design, &script, &gates, &play(&design, EngineKind::Word, &script), "word")?;
+        let compiled = play_on(&design, |watch| compiled_after(&design, watch, warm_up), &script);
+        assert_same(&design, &script, &gates, &compiled, "native code")?;
     }
 }
 

@@ -32,6 +32,7 @@
 mod compiled;
 mod gates;
 pub mod lanes;
+mod memories;
 mod word;
 
 use stepwave_netlist::Design;

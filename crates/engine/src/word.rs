@@ -1,6 +1,7 @@
 //! The word-level engine: one `u64` per net, and a flat array of operations in levelled order. A clock walks the array
 //! once; nothing is allocated, hashed or chased through a tree.
 
+use super::memories::Memories;
 use super::{Engine, Rows, Stop, Watch};
 use stepwave_netlist::Design;
 use stepwave_netlist::bits::{self, Width};
@@ -47,8 +48,7 @@ pub(super) struct WordEngine {
     design: Design,
     clock: u64,
     values: Vec<u64>,
-    /// Words of each memory.
-    memories: Vec<Vec<u64>>,
+    memories: Memories,
     /// Of every cell, so that any net can be watched.
     operations: Vec<Operation>,
     /// Each register and the net of its next value.
@@ -124,7 +124,7 @@ impl WordEngine {
             design: design.clone(),
             clock: 0,
             values,
-            memories: Vec::new(),
+            memories: Memories::new(netlist),
             operations: order.filter_map(|net| lower(design, net)).collect(),
             next: vec![0; registers.len()],
             registers,
@@ -172,7 +172,7 @@ impl WordEngine {
                 WordOp::Concat(high, low, shift) => at(high) << shift | at(low),
                 WordOp::Copy(a) => at(a),
                 WordOp::SignExtend(a, from) => bits::sign_extend(from, w, at(a)),
-                WordOp::Read(memory, address) => word(&self.memories[memory as usize], at(address)),
+                WordOp::Read(memory, address) => self.memories.word(memory as usize, at(address)),
             };
             v[*target as usize] = result;
         }
@@ -180,15 +180,7 @@ impl WordEngine {
 
     #[inline]
     fn edge(&mut self) {
-        for (words, memory) in self.memories.iter_mut().zip(&self.design.netlist().memories) {
-            let value = |net: Net| self.values[net.index()];
-            for port in memory.writes.iter().filter(|port| value(port.enable) == 1) {
-                let index = usize::try_from(value(port.address)).unwrap_or(usize::MAX);
-                if let Some(word) = words.get_mut(index) {
-                    *word = port.written(*word, value);
-                }
-            }
-        }
+        self.memories.edge(self.design.netlist(), |net| self.values[net.index()]);
         for (next, &(_, source)) in self.next.iter_mut().zip(&self.registers) {
             *next = self.values[source as usize];
         }
@@ -229,6 +221,11 @@ impl WordEngine {
         self.settle();
     }
 
+    /// The memories, whose words native code changes.
+    pub(super) fn memories(&mut self) -> &mut Memories {
+        &mut self.memories
+    }
+
     /// Counts and records the edge whose register values were taken over last.
     pub(super) fn finish_edge(&mut self, rows: &mut Rows) {
         self.clock += 1;
@@ -237,14 +234,6 @@ impl WordEngine {
 }
 
 impl WordEngine {
-    /// The memories take these contents, and where there are none their first words.
-    fn fill_memories(&mut self, contents: &[Vec<u64>]) {
-        let memories = self.design.netlist().memories.iter().enumerate();
-        self.memories = memories
-            .map(|(index, memory)| contents.get(index).cloned().unwrap_or_else(|| memory.first_contents()))
-            .collect();
-    }
-
     /// The stop net that is 1 in the present sample.
     pub(super) fn stopped(&self) -> Option<Stop> {
         self.stops.iter().position(|&net| self.values[net as usize] == 1).map(Stop::Net)
@@ -267,7 +256,7 @@ impl Engine for WordEngine {
                 self.values[register as usize] = reset;
             }
         }
-        self.fill_memories(&[]);
+        self.memories.fill(self.design.netlist(), &[]);
         self.apply_inputs();
         self.settle();
         self.record(rows);
@@ -279,7 +268,7 @@ impl Engine for WordEngine {
         for (&net, &value) in design.registers().iter().chain(design.inputs()).zip(registers.iter().chain(inputs)) {
             self.values[net.index()] = value;
         }
-        self.fill_memories(memories);
+        self.memories.fill(design.netlist(), memories);
         self.pending.clear();
         self.clock = clock;
         self.settle();
@@ -311,12 +300,6 @@ impl Engine for WordEngine {
     }
 
     fn word(&self, memory: usize, address: u64) -> u64 {
-        word(&self.memories[memory], address)
+        self.memories.word(memory, address)
     }
-}
-
-/// The word at an address; 0 outside.
-#[inline]
-fn word(words: &[u64], address: u64) -> u64 {
-    usize::try_from(address).ok().and_then(|address| words.get(address)).copied().unwrap_or(0)
 }

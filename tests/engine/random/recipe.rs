@@ -41,6 +41,8 @@ struct MemoryRecipe {
     bits: u32,
     words: u64,
     initial: Vec<u64>,
+    /// Addresses of cells that read it, in front of all other cells.
+    reads: Vec<u16>,
     /// Ports: enable, address, data, mask.
     ports: Vec<(u16, u16, u16, Option<u16>)>,
 }
@@ -150,9 +152,10 @@ fn register() -> impl Strategy<Value = RegisterRecipe> {
 
 fn memory() -> impl Strategy<Value = MemoryRecipe> {
     let port = any::<(u16, u16, u16, Option<u16>)>();
-    let words = prop_oneof![1u64..=5, Just(8u64), Just(16u64)];
-    (bits(), words, prop::collection::vec(value(), 0..5), prop::collection::vec(port, 0..4))
-        .prop_map(|(bits, words, initial, ports)| MemoryRecipe { bits, words, initial, ports })
+    let words = prop_oneof![1u64..=5, Just(8u64), Just(16u64), 1u64..300];
+    let reads = prop::collection::vec(any::<u16>(), 1..4);
+    (bits(), words, prop::collection::vec(value(), 0..20), reads, prop::collection::vec(port, 0..3))
+        .prop_map(|(bits, words, initial, reads, ports)| MemoryRecipe { bits, words, initial, reads, ports })
 }
 
 fn cell() -> impl Strategy<Value = CellRecipe> {
@@ -162,12 +165,17 @@ fn cell() -> impl Strategy<Value = CellRecipe> {
 
 /// Random netlists.
 pub(crate) fn recipe() -> impl Strategy<Value = Recipe> {
+    recipe_of(1..40)
+}
+
+/// Random netlists of about this many cells.
+pub(crate) fn recipe_of(cells: std::ops::Range<usize>) -> impl Strategy<Value = Recipe> {
     (
         prop::sample::select(&[OnOverflow::Trap, OnOverflow::Saturate, OnOverflow::Wrap][..]),
         prop::collection::vec(shape(), 1..4),
         prop::collection::vec(register(), 1..5),
         prop_oneof![3 => Just(Vec::new()), 2 => prop::collection::vec(memory(), 1..3)],
-        prop::collection::vec(cell(), 1..40),
+        prop::collection::vec(cell(), cells),
         prop::collection::vec(any::<u16>(), 0..3),
     )
         .prop_map(|(on_overflow, inputs, registers, memories, cells, invariants)| Recipe {
@@ -196,7 +204,12 @@ pub(crate) fn build(recipe: &Recipe) -> Netlist {
     for (index, memory) in recipe.memories.iter().enumerate() {
         let made = kitchen.scope(index).memory(&format!("m{index}"), memory.bits, memory.words);
         let words = memory.initial.iter().map(|word| word & (u64::MAX >> (64 - memory.bits)));
-        kitchen.memories.push((made.initial(words.take(usize::try_from(memory.words).unwrap())), memory.bits));
+        let made = made.initial(words.take(usize::try_from(memory.words).unwrap()));
+        kitchen.memories.push((made, memory.bits));
+        for &address in &memory.reads {
+            let read = made.read(kitchen.address(address));
+            kitchen.pool.push(read);
+        }
     }
     for (index, cell) in recipe.cells.iter().enumerate() {
         let made = kitchen.cook(index, cell);
@@ -256,9 +269,9 @@ impl<'m> Kitchen<'m> {
         signal.bit(u32::from(index >> 8) % signal.bits())
     }
 
-    /// Mostly of few bits, as the memories are small.
+    /// Mostly of few bits, as most memories are small.
     fn address(&self, index: u16) -> Signal<'m> {
-        if index.is_multiple_of(4) { self.pick(index) } else { narrowed(self.pick(index), 1 + u32::from(index % 5)) }
+        if index.is_multiple_of(4) { self.pick(index) } else { narrowed(self.pick(index), 1 + u32::from(index % 9)) }
     }
 
     /// A signal cut or extended to a width.

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! entry:   one edge from the sample that the caller holds; guard
-//! phase 0: settle; record a row; leave at a stop net; edge; guard
+//! phase 0: settle; record a row; leave at a stop net; edge, at which memories are written; guard
 //!   …
 //! phase p-1: …; leave if less than a whole round is left; edge; guard; back to phase 0
 //! ```
@@ -20,6 +20,7 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, MemFlags, Type, Value, types};
 use cranelift_frontend::FunctionBuilder;
 
+use crate::memories::Place;
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Net, Op};
 use stepwave_netlist::passes::Simplified;
@@ -39,6 +40,8 @@ pub(super) struct Plan<'a> {
     pub(super) phases: &'a [Phase],
     /// Each register and the net of its next value; the state begins with them.
     pub(super) registers: &'a [(Net, Net)],
+    /// Where each memory is among the words of all.
+    pub(super) memories: &'a [Place],
     /// Inputs, after the registers in the state.
     pub(super) inputs: &'a [Net],
     pub(super) columns: &'a [Net],
@@ -52,6 +55,11 @@ pub(super) struct Plan<'a> {
 }
 
 impl Plan<'_> {
+    /// Words of all memories.
+    pub(super) fn memory_words(&self) -> usize {
+        self.memories.last().map_or(0, |place| place.index(place.size) + 1)
+    }
+
     /// The register is its own next value in every phase, and fixed in none.
     pub(super) fn is_held(&self, index: usize) -> bool {
         let (net, next) = self.registers[index];
@@ -60,7 +68,7 @@ impl Plan<'_> {
     }
 
     /// The columns, by index, whose nets have in every sample of the loop the value that they had in the sample before
-    /// it: they depend on inputs and held registers alone, or are the same constant in all phases.
+    /// it: they depend on inputs, held registers and memories that nothing writes alone, or are the same constant in all phases.
     pub(super) fn resting(&self) -> Vec<usize> {
         let netlist = &self.entry.netlist;
         let held = (0..self.registers.len()).filter(|&index| self.is_held(index));
@@ -69,7 +77,11 @@ impl Plan<'_> {
         for (net, cell) in netlist.nets().zip(&netlist.cells) {
             let mut all = true;
             cell.op.visit_inputs(|input| all &= rests[input.index()]);
-            rests.push(if matches!(cell.op, Op::Register { .. }) { held.contains(&net) } else { all });
+            rests.push(match cell.op {
+                Op::Register { .. } => held.contains(&net),
+                Op::Read { memory, .. } => all && netlist.memories[memory as usize].writes.is_empty(),
+                _ => all,
+            });
         }
         let constant = |net: Net| {
             let mut values = self.phases.iter().map(|phase| phase.logic.constant(net));
@@ -88,9 +100,11 @@ impl Plan<'_> {
 pub(super) type RegisterValues = Vec<Value>;
 
 pub(super) struct Generator<'a, 'c> {
-    plan: &'a Plan<'a>,
+    pub(super) plan: &'a Plan<'a>,
     pub(super) f: &'a mut FunctionBuilder<'c>,
     state: Value,
+    /// The words of all memories.
+    pub(super) memories: Value,
     inputs: Vec<Value>,
     /// Columns that are stored in every row, by index.
     pub(super) busy: Vec<usize>,
@@ -115,13 +129,13 @@ pub(super) fn immediate(value: u64) -> i64 {
     value.cast_signed()
 }
 
-/// Generates the body of `fn(state, rows, clocks) -> recorded`, `rows` being the place of the next row in the first
+/// Generates the body of `fn(state, rows, clocks, memories) -> recorded`, `rows` being the place of the next row in the first
 /// column; the builder is in the entry block with those parameters. `clocks` is at least the number of phases.
 /// Columns that are `resting` are not stored.
 pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuilder<'_>, entry: Block) {
     let parameters = f.block_params(entry).to_vec();
-    let [state, rows, clocks] = parameters[..] else { return };
-    let (mut generator, start) = Generator::begin(plan, resting, f, state);
+    let [state, rows, clocks, memories] = parameters[..] else { return };
+    let (mut generator, start) = Generator::begin(plan, resting, f, [state, memories]);
     let widths: Vec<Width> =
         plan.registers.iter().map(|&(net, _)| plan.entry.netlist.width(plan.entry.net(net))).collect();
 
@@ -184,10 +198,10 @@ impl<'a, 'c> Generator<'a, 'c> {
         plan: &'a Plan<'a>,
         resting: &[usize],
         f: &'a mut FunctionBuilder<'c>,
-        state: Value,
+        [state, memories]: [Value; 2],
     ) -> (Generator<'a, 'c>, RegisterValues) {
         let busy = (0..plan.columns.len()).filter(|column| !resting.contains(column)).collect();
-        let mut generator = Generator { plan, f, state, inputs: Vec::new(), busy };
+        let mut generator = Generator { plan, f, state, memories, inputs: Vec::new(), busy };
         let nets = plan.registers.iter().map(|&(net, _)| net).chain(plan.inputs.iter().copied());
         let width = |net: Net| plan.entry.netlist.width(plan.entry.net(net));
         let mut words: RegisterValues =
@@ -219,7 +233,7 @@ impl<'a, 'c> Generator<'a, 'c> {
         }
     }
 
-    /// Values of all nets that the next values and `observed` depend on.
+    /// Values of all nets that the next values, the ports of memories and `observed` depend on.
     pub(super) fn settle(
         &mut self,
         logic: &Simplified,
@@ -228,6 +242,7 @@ impl<'a, 'c> Generator<'a, 'c> {
     ) -> HashMap<Net, Value> {
         let mut roots: Vec<Net> = observed.iter().map(|&net| logic.net(net)).collect();
         roots.extend(self.plan.registers.iter().map(|&(_, next)| logic.net(next)));
+        roots.extend(logic.netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()));
         self.settle_roots(logic, sample, roots)
     }
 
@@ -278,9 +293,20 @@ impl<'a, 'c> Generator<'a, 'c> {
         values
     }
 
-    /// Next values of all registers.
+    /// The memories are written; the next values of all registers.
     pub(super) fn edge(
         &mut self,
+        logic: &Simplified,
+        values: &HashMap<Net, Value>,
+        sample: &RegisterValues,
+    ) -> RegisterValues {
+        self.write_memories(&logic.netlist, values);
+        self.next(logic, values, sample)
+    }
+
+    /// Next values of all registers.
+    pub(super) fn next(
+        &self,
         logic: &Simplified,
         values: &HashMap<Net, Value>,
         sample: &RegisterValues,

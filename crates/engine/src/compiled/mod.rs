@@ -10,6 +10,7 @@
 //! When inputs have changed (a block was loaded), a loop that was compiled for such inputs is entered at once.
 
 mod codegen;
+mod memory;
 mod native;
 mod operation;
 mod passing;
@@ -68,7 +69,7 @@ pub(super) struct Compiled {
     /// Inputs have changed since a loop was left, and there is one for them.
     known: bool,
     variants: Vec<Variant>,
-    /// No code generator for this machine or this design.
+    /// No code generator for this machine, or its rows or memories are too large for one.
     unavailable: bool,
     state: Vec<u64>,
 }
@@ -101,8 +102,7 @@ impl Compiled {
             quiet: 0,
             known: false,
             variants: Vec::new(),
-            // The word engine runs designs with memories.
-            unavailable: !netlist.memories.is_empty(),
+            unavailable: false,
             state: vec![0; words],
         }
     }
@@ -164,10 +164,12 @@ impl Compiled {
                 nets.extend(&self.watch.stops);
                 nets.extend(self.idle.iter().flat_map(|idle| &idle.flags));
             });
+        let memories = self.word.memories().places().to_vec();
         let plan = codegen::Plan {
             entry: &specialised.entry,
             phases: &specialised.phases,
             registers: &self.registers,
+            memories: &memories,
             inputs: self.design.inputs(),
             columns: &self.watch.columns,
             stride,
@@ -199,7 +201,8 @@ impl Compiled {
             return self.run_passing(variant, clocks, rows);
         }
         let (values, first) = rows.spare();
-        let recorded = self.variants[variant].native.call(&mut self.state, values, first, clocks);
+        let memories = self.word.memories().words_mut();
+        let recorded = self.variants[variant].native.call(&mut self.state, values, first, clocks, memories);
         for &column in self.variants[variant].native.resting() {
             rows.fill(column, recorded, self.word.value(self.watch.columns[column]));
         }
@@ -225,7 +228,8 @@ impl Compiled {
         let clock = self.word.clock();
         (self.state[base + passing::ROOM], self.state[base + passing::CLOCK]) = (rows.room(), clock);
         let (values, first) = rows.spare();
-        let done = self.variants[variant].native.call(&mut self.state, values, first, clocks);
+        let memories = self.word.memories().words_mut();
+        let done = self.variants[variant].native.call(&mut self.state, values, first, clocks, memories);
         let recorded = self.state[base + passing::ROOM];
         for &column in self.variants[variant].native.resting() {
             rows.fill(column, recorded, self.word.value(self.watch.columns[column]));
@@ -323,6 +327,9 @@ mod tests {
         let m = module.top();
         let count = m.reg("count", 16);
         count.set(count.q.wrapping_add(m.lit(16, 1)));
+        let memory = m.memory("memory", 16, 1000);
+        memory.write(m.lit(1, 1), count.q, !count.q, None);
+        m.name("read", memory.read(count.q));
         let count = count.q.net();
         let design = elaborate(module.finish().unwrap()).unwrap();
         let watch = Watch { columns: vec![count], stops: Vec::new() };
@@ -335,5 +342,6 @@ mod tests {
         let native: u64 = engine.variants.iter().map(|variant| variant.clocks).sum();
         assert!(native > 9_000, "{native} of 10000 clocks in {} loops", engine.variants.len());
         assert_eq!((engine.clock(), engine.value(count)), (10_000, 10_000));
+        assert_eq!([0, 1, 999, 1000].map(|address| engine.word(0, address)), [0xffff, 0xfffe, 0xffff - 999, 0]);
     }
 }

@@ -1,7 +1,8 @@
 //! Native code and the call into it: the one file with `unsafe`.
 //!
-//! What makes it sound: the code reads and writes only the `state` words and the row words that its plan names, both of
-//! which `call` checks the length of before it enters.
+//! What makes it sound: the code reads and writes only the `state` words, the row words and the words of memories that its
+//! plan names, all of which `call` checks the length of before it enters; an address outside of a memory reads the word
+//! after it and writes nothing.
 #![allow(unsafe_code)]
 
 use cranelift_codegen::ir::{AbiParam, types};
@@ -15,8 +16,8 @@ use super::passing;
 /// Values that an offset of 31 bits reaches.
 const FARTHEST: usize = 1 << 28;
 
-/// The compiled loop: state, rows, clocks → samples recorded, or clocks done where samples are passed over.
-type Loop = unsafe extern "C" fn(*mut u64, *mut u64, u64) -> u64;
+/// The compiled loop: state, rows, clocks, memories → samples recorded, or clocks done where samples are passed over.
+type Loop = unsafe extern "C" fn(*mut u64, *mut u64, u64, *mut u64) -> u64;
 
 /// A compiled plan.
 pub(super) struct Native {
@@ -24,6 +25,7 @@ pub(super) struct Native {
     module: Option<JITModule>,
     code: Loop,
     state_words: usize,
+    memory_words: usize,
     columns: usize,
     stride: usize,
     resting: Vec<usize>,
@@ -33,12 +35,13 @@ pub(super) struct Native {
 }
 
 impl Native {
-    /// Compiles a plan; `None` where this machine has no code generator, or the rows are too large for one.
+    /// Compiles a plan; `None` where this machine has no code generator, or rows or memories are too large for one.
     pub(super) fn compile(plan: &Plan<'_>) -> Option<Native> {
         let passes = !plan.running.is_empty();
         // After the columns of sparse rows come their clocks.
         let values = (plan.columns.len() + usize::from(passes)).checked_mul(plan.stride)?;
-        if values > FARTHEST {
+        let memory_words = plan.memory_words();
+        if values.max(memory_words) > FARTHEST {
             return None;
         }
         let flags = [("opt_level", "speed"), ("enable_verifier", "false")];
@@ -46,7 +49,7 @@ impl Native {
         let mut module = JITModule::new(builder);
         let mut context = module.make_context();
         let signature = &mut context.func.signature;
-        signature.params.extend([AbiParam::new(types::I64); 3]);
+        signature.params.extend([AbiParam::new(types::I64); 4]);
         signature.returns.push(AbiParam::new(types::I64));
         let mut functions = FunctionBuilderContext::new();
         let mut f = FunctionBuilder::new(&mut context.func, &mut functions);
@@ -74,6 +77,7 @@ impl Native {
             module: Some(module),
             code,
             state_words: words + if passes { passing::words(plan) } else { 1 },
+            memory_words,
             columns: plan.columns.len() + usize::from(passes),
             stride: plan.stride,
             resting,
@@ -101,8 +105,16 @@ impl Native {
     /// Where samples are passed over, as many rows as the state says, and the number of clocks.
     ///
     /// # Panics
-    /// If `state` or `rows` is too short, or `clocks` less than the number of phases.
-    pub(super) fn call(&self, state: &mut [u64], rows: &mut [u64], first: usize, clocks: u64) -> u64 {
+    /// If `state`, `rows` or `memories` is too short, or `clocks` less than the number of phases.
+    pub(super) fn call(
+        &self,
+        state: &mut [u64],
+        rows: &mut [u64],
+        first: usize,
+        clocks: u64,
+        memories: &mut [u64],
+    ) -> u64 {
+        assert!(memories.len() >= self.memory_words, "{} words of memories", memories.len());
         assert!(state.len() >= self.state_words, "state of {} words", state.len());
         assert!(self.phases <= clocks && i64::try_from(clocks).is_ok(), "{clocks} clocks");
         if self.columns > 0 {
@@ -113,8 +125,8 @@ impl Native {
         }
         // SAFETY: the code touches `state_words` words of `state`, and in each of `columns` columns of `stride` values
         // at most `clocks` values after `first`, or as many as its word of the room says, all of which the assertions
-        // have checked; it calls nothing and keeps no pointer. The module that holds it lives.
-        unsafe { (self.code)(state.as_mut_ptr(), rows[first..].as_mut_ptr(), clocks) }
+        // have checked, and the words of `memories` that the plan names; it calls nothing and keeps no pointer. The module that holds it lives.
+        unsafe { (self.code)(state.as_mut_ptr(), rows[first..].as_mut_ptr(), clocks, memories.as_mut_ptr()) }
     }
 }
 

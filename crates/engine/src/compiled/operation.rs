@@ -17,8 +17,11 @@ impl Generator<'_, '_> {
         let width = cell.width;
         match cell.op {
             // Inputs and registers are given before; nothing else is without operands but a constant.
-            // A design with memories is not compiled.
-            Op::Input | Op::Register { .. } | Op::Read { .. } => self.f.ins().iconst(kind(width), 0),
+            Op::Input | Op::Register { .. } => self.f.ins().iconst(kind(width), 0),
+            Op::Read { memory, address } => {
+                let changes = !netlist.memories[memory as usize].writes.is_empty();
+                self.read(memory as usize, changes, at(address), width)
+            }
             Op::Const(value) => self.f.ins().iconst(kind(width), immediate(value)),
             Op::Not(a) if width == Width::ONE => match netlist.cell(a).op {
                 Op::Equal(a, b) => self.f.ins().icmp(IntCC::NotEqual, at(a), at(b)),

@@ -128,8 +128,8 @@ struct Passing<'a, 'c> {
 
 /// As [`codegen::generate`](super::codegen::generate), for one phase without fixed registers.
 pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuilder<'_>, entry: Block) {
-    let [state, rows, clocks] = f.block_params(entry).to_vec()[..] else { return };
-    let (mut generator, start) = Generator::begin(plan, resting, f, state);
+    let [state, rows, clocks, memories] = f.block_params(entry).to_vec()[..] else { return };
+    let (mut generator, start) = Generator::begin(plan, resting, f, [state, memories]);
     let base = plan.registers.len() + plan.inputs.len();
     let [room, clock] = [ROOM, CLOCK].map(|word| generator.load(base + word, types::I64));
     let indices = 0..plan.registers.len();
@@ -176,6 +176,7 @@ impl Passing<'_, '_> {
         let next = self.generator.edge(plan.entry, &values, &sample);
         self.jump(awake, &carried, &next, &account);
         self.generator.f.switch_to_block(rest);
+        let next = self.generator.next(plan.entry, &values, &sample);
         self.jump(idle, &running, &next, &account);
 
         // All registers but the running ones are those of the sample that was awake.
@@ -189,7 +190,8 @@ impl Passing<'_, '_> {
         let account = Account { extremes: self.extremes(&sample, &account.extremes), ..account };
         self.leave_at_the_end(&sample, &account);
         let values = self.generator.settle(plan.entry, &sample, &self.next());
-        let next = self.generator.edge(plan.entry, &values, &sample);
+        // Nothing writes a memory here.
+        let next = self.generator.next(plan.entry, &values, &sample);
         let done = self.generator.f.ins().iadd_imm(account.done, 1);
         self.jump(idle, &running, &next, &Account { done, ..account });
     }
@@ -207,10 +209,11 @@ impl Passing<'_, '_> {
         nets
     }
 
-    /// 1 where a register but the running ones changes at the next edge, or one of `flags` is 1.
+    /// 1 where a register but the running ones changes at the next edge, a memory is written, or one of `flags` is 1.
     fn woken(&mut self, sample: &RegisterValues, flags: &[Net]) -> Value {
         let logic = &self.rest.logic;
-        let flags: Vec<Net> = flags.iter().map(|&net| logic.net(net)).collect();
+        let mut flags: Vec<Net> = flags.iter().map(|&net| logic.net(net)).collect();
+        flags.extend(logic.netlist.memories.iter().flat_map(|memory| &memory.writes).map(|port| port.enable));
         let others = self.rest.others.iter().flat_map(|&(register, next)| [register, next]);
         let roots = flags.iter().copied().chain(others).collect();
         let values = self.generator.settle_roots(logic, sample, roots);

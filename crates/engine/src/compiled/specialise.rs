@@ -80,15 +80,17 @@ impl History {
     }
 }
 
-/// The nets that the next value of a register depends on, of another one than the net itself.
+/// The nets that a port of a memory depends on, or the next value of a register, of another one than the net itself.
 fn read_by_the_machine(netlist: &Netlist, registers: &[(Net, Net)]) -> Vec<bool> {
     let mut read = vec![false; netlist.cells.len()];
-    for &(register, next) in registers {
+    let written = netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets());
+    let written: Vec<Net> = written.collect();
+    let roots = registers.iter().map(|&(register, next)| (Some(register), vec![next]));
+    for (register, mut pending) in roots.chain([(None, written)]) {
         let mut seen = vec![false; netlist.cells.len()];
-        let mut pending = vec![next];
         while let Some(net) = pending.pop() {
             if !std::mem::replace(&mut seen[net.index()], true) {
-                read[net.index()] |= net != register;
+                read[net.index()] |= Some(net) != register;
                 netlist.cell(net).op.visit_inputs(|input| pending.push(input));
             }
         }
@@ -115,6 +117,7 @@ impl Specialised {
         watched: impl Fn(&mut Vec<Net>),
     ) -> Specialised {
         let mut roots: Vec<Net> = registers.iter().map(|&(_, next)| next).collect();
+        roots.extend(netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()));
         watched(&mut roots);
         let mut fixed: HashMap<Net, u64> = HashMap::new();
         let mut entry = simplify(netlist, &fixed);
