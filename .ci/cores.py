@@ -44,17 +44,17 @@ class Wave:
             elif word[0] == "$upscope":
                 stack.pop()
             elif word[0] == "$var" and stack[: len(scopes)] == scopes:
-                name = ".".join(re.sub(r"\W", "_", part) for part in stack[len(scopes) :] + word[4].lstrip("\\").split("."))
+                name = ".".join(re.sub(r"\W", "_", part) for part in stack[len(scopes) :] + re.sub(r"\[\d+:\d+\]$", "", word[4]).lstrip("\\").split("."))
                 # Another range than one from 0 on is a part of a word.
                 self.names[name] = (word[3], int(word[2]))
             elif word[0] == "$enddefinitions":
                 break
         number, unit = re.search(r"(\d+) ?(\w+)", " ".join(scale)).groups()
-        self.tick = int(number) * {"ns": 1000, "ps": 1, "us": 1000000}[unit]
+        self.tick = int(number) * {"us": 10**9, "ns": 10**6, "ps": 1000, "fs": 1}[unit]
 
     def at(self, picoseconds):
         """Reads on to this time."""
-        time = picoseconds // self.tick
+        time = picoseconds * 1000 // self.tick
         while self.time <= time:
             line = self.lines.readline()
             if not line:
@@ -102,6 +102,9 @@ def compare(stepwave, folder, name, files, top, clock, fixed, clocks, parameters
     folder.mkdir(parents=True, exist_ok=True)
     words = [word for parameter in parameters for word in ("--param", parameter)]
     note = run(stepwave, "import", *files, "--top", top, *words, "-o", folder / "own.net", cwd=folder).splitlines()[0]
+    if pathlib.Path(files[0]).suffix == ".vhd":
+        (folder / "ghdl.v").write_text(run("ghdl", "--synth", "--std=08", "--out=verilog", *files, "-e", top).replace(") >> ", ") >>> "))
+        files = [folder / "ghdl.v"]
     read = "; ".join(f"read_verilog -sv {path}" for path in files)
     changed = " ".join(f"-chparam {p.replace('=', ' ')}" for p in parameters)
     flat = f"{read}; hierarchy -check -top {top} {changed}; {PASSES}"
@@ -146,20 +149,7 @@ def compare(stepwave, folder, name, files, top, clock, fixed, clocks, parameters
     out = run(stepwave, "sim", "own.net", "--stimulus", "in.csv", "--clocks", clocks, "--fst", "own.fst", cwd=folder)
     own_time = time.time() - begun
     run(stepwave, "sim", "own.net", "--stimulus", "in.csv", "--clocks", clocks, "--vcd", "own.vcd", cwd=folder)
-    own = Wave(folder / "own.vcd", [re.sub(r"\W", "_", top)])
-    icarus = Wave(folder / "theirs.vcd", ["tb", "dut"])
-    both = [signal for signal in own.names if signal != clock and signal in icarus.names and own.names[signal][1] == icarus.names[signal][1]]
-    wrong, known = 0, 0
-    for k in range(clocks + 1):
-        own.at(1_000_000 * k + 1)
-        icarus.at(10_000 * k + 9_000)
-        for signal in both:
-            mine, value = own.value(signal), icarus.value(signal)
-            known += sum(bit in "01" for bit in value)
-            if any(b in "01" and a != b for a, b in zip(mine, value)):
-                wrong += 1
-                if wrong < 6:
-                    print(f"{name}, clock {k}, {signal}: stepwave {mine}, Icarus {value}")
+    both, wrong, known = same(name, folder, top, clock, clocks, "theirs.vcd")
     if name == "gaps":
         undefined_in_time(folder, clocks)
     if name == "wide":
@@ -170,7 +160,48 @@ def compare(stepwave, folder, name, files, top, clock, fixed, clocks, parameters
     events = len(out.splitlines()) - 1
     print(f"{name}: {note.split(': ')[1]}; {clocks} clocks, {len(both)} signals the same, {known} bits known in Icarus;")
     print(f"    {events} components with overflow events; seconds with a wave: stepwave {own_time:.2f}, Icarus {theirs:.2f}")
+    if name == "vhdl":
+        simulated_by_ghdl(stepwave, folder, sources, top, clock, clocks, out)
     newer_yosys(stepwave, folder, sources, top, clocks, words, shown if name == "printed" else "")
+
+
+def same(name, folder, top, clock, clocks, other):
+    """How many signals both waves have, values that differ, and bits that the other simulator knows."""
+    own = Wave(folder / "own.vcd", [re.sub(r"\W", "_", top)])
+    theirs = Wave(folder / other, ["tb", "dut"])
+    both = [signal for signal in own.names if signal != clock and signal in theirs.names and own.names[signal][1] == theirs.names[signal][1]]
+    wrong, known = 0, 0
+    for k in range(clocks + 1):
+        own.at(1_000_000 * k + 1)
+        theirs.at(10_000 * k + 9_000)
+        for signal in both:
+            mine, value = own.value(signal), theirs.value(signal)
+            known += sum(bit in "01" for bit in value)
+            if any(b in "01" and a != b for a, b in zip(mine, value)):
+                wrong += 1
+                if wrong < 6:
+                    print(f"{name}, clock {k}, {signal}: stepwave {mine}, {other} {value}")
+    return both, wrong, known
+
+
+def simulated_by_ghdl(stepwave, folder, files, top, clock, clocks, out):
+    """VHDL in GHDL's own simulator, and the events of it."""
+    text = (folder / "in.csv").read_text().splitlines()[1:]
+    rows = [row.split(",") for row in text]
+    (folder / "all_rows.txt").write_text("".join(f"{row[0]} {int(row[1]):08b}\n" for row in rows))
+    bench = pathlib.Path(files[0]).with_name("filter_tb.vhd")
+    run("ghdl", "-a", "--std=08", *files, bench, cwd=folder)
+    run("ghdl", "-e", "--std=08", "tb", cwd=folder)
+    run("ghdl", "-r", "--std=08", "tb", "--vcd=ghdl.vcd", cwd=folder)
+    both, wrong, known = same("vhdl", folder, top, clock, clocks, "ghdl.vcd")
+    if wrong or len(both) < 8:
+        sys.exit(f"vhdl: {wrong} values differ from GHDL, {len(both)} signals compared; files in {folder}")
+    events = [line for line in out.splitlines() if line.startswith("warning: ")]
+    lines = sorted({line.split(".vhd:")[1].split(":")[0] for line in events})
+    # The counter, and the opposite of -128, each with its line: a square fits, and the integrator never fills.
+    if lines != ["46", "48"]:
+        sys.exit(f"vhdl: other events than expected:\n{out}")
+    print(f"    {len(both)} signals, {known} bits as in GHDL's simulator, events at lines {', '.join(lines)}")
 
 
 def newer_yosys(stepwave, folder, files, top, clocks, words, shown):
@@ -246,6 +277,7 @@ def main():
         "serv": lambda: (serv, "serving", "i_clk", {"i_rst": reset(1)}, 4000, [], True),
         "vexriscv-min": lambda: ([vex + "VexRiscv_Min.v"], "VexRiscv", "clk", {"reset": reset(1), "externalResetVector": lambda k: 0}, 2000, [], True),
         "vexriscv": lambda: ([vex + "VexRiscv.v"], "VexRiscv", "clk", {"reset": reset(1), "externalResetVector": lambda k: 0}, 130, [], True),
+        "vhdl": lambda: ([here / "filter.vhd"], "filter", "clk", {"rst": reset(1)}, 4000),
         # Commands at times, of any speed, with and without a limit of acceleration.
         "litexcnc": lambda: ([folder / "stepgen.v"], "stepgen", "sys_clk", {
             "sys_rst": reset(1), "reset_in": lambda k: int(k % 1500 > 1490), "enable_in": lambda k: int(k % 2000 < 1900),

@@ -8,6 +8,7 @@ mod printed;
 mod prove;
 mod sim;
 mod stimulus;
+mod vhdl;
 mod yosys;
 
 pub(crate) use announce::{announce, matching};

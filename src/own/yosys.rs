@@ -6,6 +6,8 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Component, Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use super::vhdl::{OF_GHDL, arithmetic_shifts, restored};
+
 /// What is to be read, and how.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
@@ -189,19 +191,20 @@ pub fn yosys_json(source: &Source) -> Result<String, YosysError> {
         std::fs::File::open(file)
             .map_err(|error| std::io::Error::new(error.kind(), format!("cannot read {}: {error}", file.display())))?;
     }
-    let Some(vhdl) = source.files.iter().find(|file| is_vhdl(file)) else { return yosys(source, None) };
+    let Some(first) = source.files.iter().find(|file| is_vhdl(file)) else { return yosys(source, None) };
     if let Some(other) = source.files.iter().find(|file| !is_vhdl(file)) {
-        let (vhdl, other) = (vhdl.display().to_string(), other.display().to_string());
+        let (vhdl, other) = (first.display().to_string(), other.display().to_string());
         return Err(YosysError::Mixed { vhdl, other });
     }
     let folder = tempfile::Builder::new().prefix("stepwave-").tempdir()?;
-    // Its lines are all that messages can name: Verilog of GHDL does not say which line of VHDL it is from.
-    std::fs::write(folder.path().join(OF_GHDL), ghdl(source)?)?;
-    yosys(source, Some(folder.path()))
+    let verilog = ghdl(source)?;
+    std::fs::write(folder.path().join(OF_GHDL), &verilog)?;
+    let json = yosys(source, Some(folder.path()))?;
+    let texts = source.files.iter().map(|file| Ok(String::from_utf8_lossy(&std::fs::read(file)?).into_owned()));
+    let texts = texts.collect::<Result<Vec<String>, std::io::Error>>()?;
+    // What is not JSON is refused where it is read.
+    Ok(restored(&json, &verilog, &texts).unwrap_or(json))
 }
-
-/// The file that GHDL's Verilog is in.
-const OF_GHDL: &str = "written-by-ghdl.v";
 
 /// What Yosys writes of the files, or of GHDL's Verilog in a folder.
 fn yosys(source: &Source, folder: Option<&Path>) -> Result<String, YosysError> {
@@ -262,7 +265,7 @@ impl Mounts {
 }
 
 /// Verilog of the VHDL, which GHDL's synthesis writes.
-fn ghdl(source: &Source) -> Result<Vec<u8>, YosysError> {
+fn ghdl(source: &Source) -> Result<String, YosysError> {
     let command = source.ghdl.as_deref().unwrap_or("ghdl");
     let mut arguments: Vec<std::ffi::OsString> = ["--synth", "--std=08", "--out=verilog"].map(Into::into).to_vec();
     for (name, value) in &source.parameters {
@@ -274,7 +277,7 @@ fn ghdl(source: &Source) -> Result<Vec<u8>, YosysError> {
     let arguments: Vec<&OsStr> = arguments.iter().map(AsRef::as_ref).collect();
     match started(command, &arguments, "", None)? {
         None => Err(YosysError::NoGhdl { command: command.to_owned() }),
-        Some(output) if output.status.success() => Ok(output.stdout),
+        Some(output) if output.status.success() => Ok(arithmetic_shifts(&String::from_utf8_lossy(&output.stdout))),
         Some(output) => Err(YosysError::Refused { tool: "GHDL", message: complaint(&output.stderr) }),
     }
 }
