@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use crate::models::Millionths;
-use crate::models::Model;
 use crate::nc::Opens;
 use clap::{Args, Parser, Subcommand};
 
@@ -27,8 +26,8 @@ pub(crate) use hardware::HardwareArgs;
 use names::model_name;
 pub(crate) use names::{Registers, all_registers, known_register, listed, registers};
 pub(crate) use own::{BenchArgs, CheckArgs, ImportArgs, SimArgs};
-use program::machines;
-pub(crate) use program::{ProgramArgs, TextArgs, Tool};
+use program::MethodParser;
+pub(crate) use program::{Method, ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use usage::usage;
@@ -217,9 +216,9 @@ pub(crate) struct ExportArgs {
     /// An NC program in place of a model and its geometry: the machine of --method, which runs all of it
     #[arg(long, value_name = "FILE", requires = "method", conflicts_with_all = ["model", "any_geometry"])]
     pub(crate) program: Option<PathBuf>,
-    /// Family of the machine that runs the program
-    #[arg(long, requires = "program", value_parser = values::one_of(&machines()))]
-    pub(crate) method: Option<&'static Model>,
+    /// Family of the machine that runs the program, or a netlist of one's own: F.net
+    #[arg(long, requires = "program", value_parser = MethodParser)]
+    pub(crate) method: Option<Method>,
     #[command(flatten)]
     pub(crate) text: TextArgs,
     #[command(flatten)]

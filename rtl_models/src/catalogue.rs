@@ -67,7 +67,7 @@ impl Catalogue {
 
     /// Those that run programs, in the order of the list.
     pub fn machines(&self) -> impl Iterator<Item = &'static Model> + '_ {
-        self.iter().filter(|model| model.moves().is_ok())
+        self.iter().filter(|model| model.is_buffered())
     }
 
     /// Number of models.

@@ -10,6 +10,7 @@ use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
 use crate::model::{CurveKind, Model};
 use crate::plan::Plan;
+use crate::program::Moves;
 
 /// How hardware that data describe is planned, built and loaded.
 pub trait Described: fmt::Debug + Sync {
@@ -33,6 +34,9 @@ pub trait Described: fmt::Debug + Sync {
     /// # Errors
     /// A word cannot be computed, or the hardware cannot take it.
     fn words(&self, hardware: &Hardware, curve: &Curve) -> Result<Vec<Words>, ModelError>;
+
+    /// How it takes the moves of a program.
+    fn moves(&self) -> &dyn Moves;
 }
 
 /// Models that are not of the catalogue.

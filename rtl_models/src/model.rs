@@ -10,7 +10,7 @@ use crate::hardware::Hardware;
 use crate::machine::{Machine, Words};
 use crate::options::{AnyOption, ON_OVERFLOW, Options, Takes, chosen, taken};
 use crate::plan::Plan;
-use crate::program::Moves;
+use crate::program::Paced;
 use crate::registers::{RegisterGroup, Registers, rows};
 
 /// What a model interpolates.
@@ -107,7 +107,7 @@ pub enum Interpolates {
     /// Circular arcs in the plane with a displacement in z.
     Helices(Method<Helix>),
     /// The moves of a program, or one of them alone.
-    Moves(Moves),
+    Moves(Paced),
     /// What data describe, wiring included: [`Model::hardware`] is not called.
     Described(&'static dyn Described),
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use stepwave_import::Unknown;
 
-use super::{ClockArgs, Format, file_of, values};
+use super::{ClockArgs, Format, Method, file_of, values};
 use crate::Error;
 use crate::engine::EngineKind;
 use crate::models::{Model, find};
@@ -79,6 +79,25 @@ impl BenchArgs {
                 "--bench {} is for a netlist of one's own, and {word} is a model of the catalogue: leave it out",
                 bench.display()
             ))),
+        }
+    }
+
+    /// The machine that runs a program.
+    ///
+    /// # Errors
+    /// There is none, or it is of the catalogue and a bench file is given.
+    pub(crate) fn machine(&self, method: &Method) -> Result<&'static Model, Error> {
+        match method {
+            Method::Family(model) => self.model(model.name),
+            Method::Netlist(path) => self.model(path),
+        }
+    }
+
+    /// The files that are read for the machine that runs a program.
+    pub(crate) fn files_of(&self, method: Option<&Method>) -> Vec<PathBuf> {
+        match method {
+            Some(Method::Netlist(path)) => self.files([path]),
+            Some(Method::Family(_)) | None => Vec::new(),
         }
     }
 

@@ -1,13 +1,16 @@
 //! The command line of `program`.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
 use crate::models::{Model, installed};
 use crate::nc::{Corner, Integers, Scheme};
-use clap::Args;
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::{Arg, Args, Command};
 
-use super::HardwareArgs;
 use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu};
+use super::{BenchArgs, HardwareArgs};
+use crate::own::is_netlist;
 use crate::simulation::FileOptions;
 use crate::waves::WaveOptions;
 
@@ -68,8 +71,36 @@ fn parse_chords(text: &str) -> Result<f64, String> {
 }
 
 /// Every machine that runs programs, by the name of its method.
-pub(super) fn machines() -> Vec<(&'static str, &'static Model)> {
+fn machines() -> Vec<(&'static str, &'static Model)> {
     installed().machines().map(|model| (model.method_name(), model)).collect()
+}
+
+/// What runs a program.
+#[derive(Clone, Debug)]
+pub(crate) enum Method {
+    /// The machine of a family of the catalogue.
+    Family(&'static Model),
+    /// A netlist of one's own at this path.
+    Netlist(String),
+}
+
+/// The name of a family, or the path of a netlist.
+#[derive(Clone)]
+pub(super) struct MethodParser;
+
+impl TypedValueParser for MethodParser {
+    type Value = Method;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<Method, clap::Error> {
+        match value.to_str().filter(|word| is_netlist(word)) {
+            Some(path) => Ok(Method::Netlist(path.to_owned())),
+            None => one_of(&machines()).parse_ref(command, arg, value).map(Method::Family),
+        }
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(machines().into_iter().map(|(name, _)| PossibleValue::new(name))))
+    }
 }
 
 /// How the text of a program becomes blocks.
@@ -92,7 +123,7 @@ pub(crate) struct TextArgs {
     /// Where the machine's zero is in the program, to which G28 and G53 move, or ignore: they do not move
     #[arg(long, requires = "program", value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = parse_home)]
     pub(crate) home: Home,
-    /// Feed of G00 in mm/min [default: a pulse of the source every second clock]
+    /// Feed of G00 in mm/min [default: a pulse of the source every second clock, or as fast as hardware of one's own can]
     #[arg(long, requires = "program", value_name = "MM/MIN", value_parser = parse_feed)]
     pub(crate) rapid: Option<f64>,
     /// How far a chord may be off its arc, in BLU, for machines that draw lines only, and for helices whose third axis is too
@@ -108,15 +139,18 @@ pub(crate) struct TextArgs {
     Examples:\n  \
     stepwave program part.ngc --method ppc --tool 1=4mm --plot part.svg\n  \
     stepwave program part.ngc --method dda --normalize --clock-hz 5e6 --json - \n  \
-    stepwave program book.nc --method cim --integers pulses --vcd book.vcd"
+    stepwave program book.nc --method cim --integers pulses --vcd book.vcd\n  \
+    stepwave program part.ngc --method dda.net --bench dda.toml"
 )]
 pub(crate) struct ProgramArgs {
     /// The NC program
     #[arg(id = "program", value_name = "FILE")]
     pub(crate) file: PathBuf,
-    /// Family of the machine
-    #[arg(long, value_parser = one_of(&machines()))]
-    pub(crate) method: &'static Model,
+    /// Family of the machine, or a netlist of one's own: F.net
+    #[arg(long, value_parser = MethodParser)]
+    pub(crate) method: Method,
+    #[command(flatten)]
+    pub(crate) bench: BenchArgs,
     #[command(flatten)]
     pub(crate) text: TextArgs,
     #[command(flatten)]

@@ -22,8 +22,9 @@ const DEEPEST: u64 = 1000;
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
-    let (simulation, widths_by, moved) = match args.program.as_deref().zip(args.method) {
-        Some((file, model)) => {
+    let (simulation, widths_by, moved) = match args.program.as_deref().zip(args.method.as_ref()) {
+        Some((file, method)) => {
+            let model = args.bench.machine(method)?;
             let ExportArgs { text, hardware, clock, .. } = args;
             (super::program::simulation(file, model, text, hardware, clock.clock_hz)?, "program", None)
         }
@@ -42,7 +43,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let comment = [title, format!("Written by stepwave {version}; the {widths_by} gives the widths.")];
     let outputs = bench.outputs();
     let options = Options { comment: &comment, outputs: &outputs };
-    let own = args.bench.files(&args.model);
+    let own = [args.bench.files(&args.model), args.bench.files_of(args.method.as_ref())].concat();
     let sources = source_files(bench.design());
     let mut files = Outputs::reading(args.program.iter().chain(&own).chain(&sources));
     if let Some(path) = &args.netlist {

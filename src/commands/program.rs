@@ -19,7 +19,8 @@ use crate::output::Outputs;
 
 /// Runs a whole program and writes what was asked for.
 pub(crate) fn program(args: &ProgramArgs) -> Result<(), Error> {
-    let mut outputs = Outputs::reading([&args.file]);
+    let own = args.bench.files_of(Some(&args.method));
+    let mut outputs = Outputs::reading([&args.file].into_iter().chain(&own));
     simulate(args, &mut outputs)?.print(outputs)
 }
 
@@ -56,8 +57,8 @@ pub(super) fn simulation(
 
 /// The run that a command line wants.
 pub(super) fn asked(args: &ProgramArgs) -> Result<Simulation, Error> {
-    let ProgramArgs { file, method, text, hardware, clock, simulation: how, trace, outputs } = args;
-    let simulation = simulation(file, method, text, hardware, clock.clock_hz)?;
+    let ProgramArgs { file, method, bench, text, hardware, clock, simulation: how, trace, outputs } = args;
+    let simulation = simulation(file, bench.machine(method)?, text, hardware, clock.clock_hz)?;
     let simulation = simulation.engine(how.engine).max_clocks(how.max_clocks).waves(trace.clone());
     Ok(simulation.files(outputs.clone(), None))
 }
@@ -73,7 +74,9 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     if args.trace.wanted() {
         let (size, estimate) = (Size::of(&bench, &args.trace, time)?, simulation.estimate(&bench)?);
-        size.check(&args.trace, args.simulation.max_clocks, &estimate.unwrap_or_default())?;
+        if let Some(estimate) = estimate {
+            size.check(&args.trace, args.simulation.max_clocks, &estimate)?;
+        }
     }
     let ran = simulation.run_on(bench, outputs, |_, _| {
         let table = MoveTable::new(args.clock.clock_hz, args.hardware.blu);

@@ -81,7 +81,7 @@ fn proposition(args: &ProveArgs) -> Result<Proposition, Error> {
 fn check_options(args: &ProveArgs, proposition: &Proposition) -> Result<(), Error> {
     let counted = !proposition.claims()?.counted.is_empty();
     let ProveArgs { narrower, solver, bits, any_preset, .. } = args;
-    let buffered = proposition.model.moves().is_ok();
+    let buffered = proposition.model.is_buffered();
     let given = [
         (!narrower.is_empty(), "--narrower"),
         (solver.is_some(), "--solver"),
@@ -174,8 +174,8 @@ fn attempt(args: &ProveArgs) -> Result<(), Error> {
     let second = args.solver.as_deref().map(|command| asked(args, &proposition, command)).transpose()?.flatten();
     match second {
         // Of a machine with a buffer the solver's is the only answer for every geometry of some bits.
-        Some(Answer::Unsat) if proposition.model.moves().is_ok() => return Ok(()),
-        Some(Answer::Sat) if proposition.model.moves().is_ok() => {
+        Some(Answer::Unsat) if proposition.model.is_buffered() => return Ok(()),
+        Some(Answer::Sat) if proposition.model.is_buffered() => {
             return Err(Error::Check(vec![format!("{} is refuted by the solver", proposition.model.name)]));
         }
         _ => {}

@@ -48,13 +48,18 @@ impl Listed {
             None => words.push("run".into()),
         }
         // A netlist of one's own is in the folder, as a program is.
-        let of_folder =
-            |index: usize| index == 0 && is_netlist(&self.args[0]) || index > 0 && self.args[index - 1] == "--bench";
+        let names_file = |option: &str, word: &str| option == "--bench" || option == "--method" && is_netlist(word);
+        let of_folder = |index: usize, word: &str| match index.checked_sub(1) {
+            None => self.program.is_none() && is_netlist(word),
+            Some(before) => names_file(&self.args[before], word),
+        };
         let path = |(index, word): (usize, &String)| -> OsString {
-            match word.strip_prefix("--bench=") {
-                _ if of_folder(index) => folder.join(word).into(),
-                Some(bench) => [OsStr::new("--bench="), folder.join(bench).as_os_str()].into_iter().collect(),
-                None => word.into(),
+            match word.split_once('=') {
+                _ if of_folder(index, word) => folder.join(word).into(),
+                Some((option, file)) if names_file(option, file) => {
+                    [OsStr::new(option), OsStr::new("="), folder.join(file).as_os_str()].into_iter().collect()
+                }
+                _ => word.into(),
             }
         };
         words.extend(self.args.iter().enumerate().map(path));

@@ -6,6 +6,7 @@ mod file;
 mod geometry;
 mod harness;
 mod model;
+mod program;
 mod resolve;
 
 use std::path::{Path, PathBuf};
@@ -122,6 +123,10 @@ pub(crate) struct Bench {
     file: PathBuf,
     netlist: Netlist,
     curve: CurveKind,
+    /// Arcs are loaded in parts between the axes through their centre.
+    splits: bool,
+    /// An expression reads the commanded speed.
+    reads_speed: bool,
     reset: Option<Reset>,
     constants: Vec<(Net, u64)>,
     loads: Vec<Loaded>,

@@ -3,11 +3,13 @@
 use std::collections::VecDeque;
 use std::io::BufRead;
 
+use stepwave_models::Words;
 use stepwave_models::parts::PULSE_RATE;
-use stepwave_models::program::{Moves, PROGRAM_WORDS};
+use stepwave_models::program::{HardwareBlock, Moves, PROGRAM_WORDS, Pacing};
 use stepwave_nc::{PulseBlock, ToolMove};
 
-use super::feed::{Pace, commanded, frequency, rate, shown_feed};
+use super::ProgramFailure;
+use super::feed::{Pace, Rate, commanded, frequency, own_speed, rate, shown_feed};
 use super::stream::{Item, Stream};
 use super::tally::{CutWords, LeftOut};
 use crate::testbench::{Feeder, Next, ObserverError, Part, Testbench};
@@ -15,7 +17,7 @@ use crate::testbench::{Feeder, Next, ObserverError, Part, Testbench};
 /// The control of a machine that runs a program.
 pub struct Control<'a, R> {
     stream: Stream<R>,
-    machine: &'static Moves,
+    machine: &'static dyn Moves,
     bench: &'a Testbench,
     pace: Pace,
     /// What waits to be asked for.
@@ -31,7 +33,7 @@ pub struct Control<'a, R> {
 impl<'a, R: BufRead> Control<'a, R> {
     /// A control that reads its blocks from a stream.
     #[must_use]
-    pub fn new(stream: Stream<R>, machine: &'static Moves, bench: &'a Testbench, pace: Pace) -> Control<'a, R> {
+    pub fn new(stream: Stream<R>, machine: &'static dyn Moves, bench: &'a Testbench, pace: Pace) -> Control<'a, R> {
         let (ready, left_out, cut) = (VecDeque::new(), LeftOut::default(), CutWords::default());
         Control { stream, machine, bench, pace, ready, speed: None, moves: 0, left_out, cut }
     }
@@ -61,20 +63,17 @@ impl<'a, R: BufRead> Control<'a, R> {
         }
         for block in blocks {
             let mut length = block.curve.length();
-            for part in self.machine.words(self.bench.hardware(), &block) {
-                let rate = rate(self.pace, self.machine, &block, &part, self.speed);
-                let source_hz = frequency(self.pace, rate.word);
-                let feed = shown_feed(self.pace, self.speed, &part, source_hz);
-                let number = of.place.number.unwrap_or(of.place.line);
-                let [shown, speed] = PROGRAM_WORDS;
-                let words = part.words.set(PULSE_RATE, rate.word).set(shown, number).set(speed, feed);
+            let speed = own_speed(self.pace, self.speed);
+            let refused = |error| ProgramFailure::Block { line: of.place.line, error };
+            for part in self.machine.words(self.bench.hardware(), &block, speed.word).map_err(refused)? {
+                let (words, source_hz, limited) = self.paced(&block, part, speed);
                 let loaded = self.bench.load(&[words])?;
                 self.cut.take(of.place.line, &loaded.cut);
                 let part = Part {
                     length: std::mem::take(&mut length),
                     commanded: self.speed,
                     source_hz,
-                    limited: rate.limited,
+                    limited,
                     promise: self.machine.promise(self.bench.hardware(), &block),
                     chords: self.stream.chord_limit(),
                     ..Part::new(self.moves, block.clone())
@@ -84,6 +83,20 @@ impl<'a, R: BufRead> Control<'a, R> {
             }
         }
         Ok(())
+    }
+
+    /// All words of a block of the machine, the frequency of our pulse source in Hz, and whether the feed is out of reach.
+    fn paced(&self, block: &PulseBlock, part: HardwareBlock, speed: Rate) -> (Words, Option<f64>, bool) {
+        if let Pacing::Hardware { reads_speed } = self.machine.pacing() {
+            return (part.words, None, reads_speed && speed.limited);
+        }
+        let rate = rate(self.pace, self.machine, block, &part, self.speed);
+        let source_hz = frequency(self.pace, rate.word);
+        let feed = shown_feed(self.pace, self.speed, &part, source_hz);
+        let place = block.place();
+        let [shown, speed] = PROGRAM_WORDS;
+        let words = part.words.set(PULSE_RATE, rate.word).set(shown, place.number.unwrap_or(place.line));
+        (words.set(speed, feed), Some(source_hz), rate.limited)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::io::BufRead;
 
 use stepwave_models::Hardware;
-use stepwave_models::program::Moves;
+use stepwave_models::program::{FASTEST_SPEED, Moves, Pacing};
 
 use super::ProgramFailure;
 use super::feed::{Pace, commanded, frequency, rate};
@@ -26,17 +26,21 @@ pub struct Estimate {
 const PULSES: f64 = 1.25;
 
 impl Estimate {
-    /// Reads the program once more, for this hardware and pace.
+    /// Reads the program once more, for this hardware and pace; `None` of hardware that sets its own feed, of which nothing is
+    /// known.
     ///
     /// # Errors
     /// The program is wrong.
     pub fn of<R: BufRead>(
         text: R,
-        moves: &'static Moves,
+        moves: &'static dyn Moves,
         preparation: &Preparation,
         hardware: &Hardware,
         pace: Pace,
-    ) -> Result<Estimate, ProgramFailure> {
+    ) -> Result<Option<Estimate>, ProgramFailure> {
+        if let Pacing::Hardware { .. } = moves.pacing() {
+            return Ok(None);
+        }
         let mut estimate = Estimate::default();
         let mut speed = None;
         for item in Stream::new(text, moves, preparation)? {
@@ -49,7 +53,7 @@ impl Estimate {
                         speed = commanded(pace, first, whole, speed);
                     }
                     for block in &blocks {
-                        for part in moves.words(hardware, block) {
+                        for part in moves.words(hardware, block, FASTEST_SPEED)? {
                             let word = rate(pace, moves, block, &part, speed).word;
                             let source_hz = frequency(pace, word);
                             estimate.steps += part.steps;
@@ -63,6 +67,6 @@ impl Estimate {
                 }
             }
         }
-        Ok(estimate)
+        Ok(Some(estimate))
     }
 }

@@ -1,7 +1,7 @@
 //! Feeds: from F to the rate of the pulse source.
 
 use stepwave_models::parts::{FASTEST_RATE, RATE_BITS};
-use stepwave_models::program::{HardwareBlock, Moves};
+use stepwave_models::program::{FASTEST_SPEED, HardwareBlock, Moves, Pacing};
 use stepwave_nc::{Cause, Feed, PulseBlock};
 
 /// The clock and the scale of a machine.
@@ -15,13 +15,24 @@ pub struct Pace {
     pub rapid: Option<f64>,
 }
 
-/// What the pulse source gets for one block of the machine.
+/// What sets the speed of one block of the machine.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Rate {
-    /// Word of the rate register.
+    /// Pulses or BLU a clock, in 2^-32.
     pub(super) word: u64,
-    /// It was asked for more than a pulse every second clock, or for less than its least rate.
+    /// More was asked for than there is, or less than the least.
     pub(super) limited: bool,
+}
+
+impl Rate {
+    /// The nearest to this number of pulses or BLU a second, at most `most`.
+    fn nearest(pace: Pace, hertz: f64, most: u64) -> Rate {
+        let word = (hertz / pace.clock_hz * 2f64.powi(RATE_BITS.cast_signed())).round();
+        // 0 for what is not a number.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let wanted = word as u64;
+        Rate { word: wanted.clamp(1, most), limited: wanted > most || wanted == 0 }
+    }
 }
 
 /// The commanded speed of a block, in BLU per second; `None` where it is as fast as the machine runs. `before` is that of
@@ -42,15 +53,24 @@ pub(super) fn commanded(pace: Pace, block: &PulseBlock, length: f64, before: Opt
 /// f_g = v where the machine takes F as it is (60·δ·f_g is the feed along an axis), but with G93 and for feed rate numbers
 /// f_g = v · steps / length, so that the block takes the time that is wanted.
 #[must_use]
-pub(super) fn rate(pace: Pace, moves: &Moves, block: &PulseBlock, part: &HardwareBlock, speed: Option<f64>) -> Rate {
+pub(super) fn rate(
+    pace: Pace,
+    moves: &dyn Moves,
+    block: &PulseBlock,
+    part: &HardwareBlock,
+    speed: Option<f64>,
+) -> Rate {
     let Some(speed) = speed else { return Rate { word: FASTEST_RATE, limited: false } };
-    let timed = !moves.direct || matches!(block.feed(), Feed::Inverse(_));
+    let timed = moves.pacing() != Pacing::Feed || matches!(block.feed(), Feed::Inverse(_));
     let hertz = if timed { speed * part.steps / part.length } else { speed };
-    let word = (hertz / pace.clock_hz * 2f64.powi(RATE_BITS.cast_signed())).round();
-    // 0 for what is not a number.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let wanted = word as u64;
-    Rate { word: wanted.clamp(1, FASTEST_RATE), limited: wanted > FASTEST_RATE || wanted == 0 }
+    Rate::nearest(pace, hertz, FASTEST_RATE)
+}
+
+/// The commanded speed, in BLU per second, as a machine without our pulse source takes it.
+#[must_use]
+pub(super) fn own_speed(pace: Pace, speed: Option<f64>) -> Rate {
+    let fastest = Rate { word: FASTEST_SPEED, limited: false };
+    speed.map_or(fastest, |speed| Rate::nearest(pace, speed, FASTEST_SPEED))
 }
 
 /// The frequency that a rate gives, in Hz.

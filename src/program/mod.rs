@@ -41,6 +41,24 @@ pub enum ProgramFailure {
         /// What is wrong.
         error: GeometryError,
     },
+    /// The machine does not take a block.
+    #[error("line {line}: {error}")]
+    Block {
+        /// The line of the program.
+        line: u64,
+        /// What is wrong.
+        error: ModelError,
+    },
+    /// A feed of G00 for hardware that takes none.
+    #[error(
+        "--rapid {rapid}: no expression of {bench} reads rate, so the hardware sets its own feed: leave --rapid out"
+    )]
+    Rapid {
+        /// The feed in mm/min.
+        rapid: f64,
+        /// The hardware.
+        bench: &'static str,
+    },
     /// Nothing moves.
     #[error("no block of the program moves an axis by as much as one BLU: choose a smaller --blu")]
     NoPulses,

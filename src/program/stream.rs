@@ -50,7 +50,7 @@ pub struct Stream<R> {
     program: Program<R>,
     compensator: Compensator,
     rounder: Rounder,
-    machine: &'static Moves,
+    machine: &'static dyn Moves,
     chords: f64,
     moves: Vec<ToolMove>,
     items: VecDeque<Item>,
@@ -62,8 +62,8 @@ impl<R: BufRead> Stream<R> {
     ///
     /// # Errors
     /// The BLU or the radius of a tool is not a length.
-    pub fn new(text: R, machine: &'static Moves, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
-        let chords = (!machine.arcs).then_some(preparation.chords);
+    pub fn new(text: R, machine: &'static dyn Moves, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
+        let chords = (!machine.arcs()).then_some(preparation.chords);
         Ok(Stream {
             program: Program::new(text, preparation.reading.clone())?,
             compensator: Compensator::new(preparation.scheme, preparation.corner),
@@ -119,11 +119,13 @@ impl<R: BufRead> Stream<R> {
             let failed = |error| ProgramFailure::Geometry { line, error };
             let before = self.rounder.clone();
             let mut apart = self.rounder.blocks(&of, &mut blocks).map_err(failed)?;
-            if blocks.iter().any(|block| self.machine.too_steep(block)) {
+            if !blocks.iter().all(|block| self.machine.takes(block)) {
                 self.rounder = before;
                 blocks.clear();
                 apart = self.rounder.chords(&of, self.chords, &mut blocks).map_err(failed)?;
             }
+            let refused = |error| ProgramFailure::Block { line, error };
+            blocks.iter().try_for_each(|block| self.machine.check(block)).map_err(refused)?;
             self.items.push_back(if blocks.is_empty() { Item::LeftOut(of, apart) } else { Item::Move(of, blocks) });
         }
         Ok(())

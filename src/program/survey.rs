@@ -21,13 +21,17 @@ impl Survey {
     ///
     /// # Errors
     /// The program is wrong, or nothing in it moves the machine.
-    pub fn of<R: BufRead>(text: R, moves: &'static Moves, preparation: &Preparation) -> Result<Survey, ProgramFailure> {
+    pub fn of<R: BufRead>(
+        text: R,
+        moves: &'static dyn Moves,
+        preparation: &Preparation,
+    ) -> Result<Survey, ProgramFailure> {
         let mut survey = Survey::default();
         for item in Stream::new(text, moves, preparation)? {
             let Item::Move(_, blocks) = item? else { continue };
             survey.moves += 1;
             for block in &blocks {
-                survey.size.add(moves.crossing, block);
+                survey.size.add(moves.crossing(), block);
             }
         }
         if survey.moves == 0 { Err(ProgramFailure::NoPulses) } else { Ok(survey) }

@@ -119,6 +119,6 @@ pub fn title(model: &Model, hardware: &Hardware, curve: &Curve) -> String {
     format!("{name}; {}; {}", geometry(curve), choices.join("; "))
 }
 
-fn file_name(path: &str) -> &str {
+pub(super) fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }

@@ -163,7 +163,7 @@ impl Report {
     pub(super) fn json_results(&self) -> Value {
         let mut overflow = json!({
             "events": self.overflows.iter().map(event).collect::<Vec<_>>(),
-            "components": self.tallies.iter().map(tally).collect::<Vec<_>>(),
+            "components": self.tallies.iter().map(|tally| self.json_tally(tally)).collect::<Vec<_>>(),
         });
         let own = match &self.subject {
             Subject::Curve(of) => {
@@ -186,6 +186,15 @@ impl Report {
             "ending": ending,
         });
         joined(results, own)
+    }
+
+    /// A component that lost something, of own hardware with the line of the program.
+    fn json_tally(&self, of: &OverflowTally) -> Value {
+        let mut fields = tally(of);
+        if self.model.is_described() && of.line > 0 {
+            fields["line"] = json!(of.line);
+        }
+        fields
     }
 
     fn json_register(&self, range: &RegisterRange) -> Value {

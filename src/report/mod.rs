@@ -20,7 +20,7 @@ use stepwave_netlist::OnOverflow;
 
 use crate::output::Sink;
 use crate::program::CutWords;
-use crate::testbench::{Ending, Outcome, OverflowEvent, OverflowTally, RegisterRange, Testbench};
+use crate::testbench::{CUT_CLOCKS, Ending, Outcome, OverflowEvent, OverflowTally, RegisterRange, Testbench};
 
 pub use curve::OfCurve;
 pub use file::{JsonFile, PathPicture, RunFile};
@@ -130,6 +130,7 @@ impl Report {
     pub fn headline(&self) -> String {
         match &self.subject {
             Subject::Curve(of) => format!("{}: {}", self.model.name, geometry(&of.curve)),
+            Subject::Program(of) if self.model.is_described() => format!("{} by {}", of.file_name(), self.model.title),
             Subject::Program(of) => format!("{} by {}", of.file_name(), self.model.title.to_lowercase()),
         }
     }
@@ -166,7 +167,8 @@ impl Report {
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.cut_sentences();
         if let Subject::Program(of) = &self.subject {
-            warnings.extend(of.limited());
+            warnings.extend(of.limited(self));
+            warnings.extend(self.announced());
             return warnings;
         }
         let clocks = self.outcome.clocks;
@@ -185,8 +187,7 @@ impl Report {
             Ending::Done => {}
         }
         if self.model.is_described() {
-            // Its author decides what an overflow means.
-            warnings.extend(self.tallies.iter().filter(|tally| !tally.is_assertion()).map(OverflowTally::sentence));
+            warnings.extend(self.announced());
             return warnings;
         }
         warnings.extend(self.tallies.iter().map(|tally| self.went_on(tally)));
@@ -198,6 +199,12 @@ impl Report {
             ));
         }
         warnings
+    }
+
+    /// What operators of own hardware lost, whose author decides what that means.
+    fn announced(&self) -> impl Iterator<Item = String> {
+        let own = self.tallies.iter().filter(|tally| self.model.is_described() && !tally.is_assertion());
+        own.filter(|tally| self.outcome.ending != Ending::Trapped || !self.is_trap(tally)).map(OverflowTally::sentence)
     }
 
     /// The component is one at whose first violation a run ends.
@@ -267,6 +274,10 @@ impl Report {
                     Subject::Curve(_) => {
                         format!("not done after {clocks} clocks{cut}, at {position}: give a greater --max-clocks")
                     }
+                    Subject::Program(_) if self.model.is_described() => format!(
+                        "{line}given up at clock {clocks}{cut}: a block has {CUT_CLOCKS} clocks, or the program as many as \
+                         --max-clocks says"
+                    ),
                     Subject::Program(_) => {
                         format!("{line}given up at clock {clocks}{cut}: give a greater --max-clocks, or leave it out")
                     }
@@ -279,7 +290,7 @@ impl Report {
                     "; --on-overflow trap shows where it first went wrong"
                 };
                 return vec![format!(
-                    "the motion never ends: at clock {clocks}, at {position}, every register is what it was at clock \
+                    "{line}the motion never ends: at clock {clocks}, at {position}, every register is what it was at clock \
                      {since}{remedy}"
                 )];
             }
@@ -290,8 +301,9 @@ impl Report {
                 } else {
                     ""
                 };
-                failures
-                    .push(format!("stalled at {position}: no pulse for {clocks} clocks, and none will come{remedy}"));
+                failures.push(format!(
+                    "{line}stalled at {position}: no pulse for {clocks} clocks, and none will come{remedy}"
+                ));
             }
             Ending::Done => {}
         }

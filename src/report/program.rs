@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use stepwave_models::Promise;
+use stepwave_models::program::Pacing;
 use stepwave_nc::Side;
 
 use super::Report;
@@ -39,7 +40,10 @@ impl OfProgram {
         let widths = report.hardware.widths.iter().map(|(name, width)| format!("{name}={}", width.get()));
         let widths = widths.collect::<Vec<_>>().join(",");
         let file: String = self.file_name().chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect();
-        format!("program {file}; method {}; width {widths}", report.model.method_name())
+        // A netlist is the same wherever it is.
+        let model = report.model;
+        let name = if model.is_described() { super::geometry::file_name(model.source) } else { model.method_name() };
+        format!("program {file}; method {name}; width {widths}")
     }
 
     pub(super) fn file_name(&self) -> String {
@@ -49,12 +53,16 @@ impl OfProgram {
 
     /// What the JSON report says of the program before the run.
     pub(super) fn head(&self, report: &Report) -> Value {
-        json!({
+        let mut head = json!({
             "program": self.file,
             "method": report.model.method_name(),
             "clock_hz": report.clock_hz,
             "blu_mm": report.blu_mm,
-        })
+        });
+        if let Some(by) = pacing(report) {
+            head["feed"] = json!(by);
+        }
+        head
     }
 
     /// Results that a program alone has, for the JSON report.
@@ -124,21 +132,43 @@ impl OfProgram {
                  line {line}"
             );
         }
-        if let Some(sentence) = self.limited() {
+        if let Some(sentence) = self.limited(report) {
             let _ = writeln!(text, "warning: {sentence}");
+        }
+        for sentence in report.announced() {
+            let _ = writeln!(text, "warning: {sentence}");
+        }
+        if let Some(by) = pacing(report) {
+            let _ = writeln!(text, "feed: {by}");
         }
         text
     }
 
     /// A sentence about feeds that were not reached.
-    pub(super) fn limited(&self) -> Option<String> {
+    pub(super) fn limited(&self, report: &Report) -> Option<String> {
         (self.totals.limited > 0).then(|| {
+            if report.model.is_described() {
+                return format!(
+                    "{} moves are commanded to go more than a BLU a clock, or less than 2^-33: `rate` was at an end of its \
+                     range, choose another --clock-hz or --blu",
+                    self.totals.limited
+                );
+            }
             format!(
                 "{} moves asked the pulse source for more than a pulse every second clock, or for less than its least: \
                  choose another --clock-hz, or --normalize where the method has it",
                 self.totals.limited
             )
         })
+    }
+}
+
+/// What sets the feed of own hardware, in words; `None` where our pulse source does.
+fn pacing(report: &Report) -> Option<&'static str> {
+    match report.model.moves().ok()?.pacing() {
+        Pacing::Hardware { reads_speed: true } => Some("the hardware sets it, by the commanded speed in `rate`"),
+        Pacing::Hardware { reads_speed: false } => Some("the hardware sets its own; F is reported as commanded"),
+        Pacing::Feed | Pacing::Time => None,
     }
 }
 

@@ -6,7 +6,9 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use super::Simulation;
+use crate::models::Model;
 use crate::models::options::TOLERANCE;
+use crate::models::program::Pacing;
 use crate::nc::Curve;
 use crate::program::{Control, CutWords, Estimate, Pace, Preparation, ProgramFailure, Stream, Survey};
 use crate::report::{OfCurve, OfProgram, Report, Subject};
@@ -84,6 +86,16 @@ impl NcProgram {
         preparation
     }
 
+    /// Refuses a feed of G00 where nothing takes it.
+    fn check_rapid(&self, model: &Model) -> Result<(), ProgramFailure> {
+        match (self.rapid, model.moves()?.pacing()) {
+            (Some(rapid), Pacing::Hardware { reads_speed: false }) => {
+                Err(ProgramFailure::Rapid { rapid, bench: model.name })
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn pace(&self, simulation: &Simulation) -> Pace {
         Pace { clock_hz: simulation.clock_hz, blu_mm: simulation.blu_mm, rapid: self.rapid }
     }
@@ -98,6 +110,7 @@ impl Simulation {
         let (bench, moves) = match &self.source {
             Source::Curve(curve) => (Testbench::loading(self.model, curve, &self.options)?, 0),
             Source::Program(program) => {
+                program.check_rapid(self.model)?;
                 let survey = Survey::of(program.open()?, self.model.moves()?, &program.prepared(self));
                 let survey = survey.map_err(|error| program.named(&error))?;
                 // How far the radii of an arc may differ is not the machine's concern.
@@ -130,7 +143,7 @@ impl Simulation {
         Ok(Some(Control::new(stream, moves, bench, program.pace(self))))
     }
 
-    /// What a run of the program comes to; `None` of a curve.
+    /// What a run of the program comes to; `None` of a curve, and of hardware that sets its own feed.
     ///
     /// # Errors
     /// The program is wrong.
@@ -138,7 +151,7 @@ impl Simulation {
         let Source::Program(program) = &self.source else { return Ok(None) };
         let (preparation, pace) = (program.prepared(self), program.pace(self));
         let estimate = Estimate::of(program.open()?, self.model.moves()?, &preparation, bench.hardware(), pace);
-        estimate.map(Some).map_err(|error| program.named(&error))
+        estimate.map_err(|error| program.named(&error))
     }
 
     /// The report of a run, before it.

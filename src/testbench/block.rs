@@ -22,9 +22,9 @@ pub struct Part {
     pub length: f64,
     /// Commanded feed in BLU per second; `None` where the machine runs as fast as it can.
     pub commanded: Option<f64>,
-    /// Frequency of the pulse source in Hz.
-    pub source_hz: f64,
-    /// The pulse source was asked for more than it can give.
+    /// Frequency of our pulse source in Hz; `None` where the hardware sets its own feed.
+    pub source_hz: Option<f64>,
+    /// The feed was out of reach of what sets it.
     pub limited: bool,
     /// What the method promises of it.
     pub promise: Option<Promise>,
@@ -36,7 +36,7 @@ impl Part {
     /// A part that runs as fast as the machine can, of a method that promises nothing.
     #[must_use]
     pub fn new(index: u64, block: PulseBlock) -> Part {
-        Part { index, block, length: 0.0, commanded: None, source_hz: 0.0, limited: false, promise: None, chords: 0.0 }
+        Part { index, block, length: 0.0, commanded: None, source_hz: None, limited: false, promise: None, chords: 0.0 }
     }
 }
 
@@ -61,9 +61,9 @@ pub struct BlockReport {
     pub length: f64,
     /// Commanded feed in BLU per second; `None` where the machine runs as fast as it can.
     pub commanded: Option<f64>,
-    /// Frequency of the pulse source in Hz.
-    pub source_hz: f64,
-    /// The pulse source was asked for more than it can give.
+    /// Frequency of our pulse source in Hz; `None` where the hardware sets its own feed.
+    pub source_hz: Option<f64>,
+    /// The feed was out of reach of what sets it.
     pub limited: bool,
     /// Greatest distance from the commanded curve, in BLU.
     pub error: f64,
@@ -95,7 +95,7 @@ impl BlockReport {
             reached: from,
             length: 0.0,
             commanded: None,
-            source_hz: 0.0,
+            source_hz: None,
             limited: false,
             error: 0.0,
             promise: None,
@@ -154,7 +154,7 @@ impl BlockReport {
         self.wanted = part.block.to;
         self.length += part.length;
         self.commanded = part.commanded;
-        self.source_hz = self.source_hz.max(part.source_hz);
+        self.source_hz = part.source_hz.map(|source| self.source_hz.map_or(source, |before| before.max(source)));
         self.limited |= part.limited;
         let Some(promise) = part.promise.filter(|_| !self.free) else {
             // One block without a promise leaves the move without one.

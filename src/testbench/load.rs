@@ -5,8 +5,9 @@ use stepwave_nc::Curve;
 
 use super::Testbench;
 
-/// Clocks after which a run with a load word that was cut is aborted: such a block need not end.
-pub(super) const CUT_CLOCKS: u64 = 1 << 27;
+/// Clocks after which a run with a load word that was cut, or of hardware of which nothing is known, is aborted: such a block
+/// need not end.
+pub(crate) const CUT_CLOCKS: u64 = 1 << 27;
 
 impl Testbench {
     /// Plans the hardware, builds the machine and encodes the load words, each of which must fit in its register.
@@ -55,10 +56,10 @@ impl Testbench {
     }
 
     /// The same bench, whose runs are aborted after this many clocks; without a number, and if a load word was cut or nothing
-    /// is known of pauses of the hardware, after 2^27 clocks.
+    /// is known of pauses of the hardware, after 2^27 clocks; each block of a program has as many.
     #[must_use]
     pub fn limited_to(self, clocks: Option<u64>) -> Testbench {
-        let ends = self.cut.is_empty() && self.hardware.has_stall_clocks();
+        let ends = self.blocks.is_empty() || self.cut.is_empty() && self.hardware.has_stall_clocks();
         let most = if ends { u64::MAX } else { CUT_CLOCKS };
         self.limited(clocks.unwrap_or(most))
     }

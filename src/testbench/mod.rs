@@ -34,6 +34,7 @@ pub use coarse::{CoarseError, CoarseWatch};
 pub use columns::Columns;
 pub use feeder::{Feeder, Next};
 pub use lanes::{LaneOutcome, Lanes};
+pub(crate) use load::CUT_CLOCKS;
 pub use measure::Measured;
 pub(crate) use names::net_named;
 pub use overflow::{OverflowEvent, OverflowTally, OverflowWatch};

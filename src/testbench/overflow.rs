@@ -1,6 +1,7 @@
 //! Overflow events: which component, which operands, what exactly, when, and how wide it would have had to be.
 
 mod big;
+mod tally;
 
 use std::fmt;
 
@@ -16,7 +17,8 @@ use stepwave_netlist::cells::{Claim, Operator, Property, Undefined, Word};
 use stepwave_netlist::{Net, Netlist, OnOverflow, Width, elaborate};
 
 use super::checkpoint::{GREATEST, Memory, recalled};
-use super::{Columns, Observer, ObserverError, Testbench};
+use super::{BlockReport, Columns, Observer, ObserverError, Testbench};
+pub use tally::OverflowTally;
 
 /// Events kept in full; further ones are counted.
 const KEPT: usize = 100;
@@ -223,45 +225,6 @@ impl Testbench {
     }
 }
 
-/// The violations of all properties of one component.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OverflowTally {
-    /// How many.
-    pub count: u64,
-    /// The first.
-    pub first: OverflowEvent,
-    /// Width that would have held every exact result, if one would.
-    pub needed: Option<u32>,
-    /// `file:line` of the source of the first, of imported hardware.
-    pub source: Option<String>,
-}
-
-impl OverflowTally {
-    /// The first with the line of its source, how often there were others, and what would have held all of them.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        let times = if self.count == 1 { "once".to_owned() } else { format!("{} times", self.count) };
-        let needed = self.needed.filter(|_| self.count > 1);
-        let all = needed.map_or_else(String::new, |bits| format!(", {bits} bits would hold all"));
-        format!("{} ({times}{all})", self.placed())
-    }
-
-    /// It is of an assertion, and not of a result that did not fit.
-    #[must_use]
-    pub fn is_assertion(&self) -> bool {
-        matches!(self.first, OverflowEvent::Invariant { .. })
-    }
-
-    /// The first, with the line of its source.
-    #[must_use]
-    pub fn placed(&self) -> String {
-        match &self.source {
-            Some(source) => format!("{source}: {}", self.first),
-            None => self.first.to_string(),
-        }
-    }
-}
-
 struct Watched {
     property: Property,
     source: Option<String>,
@@ -296,10 +259,13 @@ struct Tally {
     first: Option<Seen>,
     /// As in [`OverflowTally`]; 0 before the first.
     needed: Option<u32>,
+    /// As in [`OverflowTally`], once the block is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    line: Option<u64>,
 }
 
 impl Tally {
-    const NONE: Tally = Tally { count: 0, first: None, needed: Some(0) };
+    const NONE: Tally = Tally { count: 0, first: None, needed: Some(0), line: None };
 
     fn count(&mut self, watched: &Watched, seen: &Seen) {
         self.count += 1;
@@ -330,6 +296,8 @@ pub struct OverflowWatch {
     pub count: u64,
     /// What the strict cells do.
     pub mode: OnOverflow,
+    /// The line of the program whose block runs.
+    line: u64,
 }
 
 impl OverflowWatch {
@@ -362,7 +330,7 @@ impl OverflowWatch {
         });
         let mode = OnOverflow::Wrap;
         let watched: Vec<_> = watched.collect();
-        OverflowWatch { tallies: vec![Tally::NONE; watched.len()], watched, seen: Vec::new(), count: 0, mode }
+        OverflowWatch { tallies: vec![Tally::NONE; watched.len()], watched, seen: Vec::new(), count: 0, mode, line: 0 }
     }
 
     /// The first violations, in full.
@@ -382,8 +350,8 @@ impl OverflowWatch {
             };
             match found.iter_mut().find(alike) {
                 None => {
-                    let source = watched.source.clone();
-                    found.push(OverflowTally { count: tally.count, first, needed: tally.needed, source });
+                    let (source, line) = (watched.source.clone(), tally.line.unwrap_or(self.line));
+                    found.push(OverflowTally { count: tally.count, first, needed: tally.needed, source, line });
                 }
                 Some(known) => {
                     known.count = known.count.saturating_add(tally.count);
@@ -391,6 +359,7 @@ impl OverflowWatch {
                     if first.clock() < known.first.clock() {
                         known.first = first;
                         known.source.clone_from(&watched.source);
+                        known.line = tally.line.unwrap_or(self.line);
                     }
                 }
             }
@@ -460,6 +429,16 @@ impl Observer for OverflowWatch {
         if let Some((count, seen, tallies)) = gathered.filter(|(count, _, tallies)| sound(*count, tallies)) {
             (self.count, self.seen, self.tallies) = (count, seen, tallies);
         }
+    }
+
+    fn block_begun(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
+        // The samples up to here have been seen, and those of the block perhaps.
+        let begun = |tally: &&mut Tally| tally.first.as_ref().is_some_and(|seen| seen.clock < block.begun);
+        for tally in self.tallies.iter_mut().filter(begun) {
+            tally.line.get_or_insert(self.line);
+        }
+        self.line = block.of.place.line;
+        Ok(())
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {

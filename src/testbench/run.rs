@@ -34,6 +34,8 @@ pub(super) struct Run<'a, 'o> {
     loaded: usize,
     /// They are of one geometry, and not of a program.
     alone: bool,
+    /// The first sample has been taken.
+    is_reset: bool,
     /// A sample of the block that runs, not before half of its clocks.
     anchor: Option<Anchor>,
     /// Takes states of the run.
@@ -82,6 +84,7 @@ impl<'a, 'o> Run<'a, 'o> {
             wants_steps: true,
             loaded: 0,
             alone: true,
+            is_reset: false,
             anchor: None,
             states: None,
             limit: bench.limit,
@@ -103,7 +106,7 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let anchor: Option<(u64, Vec<u64>)> = checkpoint::recalled(&state.memory, "anchor");
         self.anchor = anchor.map(|(clock, registers)| Anchor { clock, registers });
-        Run { loaded: state.block + 1, ..self }
+        Run { loaded: state.block + 1, is_reset: true, ..self }
     }
 
     /// Runs to the end of the last block.
@@ -130,7 +133,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let over = usize::from(self.is_buffered());
         let mut next = self.ask()?;
         if self.is_buffered() && self.loaded == 0 {
-            self.engine.reset(&mut self.rows);
+            self.reset();
         }
         loop {
             match next {
@@ -153,6 +156,7 @@ impl<'a, 'o> Run<'a, 'o> {
                     if let Some(ending) = self.until(over)? {
                         return Ok(ending);
                     }
+                    self.wait()?;
                     for _ in 0..clocks {
                         if self.left() == 0 {
                             return Ok(Ending::Limit);
@@ -192,15 +196,51 @@ impl<'a, 'o> Run<'a, 'o> {
         self.engine.set_input(machine.load.net, 1);
         // A program begins at the origin, where reset puts the counters.
         self.engine.set_input(machine.preset_position.net, u64::from(first && self.alone));
-        if first && !self.is_buffered() {
-            self.engine.reset(&mut self.rows);
-        } else {
+        if self.is_reset {
             self.clock()?;
+        } else {
+            self.reset();
         }
+        self.limit_block();
         self.engine.set_input(machine.load.net, 0);
         self.engine.set_input(machine.preset_position.net, 0);
         self.loaded += 1;
         Ok(())
+    }
+
+    /// The first sample.
+    fn reset(&mut self) {
+        self.engine.reset(&mut self.rows);
+        self.is_reset = true;
+    }
+
+    /// Begins a dwell where all blocks before have ended: one without a block before it begins at reset.
+    fn wait(&mut self) -> Result<(), ObserverError> {
+        if self.is_buffered() {
+            return Ok(());
+        }
+        if !self.has_stall_clocks() {
+            self.limit = self.bench.limit;
+        }
+        match (self.loaded, self.is_reset) {
+            (0, true) => self.clock(),
+            (0, false) => {
+                self.reset();
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Of hardware of which nothing is known, each block of a program has [`CUT_CLOCKS`] where no limit was given.
+    fn limit_block(&mut self) {
+        if !self.alone && self.bench.limit == u64::MAX && !self.has_stall_clocks() {
+            self.limit = self.engine.clock().saturating_add(CUT_CLOCKS);
+        }
+    }
+
+    fn has_stall_clocks(&self) -> bool {
+        self.bench.hardware().has_stall_clocks()
     }
 
     /// One clock, regardless of the machine's outputs.
@@ -234,8 +274,8 @@ impl<'a, 'o> Run<'a, 'o> {
                 Stop::Net(_) if !self.rows.is_full() => continue,
                 Stop::Net(_) | Stop::RowsFull | Stop::Clocks => self.drain()?,
             }
-            // A program waits for its pulse source, or for a dwell to pass.
-            if let Some(ending) = if self.alone { self.hangs() } else { None } {
+            // A machine with a buffer waits for its pulse source in a program, or for a dwell to pass.
+            if let Some(ending) = if self.alone || !buffered { self.hangs() } else { None } {
                 return Ok(Some(ending));
             }
             self.keep_state();
@@ -263,7 +303,7 @@ impl<'a, 'o> Run<'a, 'o> {
             // The contents of memories are not compared.
             let mut values = registers.iter().zip(&anchor.registers);
             let comparable = self.bench.design().netlist().memories.is_empty();
-            let pulsed = self.steps.last_pulse > anchor.clock || !self.bench.hardware.has_stall_clocks();
+            let pulsed = self.steps.last_pulse > anchor.clock || !self.has_stall_clocks();
             if comparable && pulsed && values.all(|(&net, value)| engine.value(net) == *value) {
                 return Some(anchor.clock);
             }

@@ -11,6 +11,8 @@ use stepwave_export::{Step, Stimulus, driven};
 use stepwave_netlist::{Design, Net};
 
 use super::design;
+use crate::cli::Folder;
+use crate::import::bench::{netlist, written};
 
 /// Keeps every sample.
 struct Samples(Vec<Vec<u64>>);
@@ -63,14 +65,22 @@ fn as_on_the_bench(what: &str, bench: &Testbench, driven: &Design, seen: &Sample
 
 #[test]
 fn a_machine_of_a_program_with_a_loader_runs_as_on_the_bench() {
-    // Dwells first, between blocks, one after another and last; arcs, and three axes.
-    let text = "G21 G90 G4 P0.01\nG1 X0.3 Y0.09 F300\nX0.09 Y0.36 F500\nG4 P0.002\nG2 X0.24 Y0.21 I0.15 J0\n\
+    // Dwells first, one after another there and between blocks, and last; arcs, and three axes.
+    let text =
+        "G21 G90 G4 P0.01\nG4 P0.001\nG1 X0.3 Y0.09 F300\nX0.09 Y0.36 F500\nG4 P0.002\nG2 X0.24 Y0.21 I0.15 J0\n\
         G1 X0 Y0 Z0.03\nG0 X0.1\nG4 P0\nG4 P0.001\nG18 G2 X0.3 Z0.03 I0.1 K0\nG4 P0.001\nM30\n"
-        .as_bytes();
+            .as_bytes();
     let reading = Reading { blu: 0.01, integers: Integers::Units, tools: BTreeMap::new(), tolerance: 0.0, home: None };
     let preparation = Preparation { reading, scheme: Scheme::C, corner: Corner::Straight, chords: 0.5 };
     let pace = Pace { clock_hz: 20_000.0, blu_mm: 0.01, rapid: None };
-    for model in catalogue().machines() {
+    // Own hardware has no buffer, and takes arcs as chords.
+    let line = Line::new(vec![0; 3], vec![127; 3]).unwrap().into();
+    let folder = Folder::new();
+    let words: String = ["x", "y", "z"].map(|a| format!("jv{a}_in = \"abs(d{a})\", s{a}_in = \"d{a} < 0\", ")).concat();
+    let axes = ["x", "y", "z"].map(|axis| format!("[axis.{axis}]\npulse = \"d{axis}\"\n")).concat();
+    let bench = format!("load = {{ {words}e_in = \"1 << 7\" }}\nstart = \"load\"\ndone = \"done\"\n{axes}");
+    let own = written(&folder, &netlist("dda-line", &line, "", |_, _| {}), &bench);
+    for model in catalogue().machines().chain([own]) {
         let moves = model.moves().unwrap();
         let survey = Survey::of(text, moves, &preparation).unwrap();
         let hardware = model.plan_program(&survey.size, &Options::default()).unwrap();

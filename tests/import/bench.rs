@@ -23,7 +23,7 @@ table = ["jrx", "jry", "e"]
 "#;
 
 /// The netlist of a model for a curve, with more hardware after it.
-fn netlist(model: &str, curve: &Curve, options: &str, more: impl FnOnce(&Module, &Netlist)) -> String {
+pub(crate) fn netlist(model: &str, curve: &Curve, options: &str, more: impl FnOnce(&Module, &Netlist)) -> String {
     let model = find(model).expect("a model");
     let options = Options::parse(options.split_whitespace()).expect("options");
     let hardware = model.plan(curve, &options).expect("a plan");
@@ -33,19 +33,19 @@ fn netlist(model: &str, curve: &Curve, options: &str, more: impl FnOnce(&Module,
     module.finish().expect("a netlist").to_string()
 }
 
-fn line(to: [i64; 2]) -> Curve {
+pub(super) fn line(to: [i64; 2]) -> Curve {
     Line::new(vec![0, 0], to.to_vec()).expect("a line").into()
 }
 
 /// The hardware of a netlist and a bench file, written into a folder.
-fn written(folder: &Folder, netlist: &str, bench: &str) -> &'static stepwave::models::Model {
+pub(crate) fn written(folder: &Folder, netlist: &str, bench: &str) -> &'static stepwave::models::Model {
     fs::write(folder.path("own.net"), netlist).expect("written");
     fs::write(folder.path("own.toml"), bench).expect("written");
     let path = folder.path("own.net").display().to_string();
     own::model(&path, None).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn run(model: &'static stepwave::models::Model, curve: &Curve, options: &str) -> Report {
+pub(super) fn run(model: &'static stepwave::models::Model, curve: &Curve, options: &str) -> Report {
     let options = Options::parse(options.split_whitespace()).expect("options");
     Simulation::new(model, curve.clone()).options(options).run().expect("a run")
 }
@@ -366,7 +366,7 @@ fn registers_of_one_name_in_several_scopes_and_in_the_harness_are_kept_apart() {
 }
 
 /// Hardware that counts its pulses in two bits, as an import would have it.
-fn narrow(folder: &Folder) {
+pub(super) fn narrow(folder: &Folder) {
     let module = Module::new("t");
     let m = module.top();
     let (start, end) = (m.input("start", 1), m.input("n", 4));

@@ -1,10 +1,11 @@
 //! Hardware of one's own: the JSON of Yosys becomes a netlist that does what the source does.
 
-mod bench;
+pub(crate) mod bench;
 mod cells;
 mod command;
 mod overflow;
 mod printed;
+mod program;
 mod refused;
 mod undefined;
 mod wide;

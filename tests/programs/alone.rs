@@ -63,7 +63,7 @@ proptest! {
         for model in catalogue().machines() {
             let normalize = normalize && model.takes(&NORMALIZE);
             let options = Options::default().with(&NORMALIZE, normalize.then_some(true));
-            let curves = line.iter().chain(model.moves().unwrap().arcs.then_some(&arc));
+            let curves = line.iter().chain(model.moves().unwrap().arcs().then_some(&arc));
             for curve in curves {
                 let (bench, path, outcome, error) = run(model, curve, &options);
                 prop_assert_eq!(outcome.ending, Ending::Done);
@@ -101,7 +101,7 @@ proptest! {
         let helix = Helix::new([x, y, from[2]], [to_x, to_y, from[2] + climb], arc.center(), Direction::CounterClockwise);
         let helix = helix.ok().map(Curve::Helix);
         for model in catalogue().machines() {
-            let arcs = model.moves().unwrap().arcs;
+            let arcs = model.moves().unwrap().arcs();
             for curve in line.iter().chain(helix.as_ref().filter(|_| arcs)) {
                 let (bench, path, outcome, error) = run(model, curve, &Options::default());
                 prop_assert_eq!(outcome.ending, Ending::Done);

@@ -42,7 +42,7 @@ fn the_least_widths_of_a_machine_are_those_that_every_run_of_the_box_needs() {
     let k = 2;
     for model in catalogue().machines() {
         let mut curves = lines(k);
-        curves.extend(if model.moves().unwrap().arcs { arcs(k) } else { Vec::new() });
+        curves.extend(if model.moves().unwrap().arcs() { arcs(k) } else { Vec::new() });
         let found = widths(model, &Options::default(), &Extent::Bits(k), &|_| {}).unwrap();
         assert_eq!((found.simulated, found.all, found.faults, found.cut), (curves.len(), true, 0, 0), "{}", model.name);
         let own = Geometries::of(model, &Options::default(), &Extent::Bits(k)).unwrap();
@@ -75,7 +75,7 @@ fn a_verdict_on_given_widths_is_of_every_line_and_every_arc_of_the_box() {
     let folder = Folder::new();
     let (lines, arcs) = (lines(2).len(), arcs(2).len());
     for model in catalogue().machines() {
-        let count = lines + if model.moves().unwrap().arcs { arcs } else { 0 };
+        let count = lines + if model.moves().unwrap().arcs() { arcs } else { 0 };
         for options in ["--box 2", "--width 2"] {
             let out = folder.good(&format!("prove {} {options}", model.name));
             for claim in ["no register overflows", "the end point is reached exactly", "every block ends"] {

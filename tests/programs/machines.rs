@@ -8,7 +8,7 @@ use stepwave::testbench::{
 use stepwave_engine::EngineKind;
 use stepwave_models::options::{NORMALIZE, ON_OVERFLOW, PRESET, WIDTH};
 use stepwave_models::parts::PULSE_RATE;
-use stepwave_models::program::{Moves, Size};
+use stepwave_models::program::{FASTEST_SPEED, Moves, Size};
 use stepwave_models::{Hardware, Model, OnOverflow, Options, Preset, Promise, Words, catalogue};
 use stepwave_nc::{
     Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, SegmentShape, Side, ToolMove,
@@ -66,9 +66,14 @@ impl Observer for Keep {
 }
 
 /// The blocks of the machine for these of a program.
-fn of_machine(moves: &Moves, hardware: &Hardware, blocks: &[PulseBlock]) -> Vec<(PulseBlock, Words)> {
+fn of_machine(moves: &dyn Moves, hardware: &Hardware, blocks: &[PulseBlock]) -> Vec<(PulseBlock, Words)> {
     let parts = |block: &PulseBlock| {
-        moves.words(hardware, block).into_iter().map(|part| (block.clone(), part.words)).collect::<Vec<_>>()
+        moves
+            .words(hardware, block, FASTEST_SPEED)
+            .unwrap()
+            .into_iter()
+            .map(|part| (block.clone(), part.words))
+            .collect::<Vec<_>>()
     };
     blocks.iter().flat_map(parts).collect()
 }
@@ -89,7 +94,7 @@ fn machine(name: &str) -> &'static Model {
 }
 
 fn run(model: &Model, moves: &[ToolMove], choices: &Options, engine: EngineKind) -> Ran {
-    let mut rounder = Rounder::new((!model.moves().unwrap().arcs).then_some(0.5));
+    let mut rounder = Rounder::new((!model.moves().unwrap().arcs()).then_some(0.5));
     let mut blocks = Vec::new();
     moves.iter().for_each(|of| {
         rounder.blocks(of, &mut blocks).unwrap();
@@ -99,11 +104,14 @@ fn run(model: &Model, moves: &[ToolMove], choices: &Options, engine: EngineKind)
 
 fn run_blocks(model: &Model, blocks: Vec<PulseBlock>, choices: &Options, engine: EngineKind) -> Ran {
     let mut size = Size::default();
-    blocks.iter().for_each(|block| size.add(model.moves().unwrap().crossing, block));
+    blocks.iter().for_each(|block| size.add(model.moves().unwrap().crossing(), block));
     let hardware = model.plan_program(&size, choices).unwrap();
     let machine = model.machine(&hardware).unwrap();
     let bench = Testbench::of_machine(hardware, machine).limited(1 << 20);
-    let words: Vec<_> = blocks.iter().map(|block| model.moves().unwrap().words(bench.hardware(), block)).collect();
+    let words: Vec<_> = blocks
+        .iter()
+        .map(|block| model.moves().unwrap().words(bench.hardware(), block, FASTEST_SPEED).unwrap())
+        .collect();
     let all = of_machine(model.moves().unwrap(), bench.hardware(), &blocks);
     let mut control = Control { bench: &bench, blocks: all.into_iter(), rate: 1 << 31, given: 0 };
     let mut keep = Keep::default();
@@ -195,11 +203,11 @@ struct Reports {
 /// Runs a machine with a pulse every 2^`slow` clocks, and looks at every sample or not.
 fn reports(model: &Model, moves: &[ToolMove], choices: &Options, slow: u32, every_sample: bool) -> Reports {
     let (mut rounder, mut blocks, mut size) =
-        (Rounder::new((!model.moves().unwrap().arcs).then_some(0.5)), Vec::new(), Size::default());
+        (Rounder::new((!model.moves().unwrap().arcs()).then_some(0.5)), Vec::new(), Size::default());
     moves.iter().for_each(|of| {
         rounder.blocks(of, &mut blocks).unwrap();
     });
-    blocks.iter().for_each(|block| size.add(model.moves().unwrap().crossing, block));
+    blocks.iter().for_each(|block| size.add(model.moves().unwrap().crossing(), block));
     let hardware = model.plan_program(&size, choices).unwrap();
     let bench = Testbench::of_machine(hardware.clone(), model.machine(&hardware).unwrap()).limited(1 << 20);
     let bench = if every_sample { bench } else { bench.without_wave() };
@@ -341,7 +349,7 @@ proptest! {
             // The position overflows during the run; the loops are compiled after 16384 clocks.
             let widths = [("x".to_owned(), stepwave_netlist::Width::new(4).unwrap())].into_iter().filter(|_| narrow);
             let choices = Options::default().with(&ON_OVERFLOW, OnOverflow::Wrap).with_single(&WIDTH, widths.collect());
-            let moves: Vec<ToolMove> = moves.iter().cycle().take(if model.moves().unwrap().arcs { 12 } else { 3 }).copied().collect();
+            let moves: Vec<ToolMove> = moves.iter().cycle().take(if model.moves().unwrap().arcs() { 12 } else { 3 }).copied().collect();
             let all = reports(model, &moves, &choices, slow, true);
             let some = reports(model, &moves, &choices, slow, false);
             prop_assert_eq!(all, some, "{}", model.method_name());

@@ -12,7 +12,7 @@ use stepwave_nc::{Crossing, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::{delta, program_words};
-use super::{HardwareBlock, Moves, Size};
+use super::{HardwareBlock, Paced, Size};
 use crate::bresenham;
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
@@ -31,7 +31,7 @@ pub static MODEL: Model = Model {
     registers: bresenham::MODEL.registers,
     options: bresenham::MODEL.options,
     claims: Some(Claims::of(Region::Lines)),
-    interpolates: Interpolates::Moves(Moves {
+    interpolates: Interpolates::Moves(Paced {
         arcs: false,
         crossing: Crossing::RoundedRadius,
         direct: false,

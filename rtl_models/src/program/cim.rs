@@ -15,7 +15,7 @@ use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::MODE;
-use super::{HardwareBlock, Moves, planar};
+use super::{HardwareBlock, Paced, planar};
 use crate::cim_line;
 use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
@@ -37,7 +37,7 @@ pub static MODEL: Model = Model {
     registers: &[&MODE, &PLANE, &QUAD, &F, &A_B, &BASE, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesAndArcs)),
-    interpolates: Interpolates::Moves(Moves {
+    interpolates: Interpolates::Moves(Paced {
         arcs: true,
         crossing: CROSSING,
         direct: true,

@@ -19,7 +19,7 @@ use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::frame::{Frame, MODE};
-use super::{HardwareBlock, Moves, Size, planar};
+use super::{HardwareBlock, Paced, Size, planar};
 use crate::claims::{Claims, Region};
 use crate::dda_line;
 use crate::error::ModelError;
@@ -50,7 +50,7 @@ pub static MODEL: Model = Model {
     registers: &[&MODE, &PLANE, &QUAD, &(JV.pair(), JR.pair()), &UNIT, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N"), &NORMALIZE, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesAndArcs)),
-    interpolates: Interpolates::Moves(Moves {
+    interpolates: Interpolates::Moves(Paced {
         arcs: true,
         crossing: CROSSING,
         direct: false,

@@ -13,7 +13,7 @@ use stepwave_nc::{Crossing, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::program_words;
-use super::{HardwareBlock, Moves, Size, planar};
+use super::{HardwareBlock, Paced, Size, planar};
 use crate::claims::{Claims, Region};
 use crate::dpm_line;
 use crate::error::ModelError;
@@ -33,7 +33,7 @@ pub static MODEL: Model = Model {
     registers: &[&Q, &COEFFICIENT, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::Lines)),
-    interpolates: Interpolates::Moves(Moves {
+    interpolates: Interpolates::Moves(Paced {
         arcs: false,
         crossing: Crossing::RoundedRadius,
         direct: false,

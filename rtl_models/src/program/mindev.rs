@@ -12,7 +12,7 @@
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
-use super::{HardwareBlock, Moves, planar};
+use super::{HardwareBlock, Paced, planar};
 use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
 use crate::machine::Words;
@@ -33,7 +33,7 @@ pub static MODEL: Model = Model {
     registers: planar::JUDGED,
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesAndArcs)),
-    interpolates: Interpolates::Moves(Moves {
+    interpolates: Interpolates::Moves(Paced {
         arcs: true,
         crossing: CROSSING,
         direct: true,

@@ -16,6 +16,8 @@ mod planar;
 pub mod ppc;
 pub mod stepgen;
 
+use std::fmt;
+
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 
 use crate::error::ModelError;
@@ -75,7 +77,7 @@ impl Size {
 pub struct HardwareBlock {
     /// The words, but the rate of the pulse source.
     pub words: Words,
-    /// Steps that the interpolator takes, as its method has them: those of the pulse source in the block.
+    /// Steps that the interpolator takes, as its method has them: those of our pulse source in the block, 0 without one.
     pub steps: f64,
     /// The path length of the tool, in BLU.
     pub length: f64,
@@ -87,9 +89,71 @@ impl HardwareBlock {
     }
 }
 
-/// How a machine takes the moves of a program: lines in three axes, arcs and helices, each as one or more blocks.
+/// What sets the feed of a machine.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Pacing {
+    /// Our pulse source: a commanded feed v in mm/min sets its frequency, f_g = v / (60 δ), whatever the direction of the block.
+    Feed,
+    /// Our pulse source: f_g makes the block take the time that the feed wants.
+    Time,
+    /// The hardware itself.
+    Hardware {
+        /// It takes the commanded speed as a word.
+        reads_speed: bool,
+    },
+}
+
+/// The greatest commanded speed, in 2^-32 BLU a clock: as fast as the hardware can.
+pub const FASTEST_SPEED: u64 = (1 << 32) - 1;
+
+/// How a machine takes the moves of a program, each as one or more blocks.
+pub trait Moves: fmt::Debug + Sync {
+    /// It interpolates arcs; else the control gives it chords.
+    fn arcs(&self) -> bool;
+
+    /// It interpolates this block; else the control gives it chords.
+    fn takes(&self, block: &PulseBlock) -> bool;
+
+    /// Refuses a block that it cannot run.
+    ///
+    /// # Errors
+    /// The block goes along an axis that it does not have, or is a line or an arc that it does not take.
+    fn check(&self, block: &PulseBlock) -> Result<(), ModelError> {
+        let _ = block;
+        Ok(())
+    }
+
+    /// Where arcs are split.
+    fn crossing(&self) -> Crossing;
+
+    /// Axes of the machine, at most 3.
+    fn axes(&self) -> usize {
+        3
+    }
+
+    /// What sets its feed.
+    fn pacing(&self) -> Pacing;
+
+    /// Fixes registers, widths and promises for blocks of this size.
+    ///
+    /// # Errors
+    /// A width or a value that cannot be.
+    fn plan(&self, size: &Size, plan: &mut Plan) -> Result<(), ModelError>;
+
+    /// What the machine is loaded with for a block of the program, in order; all words but the rate of our pulse source.
+    /// `speed` is the commanded one in 2^-32 BLU a clock, from 1 to [`FASTEST_SPEED`].
+    ///
+    /// # Errors
+    /// Of hardware that data describe: a word cannot be computed, or the hardware cannot take it.
+    fn words(&self, hardware: &Hardware, block: &PulseBlock, speed: u64) -> Result<Vec<HardwareBlock>, ModelError>;
+
+    /// What the method promises of a block, if it promises anything.
+    fn promise(&self, hardware: &Hardware, block: &PulseBlock) -> Option<Promise>;
+}
+
+/// How a machine with our pulse source takes moves: lines in three axes, arcs and helices.
 #[derive(Debug)]
-pub struct Moves {
+pub struct Paced {
     /// It interpolates arcs; else the control gives it chords.
     pub arcs: bool,
     /// Where arcs are split.
@@ -107,27 +171,44 @@ pub struct Moves {
     pub error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
 }
 
-impl Moves {
+impl Moves for Paced {
+    fn arcs(&self) -> bool {
+        self.arcs
+    }
+
+    fn takes(&self, block: &PulseBlock) -> bool {
+        !self.too_steep(block)
+    }
+
+    fn crossing(&self) -> Crossing {
+        self.crossing
+    }
+
+    fn pacing(&self) -> Pacing {
+        if self.direct { Pacing::Feed } else { Pacing::Time }
+    }
+
+    fn plan(&self, size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
+        (self.plan)(size, plan)
+    }
+
+    fn words(&self, hardware: &Hardware, block: &PulseBlock, _: u64) -> Result<Vec<HardwareBlock>, ModelError> {
+        Ok((self.load)(block, hardware))
+    }
+
+    fn promise(&self, hardware: &Hardware, block: &PulseBlock) -> Option<Promise> {
+        Promise::of((self.error_bound)(hardware, block), &block.curve)
+    }
+}
+
+impl Paced {
     /// Whether a helix is so steep that its third axis cannot follow: in one of its sectors it has more than half as many
     /// pulses as the plane.
-    #[must_use]
-    pub fn too_steep(&self, block: &PulseBlock) -> bool {
+    fn too_steep(&self, block: &PulseBlock) -> bool {
         let Curve::Helix(_) = block.curve else { return false };
         let word = |sector: &HardwareBlock, wanted| sector.words.get(wanted).unwrap_or(0);
         let sectors = planar::blocks(self.crossing, block, |_| (Words::new(), 0.0));
         sectors.iter().any(|sector| 2 * word(sector, SHARE) > word(sector, WHOLE))
-    }
-
-    /// What the method promises of a block, if it promises anything.
-    #[must_use]
-    pub fn promise(&self, hardware: &Hardware, block: &PulseBlock) -> Option<Promise> {
-        Promise::of((self.error_bound)(hardware, block), &block.curve)
-    }
-
-    /// What the machine is loaded with for a block of the program, in order.
-    #[must_use]
-    pub fn words(&self, hardware: &Hardware, block: &PulseBlock) -> Vec<HardwareBlock> {
-        (self.load)(block, hardware)
     }
 
     /// The block of a curve that the machine runs alone; `None` of one that it does not interpolate.
@@ -139,7 +220,7 @@ impl Moves {
     /// The words of every block of a curve that runs alone: from where it starts, as fast as the pulse source goes.
     pub(crate) fn words_alone(&self, hardware: &Hardware, curve: &Curve) -> Vec<Words> {
         let [number, feed] = PROGRAM_WORDS;
-        let blocks = self.block(curve).map(|block| self.words(hardware, &block)).unwrap_or_default();
+        let blocks = self.block(curve).map(|block| (self.load)(&block, hardware)).unwrap_or_default();
         let loaded = |(index, block): (i128, HardwareBlock)| {
             let words = block.words.set(PULSE_RATE, FASTEST_RATE).set(number, index).set(feed, 0);
             let from = curve.from().iter().enumerate();
@@ -157,9 +238,10 @@ impl Model {
     ///
     /// # Errors
     /// It does not run programs.
-    pub fn moves(&self) -> Result<&Moves, ModelError> {
+    pub fn moves(&self) -> Result<&dyn Moves, ModelError> {
         match &self.interpolates {
-            Interpolates::Moves(moves) => Ok(moves),
+            Interpolates::Moves(paced) => Ok(paced),
+            Interpolates::Described(described) => Ok(described.moves()),
             _ => Err(ModelError::Curve {
                 model: self.name,
                 takes: self.curve().describe(),
@@ -168,10 +250,19 @@ impl Model {
         }
     }
 
+    /// It runs programs from a block buffer, with our pulse source.
+    #[must_use]
+    pub fn is_buffered(&self) -> bool {
+        matches!(self.interpolates, Interpolates::Moves(_))
+    }
+
     /// What a model that runs programs is called there: its name without `-machine`.
     #[must_use]
     pub fn method_name(&self) -> &'static str {
-        self.name.strip_suffix(MACHINE).unwrap_or(self.name)
+        match self.name.strip_suffix(MACHINE) {
+            Some(method) if self.is_buffered() => method,
+            _ => self.name,
+        }
     }
 
     /// Fixes every option for a program of this size.
@@ -180,13 +271,14 @@ impl Model {
     /// The model does not run programs or does not take an option, or a width is impossible.
     pub fn plan_program(&self, size: &Size, options: &Options) -> Result<Hardware, ModelError> {
         let name = self.method_name();
-        let mut plan = Plan::new(name, 3, self.registers, chosen(name, self.options, options)?);
-        (self.moves()?.plan)(size, &mut plan)?;
+        let moves = self.moves()?;
+        let mut plan = Plan::new(name, moves.axes(), self.registers, chosen(name, self.options, options)?);
+        moves.plan(size, &mut plan)?;
         plan.finish()
     }
 
     /// Fixes every option for a block that runs alone, in as many axes as its curve has.
-    pub(crate) fn plan_alone(&self, moves: &Moves, block: &PulseBlock, mut plan: Plan) -> Result<Hardware, ModelError> {
+    pub(crate) fn plan_alone(&self, moves: &Paced, block: &PulseBlock, mut plan: Plan) -> Result<Hardware, ModelError> {
         if moves.too_steep(block) {
             return Err(ModelError::Widths(format!(
                 "{}: z climbs more than half as many pulses as x and y have in a sector of the helix, so that it cannot \

@@ -14,7 +14,7 @@ use stepwave_nc::{Crossing, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::{delta, program_words};
-use super::{HardwareBlock, Moves, Size};
+use super::{HardwareBlock, Paced, Size};
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
@@ -32,7 +32,7 @@ pub static MODEL: Model = Model {
     registers: stepgen::MODEL.registers,
     options: stepgen::MODEL.options,
     claims: Some(Claims::of(Region::Lines)),
-    interpolates: Interpolates::Moves(Moves {
+    interpolates: Interpolates::Moves(Paced {
         arcs: false,
         crossing: Crossing::RoundedRadius,
         direct: false,

@@ -17,6 +17,7 @@ pub(super) struct File {
     pub(super) set: BTreeMap<String, Spanned<Value>>,
     pub(super) max_axes: Option<Spanned<u64>>,
     pub(super) curves: Option<Spanned<Curves>>,
+    pub(super) split: Option<Spanned<Split>>,
     /// What is on inputs for a block.
     #[serde(default)]
     pub(super) load: BTreeMap<String, Spanned<Value>>,
@@ -77,6 +78,16 @@ pub(super) enum Curves {
     Lines,
     Arcs,
     Both,
+}
+
+/// Where arcs are split.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Split {
+    /// Nowhere.
+    None,
+    /// Where they cross an axis through their centre.
+    Quadrants,
 }
 
 /// How long `start` is 1.

@@ -1,13 +1,15 @@
 //! The numbers of a geometry that expressions of a bench file read.
 
 use crate::models::AXES;
-use crate::nc::{Arc, Crossing, Curve, Direction};
+use crate::nc::{Arc, Crossing, Curve, Direction, Sector};
 use crate::netlist::Width;
 
 /// Numbers that only an arc has.
 const OF_ARCS: [&str; 4] = ["r", "cx", "cy", "cw"];
 /// Those of both, besides the ones of each axis.
-const OF_BOTH: [&str; 3] = ["arc", "quadrant", "n"];
+const OF_BOTH: [&str; 4] = ["arc", "quadrant", "n", SPEED];
+/// The commanded speed, in 2^-32 BLU a clock.
+pub(super) const SPEED: &str = "rate";
 
 /// Names of all numbers, in the order of [`values`].
 pub(super) fn names() -> Vec<String> {
@@ -24,10 +26,42 @@ pub(super) fn of_arcs() -> Vec<String> {
     relative.chain(OF_ARCS.iter().map(|&name| name.to_owned())).collect()
 }
 
-/// The numbers of a line or an arc in BLU; what it does not have is 0.
-pub(super) fn values(curve: &Curve) -> Vec<i128> {
+/// What is loaded at once: a line, an arc, or the part of an arc in one quadrant.
+pub(super) struct Piece<'a> {
+    pub(super) curve: &'a Curve,
+    /// Where it starts and ends, in BLU.
+    pub(super) from: Vec<i64>,
+    pub(super) to: Vec<i64>,
+    pub(super) quadrant: i128,
+}
+
+impl<'a> Piece<'a> {
+    /// All of a curve.
+    pub(super) fn whole(curve: &'a Curve) -> Piece<'a> {
+        Piece { curve, from: curve.from().to_vec(), to: curve.to().to_vec(), quadrant: quadrant(curve) }
+    }
+
+    /// The parts of an arc between the axes through its centre, or all of a line.
+    pub(super) fn split(self) -> Vec<Piece<'a>> {
+        let Curve::Arc(arc) = self.curve else { return vec![self] };
+        let at = |point: [i64; 2]| -> Vec<i64> {
+            let around = arc.center().into_iter().zip(point).map(|(center, at)| center + at);
+            around.chain(self.from.iter().skip(2).copied()).collect()
+        };
+        let part = |sector: Sector| Piece {
+            from: at(sector.start),
+            to: at(sector.end),
+            quadrant: i128::from(sector.quadrant.index()) + 1,
+            ..Piece::whole(self.curve)
+        };
+        arc.sectors(Crossing::RoundedRadius).into_iter().map(part).filter(|part| part.from != part.to).collect()
+    }
+}
+
+/// The numbers of a line or an arc in BLU, at this commanded speed in 2^-32 BLU a clock; what it does not have is 0.
+pub(super) fn values(piece: &Piece<'_>, speed: u64) -> Vec<i128> {
     let at = |point: &[i64], axis: usize| point.get(axis).copied().map_or(0, i128::from);
-    let (from, to) = (curve.from(), curve.to());
+    let Piece { curve, from, to, quadrant } = piece;
     let mut values = Vec::new();
     for axis in 0..AXES.len() {
         let (start, end) = (at(from, axis), at(to, axis));
@@ -45,7 +79,7 @@ pub(super) fn values(curve: &Curve) -> Vec<i128> {
     let clockwise = arc.is_some_and(|arc| arc.direction() == Direction::Clockwise);
     let [cx, cy] = center.unwrap_or_default().map(i128::from);
     values.extend([arc.map_or(0, |arc| root(arc.radius_squared())), cx, cy, i128::from(clockwise)]);
-    values.extend([i128::from(arc.is_some()), quadrant(curve), bits(curve)]);
+    values.extend([i128::from(arc.is_some()), *quadrant, bits(curve), i128::from(speed)]);
     values
 }
 

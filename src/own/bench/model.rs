@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use super::geometry::{Piece, values};
 use super::{Bench, BenchError, End, Word, signal};
 use crate::models::options::{ON_OVERFLOW, STRICT, Takes, WRAPS};
 use crate::models::parts::POSITION;
+use crate::models::program::{FASTEST_SPEED, Moves};
 use crate::models::registers::{Declared, Rule};
 use crate::models::{
     AXES, CurveKind, Described, Hardware, Interpolates, Machine, Model, ModelError, OnOverflow, Plan, Reg, Words, know,
@@ -101,6 +103,52 @@ impl Bench {
         names.filter_map(|name| Some((*name, self.netlist.width(self.netlist.find(name)?.net).get())))
     }
 
+    /// Fixes the registers, and position counters for the places that each axis comes to, in BLU.
+    pub(super) fn planned(&self, plan: &mut Plan, reach: impl Iterator<Item = Vec<i64>>) -> Result<(), ModelError> {
+        let model = crate::models::find(plan.model())?;
+        for (name, bits) in self.widths(model) {
+            plan.set(Reg::new(name, Rule::Planned("as in the source"), ""), bits);
+        }
+        for (axis, places) in reach.enumerate() {
+            let needed = places.into_iter().map(|place| Width::needed_signed(place.into())).max().unwrap_or(1);
+            plan.set(POSITION.of(axis), (needed + 1).max(POSITION_BITS));
+        }
+        // Nothing is known of its pauses: only a machine at rest, or back where it was, is one that has stalled.
+        plan.stall_clocks = u64::MAX;
+        Ok(())
+    }
+
+    /// The words of every block of a geometry, but for the position; `remedy` for one that does not fit.
+    pub(super) fn loaded(
+        &self,
+        hardware: &Hardware,
+        geometry: Piece<'_>,
+        speed: u64,
+        remedy: &str,
+    ) -> Result<Vec<Words>, ModelError> {
+        let remedy = match hardware.get(&ON_OVERFLOW) {
+            OnOverflow::Wrap => None,
+            _ => Some(format!("{remedy}; --on-overflow wrap cuts it")),
+        };
+        let pieces = if self.splits { geometry.split() } else { vec![geometry] };
+        let words = |piece: &Piece<'_>| {
+            let values = values(piece, speed);
+            let mut words = Words::new();
+            for loaded in &self.loads {
+                words = words.set_input(loaded.word.name, self.value(&loaded.word, &values, remedy.as_deref())?);
+            }
+            let End::Clocks { word } = &self.end else { return Ok(words) };
+            match self.value(word, &values, Some("give another expression"))? {
+                0 => {
+                    let (file, text) = (self.file.display(), &word.text);
+                    Err(ModelError::Widths(format!("{file}: clocks = {text} is 0: a block takes 1 or more")))
+                }
+                clocks => Ok(words.set_input(word.name, clocks)),
+            }
+        };
+        pieces.iter().map(words).collect()
+    }
+
     /// A word for a geometry, which must fit where there is a remedy for one that does not.
     fn value(&self, word: &Word, values: &[i128], remedy: Option<&str>) -> Result<i128, ModelError> {
         let Word { name, expression, text, width, reading, .. } = word;
@@ -146,10 +194,6 @@ impl Described for Bench {
             let (model, takes) = (plan.model(), "lines, and arcs in the plane");
             return Err(ModelError::Curve { model, takes, given: "another curve".to_owned() });
         }
-        let model = crate::models::find(plan.model())?;
-        for (name, bits) in self.widths(model) {
-            plan.set(Reg::new(name, Rule::Planned("as in the source"), ""), bits);
-        }
         let reach = |axis: usize| match curve {
             Curve::Arc(arc) => {
                 let [center, radius] = [arc.center()[axis], ceiling(arc.radius())];
@@ -157,13 +201,7 @@ impl Described for Bench {
             }
             _ => vec![curve.from()[axis], curve.to()[axis]],
         };
-        for axis in 0..curve.axes() {
-            let needed = reach(axis).into_iter().map(|place| Width::needed_signed(place.into())).max().unwrap_or(1);
-            plan.set(POSITION.of(axis), (needed + 1).max(POSITION_BITS));
-        }
-        // Nothing is known of its pauses: only a machine at rest, or back where it was, is one that has stalled.
-        plan.stall_clocks = u64::MAX;
-        Ok(())
+        self.planned(plan, (0..curve.axes()).map(reach))
     }
 
     fn machine(&self, hardware: &Hardware) -> Result<Machine, ModelError> {
@@ -171,28 +209,17 @@ impl Described for Bench {
     }
 
     fn words(&self, hardware: &Hardware, curve: &Curve) -> Result<Vec<Words>, ModelError> {
-        let values = super::geometry::values(curve);
-        let remedy = match hardware.get(&ON_OVERFLOW) {
-            OnOverflow::Wrap => None,
-            _ => Some("give a smaller geometry or another expression; --on-overflow wrap cuts it"),
-        };
-        let mut words = Words::new();
-        for loaded in &self.loads {
-            words = words.set_input(loaded.word.name, self.value(&loaded.word, &values, remedy)?);
+        let remedy = "give a smaller geometry or another expression";
+        let mut all = self.loaded(hardware, Piece::whole(curve), FASTEST_SPEED, remedy)?;
+        if let Some(words) = all.first_mut() {
+            let from = curve.from().iter().enumerate();
+            *words = from.fold(std::mem::take(words), |words, (axis, &from)| words.set(POSITION.of(axis), from));
         }
-        if let End::Clocks { word } = &self.end {
-            let clocks = self.value(word, &values, Some("give another expression"))?;
-            if clocks == 0 {
-                let file = self.file.display();
-                return Err(ModelError::Widths(format!(
-                    "{file}: clocks = {} is 0: a block takes 1 or more",
-                    word.text
-                )));
-            }
-            words = words.set_input(word.name, clocks);
-        }
-        let from = curve.from().iter().enumerate();
-        Ok(vec![from.fold(words, |words, (axis, &from)| words.set(POSITION.of(axis), from))])
+        Ok(all)
+    }
+
+    fn moves(&self) -> &dyn Moves {
+        self
     }
 }
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use toml::Spanned;
 
 use super::expression::Expression;
-use super::file::{Axis, Count, Curves, File, Strobe, Value};
-use super::geometry::{names, of_arcs};
+use super::file::{Axis, Count, Curves, File, Split, Strobe, Value};
+use super::geometry::{SPEED, names, of_arcs};
 use super::{Bench, BenchError, End, Loaded, Pulses, Reset, Wire, Word, next_to, signal, word};
 use crate::models::{AXES, CurveKind};
 use crate::netlist::bits::{Bits, Reading};
@@ -112,12 +112,15 @@ impl Resolver<'_> {
             self.named(name).map_err(|message| refused(format!("table: {message}")))?;
         }
         let curve = self.curve(&form, &loads, &end, axes.len())?;
+        let (splits, reads_speed) = (self.splits(&form, curve)?, self.reads_any(&loads, &end, SPEED));
         let (netlist, table) = (self.netlist.clone(), form.table.map(Spanned::into_inner));
         let (strobe, strict, wraps) = (form.strobe, form.strict, form.wraps);
         Ok(Bench {
             file,
             netlist,
             curve,
+            splits,
+            reads_speed,
             reset,
             constants,
             loads,
@@ -359,18 +362,29 @@ impl Resolver<'_> {
         }
     }
 
+    /// Arcs are split where they cross an axis.
+    fn splits(&self, form: &File, curve: CurveKind) -> Result<bool, BenchError> {
+        let Some(split) = &form.split else { return Ok(false) };
+        match (*split.get_ref(), curve) {
+            (Split::Quadrants, CurveKind::Line { .. }) => Err(self.at(
+                split,
+                "lines have no quadrants to be split at: leave split out, or give curves = \"arcs\" or \"both\""
+                    .to_owned(),
+            )),
+            (split, _) => Ok(split == Split::Quadrants),
+        }
+    }
+
+    /// An expression reads this number.
+    fn reads_any(&self, loads: &[Loaded], end: &End, name: &str) -> bool {
+        let index = self.names.iter().position(|known| known == name).unwrap_or(usize::MAX);
+        expressions(loads, end).any(|word| word.expression.reads(index))
+    }
+
     /// The curves that it interpolates: as it says, or arcs where a word is of an arc alone.
     fn curve(&self, form: &File, loads: &[Loaded], end: &End, axes: usize) -> Result<CurveKind, BenchError> {
-        let words = loads.iter().map(|loaded| &loaded.word);
-        let words = words.chain(match end {
-            End::Clocks { word } => Some(word),
-            End::Done(_) => None,
-        });
-        let index = |name: &str| self.names.iter().position(|known| known == name).unwrap_or(usize::MAX);
-        let reads = |word: &Word, name: &str| word.expression.reads(index(name));
-        let words: Vec<&Word> = words.collect();
-        let of_arc = of_arcs().into_iter().find(|name| words.iter().any(|word| reads(word, name)));
-        let reads_kind = words.iter().any(|word| reads(word, "arc"));
+        let of_arc = of_arcs().into_iter().find(|name| self.reads_any(loads, end, name));
+        let reads_kind = self.reads_any(loads, end, "arc");
         let arcs = CurveKind::Arc;
         let (lines, both) = (CurveKind::Line { max_axes: axes }, CurveKind::Move);
         match (form.curves.as_ref(), of_arc) {
@@ -386,6 +400,15 @@ impl Resolver<'_> {
             },
         }
     }
+}
+
+/// The words that are computed.
+fn expressions<'a>(loads: &'a [Loaded], end: &'a End) -> impl Iterator<Item = &'a Word> {
+    let end = match end {
+        End::Clocks { word } => Some(word),
+        End::Done(_) => None,
+    };
+    loads.iter().map(|loaded| &loaded.word).chain(end)
 }
 
 /// Whether a name has a ! in front, and the name.

@@ -235,7 +235,7 @@ fn curves_of(region: Region, extent: &Extent, sides: &Grid, wanted: bool) -> (Ve
 /// By how many bits registers that hold every number of `k` bits are wider than these: a machine that normalises keeps one
 /// bit free.
 pub(super) fn spare_bits(model: &Model, choices: &Options) -> u32 {
-    u32::from(model.moves().is_ok() && choices.value(&NORMALIZE))
+    u32::from(model.is_buffered() && choices.value(&NORMALIZE))
 }
 
 /// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is not

@@ -74,7 +74,7 @@ impl Proposition {
         match self.bounds() {
             Some(extent) => self.at_widths(effort, extent),
             None if self.is_fixed() => self.in_any_box(effort),
-            None if self.model.moves().is_ok() && self.narrower.is_empty() => {
+            None if self.model.is_buffered() && self.narrower.is_empty() => {
                 Err(ProofError::Buffered { model: self.model.name })
             }
             None if claims.counted.is_empty() => self.for_every_width(effort),

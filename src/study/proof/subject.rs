@@ -38,7 +38,7 @@ impl Subject {
     /// As [`new`](Subject::new), some registers narrower or wider.
     pub(super) fn with(model: &'static Model, choices: &Options, offsets: &Offsets) -> Result<Subject, ProofError> {
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-        if model.moves().is_ok() {
+        if model.is_buffered() {
             return Err(ProofError::Buffered { model: model.name });
         }
         let member = |k| -> Result<_, ModelError> {

@@ -163,7 +163,7 @@ pub fn by_proof(
 ) -> Result<Option<Widths>, ProofError> {
     let k = extent.bits()?;
     let is_default = choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty();
-    if !is_default || model.moves().is_ok() || extent.axes() != 2 || k < LEAST_PROVED {
+    if !is_default || model.is_buffered() || extent.axes() != 2 || k < LEAST_PROVED {
         return Ok(None);
     }
     let Some(form) = KForm::of(model, choices)? else { return Ok(None) };
