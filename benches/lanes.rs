@@ -98,7 +98,7 @@ fn bare(model: &str, name: &str, threads: usize) {
         limit: CLOCKS,
         ..LaneWatch::new(machine.done.net)
     };
-    let program = LaneProgram::new(bench.design(), &watch).unwrap();
+    let program = LaneProgram::new(bench.design(), &watch);
     let lanes = bench.lanes(CLOCKS).unwrap();
     let jobs: Vec<Job> = (0..JOBS).map(|index| lanes.job(&curve(model, 24, index)).unwrap()).collect();
     let watch = Watch::start();

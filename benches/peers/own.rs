@@ -117,7 +117,7 @@ fn run_bare(bench: &Testbench, curves: &[Curve]) -> Fallible<String> {
     };
     let lanes = bench.lanes(LIMIT)?;
     let mut ends = Vec::with_capacity(curves.len());
-    LaneProgram::new(bench.design(), &watch)?.run(curves.iter(), |curve| lanes.job(curve), |end| ends.push(end));
+    LaneProgram::new(bench.design(), &watch).run(curves.iter(), |curve| lanes.job(curve), |end| ends.push(end));
     let position = |(port, bits): (&Port, &u64)| to_signed(port.width, *bits);
     let outcomes = ends.into_iter().map(|end| {
         let LaneEnd { clock, values, .. } = end?;

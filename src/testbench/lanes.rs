@@ -95,7 +95,7 @@ impl Testbench {
             ..LaneWatch::new(machine.done.net)
         };
         let design = instruments.as_ref().map_or(self.design(), Instruments::design);
-        Ok(Lanes { bench: self.clone(), model, program: LaneProgram::new(design, &watch)?, own, trusted, instruments })
+        Ok(Lanes { bench: self.clone(), model, program: LaneProgram::new(design, &watch), own, trusted, instruments })
     }
 
     /// Runs many geometries of this hardware and gives what each came to, in their order, exactly as

@@ -1,6 +1,5 @@
 //! Memories: what a port writes at an edge, what a cell reads, and that the contents belong to the state.
 
-use stepwave_engine::lanes::{LaneProgram, LaneWatch};
 use stepwave_engine::{Engine, EngineKind, Rows, Watch, at_rest, contents};
 use stepwave_netlist::{Design, Net};
 
@@ -118,12 +117,4 @@ fn a_machine_whose_memory_is_about_to_change_is_not_at_rest() {
             assert_eq!(at_rest(ram.engine.as_ref(), &ram.design), rests, "{}", kind.name());
         }
     }
-}
-
-#[test]
-fn lanes_refuse_a_memory_by_its_name() {
-    let design = two_ports();
-    let refused = LaneProgram::new(&design, &LaneWatch::new(net(&design, "we0"))).unwrap_err();
-    let message = "many geometries in lanes cannot take the memory m.core.ram: give a design without memories";
-    assert_eq!(refused.to_string(), message);
 }

@@ -69,6 +69,6 @@ fn lanes_end_at_and_observe_nets_that_nothing_depends_on() {
     let (design, [double, at_5]) = counter();
     let observe = vec![Observe::Last(double), Observe::Count(vec![at_5]), Observe::Max { net: double, signed: false }];
     let watch = LaneWatch { observe, ..LaneWatch::new(at_5) };
-    let ends = LaneProgram::new(&design, &watch).unwrap().run_all(vec![Job { blocks: vec![vec![]] }]);
+    let ends = LaneProgram::new(&design, &watch).run_all(vec![Job { blocks: vec![vec![]] }]);
     assert_eq!((ends[0].stop, ends[0].clock, &ends[0].values[..]), (LaneStop::Done, 5, &[10, 1, 10][..]));
 }

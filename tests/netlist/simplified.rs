@@ -44,7 +44,7 @@ fn assert_same(bits: u32, lines: &[String]) {
 fn in_lanes(bits: u32, design: &Design) -> Vec<Vec<u64>> {
     let [a, s, r, done] = ["a", "s", "r", "done"].map(|name| net(design, name));
     let observe = vec![Observe::Last(r), Observe::Max { net: r, signed: false }];
-    let program = LaneProgram::new(design, &LaneWatch { observe, ..LaneWatch::new(done) }).unwrap();
+    let program = LaneProgram::new(design, &LaneWatch { observe, ..LaneWatch::new(done) });
     let blocks = values(bits).flat_map(|value| [0, 1].map(|select| vec![(a, value), (s, select)]));
     let ends = program.run_all(blocks.map(|block| Job { blocks: vec![block] }).collect());
     ends.into_iter().map(|end| end.values).collect()

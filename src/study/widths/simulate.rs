@@ -75,7 +75,7 @@ pub(super) fn simulate(bench: &Testbench, curves: &[Curve], limit: u64, tick: Ti
         limit,
         ..LaneWatch::new(machine.done.net)
     };
-    let program = LaneProgram::new(bench.design(), &watch)?;
+    let program = LaneProgram::new(bench.design(), &watch);
     let lanes = bench.lanes(limit)?;
     let (mut runs, mut place) = (Runs::default(), 0);
     program.run(

@@ -70,7 +70,7 @@ fn counters_and_accumulators_of_every_width_and_reading_count_in_lanes_as_alone(
                     }
                 }
                 let jobs = blocks.iter().map(|block| Job { blocks: vec![block.clone()] }).collect();
-                let ends = LaneProgram::new(&design, &watch).unwrap().run_all(jobs);
+                let ends = LaneProgram::new(&design, &watch).run_all(jobs);
                 for (block, end) in blocks.iter().zip(ends) {
                     let (last, counts) = alone(&design, block, &nets);
                     let what = format!("{mode:?}, {bits} bits, signed {signed}, operand {operand:?}, {block:?}");
@@ -95,7 +95,7 @@ fn the_widest_nets_of_either_word_hold_all_their_bits() {
         let mask = u64::MAX >> (64 - bits);
         let words = [0, 1, mask, mask - 1, mask / 2, mask / 2 + 1];
         let jobs = words.iter().map(|&value| Job { blocks: vec![vec![(load, 1), (word, value)]] }).collect();
-        let ends = LaneProgram::new(&design, &watch).unwrap().run_all(jobs);
+        let ends = LaneProgram::new(&design, &watch).run_all(jobs);
         // Done in sample 1, after the edge that loads.
         let last: Vec<u64> = ends.iter().map(|end| end.values[0]).collect();
         assert_eq!(last, words, "{bits} bits");

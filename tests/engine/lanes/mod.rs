@@ -3,6 +3,7 @@
 mod arithmetic;
 mod geometry;
 mod measured;
+mod memories;
 mod programs;
 mod random;
 
@@ -17,8 +18,9 @@ struct Alone<'d> {
     design: &'d Design,
     watch: &'d LaneWatch,
     engine: Box<dyn Engine>,
-    /// Registers that what is observed depends on.
+    /// Registers that what is observed depends on, and memories, by index.
     registers: Vec<(Net, Net)>,
+    memories: Vec<usize>,
     values: Vec<u64>,
     /// The clock at which the net of a gap was not 0 last.
     last_set: Vec<Option<u64>>,
@@ -32,11 +34,13 @@ impl<'d> Alone<'d> {
             Observe::Max { net, signed: true } => design.netlist().width(*net).sign_bit(),
             _ => 0,
         };
+        let (registers, memories) = needed(design, watch);
         Alone {
             design,
             watch,
             engine: kind.build(design, &Watch::default()),
-            registers: needed(design, watch),
+            registers,
+            memories,
             values: watch.observe.iter().map(start).collect(),
             last_set: vec![None; watch.observe.len()],
             last_alive: 0,
@@ -120,6 +124,7 @@ impl<'d> Alone<'d> {
                 let idle = clock - self.last_alive;
                 let value = |net: Net| self.engine.value(net);
                 let at_rest = || self.registers.iter().all(|&(register, next)| value(register) == value(next));
+                let at_rest = || at_rest() && !self.memories.iter().any(|&memory| self.writes(memory));
                 if idle > quiet.clocks || idle >= quiet.every && at_rest() {
                     return self.end(LaneStop::Quiet { clocks: idle });
                 }
@@ -127,18 +132,28 @@ impl<'d> Alone<'d> {
         }
     }
 
+    /// A port of a memory is about to change a word.
+    fn writes(&self, memory: usize) -> bool {
+        let of = &self.design.netlist().memories[memory];
+        of.writes.iter().any(|port| {
+            let [enable, address, data] = [port.enable, port.address, port.data].map(|net| self.engine.value(net));
+            let mask = port.mask.map_or(u64::MAX, |mask| self.engine.value(mask));
+            enable == 1 && address < of.size && (data ^ self.engine.word(memory, address)) & mask != 0
+        })
+    }
+
     fn end(self, stop: LaneStop) -> LaneEnd {
         LaneEnd { stop, clock: self.engine.clock(), values: self.values }
     }
 }
 
-/// The registers that what is observed depends on, with the nets of their next values.
-fn needed(design: &Design, watch: &LaneWatch) -> Vec<(Net, Net)> {
+/// The registers that what is observed depends on, with the nets of their next values, and the memories.
+fn needed(design: &Design, watch: &LaneWatch) -> (Vec<(Net, Net)>, Vec<usize>) {
     let netlist = design.netlist();
     let mut pending = [&[watch.done], &watch.traps[..]].concat();
     pending.extend(watch.quiet.iter().flat_map(|quiet| &quiet.nets));
     pending.extend(watch.observe.iter().flat_map(Observe::nets));
-    let mut registers = Vec::new();
+    let (mut registers, mut memories) = (Vec::new(), Vec::new());
     let mut seen = vec![false; netlist.cells.len()];
     while let Some(net) = pending.pop() {
         if !std::mem::replace(&mut seen[net.index()], true) {
@@ -148,9 +163,14 @@ fn needed(design: &Design, watch: &LaneWatch) -> Vec<(Net, Net)> {
                 registers.push((net, next));
                 pending.push(next);
             }
+            if let Op::Read { memory, .. } = op {
+                memories.push(memory as usize);
+                let ports = netlist.memories[memory as usize].writes.iter();
+                pending.extend(ports.flat_map(|port| port.nets()));
+            }
         }
     }
-    registers
+    (registers, memories)
 }
 
 /// Least and greatest by a key.
@@ -167,7 +187,7 @@ impl ByKey for u64 {}
 
 /// Runs all jobs in lanes and each alone, and wants the same of both.
 fn assert_each_as_alone(design: &Design, watch: &LaneWatch, jobs: &[Job], kind: EngineKind) -> Vec<LaneEnd> {
-    let together = LaneProgram::new(design, watch).unwrap().run_all(jobs.to_vec());
+    let together = LaneProgram::new(design, watch).run_all(jobs.to_vec());
     assert_eq!(together.len(), jobs.len());
     for (index, (job, end)) in jobs.iter().zip(&together).enumerate() {
         let alone = Alone::new(design, watch, kind).run(job);

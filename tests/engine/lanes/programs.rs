@@ -34,7 +34,7 @@ fn done(clock: u64, values: [u64; 3]) -> LaneEnd {
 #[test]
 fn a_lane_stops_at_its_own_clock_with_its_own_numbers() {
     let (design, watch, job) = countdown(8);
-    let ends = LaneProgram::new(&design, &watch).unwrap().run_all([0, 5, 200].map(&job).to_vec());
+    let ends = LaneProgram::new(&design, &watch).run_all([0, 5, 200].map(&job).to_vec());
     assert_eq!(ends, [done(1, [0, 0, 0]), done(6, [0, 5, 5]), done(201, [0, 200, 200])]);
 }
 
@@ -54,7 +54,7 @@ fn no_job_one_job_and_any_number_of_jobs_around_full_blocks_each_end_as_alone() 
 #[test]
 fn the_results_come_in_the_order_of_the_jobs_whatever_the_number_of_threads() {
     let (design, watch, job) = countdown(12);
-    let program = LaneProgram::new(&design, &watch).unwrap();
+    let program = LaneProgram::new(&design, &watch);
     let length = |index: u64| index * 7919 % 301 + if index.is_multiple_of(500) { 3500 } else { 0 };
     for threads in [1, 2, 5] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -78,7 +78,7 @@ fn the_results_come_in_the_order_of_the_jobs_whatever_the_number_of_threads() {
 fn an_item_that_makes_no_job_gives_its_error_in_its_place() {
     let (design, watch, job) = countdown(8);
     let mut got = Vec::new();
-    LaneProgram::new(&design, &watch).unwrap().run(
+    LaneProgram::new(&design, &watch).run(
         0..1000u64,
         |index| if index % 3 == 1 { Err(index) } else { Ok(job(index % 100)) },
         |end| got.push(end.map(|end| end.clock)),
@@ -95,7 +95,7 @@ fn jobs_are_taken_no_further_ahead_than_a_window() {
     let order = std::sync::atomic::Ordering::Relaxed;
     // The first job takes longer than all others together.
     let items = (0..200_000u64).inspect(|_| _ = taken.fetch_add(1, order));
-    LaneProgram::new(&design, &watch).unwrap().run(
+    LaneProgram::new(&design, &watch).run(
         items,
         |index| Ok::<_, Infallible>(job(if index == 0 { 100_000 } else { 1 })),
         |_| {
@@ -111,7 +111,7 @@ fn jobs_are_taken_no_further_ahead_than_a_window() {
 fn a_run_that_is_not_done_ends_at_the_limit() {
     let (design, mut watch, job) = countdown(16);
     watch.limit = 100;
-    let ends = LaneProgram::new(&design, &watch).unwrap().run_all([99, 100, 50_000].map(&job).to_vec());
+    let ends = LaneProgram::new(&design, &watch).run_all([99, 100, 50_000].map(&job).to_vec());
     let limit = |left| LaneEnd { stop: LaneStop::Limit, clock: 100, values: vec![left, left + 99, 100] };
     assert_eq!(ends, [done(100, [0, 99, 99]), limit(1), limit(49_901)]);
 }
@@ -119,7 +119,7 @@ fn a_run_that_is_not_done_ends_at_the_limit() {
 #[test]
 fn a_panic_while_jobs_are_made_comes_out_and_leaves_no_thread_waiting() {
     let (design, watch, job) = countdown(8);
-    let program = LaneProgram::new(&design, &watch).unwrap();
+    let program = LaneProgram::new(&design, &watch);
     let run = || {
         program.run(
             0..10_000u64,
@@ -134,7 +134,7 @@ fn a_panic_while_jobs_are_made_comes_out_and_leaves_no_thread_waiting() {
 fn what_nothing_observes_costs_no_operation() {
     let (design, watch, _) = countdown(8);
     // The counter, its comparison, and two numbers: the load multiplexer is folded away.
-    assert_eq!(LaneProgram::new(&design, &watch).unwrap().operations(), 4);
+    assert_eq!(LaneProgram::new(&design, &watch).operations(), 4);
     let few = LaneWatch { observe: Vec::new(), ..watch };
-    assert_eq!(LaneProgram::new(&design, &few).unwrap().operations(), 2);
+    assert_eq!(LaneProgram::new(&design, &few).operations(), 2);
 }

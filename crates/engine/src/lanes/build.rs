@@ -3,10 +3,10 @@
 
 use std::collections::HashMap;
 
-use super::code::{Code, LaneOp, Operation, RegisterRow, Slot};
+use super::code::{Code, LaneOp, Operation, PortRows, RegisterRow, Slot};
 use super::lower::{Lowering, Node, Value};
 use super::watch::Reduce;
-use stepwave_netlist::cells::{Net, Netlist, Op};
+use stepwave_netlist::cells::{Net, Netlist, Op, WritePort};
 
 /// What a machine is to compute; all nets are of `netlist`.
 pub(super) struct LaneRequest<'a> {
@@ -16,6 +16,8 @@ pub(super) struct LaneRequest<'a> {
     pub(super) inputs: &'a [Net],
     /// The registers that it has, whether it needs them or not.
     pub(super) registers: &'a [Net],
+    /// The memories that it has, by index.
+    pub(super) memories: &'a [usize],
     /// The accumulators: how, and of which nets.
     pub(super) accumulators: &'a [(Reduce, Vec<Net>)],
     /// Nets to be seen in each sample.
@@ -36,14 +38,16 @@ impl LaneRequest<'_> {
         }
         let next: Vec<Option<Value>> =
             self.registers.iter().zip(&registers).map(|(&net, &own)| self.next(&mut lowering, net, own)).collect();
-        let next = unshare(&mut lowering, next, &outputs);
+        let ports = self.ports(&mut lowering);
+        let written: Vec<Value> = ports.iter().flat_map(Port::values).collect();
+        let next = unshare(&mut lowering, next, &[&outputs[..], &written].concat());
         let accumulators: Vec<(Value, LaneOp<Value>)> = self
             .accumulators
             .iter()
             .enumerate()
             .map(|(index, (reduce, nets))| accumulate(&mut lowering, index, *reduce, nets))
             .collect();
-        let roots = next.iter().flatten().chain(&outputs).copied();
+        let roots = next.iter().flatten().chain(&outputs).chain(&written).copied();
         let mut rows = Rows::new(&lowering, roots.collect(), &accumulators);
         let mut code = Code::default();
         let leaves: Vec<Value> = registers.iter().copied().chain(accumulators.iter().map(|(own, _)| *own)).collect();
@@ -78,8 +82,33 @@ impl LaneRequest<'_> {
                 code.registers.push(RegisterRow { width: cell.width, reset, row: rows.of(own), next });
             }
         }
+        code.writes = ports.iter().map(|port| port.rows(&rows)).collect();
         code.rows = rows.count;
         code
+    }
+
+    /// The ports of the memories, with values that an edge leaves where they are.
+    fn ports(&self, lowering: &mut Lowering) -> Vec<Port> {
+        let ports = self
+            .memories
+            .iter()
+            .flat_map(|&memory| self.netlist.memories[memory].writes.iter().map(move |port| (memory, *port)));
+        let mut stay = |net: Net| {
+            let value = lowering.net(net);
+            match lowering.nodes[value.0] {
+                Node::Register(_) => lowering.unshared(Node::Operation(LaneOp::Copy(value))),
+                _ => value,
+            }
+        };
+        let port = |(memory, WritePort { enable, address, data, mask }): (usize, WritePort)| Port {
+            memory,
+            enable: stay(enable),
+            address: stay(address),
+            bits: self.netlist.width(address).get(),
+            data: stay(data),
+            mask: mask.map(&mut stay),
+        };
+        ports.map(port).collect()
     }
 
     /// The next value of a register, unless it keeps its own.
@@ -87,6 +116,28 @@ impl LaneRequest<'_> {
         let Op::Register { next: Some(next), .. } = self.netlist.cell(register).op else { return None };
         let next = lowering.net(next);
         (next != own).then_some(next)
+    }
+}
+
+/// A port of a memory while code is built.
+struct Port {
+    memory: usize,
+    enable: Value,
+    address: Value,
+    bits: u32,
+    data: Value,
+    mask: Option<Value>,
+}
+
+impl Port {
+    fn values(&self) -> Vec<Value> {
+        [Some(self.enable), Some(self.address), Some(self.data), self.mask].into_iter().flatten().collect()
+    }
+
+    fn rows(&self, rows: &Rows) -> PortRows {
+        let Port { memory, bits, .. } = *self;
+        let [enable, address, data] = [self.enable, self.address, self.data].map(|value| rows.of(value));
+        PortRows { memory, enable, address, bits, data, mask: self.mask.map(|mask| rows.of(mask)) }
     }
 }
 

@@ -83,6 +83,8 @@ pub(super) enum LaneOp<V> {
     Fits(V, u32),
     /// a does not fit, where the second is ones; or the third is.
     UnfitIfOr(V, u32, V, V),
+    /// The word at address a, of this many bits, of the memory with this index.
+    Read(V, u32, usize),
     /// Accumulator: clocks where the second is not zero.
     Count(V, V),
     /// Accumulator: clocks since the second or the third was not zero.
@@ -151,6 +153,7 @@ impl<V: Copy> LaneOp<V> {
             LaneOp::Concat(a, b, by, p, q) => LaneOp::Concat(go(a), go(b), by, p, q),
             LaneOp::Fits(a, by) => LaneOp::Fits(go(a), by),
             LaneOp::UnfitIfOr(a, by, b, c) => LaneOp::UnfitIfOr(go(a), by, go(b), go(c)),
+            LaneOp::Read(a, bits, memory) => LaneOp::Read(go(a), bits, memory),
             LaneOp::Count(a, b) => LaneOp::Count(go(a), go(b)),
             LaneOp::Idle(a, b, c) => LaneOp::Idle(go(a), go(b), go(c)),
             LaneOp::Least(a, b) => LaneOp::Least(go(a), go(b)),
@@ -205,6 +208,18 @@ pub(super) struct RegisterRow {
     pub(super) next: Option<Slot>,
 }
 
+/// A port that writes a memory, and the rows that hold its nets after the operations, and still after an edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PortRows {
+    pub(super) memory: usize,
+    pub(super) enable: Slot,
+    pub(super) address: Slot,
+    /// Bits of the address.
+    pub(super) bits: u32,
+    pub(super) data: Slot,
+    pub(super) mask: Option<Slot>,
+}
+
 /// Code for one netlist. Rows of registers, inputs and accumulators keep their meaning from clock to clock.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Code {
@@ -216,6 +231,8 @@ pub(super) struct Code {
     pub(super) inputs: Vec<(usize, Slot)>,
     /// Registers, in the order that the builder was given.
     pub(super) registers: Vec<RegisterRow>,
+    /// Ports of memories, in the order in which they write.
+    pub(super) writes: Vec<PortRows>,
     /// Accumulators, in the order that the builder was given.
     pub(super) accumulators: Vec<Slot>,
     /// All operations; those from `observers` on update the accumulators.

@@ -6,6 +6,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::code::{Code, LaneOp, Operation, Slot};
 use super::lane::{GROUP, GROUPS, Lane, LaneRow};
+use super::lane_memory::{LaneMemories, View};
 use super::watch::root_gap;
 
 /// A machine that runs the same code in every lane.
@@ -25,6 +26,10 @@ impl<T: Lane> LaneMachine<T> {
         LaneMachine { rows, spare: LaneRow::filled(T::default()), level: Level::new() }
     }
 
+    pub(super) fn rows(&self) -> &[Box<LaneRow<T>>] {
+        &self.rows
+    }
+
     pub(super) fn row(&self, slot: Slot) -> &LaneRow<T> {
         &self.rows[slot]
     }
@@ -38,8 +43,8 @@ impl<T: Lane> LaneMachine<T> {
     }
 
     /// The operations, in the first `groups` groups.
-    pub(super) fn settle(&mut self, operations: &[Operation], groups: usize) {
-        dispatch!(self.level, _simd => settle(&mut self.rows, &mut self.spare, operations, groups));
+    pub(super) fn settle(&mut self, operations: &[Operation], groups: usize, memories: View<'_, T>) {
+        dispatch!(self.level, _simd => settle(&mut self.rows, &mut self.spare, operations, groups, memories));
     }
 
     /// Every register takes its next value.
@@ -50,14 +55,22 @@ impl<T: Lane> LaneMachine<T> {
 
     /// Settles sample after sample, with an edge between them, until one of the first `lanes` lanes is not 0 in the row
     /// `stop`, or `samples` of them are settled. Gives their number, at least 1.
-    pub(super) fn run(&mut self, code: &Code, lanes: usize, stop: Slot, samples: u64) -> u64 {
+    pub(super) fn run(
+        &mut self,
+        code: &Code,
+        lanes: usize,
+        stop: Slot,
+        samples: u64,
+        memories: &mut LaneMemories<T>,
+    ) -> u64 {
         let groups = lanes.div_ceil(GROUP);
         dispatch!(self.level, _simd => {
             let mut done = 1;
-            settle(&mut self.rows, &mut self.spare, &code.operations, groups);
+            settle(&mut self.rows, &mut self.spare, &code.operations, groups, memories.all());
             while done < samples && !any(&self.rows[stop], lanes) {
+                memories.edge(code, &self.rows, lanes, None);
                 edge(&mut self.rows, code);
-                settle(&mut self.rows, &mut self.spare, &code.operations, groups);
+                settle(&mut self.rows, &mut self.spare, &code.operations, groups, memories.all());
                 done += 1;
             }
             done
@@ -97,6 +110,7 @@ fn any<T: Lane>(row: &LaneRow<T>, lanes: usize) -> bool {
 struct Operands<'a, T> {
     rows: &'a [Box<LaneRow<T>>],
     groups: usize,
+    memories: View<'a, T>,
 }
 
 impl<T: Lane> Operands<'_, T> {
@@ -107,6 +121,13 @@ impl<T: Lane> Operands<'_, T> {
             for lane in 0..GROUP {
                 out[lane] = of(a[lane]);
             }
+        }
+    }
+
+    #[inline(always)]
+    fn read(&self, out: &mut LaneRow<T>, address: Slot, bits: u32, memory: usize) {
+        for lane in 0..self.groups * GROUP {
+            out.set(lane, self.memories.word(memory, lane, self.rows[address].get(lane), bits));
         }
     }
 
@@ -145,14 +166,21 @@ impl<T: Lane> Operands<'_, T> {
 }
 
 #[inline(always)]
-fn settle<T: Lane>(rows: &mut [Box<LaneRow<T>>], spare: &mut Box<LaneRow<T>>, operations: &[Operation], groups: usize) {
+fn settle<T: Lane>(
+    rows: &mut [Box<LaneRow<T>>],
+    spare: &mut Box<LaneRow<T>>,
+    operations: &[Operation],
+    groups: usize,
+    memories: View<'_, T>,
+) {
     for operation in operations {
-        perform(Operands { rows, groups }, spare, operation.what);
+        perform(Operands { rows, groups, memories }, spare, operation.what);
         swap(&mut rows[operation.target], spare);
     }
 }
 
-/// The meaning of every operation; the loops inside are unrolled and vectorised, none of them branches.
+/// The meaning of every operation; the loops inside are unrolled and vectorised, and none of them branches but that which
+/// reads memories.
 #[inline(always)]
 fn perform<T: Lane>(on: Operands<'_, T>, out: &mut LaneRow<T>, what: LaneOp<Slot>) {
     let top = T::BITS - 1;
@@ -250,6 +278,7 @@ fn perform<T: Lane>(on: Operands<'_, T>, out: &mut LaneRow<T>, what: LaneOp<Slot
         LaneOp::UnfitIfOr(a, by, condition, or) => on.three(out, [a, condition, or], |a, condition, or| {
             T::mask(a.left(by).right_signed(by) != a).and(condition).or(or)
         }),
+        LaneOp::Read(address, bits, memory) => on.read(out, address, bits, memory),
         LaneOp::Count(sum, a) => on.two(out, sum, a, |sum, a| sum.sub(T::mask(a != T::default()))),
         LaneOp::Idle(clocks, a, b) => {
             let (zero, one) = (T::default(), T::number(1));

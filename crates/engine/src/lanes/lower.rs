@@ -156,8 +156,7 @@ impl<'n> Lowering<'n> {
             Op::Input => return self.leaf(Node::Input(net)),
             Op::Register { .. } => return self.leaf(Node::Register(net)),
             Op::Const(value) => return self.leaf(Node::Constant(pattern(width, value))),
-            // A design with memories is refused before.
-            Op::Read { .. } => return self.leaf(Node::Constant(0)),
+            Op::Read { memory, address } => LaneOp::Read(v(address), of(address).get(), memory as usize),
             Op::Not(a) => LaneOp::Invert(v(a), ones(width)),
             Op::And(a, b) => LaneOp::And(v(a), v(b)),
             Op::Or(a, b) => LaneOp::Or(v(a), v(b)),

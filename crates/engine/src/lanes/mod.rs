@@ -10,6 +10,9 @@
 //! 3. If it was `done` and there is a further block, its inputs change after the next edge, one clock is done
 //!    regardless of the sample, and 2. follows.
 //!
+//! A lane has a copy of each memory that is written, with its first words again for every job; a memory that nothing
+//! writes is there once. Where the copies of all lanes would take more than half a gigabyte, fewer lanes run at once.
+//!
 //! What is loaded only while the inputs do not rest is folded away from the code that runs the lanes (`lower`,
 //! `fuse`, `build`); a second code for the whole design loads blocks and reads the last sample (`worker`).
 
@@ -19,6 +22,7 @@ mod feed;
 mod fuse;
 mod lane;
 mod lane_machine;
+mod lane_memory;
 mod lower;
 mod watch;
 mod worker;
@@ -28,10 +32,11 @@ use std::collections::HashMap;
 use build::LaneRequest;
 use code::Code;
 use feed::Feed;
+use lane_memory::{fitting, own_words};
+use stepwave_netlist::Design;
 use stepwave_netlist::bits::Width;
-use stepwave_netlist::cells::{Net, Op};
+use stepwave_netlist::cells::{Memory, Net, Op};
 use stepwave_netlist::passes::simplify;
-use stepwave_netlist::{Design, HasMemories};
 use watch::Reduce;
 pub use watch::{Job, LaneEnd, LaneStop, LaneWatch, Observe, Quiet, ROOT_GAP_UNIT, root_gap};
 use worker::Worker;
@@ -42,6 +47,8 @@ pub struct LaneProgram {
     watch: LaneWatch,
     /// Width of the net of each number asked for.
     widths: Vec<Width>,
+    /// The design's memories; `None` is one that nothing observed depends on.
+    memories: Vec<Option<Memory>>,
     /// All inputs with their widths.
     inputs: Vec<(Net, Width)>,
     reduce: Vec<Reduce>,
@@ -56,18 +63,15 @@ pub struct LaneProgram {
 impl LaneProgram {
     /// Code for a design.
     ///
-    /// # Errors
-    /// The design has a memory, of which every lane would need a copy.
-    ///
     /// # Panics
     /// If a net of the watch is not in the design.
-    pub fn new(design: &Design, watch: &LaneWatch) -> Result<LaneProgram, HasMemories> {
-        design.without_memories("many geometries in lanes")?;
+    #[must_use]
+    pub fn new(design: &Design, watch: &LaneWatch) -> LaneProgram {
         let netlist = design.netlist();
         let ends: Vec<Net> = [watch.done].into_iter().chain(watch.traps.iter().copied()).collect();
         let (accumulators, last) = accumulators(watch);
         let observed = accumulators.iter().flat_map(|(_, nets)| nets).chain(&last).chain(&ends);
-        let (registers, widest) = needed(design, observed.copied().collect());
+        let Needed { registers, memories, widest } = needed(design, observed.copied().collect());
 
         let code = |fixed: &HashMap<Net, u64>, outputs: &[Net], any: &[Net]| {
             let simple = simplify(netlist, fixed);
@@ -77,6 +81,7 @@ impl LaneProgram {
                 netlist: &simple.netlist,
                 inputs: &go(design.inputs()),
                 registers: &go(&registers),
+                memories: &memories,
                 accumulators: &accumulators,
                 outputs: &go(outputs),
                 any: &go(any),
@@ -90,8 +95,10 @@ impl LaneProgram {
             Observe::Last(net) | Observe::Min { net, .. } | Observe::Max { net, .. } => netlist.width(*net),
             _ => Width::MAX,
         };
-        Ok(LaneProgram {
+        let all = netlist.memories.iter().enumerate();
+        LaneProgram {
             widths: watch.observe.iter().map(width).collect(),
+            memories: all.map(|(index, memory)| memories.contains(&index).then(|| memory.clone())).collect(),
             inputs: design.inputs().iter().map(|&net| (net, netlist.width(net))).collect(),
             reduce: accumulators.iter().map(|(reduce, _)| *reduce).collect(),
             wide: widest > 32
@@ -100,7 +107,7 @@ impl LaneProgram {
             watch: watch.clone(),
             running,
             whole,
-        })
+        }
     }
 
     /// Runs jobs on all threads of the present `rayon` pool. `prepare` makes a job of an item, in parallel; `sink` gets
@@ -112,7 +119,9 @@ impl LaneProgram {
         prepare: impl Fn(J) -> Result<Job, E> + Sync,
         sink: impl FnMut(Result<LaneEnd, E>) + Send,
     ) {
-        let threads = rayon::current_num_threads();
+        let words = own_words(self.memories.iter().flatten());
+        let (threads, lanes) =
+            fitting(rayon::current_num_threads(), words.saturating_mul(if self.wide { 8 } else { 4 }));
         // Few jobs are spread over all threads.
         let share = match items.size_hint() {
             (0, _) => usize::MAX,
@@ -123,9 +132,9 @@ impl LaneProgram {
             for _ in 0..threads {
                 scope.spawn(|_| {
                     if self.wide {
-                        Worker::<u64>::new(self).work(&feed, share, &prepare);
+                        Worker::<u64>::new(self, lanes).work(&feed, share, &prepare);
                     } else {
-                        Worker::<u32>::new(self).work(&feed, share, &prepare);
+                        Worker::<u32>::new(self, lanes).work(&feed, share, &prepare);
                     }
                 });
             }
@@ -197,11 +206,19 @@ fn is_wide(observe: &Observe, limit: u64) -> bool {
     }
 }
 
-/// The registers that the roots depend on, through any number of edges, and the widest net on these paths.
-fn needed(design: &Design, mut pending: Vec<Net>) -> (Vec<Net>, u32) {
+/// What some nets depend on, through any number of edges.
+struct Needed {
+    registers: Vec<Net>,
+    /// By their index in the netlist.
+    memories: Vec<usize>,
+    /// Bits of the widest net on these paths.
+    widest: u32,
+}
+
+fn needed(design: &Design, mut pending: Vec<Net>) -> Needed {
     let netlist = design.netlist();
     let mut seen = vec![false; netlist.cells.len()];
-    let mut widest = 1;
+    let (mut widest, mut memories) = (1, Vec::new());
     while let Some(net) = pending.pop() {
         if std::mem::replace(&mut seen[net.index()], true) {
             continue;
@@ -212,6 +229,13 @@ fn needed(design: &Design, mut pending: Vec<Net>) -> (Vec<Net>, u32) {
         if let Op::Register { next: Some(next), .. } = cell.op {
             pending.push(next);
         }
+        if let Op::Read { memory, .. } = cell.op
+            && !memories.contains(&(memory as usize))
+        {
+            memories.push(memory as usize);
+            pending.extend(netlist.memories[memory as usize].writes.iter().flat_map(|port| port.nets()));
+        }
     }
-    (design.registers().iter().copied().filter(|net| seen[net.index()]).collect(), widest)
+    let registers = design.registers().iter().copied().filter(|net| seen[net.index()]).collect();
+    Needed { registers, memories, widest }
 }

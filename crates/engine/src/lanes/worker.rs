@@ -7,6 +7,7 @@ use super::code::{Code, RegisterRow, Slot};
 use super::feed::Feed;
 use super::lane::{GROUP, LANES, Lane};
 use super::lane_machine::LaneMachine;
+use super::lane_memory::LaneMemories;
 use super::watch::{Job, LaneEnd, LaneStop, Observe};
 use stepwave_netlist::bits::Width;
 
@@ -37,6 +38,9 @@ pub(super) struct Worker<'p, T> {
     lanes: LaneMachine<T>,
     /// A few lanes, loading or being read.
     loader: LaneMachine<T>,
+    memories: LaneMemories<T>,
+    /// Lanes that run at once.
+    most: usize,
     busy: Vec<Busy>,
     /// Samples settled.
     tick: u64,
@@ -47,11 +51,13 @@ pub(super) struct Worker<'p, T> {
 }
 
 impl<'p, T: Lane> Worker<'p, T> {
-    pub(super) fn new(program: &'p LaneProgram) -> Worker<'p, T> {
+    pub(super) fn new(program: &'p LaneProgram, most: usize) -> Worker<'p, T> {
         Worker {
             program,
             lanes: LaneMachine::new(&program.running),
             loader: LaneMachine::new(&program.whole),
+            memories: LaneMemories::new(program.memories.iter().map(Option::as_ref), most),
+            most,
             busy: Vec::with_capacity(LANES),
             tick: 0,
             next_due: u64::MAX,
@@ -72,7 +78,7 @@ impl<'p, T: Lane> Worker<'p, T> {
     {
         let abort = AbortOnPanic(|| feed.abort());
         let mut taken = VecDeque::new();
-        let mut room = LANES.min(share);
+        let mut room = self.most.min(share);
         loop {
             feed.take(room, &mut taken);
             let mut failed = Vec::new();
@@ -93,7 +99,7 @@ impl<'p, T: Lane> Worker<'p, T> {
             while self.ends.len() < GROUP && !self.busy.is_empty() {
                 self.run();
             }
-            room = LANES - self.busy.len() + 2 * GROUP - self.queue.len().min(2 * GROUP);
+            room = self.most - self.busy.len() + 2 * GROUP - self.queue.len().min(2 * GROUP);
             feed.give(self.ends.drain(..).map(|(number, end)| (number, Ok(end))));
         }
         std::mem::forget(abort);
@@ -102,7 +108,7 @@ impl<'p, T: Lane> Worker<'p, T> {
     /// Puts waiting jobs into free lanes.
     fn fill(&mut self) {
         let first = self.busy.len();
-        while self.busy.len() < LANES
+        while self.busy.len() < self.most
             && let Some(job) = self.queue.pop_front()
         {
             self.busy.push(self.fresh(job));
@@ -121,27 +127,33 @@ impl<'p, T: Lane> Worker<'p, T> {
     fn run(&mut self) {
         let stop = self.program.running.outputs[0];
         let most = self.next_due.saturating_sub(self.tick).max(1);
-        self.tick += self.lanes.run(&self.program.running, self.busy.len(), stop, most);
+        self.tick += self.lanes.run(&self.program.running, self.busy.len(), stop, most, &mut self.memories);
         let stops = self.lanes.row(stop);
         let seen = |lane: usize, busy: &Busy| stops.get(lane) != T::default() || busy.due <= self.tick;
         let seen: Vec<usize> =
             self.busy.iter().enumerate().filter(|(lane, busy)| seen(*lane, busy)).map(|(lane, _)| lane).collect();
         self.lanes.edge(&self.program.running);
-        let mut free = Vec::new();
+        let (mut free, mut loading) = (Vec::new(), Vec::new());
         for lanes in seen.chunks(GROUP) {
-            self.look(lanes, &mut free);
+            self.look(lanes, &mut free, &mut loading);
+        }
+        // Until here the memories are those of the sample.
+        self.memories.edge(&self.program.running, self.lanes.rows(), self.busy.len(), None);
+        for lanes in loading.chunks(GROUP) {
+            self.load(lanes);
         }
         for lane in free.into_iter().rev() {
             self.busy.swap_remove(lane);
             self.move_lane(self.busy.len(), lane);
+            self.memories.swap(self.busy.len(), lane);
         }
         if self.next_due <= self.tick {
             self.next_due = self.busy.iter().map(|busy| busy.due).min().unwrap_or(u64::MAX);
         }
     }
 
-    /// Reads the sample before the last edge in up to a group of lanes: they end, load, or continue.
-    fn look(&mut self, lanes: &[usize], free: &mut Vec<usize>) {
+    /// Reads the sample before the last edge in up to a group of lanes: they end, are to load, or continue.
+    fn look(&mut self, lanes: &[usize], free: &mut Vec<usize>, loading: &mut Vec<usize>) {
         let (running, whole) = (&self.program.running, &self.program.whole);
         for (place, &lane) in lanes.iter().enumerate() {
             for (from, to) in running.registers.iter().zip(&whole.registers) {
@@ -151,9 +163,9 @@ impl<'p, T: Lane> Worker<'p, T> {
             }
             self.set_inputs(place, lane);
         }
-        self.loader.settle(&whole.operations[..whole.observers], 1);
+        let copies = self.memories.copies(lanes);
+        self.loader.settle(&whole.operations[..whole.observers], 1, self.memories.of(&copies));
         let verdicts: Vec<Verdict> = lanes.iter().enumerate().map(|(place, &lane)| self.verdict(place, lane)).collect();
-        let mut loading = Vec::new();
         for (place, (&lane, verdict)) in lanes.iter().zip(verdicts).enumerate() {
             match verdict {
                 Verdict::Goes => self.set_due(lane),
@@ -171,7 +183,6 @@ impl<'p, T: Lane> Worker<'p, T> {
                 }
             }
         }
-        self.load(&loading);
     }
 
     fn verdict(&self, place: usize, lane: usize) -> Verdict {
@@ -199,14 +210,12 @@ impl<'p, T: Lane> Worker<'p, T> {
         }
     }
 
-    /// The last edge changed no register.
+    /// The last edge changed no register and no memory.
     fn at_rest(&self, lane: usize) -> bool {
         let row = |row| self.lanes.get(row, lane);
-        self.program
-            .running
-            .registers
-            .iter()
-            .all(|register| register.next.is_none_or(|old| row(old) == row(register.row)))
+        let running = &self.program.running;
+        let kept = !self.memories.changes(running, self.lanes.rows(), lane);
+        kept && running.registers.iter().all(|register| register.next.is_none_or(|old| row(old) == row(register.row)))
     }
 
     /// Clocks since one of the quiet nets was not 0.
@@ -255,10 +264,15 @@ impl<'p, T: Lane> Worker<'p, T> {
                 let word = if first { reduce.start() } else { self.lanes.get(from, lane) };
                 self.loader.set(to, place, word);
             }
+            if first {
+                self.memories.reset(lane);
+            }
             self.next_block(lane);
             self.set_inputs(place, lane);
         }
-        self.loader.settle(&whole.operations, 1);
+        let copies = self.memories.copies(lanes);
+        self.loader.settle(&whole.operations, 1, self.memories.of(&copies));
+        self.memories.edge(whole, self.loader.rows(), lanes.len(), Some(&copies));
         self.loader.edge(whole);
         for (place, &lane) in lanes.iter().enumerate() {
             for (to, from) in running.registers.iter().zip(&whole.registers) {
