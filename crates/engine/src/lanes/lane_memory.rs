@@ -7,7 +7,7 @@ use stepwave_netlist::cells::Memory;
 /// Bytes that the copies of all lanes on all threads may take.
 const MOST_BYTES: u64 = 1 << 29;
 
-/// Threads and lanes on each of them, where a lane takes so many bytes: as many as there are, or as fit; at least one.
+/// Threads and lanes on each of them, where a lane takes this many bytes: as many as there are, or as fit; at least one.
 pub(super) fn fitting(threads: usize, bytes: u64) -> (usize, usize) {
     let most = MOST_BYTES.checked_div(bytes).map_or(usize::MAX, |most| usize::try_from(most).unwrap_or(usize::MAX));
     let threads = threads.min(most).max(1);
