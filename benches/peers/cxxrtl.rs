@@ -14,11 +14,12 @@ const FAST: &str = "-O3 -march=native";
 const SOON: &str = "-O0";
 
 /// The commands that build `model` from `model.v`.
-fn commands(wave: Wave, optimise: &str) -> String {
+fn commands(unit: &Unit, wave: Wave, optimise: &str) -> String {
     let (debug, define) = if wave == Wave::Vcd { ("", "-DWAVE_VCD") } else { ("-g0", "") };
     format!(
-        "yosys -q -p 'read_verilog model.v; write_cxxrtl {debug} model.cc' && \
-         g++ -std=c++14 {optimise} {define} -I. -I$(yosys-config --datdir)/include -o model main.cpp"
+        "yosys -q -p 'read_verilog model.v; hierarchy -top {}; write_cxxrtl {debug} model.cc' && \
+         g++ -std=c++14 {optimise} {define} -I. -I$(yosys-config --datdir)/include -o model main.cpp",
+        unit.name()
     )
 }
 
@@ -32,13 +33,13 @@ fn write(unit: &Unit, dir: &Path, blocks: &str) -> Fallible<()> {
 /// A job that runs blocks in a model that has been built.
 pub(crate) fn run(unit: &Unit, dir: &Path, wave: Wave, blocks: &str) -> Fallible<Job> {
     write(unit, dir, blocks)?;
-    shell(dir, &commands(wave, FAST))?;
+    shell(dir, &commands(unit, wave, FAST))?;
     Ok(Job::new("CXXRTL", dir, &["./model", "blocks", "wave.vcd"]))
 }
 
 /// A job from the source to the wave.
 pub(crate) fn first_wave(unit: &Unit, dir: &Path, blocks: &str) -> Fallible<Job> {
     write(unit, dir, blocks)?;
-    let all = format!("{} && ./model blocks wave.vcd", commands(Wave::Vcd, SOON));
+    let all = format!("{} && ./model blocks wave.vcd", commands(unit, Wave::Vcd, SOON));
     Ok(Job::new("CXXRTL", dir, &["sh", "-c", &all]))
 }

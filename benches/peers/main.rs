@@ -1,7 +1,8 @@
 //! stepwave against Verilator, CXXRTL (Yosys) and Icarus Verilog on the Verilog that it exports, in one run.
 //!
 //! `cargo bench --bench peers [-- [--quick] [SECTION…]]` prints tables in Markdown; `.ci/bench-tools` installs the
-//! peers on Debian. Sections: `first-wave`, `no-trace`, `waves`, `lanes`, `growth`.
+//! peers on Debian. Sections: `first-wave`, `no-trace`, `waves`, `lanes`, `growth`, `cores`, the last after `.ci/import`, which
+//! fetches the sources of the cores.
 //!
 //! All contenders load the same block, run it to its end, and must come to the same clock and the same place; the waves
 //! of short runs are compared signal by signal. They take turns, round by round, and medians are reported. One core is
@@ -12,6 +13,8 @@
 
 #[cfg(target_os = "linux")]
 mod contender;
+#[cfg(target_os = "linux")]
+mod cores;
 #[cfg(target_os = "linux")]
 mod cxxrtl;
 #[cfg(target_os = "linux")]
@@ -41,7 +44,7 @@ fn main() -> Fallible<()> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     match words.first().map(String::as_str) {
         Some("--measure") => measure::child(&words[1..]),
-        Some(kind @ ("--engine" | "--cells" | "--lanes" | "--bare-lanes")) => {
+        Some(kind @ ("--engine" | "--cells" | "--core" | "--lanes" | "--bare-lanes")) => {
             print!("{}", own::as_child(kind, &words[1..])?);
             Ok(())
         }

@@ -13,10 +13,10 @@ use stepwave::testbench::{LaneOutcome, Testbench};
 use crate::Fallible;
 use crate::contender::Wave;
 use crate::measure::Job as Contender;
-use crate::synthetic;
 use crate::unit::{Case, Unit, block};
+use crate::{cores, synthetic};
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_stepwave");
+pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_stepwave");
 
 /// Clocks and end point from the report.
 fn says(text: &str) -> Fallible<String> {
@@ -57,6 +57,11 @@ pub(crate) fn cells(cells: usize, clocks: u64, dir: &Path) -> Fallible<Contender
     child("engine", dir, &["--cells".to_owned(), cells.to_string(), clocks.to_string()])
 }
 
+/// An engine alone for a core that was imported into `core.net`.
+pub(crate) fn core(name: &'static str, kind: EngineKind, clocks: u64, dir: &Path) -> Fallible<Contender> {
+    child(name, dir, &["--core".to_owned(), kind.name().to_owned(), clocks.to_string()])
+}
+
 /// Clocks that no geometry needs; a limit beyond 32 bits would make every lane twice as wide.
 const LIMIT: u64 = 1 << 31;
 
@@ -87,6 +92,11 @@ pub(crate) fn as_child(kind: &str, words: &[String]) -> Fallible<String> {
             let unit = synthetic::chain(number(0)?)?;
             let words = synthetic::block(&unit, number(1)? as u64);
             unit.run(EngineKind::Compiled, &words)
+        }
+        "--core" => {
+            let unit = cores::imported(Path::new("core.net"))?;
+            let kind = EngineKind::ALL.into_iter().find(|kind| kind.name() == words[0]).ok_or("no such engine")?;
+            unit.run(kind, &cores::block(&unit, number(1)? as u64))
         }
         _ => {
             let case = Case::new(&words[0], u32::try_from(number(1)?)?)?;

@@ -8,7 +8,7 @@ use crate::contender::{Wave, first_line};
 use crate::measure::{Job, Measurement, race};
 use crate::table::{Table, median, number, times};
 use crate::unit::{Case, MODELS, Unit, block};
-use crate::{Fallible, cxxrtl, growth, icarus, own, verilator};
+use crate::{Fallible, cores, cxxrtl, growth, icarus, own, verilator};
 
 /// How much of everything; powers of two of clocks.
 pub(crate) struct Sizes {
@@ -39,12 +39,13 @@ const QUICK: Sizes = Sizes {
 
 type Section = fn(&Sizes, &Path) -> Fallible<String>;
 
-const SECTIONS: [(&str, Section); 5] = [
+const SECTIONS: [(&str, Section); 6] = [
     ("first-wave", first_wave),
     ("no-trace", no_trace),
     ("waves", waves),
     ("lanes", lanes),
     ("growth", growth::growth),
+    ("cores", cores::cores),
 ];
 
 /// Measures what is asked for, and prints it.

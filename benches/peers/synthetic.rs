@@ -34,7 +34,14 @@ fn integrators(count: usize) -> Fallible<Unit> {
     let check = m.name("check", check);
     let (load, done, check) = (load.net(), done.q.net(), check.net());
     let design = elaborate(module.finish()?)?;
-    Ok(Unit { design, outputs: vec![done, check], strobes: vec![load], done, result: vec![(check, false)] })
+    Ok(Unit {
+        design,
+        outputs: vec![done, check],
+        strobes: vec![load],
+        done,
+        result: vec![(check, false)],
+        source: None,
+    })
 }
 
 fn integrator<'m>(m: Scope<'m>, grow: Signal<'m>, index: u64) -> (Signal<'m>, Signal<'m>) {

@@ -96,6 +96,8 @@ pub(crate) struct Unit {
     pub(crate) done: Net,
     /// What is printed at the end; two's complement where true.
     pub(crate) result: Vec<(Net, bool)>,
+    /// The Verilog that it was imported from.
+    pub(crate) source: Option<String>,
 }
 
 impl Unit {
@@ -107,6 +109,7 @@ impl Unit {
             strobes: vec![machine.load.net, machine.preset_position.net],
             done: machine.done.net,
             result: machine.positions.iter().map(|port| (port.net, port.reading.is_signed())).collect(),
+            source: None,
         }
     }
 
@@ -165,7 +168,8 @@ impl Unit {
     }
 
     pub(crate) fn verilog(&self) -> String {
-        export::verilog(&self.design, &export::Options { comment: &[], outputs: &self.outputs })
+        let exported = || export::verilog(&self.design, &export::Options { comment: &[], outputs: &self.outputs });
+        self.source.clone().unwrap_or_else(exported)
     }
 
     /// The test bench of `stepwave export`, and a second top module that prints the result.
