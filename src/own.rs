@@ -21,4 +21,6 @@ pub(crate) use file::{checked, read_stimulus, read_text, summary};
 pub use prove::{BenchReport, Counterexample, Goal, Prove, ProveReport, SecondOpinion, SolverLanguage, Verdict};
 pub use sim::{Sim, SimReport};
 pub use stimulus::{Stimulus, StimulusError};
+#[cfg(feature = "cli")]
+pub(crate) use yosys::loaded_then_assigned;
 pub use yosys::{Source, YosysError, yosys_json};

@@ -30,7 +30,8 @@ use ieee.numeric_std.all;
 
 entity filter is
   port (clk, rst : in std_logic; a : in signed(7 downto 0); steps : out unsigned(3 downto 0);
-        sum : out std_logic_vector(11 downto 0); product : out signed(15 downto 0); opposite : out signed(7 downto 0));
+        sum : out std_logic_vector(11 downto 0); product : out signed(15 downto 0); opposite : out signed(7 downto 0);
+        share, rest, modulus, size : out signed(7 downto 0));
 end entity;
 
 architecture rtl of filter is
@@ -46,6 +47,10 @@ begin
       count <= count + 1;
       product <= a * a;
       opposite <= -a;
+      share <= a / to_signed(7, 8);
+      rest <= a rem resize(a(4 downto 1) & '1', 8);
+      modulus <= a mod resize(a(5 downto 2) & '1', 8);
+      size <= abs (a / 2);
     end if;
   end process;
 end architecture;

@@ -8,12 +8,12 @@ entity tb is end entity;
 
 architecture sim of tb is
   signal clk, rst : std_logic := '0';
-  signal a, opposite : signed(7 downto 0) := (others => '0');
+  signal a, opposite, share, rest, modulus, size : signed(7 downto 0) := (others => '0');
   signal steps : unsigned(3 downto 0);
   signal sum : std_logic_vector(11 downto 0);
   signal product : signed(15 downto 0);
 begin
-  dut : entity work.filter port map (clk, rst, a, steps, sum, product, opposite);
+  dut : entity work.filter port map (clk, rst, a, steps, sum, product, opposite, share, rest, modulus, size);
   process
     file rows : text open read_mode is "all_rows.txt";
     variable row : line;

@@ -7,7 +7,9 @@ use crate::Error;
 use crate::cli::{CheckArgs, ImportArgs, SimArgs};
 use crate::netlist::elaborate;
 use crate::output::{self, Outputs};
-use crate::own::{Sim, Source, checked, read_netlist, read_stimulus, read_text, summary, yosys_json};
+use crate::own::{
+    Sim, Source, checked, loaded_then_assigned, read_netlist, read_stimulus, read_text, summary, yosys_json,
+};
 
 /// Most bytes of JSON.
 const MOST_JSON: u64 = 1 << 31;
@@ -42,7 +44,9 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Error> {
         let edge = if clock.rising { "rising" } else { "falling" };
         text += &format!("clock: the {edge} edge of {}\n", clock.name);
     }
-    for note in imported.notes {
+    let texts = args.files.iter().filter_map(|file| std::fs::read_to_string(file).ok());
+    let loads: Vec<String> = texts.flat_map(|text| loaded_then_assigned(&text)).collect();
+    for note in imported.notes.into_iter().chain(loads) {
         text += &format!("note: {note}\n");
     }
     output::print(&text)

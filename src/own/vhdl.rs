@@ -11,14 +11,36 @@ use serde_json::{Value, json};
 /// The file that GHDL's Verilog is in.
 pub(super) const OF_GHDL: &str = "written-by-ghdl.v";
 
-/// The Verilog with right shifts of signed numbers as VHDL means them: GHDL 2 writes `$signed(x) >> n`, which Verilog fills
-/// with zeros, and has the operand of no other shift signed.
-pub(super) fn arithmetic_shifts(verilog: &str) -> String {
-    let line = |line: &str| match line.split_once(" = $signed(") {
-        Some((left, right)) => format!("{left} = $signed({}\n", right.replacen(") >> ", ") >>> ", 1)),
-        None => format!("{line}\n"),
+/// The Verilog with operators of signed numbers as VHDL means them. GHDL 2 writes them without a sign, and says in a comment
+/// which they are: `$signed(x) >> n`, which Verilog fills with zeros, `x / y; // sdiv`, and `x % y` for `rem` and for `mod`,
+/// which has the sign of the divisor. An absolute value is written in VHDL.
+pub(super) fn with_signs(verilog: &str) -> String {
+    verilog.lines().map(|line| signed_operator(line).unwrap_or_else(|| line.to_owned()) + "\n").collect()
+}
+
+fn signed_operator(line: &str) -> Option<String> {
+    if let Some((left, right)) = line.split_once(" <= std_logic_vector(abs $signed(") {
+        let x = right.strip_suffix("));")?;
+        return Some(format!("  assign {} = $signed({x}) < 0 ? -{x} : {x};", left.trim()));
+    }
+    let (left, right) = line.split_once(" = ")?;
+    if let Some(shift) = right.strip_prefix("$signed(") {
+        return Some(format!("{left} = $signed({}", shift.replacen(") >> ", ") >>> ", 1)));
+    }
+    let (code, remark) = right.split_once("; // ")?;
+    let mut words = code.split(' ');
+    let (Some(x), Some(_), Some(y), None) = (words.next(), words.next(), words.next(), words.next()) else {
+        return None;
     };
-    verilog.lines().map(line).collect()
+    let rest = format!("$signed({x}) % $signed({y})");
+    match remark.trim() {
+        "sdiv" => Some(format!("{left} = $signed({x}) / $signed({y});")),
+        "srem" => Some(format!("{left} = {rest};")),
+        "smod" => Some(format!(
+            "{left} = {rest} != 0 && $signed({x}) < 0 != $signed({y}) < 0 ? {rest} + $signed({y}) : {rest};"
+        )),
+        _ => None,
+    }
 }
 
 /// The JSON with places, signs and names of the VHDL.
@@ -46,7 +68,9 @@ pub(super) fn restored(json: &str, verilog: &str, vhdl: &[String]) -> Result<Str
             if sign == Some(true) {
                 net["signed"] = json!(1);
             }
-            signs.declare(top_bit(&net["bits"]), sign);
+            if !is_made_up(leaf) {
+                signs.declare(top_bit(&net["bits"]), sign);
+            }
         }
         signs.read(module);
     }
@@ -139,15 +163,20 @@ fn top_bit(bits: &Value) -> Option<u64> {
     bits.as_array().and_then(|bits| bits.last()).and_then(Value::as_u64)
 }
 
-/// Highest bits of words that have a sign, and of those that are declared without one.
+/// Highest bits of words that have a sign, and of those that are declared as something else.
 #[derive(Default)]
 struct Signs {
     signed: HashSet<u64>,
+    others: HashSet<u64>,
     unsigned: HashSet<u64>,
 }
 
+/// Bits of the results of `integer`.
+const INTEGER: usize = 32;
+
 impl Signs {
     fn declare(&mut self, top: Option<u64>, sign: Option<bool>) {
+        self.others.extend(top.filter(|_| sign != Some(true)));
         match sign {
             Some(true) => self.signed.extend(top),
             Some(false) => self.unsigned.extend(top),
@@ -155,47 +184,53 @@ impl Signs {
         }
     }
 
-    fn is_signed(&self, top: Option<u64>) -> bool {
-        top.is_some_and(|top| self.signed.contains(&top) && !self.unsigned.contains(&top))
-    }
-
     /// Marks the operands of arithmetic as signed where one of operands and result is. All have the same width, so that
     /// this changes how they are read, and not what they are.
-    fn read(&mut self, module: &mut Value) {
+    fn read(mut self, module: &mut Value) {
         let Some(cells) = module["cells"].as_object_mut() else { return };
-        loop {
-            let before = self.signed.len();
-            for cell in cells.values() {
-                let kind = cell["type"].as_str().unwrap_or_default();
-                let tops =
-                    |pins: &[&str]| pins.iter().map(|pin| top_bit(&cell["connections"][*pin])).collect::<Vec<_>>();
-                let (from, to) = match kind {
-                    kind if is_arithmetic(kind) => (tops(&["A", "B", "Y"]), tops(&["A", "B", "Y"])),
-                    // What goes into a signed word is one; what comes of it may be a word of bits.
-                    "$mux" => (tops(&["Y"]), tops(&["A", "B"])),
-                    "$dff" | "$dffe" | "$adff" | "$adffe" | "$sdff" | "$sdffe" => (tops(&["Q"]), tops(&["D"])),
-                    _ => continue,
-                };
-                if from.into_iter().any(|top| self.is_signed(top)) {
-                    self.signed.extend(to.into_iter().flatten());
-                }
-            }
-            if self.signed.len() == before {
-                break;
-            }
-        }
+        let unsigned = std::mem::take(&mut self.unsigned);
+        self.signed.retain(|top| !unsigned.contains(top));
+        close(&mut self.signed, &unsigned, cells);
+        close(&mut self.others, &HashSet::new(), cells);
         for cell in cells.values_mut().filter(|cell| cell["type"].as_str().is_some_and(is_arithmetic)) {
             let pins = &cell["connections"];
             let used: Vec<&Value> = ["A", "B", "Y"].iter().filter_map(|pin| pins.get(*pin)).collect();
             let width = |bits: &Value| bits.as_array().map_or(0, Vec::len);
             let alike = used.iter().all(|bits| width(bits) == width(&pins["Y"]));
-            if alike && used.iter().any(|bits| self.is_signed(top_bit(bits))) {
+            let any = |tops: &HashSet<u64>| used.iter().filter_map(|bits| top_bit(bits)).any(|top| tops.contains(&top));
+            // What no declared word takes part in is an `integer` in between.
+            let integer = width(&pins["Y"]) == INTEGER && !any(&self.others);
+            if alike && (any(&self.signed) || integer) {
                 for flag in ["A_SIGNED", "B_SIGNED"] {
                     if let Some(flag) = cell["parameters"].get_mut(flag) {
                         *flag = json!("1");
                     }
                 }
             }
+        }
+    }
+}
+
+/// Adds the words that have the type of one of these: the operands and the result of arithmetic have the same. What goes into
+/// a typed word has its type; what comes of it may be a word of bits.
+fn close(tops: &mut HashSet<u64>, never: &HashSet<u64>, cells: &serde_json::Map<String, Value>) {
+    loop {
+        let before = tops.len();
+        for cell in cells.values() {
+            let of =
+                |pins: &[&str]| pins.iter().filter_map(|pin| top_bit(&cell["connections"][*pin])).collect::<Vec<_>>();
+            let (from, to) = match cell["type"].as_str().unwrap_or_default() {
+                kind if is_arithmetic(kind) => (of(&["A", "B", "Y"]), of(&["A", "B", "Y"])),
+                "$mux" => (of(&["Y"]), of(&["A", "B"])),
+                "$dff" | "$dffe" | "$adff" | "$adffe" | "$sdff" | "$sdffe" => (of(&["Q"]), of(&["D"])),
+                _ => continue,
+            };
+            if from.iter().any(|top| tops.contains(top)) {
+                tops.extend(to.into_iter().filter(|top| !never.contains(top)));
+            }
+        }
+        if tops.len() == before {
+            return;
         }
     }
 }
@@ -229,9 +264,19 @@ mod tests {
     }
 
     #[test]
-    fn right_shifts_of_signed_numbers_keep_the_sign() {
-        let text = "  assign n1_o = $signed(a) >> 31'b100;\n  assign n2_o = b >> 31'b100;\n  assign n3_o = $signed(a) < $signed(b);\n";
-        assert_eq!(arithmetic_shifts(text), text.replacen(">>", ">>>", 1));
+    fn operators_of_signed_numbers_are_signed() {
+        let cases = [
+            ("  assign n1_o = $signed(a) >> 31'b100;", "  assign n1_o = $signed(a) >>> 31'b100;"),
+            ("  assign n2_o = b >> 31'b100;", "  assign n2_o = b >> 31'b100;"),
+            ("  assign n3_o = $signed(a) < $signed(b);", "  assign n3_o = $signed(a) < $signed(b);"),
+            ("  assign n4_o = a / b; // sdiv", "  assign n4_o = $signed(a) / $signed(b);"),
+            ("  assign n5_o = a % 4'b101; // srem", "  assign n5_o = $signed(a) % $signed(4'b101);"),
+            ("  assign n6_o = a % b; // umod", "  assign n6_o = a % b; // umod"),
+            ("  n7_o <= std_logic_vector(abs $signed(a));", "  assign n7_o = $signed(a) < 0 ? -a : a;"),
+        ];
+        for (line, expected) in cases {
+            assert_eq!(with_signs(line), format!("{expected}\n"));
+        }
     }
 
     #[test]

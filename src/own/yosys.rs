@@ -6,7 +6,7 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Component, Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use super::vhdl::{OF_GHDL, arithmetic_shifts, restored};
+use super::vhdl::{OF_GHDL, restored, with_signs};
 
 /// What is to be read, and how.
 #[derive(Clone, Debug, Default)]
@@ -128,8 +128,9 @@ fn script(source: &Source, files: &[PathBuf]) -> Result<String, YosysError> {
     // Only cleaned processes have constant enables of what `initial` writes into a memory.
     // What is claimed at an edge is of the sample before it, not of a register after it. A register that no output reads is
     // the author's all the same.
-    // Without a place of their own, instances leave that of what is in them alone.
-    script += "proc -noopt -norom\nattrmap -rename src instance_src t:* t:$* %d\nflatten\nchformal -early\nsetattr -set keep 1 t:$*ff*\nopt_clean\nmemory_collect\nopt_clean\n";
+    // Yosys gives what `$readmemh` loads a lower priority than what `initial` assigns, in whatever order the source has them:
+    // memories are cleared and then loaded. Without a place of their own, instances leave that of what is in them alone.
+    script += "proc -noopt -norom\nsetparam -set PRIORITY 1000000000 t:$meminit_v2 r:WORDS>1 %i\nattrmap -rename src instance_src t:* t:$* %d\nflatten\nchformal -early\nsetattr -set keep 1 t:$*ff*\nopt_clean\nmemory_collect\nopt_clean\n";
     script += "write_json -\n";
     Ok(script)
 }
@@ -145,6 +146,28 @@ fn parameter(value: &str) -> Result<String, YosysError> {
         return Err(YosysError::Name { what: "value", name: value.to_owned() });
     }
     Ok(format!("\"{inner}\""))
+}
+
+/// A note for each memory of a Verilog text that is assigned after a file was loaded into it.
+#[cfg(feature = "cli")]
+pub(crate) fn loaded_then_assigned(text: &str) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (at, _) in text.match_indices("$readmem") {
+        let Some((call, _)) = text[at..].split_once(')') else { continue };
+        let after = &text[at + call.len()..];
+        let Some(name) = call.split(',').nth(1).map(str::trim).filter(|name| !name.is_empty()) else { continue };
+        let assigned = after.split(name).skip(1).any(|rest| {
+            let index = rest.trim_start().strip_prefix('[').and_then(|rest| rest.split_once(']'));
+            let value = index.and_then(|(_, rest)| rest.trim_start().strip_prefix('='));
+            value.is_some_and(|value| !value.starts_with('='))
+        });
+        if assigned {
+            notes.push(format!(
+                "{name} is loaded from a file and assigned after that: it begins with what the file has, as Yosys keeps no order"
+            ));
+        }
+    }
+    notes
 }
 
 /// What a tool says of an error: the line with `error`, or the last line.
@@ -277,7 +300,7 @@ fn ghdl(source: &Source) -> Result<String, YosysError> {
     let arguments: Vec<&OsStr> = arguments.iter().map(AsRef::as_ref).collect();
     match started(command, &arguments, "", None)? {
         None => Err(YosysError::NoGhdl { command: command.to_owned() }),
-        Some(output) if output.status.success() => Ok(arithmetic_shifts(&String::from_utf8_lossy(&output.stdout))),
+        Some(output) if output.status.success() => Ok(with_signs(&String::from_utf8_lossy(&output.stdout))),
         Some(output) => Err(YosysError::Refused { tool: "GHDL", message: complaint(&output.stderr) }),
     }
 }

@@ -143,11 +143,14 @@ impl Report {
         }
     }
 
-    /// The end point was reached exactly; that of every move of a program.
+    /// The end point was reached exactly; that of every move of a program. A closed curve without a pulse was not run at all.
     #[must_use]
     pub fn end_exact(&self) -> bool {
         match &self.subject {
-            Subject::Curve(of) => self.outcome.reached == of.curve.to(),
+            Subject::Curve(of) => {
+                let has_pulses = self.outcome.pulses.iter().any(|&pulses| pulses != 0);
+                self.outcome.reached == of.curve.to() && has_pulses
+            }
             Subject::Program(of) => of.totals.missed == 0,
         }
     }

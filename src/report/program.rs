@@ -216,7 +216,7 @@ impl BlockReport {
             "programmed_contour_error": self.off_programmed,
             "feed": {
                 "commanded_mm_per_min": self.commanded.map(|speed| units.feed(speed)),
-                "reached_mm_per_min": units.feed(self.reached_feed(clock_hz)),
+                "reached_mm_per_min": self.reached_feed(clock_hz).map(|speed| units.feed(speed)),
                 "source_hz": self.source_hz,
                 "limited": self.limited,
                 "ripple": self.ripple.value(),
@@ -261,7 +261,8 @@ impl Observer for MoveTable {
         }
         let (units, clock_hz) = (self.units, self.units.clock_hz);
         let feed = report.commanded.map_or_else(|| "rapid".to_owned(), |speed| format!("{:.1}", units.feed(speed)));
-        let reached = units.feed(report.reached_feed(clock_hz));
+        let reached =
+            report.reached_feed(clock_hz).map_or_else(|| "-".to_owned(), |speed| format!("{:.1}", units.feed(speed)));
         let [x, y, z] = report.reached;
         let place = report.of.place;
         self.rows.push(vec![
@@ -273,7 +274,7 @@ impl Observer for MoveTable {
             format!("({x}, {y}, {z}){}", if report.end_exact() { "" } else { " missed" }),
             format!("{:.3}", report.error),
             report.off_programmed.map_or_else(|| "-".to_owned(), |off| format!("{off:.3}")),
-            format!("{feed} → {reached:.1}{}", if report.limited { " limited" } else { "" }),
+            format!("{feed} → {reached}{}", if report.limited { " limited" } else { "" }),
             report.ripple.value().map_or_else(|| "-".to_owned(), |ripple| format!("{:.1} %", ripple * 100.0)),
         ]);
         Ok(())

@@ -24,6 +24,8 @@ pub struct Exhausted {
     /// The first geometry of which something is wrong: it does not end, misses its end point, is refused, or violates a
     /// property that is not announced.
     pub example: Option<Curve>,
+    /// What is wrong of it on the hardware of the whole box; empty without one.
+    pub why: String,
 }
 
 /// Runs the geometries of a box until one fails.
@@ -40,25 +42,36 @@ pub fn exhausted(
     let bench = Testbench::of_hardware(model, hardware)?;
     let mut simulated = 0;
     for chunk in curves.chunks(CHUNK) {
-        let fails = |curve: &&Curve| {
-            let fails = fails(model, &bench, curve);
+        let failure = |curve: &Curve| {
+            let failure = failure(model, &bench, curve);
             tick(1);
-            fails
+            failure.map(|why| (curve.clone(), why))
         };
-        if let Some(example) = chunk.par_iter().find_first(fails) {
-            return Ok(Exhausted { simulated: simulated + 1, all, example: Some(example.clone()) });
+        if let Some((example, why)) = chunk.par_iter().find_map_first(failure) {
+            return Ok(Exhausted { simulated: simulated + 1, all, example: Some(example), why });
         }
         simulated += chunk.len();
     }
-    Ok(Exhausted { simulated, all, example: None })
+    Ok(Exhausted { simulated, all, example: None, why: String::new() })
 }
 
-fn fails(model: &Model, bench: &Testbench, curve: &Curve) -> bool {
-    let Ok(bench) = bench.of(model, curve) else { return true };
-    let bench = bench.limited(LIMIT);
+/// What is wrong with a run, in a sentence.
+fn failure(model: &Model, bench: &Testbench, curve: &Curve) -> Option<String> {
+    let bench = match bench.of(model, curve) {
+        Ok(bench) => bench.limited(LIMIT),
+        Err(error) => return Some(error.to_string()),
+    };
     let mut overflows = OverflowWatch::new(&bench);
-    // Nothing in it can fail.
-    let outcome = bench.run(EngineKind::Word, &mut [&mut overflows]);
-    outcome
-        .map_or(true, |outcome| outcome.ending != Ending::Done || outcome.reached != curve.to() || overflows.count > 0)
+    let outcome = match bench.run(EngineKind::Word, &mut [&mut overflows]) {
+        Ok(outcome) => outcome,
+        Err(error) => return Some(error.to_string()),
+    };
+    if let Some(tally) = overflows.tallies().first() {
+        return Some(tally.sentence());
+    }
+    if outcome.ending != Ending::Done {
+        return Some(format!("it has not ended after {} clocks", outcome.clocks));
+    }
+    let missed = || format!("it ends at {:?}, and not at {:?}", outcome.reached, curve.to());
+    (outcome.reached != curve.to()).then(missed)
 }

@@ -131,10 +131,10 @@ impl BlockReport {
         };
     }
 
-    /// It ended where it should.
+    /// It ended where it should; a closed curve without a pulse was not run at all.
     #[must_use]
     pub fn end_exact(&self) -> bool {
-        self.reached == self.wanted
+        self.reached == self.wanted && (self.length == 0.0 || self.pulses != [0; 3])
     }
 
     /// The method kept what it promises.
@@ -174,10 +174,10 @@ impl BlockReport {
         self.of.place.number.unwrap_or(self.of.place.line)
     }
 
-    /// Mean speed in BLU per second.
+    /// Mean speed in BLU per second; `None` of a block that was not run to its end point.
     #[must_use]
-    pub fn reached_feed(&self, clock_hz: f64) -> f64 {
-        self.length * clock_hz / self.clocks.max(1) as f64
+    pub fn reached_feed(&self, clock_hz: f64) -> Option<f64> {
+        self.end_exact().then(|| self.length * clock_hz / self.clocks.max(1) as f64)
     }
 
     /// `line`, `arc`, and why where it was not programmed.

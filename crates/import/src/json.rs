@@ -109,7 +109,11 @@ fn place(attributes: &BTreeMap<String, Value>) -> Option<Place> {
 
 fn one_place(text: &str) -> Option<Place> {
     let (file, range) = text.rsplit_once(':')?;
-    let from = range.split('-').next()?;
+    place_at(file, range.split('-').next()?)
+}
+
+/// A place of `LINE.COLUMN` in a file.
+fn place_at(file: &str, from: &str) -> Option<Place> {
     let (line, column) = from.split_once('.').unwrap_or((from, "0"));
     let (line, column) = (line.parse().ok()?, column.parse().ok()?);
     (line > 0).then(|| Place { file: file.to_owned(), line, column })
@@ -167,9 +171,23 @@ impl Cell {
         place(&self.attributes)
     }
 
-    /// The line of the source: `FILE:LINE`.
+    /// The line of the source by the name of its file alone, for names: `FILE:LINE`.
+    pub(crate) fn short_line(&self) -> Option<String> {
+        let place = self.place()?;
+        let file = place.file.rsplit('/').next().unwrap_or(&place.file);
+        Some(format!("{file}:{}", place.line))
+    }
+
+    /// The line of the source: `FILE:LINE`. The place of an assertion of older versions of Yosys begins with what is before it.
     pub(crate) fn line(&self) -> Option<String> {
-        self.place().map(|place| format!("{}:{}", place.file, place.line))
+        let last = || {
+            let Some(Value::Text(text)) = self.attributes.get("src") else { return None };
+            let (file, range) = text.split('|').next_back()?.rsplit_once(':')?;
+            place_at(file, range.split('-').next_back()?)
+        };
+        let is_old = matches!(self.kind.as_str(), "$assert" | "$assume" | "$cover");
+        let place = if is_old { last() } else { None };
+        place.or_else(|| self.place()).map(|place| format!("{}:{}", place.file, place.line))
     }
 }
 

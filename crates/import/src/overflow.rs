@@ -163,7 +163,7 @@ impl<'a> Design<'a> {
             let target = self.target(name, &y[..kept], readers);
             if let Some((never, claim)) = self.lost(name, cell, kept, &target, readers) {
                 let operator = cell.kind.trim_start_matches('$');
-                let place = cell.place().map_or_else(|| name.clone(), |place| format!("{}:{}", place.file, place.line));
+                let place = cell.short_line().unwrap_or_else(|| name.clone());
                 let target = if target.name.is_empty() { format!("{place} {operator}") } else { target.name };
                 let path = format!("{}.{target}", self.builder.netlist.scopes[0].name);
                 flags.push((target, never));

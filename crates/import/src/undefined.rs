@@ -79,7 +79,7 @@ impl<'a> Design<'a> {
         let never = self.both(zero, taken);
         let mut path = self.target(name, &y[..kept], readers).name;
         if path.is_empty() {
-            let place = cell.place().map_or_else(|| name.to_owned(), |place| format!("{}:{}", place.file, place.line));
+            let place = cell.short_line().unwrap_or_else(|| name.to_owned());
             path = format!("{place} {}", cell.kind.trim_start_matches('$'));
         }
         let signed = cell.flag("A_SIGNED") && cell.flag("B_SIGNED");

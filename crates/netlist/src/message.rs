@@ -140,7 +140,8 @@ impl Field {
         let bytes = digits.as_bytes().rchunks(8).rev().map(byte);
         match self.style {
             Style::Number { base, sign, prefix, groups, signed } => {
-                let negative = signed && digits.starts_with('1');
+                // In another base a number is its bits.
+                let negative = signed && base == 'd' && digits.starts_with('1');
                 let magnitude = if negative { negated(digits) } else { digits.to_owned() };
                 let mut number = in_base(&magnitude, base);
                 if groups {
@@ -247,6 +248,7 @@ mod tests {
             ("{8:=05d-s}", "11111011", "-0005"),
             ("{8:<05d+s}|", "00000101", "+5000|"),
             ("{8:>02h-u}", "00001010", "0a"),
+            ("{8:>02h-s}", "10011100", "9c"),
             ("{8:> 0H-u}", "10101111", "AF"),
             ("{12:> 0h#u}", "101011110000", "0xaf0"),
             ("{9:> 0o-u}", "001000111", "107"),

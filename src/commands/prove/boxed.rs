@@ -29,7 +29,7 @@ pub(super) fn prove(args: &ProveArgs, name: &str, extent: &Extent) -> Result<(),
     let progress = Progress::new("geometries");
     let found = exhausted(model, &options, extent, &|more| progress.add(more));
     progress.finish();
-    let Exhausted { simulated, all, example } = found.map_err(|error| args.hardware.explain_study(error))?;
+    let Exhausted { simulated, all, example, why } = found.map_err(|error| args.hardware.explain_study(error))?;
     let what = match model.curve() {
         CurveKind::Line { .. } => "lines from the origin",
         CurveKind::Arc => "arcs about the origin inside a quadrant, with both ends on the circle",
@@ -43,7 +43,9 @@ pub(super) fn prove(args: &ProveArgs, name: &str, extent: &Extent) -> Result<(),
         Extent::Bits(bits) => format!("with coordinates of {bits} bits"),
         Extent::Grid(grid) => format!("of the box {grid}"),
     };
-    let hardware = format!("{}: {what}, {of}\n", [vec![model.name.to_owned()], choices].concat().join(" "));
+    // The widths of a model follow from what it is planned for; those of a netlist do not.
+    let planned = if is_netlist(name) { "" } else { ", on the one hardware that serves them all" };
+    let hardware = format!("{}: {what}, {of}{planned}\n", [vec![model.name.to_owned()], choices].concat().join(" "));
     let Some(example) = example else {
         let what = "no operator loses a carry that is not announced, no assertion is violated, every end point is reached exactly";
         return if all {
@@ -54,7 +56,7 @@ pub(super) fn prove(args: &ProveArgs, name: &str, extent: &Extent) -> Result<(),
             Err(Error::Check(vec![sentence.to_owned()]))
         };
     };
-    let (sentences, wave) = shown(args, model, &options, &example, &files)?;
+    let (sentences, wave) = shown(args, model, &options, (&example, &why), &files)?;
     let command = run_command(model, &example, &options);
     output::print(&format!("{hardware}COUNTEREXAMPLE: {command}{wave}\n"))?;
     Err(Error::Check(sentences))
@@ -65,7 +67,7 @@ fn shown(
     args: &ProveArgs,
     model: &'static Model,
     options: &Options,
-    example: &Curve,
+    (example, why): (&Curve, &str),
     files: &[std::path::PathBuf],
 ) -> Result<(Vec<String>, String), Error> {
     let waves = WaveOptions { vcd: args.vcd.clone(), ..WaveOptions::default() };
@@ -76,9 +78,8 @@ fn shown(
     let mut sentences = report.failures();
     sentences.extend(report.warnings());
     if sentences.is_empty() {
-        // Hardware that is as wide as this geometry alone needs.
-        let command = run_command(model, example, options);
-        sentences.push(format!("it fails on the hardware of the whole box, and not on that of {command}"));
+        // The hardware of the run is as wide as this geometry alone needs.
+        sentences.push(format!("on the hardware of the whole box, which the run above does not have: {why}"));
     }
     let wave = args.vcd.as_ref().map_or_else(String::new, |path| format!(" --vcd {}", path.display()));
     Ok((sentences, wave))

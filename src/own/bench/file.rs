@@ -57,7 +57,7 @@ fn one() -> Spanned<u64> {
 
 /// A number, or the text of one or of an expression.
 #[derive(Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "a whole number below 2^63, or a number of any size or an expression in quotes")]
 pub(super) enum Value {
     Number(i64),
     Text(String),

@@ -194,6 +194,16 @@ impl Described for Bench {
             let (model, takes) = (plan.model(), "lines, and arcs in the plane");
             return Err(ModelError::Curve { model, takes, given: "another curve".to_owned() });
         }
+        if curve.axes() > self.axes.len().max(2) {
+            let (model, axes) = (plan.model(), self.axes.len());
+            return Err(ModelError::Widths(format!(
+                "{model}: the line has {} axes, the hardware {axes}: give a --to of {axes}, or describe the others in \
+                 {} as [axis.{}]",
+                curve.axes(),
+                self.file.display(),
+                AXES[axes],
+            )));
+        }
         let reach = |axis: usize| match curve {
             Curve::Arc(arc) => {
                 let [center, radius] = [arc.center()[axis], ceiling(arc.radius())];
