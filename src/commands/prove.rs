@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::models::find;
 use crate::study::proof::{
     Answer, Attempt, CheckError, Claim, Effort, Evidence, INDUCTION_KS, InductionSearch, MOST_BYTES, ProofError,
     Proposition, SEARCHED, SolverError, Verdict, ask, check_with, choices_at, names, proved, question, unproved,
@@ -63,7 +62,7 @@ const ASKED: u32 = 2;
 /// What the command line asks to prove.
 fn proposition(args: &ProveArgs) -> Result<Proposition, Error> {
     let extent = args.extent.clone().or_else(|| args.travel.clone().map(|travel| travel.0));
-    let mut asked = Proposition::of(find(args.model.as_deref().unwrap_or_default())?)
+    let mut asked = Proposition::of(args.bench.model(args.model.as_deref().unwrap_or_default())?)
         .options(args.hardware.choices())
         .extent(extent)
         .any_preset(args.any_preset);

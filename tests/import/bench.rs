@@ -213,6 +213,8 @@ fn every_command_takes_a_netlist_with_a_bench_file() {
     ran(&["run", "own.net", "--bench", "other.toml", "--to", "8,6"], 0);
     let wrong = ran(&["run", "dda-line", "--bench", "other.toml", "--to", "8,6"], 2);
     assert!(wrong.contains("dda-line is a model of the catalogue"), "{wrong}");
+    let wrong = ran(&["prove", "dda-line", "--bench", "other.toml"], 2);
+    assert!(wrong.contains("dda-line is a model of the catalogue"), "{wrong}");
     let narrow = ran(&["run", "own.net", "--bench", "other.toml", "--to", "200,6"], 2);
     assert!(narrow.contains("load.jvx_in = abs(dx): 200 does not fit in its 7 bits, 0 to 127"), "{narrow}");
     let cut = ran(&["run", "own.net", "--bench", "other.toml", "--to", "200,6", "--on-overflow", "wrap"], 1);
