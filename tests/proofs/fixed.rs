@@ -121,11 +121,13 @@ fn bad_boxes_and_options_that_contradict_each_other_are_refused() {
 fn a_model_that_claims_nothing_is_run_over_a_box() {
     let folder = Folder::new();
     let printed = folder.good("prove stepgen --width 8 --box 0..5x0..5");
-    let head = "stepgen --width 8: lines from the origin, of the box 0..5x0..5\nPROVED at these widths: no operator loses a carry";
+    let head = "stepgen --width 8: lines from the origin, of the box 0..5x0..5, on the one hardware that serves them all\nPROVED at these widths: no operator";
     assert!(printed.starts_with(head) && printed.ends_with(" (35 geometries, exhausted)\n"), "{printed}");
     assert_eq!(
         folder.good("prove stepgen --width 3").lines().next(),
-        Some("stepgen --width 3: lines from the origin, with coordinates of 3 bits")
+        Some(
+            "stepgen --width 3: lines from the origin, with coordinates of 3 bits, on the one hardware that serves them all"
+        )
     );
     let ran = folder.run("prove stepgen --width 8,acc=5 --box 0..5x0..5");
     assert!(ran.code == 1 && ran.out.contains("\nCOUNTEREXAMPLE: stepwave run stepgen --to "), "{ran:?}");
