@@ -161,7 +161,8 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(10))]
+    // Each takes as long as a hundred small ones.
+    #![proptest_config(ProptestConfig { cases: config(1000).cases / 100, ..config(10) })]
 
     #[test]
     fn netlists_of_a_thousand_cells_are_the_same_in_every_engine(
