@@ -161,8 +161,8 @@ proptest! {
 }
 
 proptest! {
-    // Each takes as long as a hundred small ones.
-    #![proptest_config(ProptestConfig { cases: config(1000).cases / 100, ..config(10) })]
+    // Each takes more than a second, so that there are 10 however many are asked for.
+    #![proptest_config(ProptestConfig { cases: 10, ..config(10) })]
 
     #[test]
     fn netlists_of_a_thousand_cells_are_the_same_in_every_engine(
