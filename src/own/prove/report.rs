@@ -86,7 +86,7 @@ pub struct Counterexample {
     pub event: String,
     /// The same with its numbers.
     pub violation: OverflowEvent,
-    /// The values of all inputs as CSV, a row a clock from clock 0 on: a [stimulus](Stimulus::table).
+    /// The values of all inputs as CSV, a row a clock from clock 0 on: a [stimulus](crate::own::Stimulus::table).
     pub stimulus: String,
 }
 
