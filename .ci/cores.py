@@ -274,10 +274,12 @@ def main():
     serv = sorted(glob.glob(f"{site}/pythondata_cpu_serv/verilog/rtl/*.v"))
     serv += sorted(glob.glob(f"{site}/pythondata_cpu_serv/verilog/serving/*.v"))
     (folder / "program.hex").write_text("\n".join(f"{word:08x}" for word in program()) + "\n")
+    (folder / "table.hex").write_text("".join(f"{(index * 37 + 5) & 255:02x}\n" for index in range(16)))
     vex = f"{site}/pythondata_cpu_vexriscv/verilog/"
     designs = {
         "gaps": lambda: ([here / "gaps.v"], "gaps", "clk", {"rst": reset(1)}, 3000),
         "loops": lambda: ([here / "loops.v"], "loops", "clk", {}, 200, [], "gates"),
+        "loaded": lambda: ([here / "loaded.v"], "loaded", "clk", {}, 100),
         "printed": lambda: ([here / "printed.v"], "printed", "clk", {"rst": reset(1)}, 500),
         "wide": lambda: ([here / "wide.v"], "wide", "clk", {"rst": reset(1)}, 4000),
         "picorv32": lambda: ([pico], "picorv32", "clk", {"resetn": reset(0), "mem_ready": lambda k: 1}, 4000, ["ENABLE_MUL=1", "ENABLE_DIV=1"]),

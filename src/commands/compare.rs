@@ -89,7 +89,7 @@ fn row(
     let (steps, clocks, end) = match bench.run(EngineKind::Compiled, &mut observers) {
         Ok(outcome) => {
             let end = match outcome.ending {
-                Ending::Done if outcome.reached == curve.to() => "exact",
+                Ending::Done if outcome.ends(curve) => "exact",
                 Ending::Done => "missed",
                 Ending::Trapped => "overflow",
                 Ending::Stalled { .. } => "stalled",

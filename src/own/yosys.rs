@@ -304,3 +304,18 @@ fn ghdl(source: &Source) -> Result<String, YosysError> {
         Some(output) => Err(YosysError::Refused { tool: "GHDL", message: complaint(&output.stderr) }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_tmp_are_visible_to_yosys_as_webassembly() {
+        let mounts = Mounts { up: Some("../../".to_owned()) };
+        assert_eq!(mounts.visible(Path::new("/tmp/a/b.v")), Path::new("../../tmp/a/b.v"));
+        assert_eq!(mounts.visible(Path::new("/home/b.v")), Path::new("/home/b.v"));
+        assert_eq!(mounts.visible(Path::new("a/b.v")), Path::new("a/b.v"));
+        assert_eq!(mounts.original("\"src\": \"../../tmp/a/b.v:1.2-1.3\""), "\"src\": \"/tmp/a/b.v:1.2-1.3\"");
+        assert_eq!(Mounts::of("yosys").unwrap().visible(Path::new("/tmp/a/b.v")), Path::new("/tmp/a/b.v"));
+    }
+}

@@ -2,7 +2,7 @@
 
 use stepwave_models::CutWord;
 
-use crate::testbench::{BlockReport, Observer, ObserverError};
+use crate::testbench::{BlockReport, Observer, ObserverError, missed};
 
 /// The greatest of a number, and the line of the program where it was.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -132,8 +132,7 @@ impl Totals {
         };
         if !report.end_exact() {
             self.missed += 1;
-            let ([x, y, z], [a, b, c]) = (report.wanted, report.reached);
-            fail(format!("line {line}: the end point ({x}, {y}, {z}) was missed: the machine is at ({a}, {b}, {c})"));
+            fail(format!("line {line}: {}", missed(&report.wanted, &report.reached)));
         }
         if let (false, Some(promise)) = (report.within_bound(), report.promise) {
             self.beyond += 1;

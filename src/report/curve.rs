@@ -9,8 +9,7 @@ use stepwave_nc::Curve;
 use super::Report;
 use super::geometry;
 use super::json::cut_words;
-use super::summary::point;
-use crate::testbench::{CoarseError, Ending, PulseTrain, WorstError};
+use crate::testbench::{CoarseError, Ending, PulseTrain, WorstError, missed, point};
 
 /// What is known of a run along a curve, beyond what every [`Report`] has.
 #[derive(Debug)]
@@ -50,8 +49,7 @@ impl OfCurve {
     pub(super) fn failures(&self, report: &Report) -> Vec<String> {
         let mut failures = Vec::new();
         if !report.end_exact() {
-            let (wanted, reached) = (point(self.curve.to()), point(&report.outcome.reached));
-            failures.push(format!("the end point {wanted} was missed: the machine is at {reached}"));
+            failures.push(missed(self.curve.to(), &report.outcome.reached));
         }
         if let (false, Some(worst), Some(promise)) = (self.path_within_bound(report), &self.worst, self.promise(report))
         {
@@ -84,7 +82,10 @@ impl OfCurve {
         let exact = if report.end_exact() {
             "reached exactly".to_owned()
         } else {
-            format!("missed: {}", point(&outcome.reached))
+            match outcome.reached == self.curve.to() {
+                true => "missed: no pulse was given".to_owned(),
+                false => format!("missed: {}", point(&outcome.reached)),
+            }
         };
         let _ = match outcome.ending {
             Ending::Done => writeln!(text, "end point {} {exact}", point(self.curve.to())),

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use stepwave_models::{Hardware, Model, Options, Takes};
 use stepwave_nc::{Arc, Curve, Direction, Opens, Shape};
 
-use super::summary::point;
+use crate::testbench::point;
 
 /// What gives a curve besides its ends.
 #[derive(Default)]

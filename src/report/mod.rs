@@ -29,7 +29,7 @@ pub use program::{MoveTable, OfProgram, TABLE_MOVES};
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
 pub use workpiece::Workpiece;
 
-use self::summary::point;
+use crate::testbench::point;
 
 /// Most load words that were cut that a program's summary shows.
 const SHOWN_CUTS: usize = 8;
@@ -143,14 +143,11 @@ impl Report {
         }
     }
 
-    /// The end point was reached exactly; that of every move of a program. A closed curve without a pulse was not run at all.
+    /// The end point was reached exactly; that of every move of a program.
     #[must_use]
     pub fn end_exact(&self) -> bool {
         match &self.subject {
-            Subject::Curve(of) => {
-                let has_pulses = self.outcome.pulses.iter().any(|&pulses| pulses != 0);
-                self.outcome.reached == of.curve.to() && has_pulses
-            }
+            Subject::Curve(of) => self.outcome.ends(&of.curve),
             Subject::Program(of) => of.totals.missed == 0,
         }
     }

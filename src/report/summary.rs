@@ -5,12 +5,6 @@ use std::fmt::Write as _;
 use super::{Report, Subject};
 use crate::testbench::RegisterRange;
 
-/// `(8, 6)`
-pub(super) fn point(coordinates: &[i64]) -> String {
-    let list: Vec<_> = coordinates.iter().map(ToString::to_string).collect();
-    format!("({})", list.join(", "))
-}
-
 impl Report {
     /// Some lines for a terminal.
     #[must_use]

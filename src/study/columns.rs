@@ -6,7 +6,7 @@ use stepwave_nc::Opens;
 use super::space::{Drawn, Site, Space};
 use super::table::{Column, ColumnType, Row, Value};
 use super::{StudyError, Variants};
-use crate::testbench::{Ending, Measured};
+use crate::testbench::{Ending, Measured, is_ended};
 
 /// The columns of a sweep.
 pub(super) struct Layout {
@@ -109,7 +109,7 @@ impl Layout {
                 row.extend([word_of(word(run.ending)), run.clocks.into(), run.steps.into()]);
                 row.extend(run.pulses.iter().map(|&count| Value::from(count)));
                 row.extend(run.reached.iter().map(|&place| Value::Whole(place)));
-                row.push(Value::Flag(run.reached == site.to));
+                row.push(Value::Flag(is_ended(&site.from, &site.to, &run.reached, &run.pulses)));
                 row.extend([run.greatest.into(), run.mean.into(), run.overflows.into(), run.component.into()]);
                 for axis in 0..self.axes {
                     let gaps = run.spacing.get(axis).copied().flatten();

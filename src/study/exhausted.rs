@@ -8,7 +8,7 @@ use stepwave_nc::Curve;
 use super::boxes::{Extent, Geometries};
 use super::proof::ProofError;
 use super::widths::LIMIT;
-use crate::testbench::{Ending, OverflowWatch, Testbench};
+use crate::testbench::{Ending, OverflowWatch, Testbench, missed};
 
 /// Runs that are made at once.
 const CHUNK: usize = 1 << 10;
@@ -72,6 +72,5 @@ fn failure(model: &Model, bench: &Testbench, curve: &Curve) -> Option<String> {
     if outcome.ending != Ending::Done {
         return Some(format!("it has not ended after {} clocks", outcome.clocks));
     }
-    let missed = || format!("it ends at {:?}, and not at {:?}", outcome.reached, curve.to());
-    (outcome.reached != curve.to()).then(missed)
+    (!outcome.ends(curve)).then(|| missed(curve.to(), &outcome.reached))
 }

@@ -161,6 +161,32 @@ pub struct Outcome {
     pub counters: Vec<i64>,
 }
 
+impl Outcome {
+    /// The machine is where the curve ends, and has run it.
+    #[must_use]
+    pub fn ends(&self, curve: &stepwave_nc::Curve) -> bool {
+        is_ended(curve.from(), curve.to(), &self.reached, &self.pulses)
+    }
+}
+
+/// A run from a point to another one ended there. A closed curve without a pulse was not run at all.
+pub(crate) fn is_ended(from: &[i64], to: &[i64], reached: &[i64], pulses: &[u64]) -> bool {
+    reached == to && (from != to || pulses.iter().any(|&count| count > 0))
+}
+
+/// A place in BLU: `(8, 6)`.
+pub(crate) fn point(place: &[i64]) -> String {
+    format!("({})", place.iter().map(i64::to_string).collect::<Vec<_>>().join(", "))
+}
+
+/// The sentence about a run that did not end where it should.
+pub(crate) fn missed(wanted: &[i64], reached: &[i64]) -> String {
+    if reached == wanted {
+        return format!("the closed curve from {} was not run: the machine gave no pulse", point(wanted));
+    }
+    format!("the end point {} was missed: the machine is at {}", point(wanted), point(reached))
+}
+
 /// A machine with the blocks of one geometry, ready to run.
 #[derive(Clone, Debug)]
 pub struct Testbench {

@@ -281,3 +281,36 @@ fn cases_and_exports_take_programs_of_own_hardware() {
     assert_eq!(own::model(&path, None).map(|model| model.is_described()).ok(), Some(true));
     assert!(find("ppc-machine").is_ok_and(Model::is_buffered));
 }
+
+/// Hardware that is done one clock after its start, without a pulse.
+const IDLE: &str = "netlist idle\n%0:1 = input\n%1:1 = register reset 0x0 next %0\n%2:1 = const 0x0\nname %0 in 0 \"go\" unsigned\n\
+    name %1 in 0 \"ready\" unsigned\nname %2 in 0 \"px\" unsigned\nname %2 in 0 \"py\" unsigned\n";
+
+#[test]
+fn a_closed_curve_without_a_pulse_was_not_run() {
+    let folder = Folder::new();
+    folder.write("idle.net", IDLE);
+    let bench =
+        "curves = \"both\"\nstart = \"go\"\ndone = \"ready\"\n[axis.x]\npulse = \"px\"\n[axis.y]\npulse = \"py\"\n";
+    folder.write("idle.toml", bench);
+    let circle = "--from 5,0 --to 5,0 --center 0,0 --ccw";
+    let ran = folder.run(&format!("run idle.net {circle}"));
+    assert!(ran.code == 1 && ran.out.contains("end point (5, 0) missed: no pulse was given"), "{ran:?}");
+    assert!(ran.err.contains("the closed curve from (5, 0) was not run: the machine gave no pulse"), "{ran:?}");
+    let compared = folder.run(&format!("compare idle.net ppc-arc {circle}"));
+    assert!(compared.out.contains("missed") && compared.out.contains("exact"), "{compared:?}");
+    folder.write("circle.ngc", "G21 G17 G90 G0 X0.05\nG3 X0.05 Y0 I-0.05 J0 F100\nM2\n");
+    let ran = folder.run("program circle.ngc --method idle.net --blu 0.01mm --clock-hz 1000 --json -");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert!(
+        ran.err.contains("line 2: the closed curve from (5, 0, 0) was not run")
+            || ran.err.contains("line 1: the end point"),
+        "{ran:?}"
+    );
+    // A third axis that the hardware does not have.
+    let ran = folder.run("run idle.net --to 5,3,2");
+    assert!(ran.code == 2 && ran.err.contains("the line has 3 axes, the hardware 2"), "{ran:?}");
+    folder.write("idle.toml", &format!("set = {{ cfg = 0xffffffffffffffff }}\n{bench}"));
+    let ran = folder.run("run idle.net --to 5,3");
+    assert!(ran.code == 2 && ran.err.contains("in quotes"), "{ran:?}");
+}

@@ -6,11 +6,11 @@
 use stepwave_netlist::Net;
 use stepwave_netlist::cells::Op;
 
-use crate::ImportError;
 use crate::cells::is_register;
 use crate::design::{Design, Node, Part, is_asynchronous};
 use crate::json::{Cell, Wire};
 use crate::word::Word;
+use crate::{ImportError, Unknown};
 
 /// A register whose next value is still to be written.
 pub(crate) struct Pending<'a> {
@@ -24,9 +24,11 @@ impl<'a> Design<'a> {
     pub(crate) fn registers(&mut self) -> Result<Vec<Pending<'a>>, ImportError> {
         let initial: std::collections::HashMap<u32, char> = self.initial();
         let mut pending = Vec::new();
+        let mut open = 0u32;
         for (name, cell) in self.module.cells.iter().filter(|(_, cell)| is_register(&cell.kind)) {
             self.at(cell);
             let q = cell.pin("Q");
+            open += u32::from(q.iter().any(|wire| matches!(wire, Wire::Net(net) if !initial.contains_key(net))));
             let digits: Vec<bool> = q
                 .iter()
                 .map(|wire| match wire {
@@ -52,6 +54,15 @@ impl<'a> Design<'a> {
                 }
             }
             pending.push(Pending { cell, state });
+        }
+        if open > 0 && self.options.unknown == Unknown::Zero {
+            let (what, begins) = match open {
+                1 => ("1 register has".to_owned(), "begins"),
+                count => (format!("{count} registers have"), "begin"),
+            };
+            self.notes.push(format!(
+                "{what} no initial value and {begins} with 0, in proofs too: --x 1 and --x random:SEED begin otherwise"
+            ));
         }
         Ok(pending)
     }

@@ -8,6 +8,8 @@
 
 use std::fmt;
 
+use num_bigint::BigUint;
+
 /// A text with fields.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Message {
@@ -142,8 +144,12 @@ impl Field {
             Style::Number { base, sign, prefix, groups, signed } => {
                 // In another base a number is its bits.
                 let negative = signed && base == 'd' && digits.starts_with('1');
-                let magnitude = if negative { negated(digits) } else { digits.to_owned() };
-                let mut number = in_base(&magnitude, base);
+                let bits = BigUint::parse_bytes(digits.as_bytes(), 2).unwrap_or_default();
+                let magnitude = if negative { (BigUint::from(1u8) << digits.len()) - bits } else { bits };
+                let mut number = magnitude.to_str_radix(radix(base));
+                if base == 'H' {
+                    number = number.to_uppercase();
+                }
                 if groups {
                     number = grouped(&number);
                 }
@@ -173,6 +179,15 @@ impl Field {
     }
 }
 
+fn radix(base: char) -> u32 {
+    match base {
+        'b' => 2,
+        'o' => 8,
+        'h' | 'H' => 16,
+        _ => 10,
+    }
+}
+
 /// The letter after the 0 of a prefix.
 fn letter(base: char) -> char {
     match base {
@@ -180,50 +195,6 @@ fn letter(base: char) -> char {
         'H' => 'X',
         other => other,
     }
-}
-
-/// Binary digits of the number times minus one, in as many bits.
-fn negated(digits: &str) -> String {
-    // The lowest 1 and what is below it stay.
-    let kept = digits.rfind('1').unwrap_or(0);
-    let flipped = digits[..kept].chars().map(|digit| if digit == '1' { '0' } else { '1' });
-    flipped.chain(digits[kept..].chars()).collect()
-}
-
-/// Digits in a base without leading zeros, of binary digits.
-fn in_base(digits: &str, base: char) -> String {
-    let step = match base {
-        'b' => 1,
-        'o' => 3,
-        'h' | 'H' => 4,
-        _ => return in_decimal(digits),
-    };
-    let digit = |part: &[u8]| {
-        let value = part.iter().fold(0, |value, digit| value << 1 | u32::from(*digit == b'1'));
-        char::from_digit(value, 16).unwrap_or('0')
-    };
-    let text: String = digits.as_bytes().rchunks(step).rev().map(digit).collect();
-    let text = text.trim_start_matches('0');
-    let text = if text.is_empty() { "0" } else { text };
-    if base == 'H' { text.to_uppercase() } else { text.to_owned() }
-}
-
-fn in_decimal(digits: &str) -> String {
-    // Groups of nine decimal digits, the lowest first.
-    const GROUP: u64 = 1_000_000_000;
-    let mut groups = vec![0u64];
-    for digit in digits.bytes() {
-        let mut carry = u64::from(digit == b'1');
-        for group in &mut groups {
-            let doubled = 2 * *group + carry;
-            (*group, carry) = (doubled % GROUP, doubled / GROUP);
-        }
-        if carry > 0 {
-            groups.push(carry);
-        }
-    }
-    let lower = groups.iter().rev().skip(1).map(|group| format!("{group:09}"));
-    groups.last().map(u64::to_string).into_iter().chain(lower).collect()
 }
 
 /// An underscore between groups of four digits.

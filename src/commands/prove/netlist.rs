@@ -56,7 +56,13 @@ pub(super) fn prove(args: &ProveArgs, path: &Path) -> Result<(), Error> {
     let quiet = outputs.uses_stdout();
     outputs.commit()?;
     if !quiet {
-        output::print(&shown(&name, &report))?;
+        let mut text = shown(&name, &report);
+        if !report.goals.iter().any(|goal| matches!(goal.verdict, Verdict::Counterexample(_))) {
+            for path in own.stimulus_out.iter().chain(&args.vcd) {
+                let _ = writeln!(text, "{} is not written: there is no counterexample", path.display());
+            }
+        }
+        output::print(&text)?;
     }
     let failures = report.failures();
     if failures.is_empty() { Ok(()) } else { Err(Error::Check(failures)) }

@@ -48,7 +48,7 @@ impl Solver {
     /// Asks for all that verdicts rest on.
     ///
     /// # Errors
-    /// It cannot be run, or says neither `sat` nor `unsat`.
+    /// It cannot be run, or says neither `sat` nor `unsat`, nor that it does not know.
     pub(super) fn ask(
         &self,
         question: &Question<'_>,
@@ -74,6 +74,7 @@ impl Solver {
                     }
                 }
                 Err(SolverError::Late { .. }) => {}
+                Err(SolverError::Answer { said, .. }) if ["unknown", "s UNKNOWN"].contains(&said.as_str()) => {}
                 Err(other) => return Err(other.into()),
             }
         }

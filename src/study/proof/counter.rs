@@ -6,7 +6,7 @@ use stepwave_models::{Claims, Model, ModelError, Options};
 use stepwave_nc::Curve;
 
 use super::{Narrower, choices_at, largest};
-use crate::testbench::{Ending, LaneOutcome, Testbench};
+use crate::testbench::{Ending, LaneOutcome, Testbench, is_ended};
 
 /// What a geometry shows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -163,7 +163,9 @@ fn fault(curve: &Curve, outcome: &LaneOutcome) -> Option<Fault> {
     match outcome.ending {
         Some(Ending::Trapped) => Some(Fault::Overflow),
         Some(Ending::Done) if outcome.overflows > 0 => Some(Fault::Overflow),
-        Some(Ending::Done) => (outcome.reached != curve.to()).then_some(Fault::Missed),
+        Some(Ending::Done) => {
+            (!is_ended(curve.from(), curve.to(), &outcome.reached, &outcome.pulses)).then_some(Fault::Missed)
+        }
         Some(Ending::Stalled { .. } | Ending::Endless { .. }) => Some(Fault::Endless),
         Some(Ending::Limit) | None => None,
     }
