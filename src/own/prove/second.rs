@@ -128,7 +128,7 @@ impl SecondOpinion {
         match (differs.len(), asked - answered) {
             (0, 0) => format!("{command} agrees: {asked} {questions}"),
             (0, late) => {
-                format!("{command} agrees in {answered} of {asked} {questions}, and has not answered {late} in time")
+                format!("{command} agrees in {answered} of {asked} {questions}, and has not answered {late}")
             }
             (differing, _) => {
                 format!("{command} disagrees in {differing} of {asked} {questions}: {}", differs.join("; "))
