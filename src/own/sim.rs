@@ -148,7 +148,7 @@ impl Sim {
                 .netlist()
                 .properties
                 .iter()
-                .filter(|property| property.claim.is_goal() || property.claim.is_announced());
+                .filter(|property| !matches!(property.claim, Claim::Cover | Claim::Print { .. }));
             let found = matching(glob, all).map_err(|why| Error::Invalid(format!("--strict {glob}: {why}")))?;
             if let Some(announced) = found.iter().find(|property| property.claim.is_announced()) {
                 return Err(Error::Invalid(format!(
