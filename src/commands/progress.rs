@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use crate::engine::Rows;
+use crate::engine::{Digest, Rows, Wanted};
 use crate::nc::Curve;
 use crate::testbench::{BlockReport, Memory, Observer, ObserverError, Testbench};
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
@@ -201,6 +201,8 @@ fn span(seconds: f64) -> String {
 pub(crate) struct RunProgress {
     progress: Progress,
     pulses: Vec<usize>,
+    /// Where a digest has them.
+    trains: Vec<usize>,
     begun: bool,
 }
 
@@ -209,12 +211,24 @@ impl RunProgress {
     pub(crate) fn new(bench: &Testbench, curve: &Curve) -> RunProgress {
         let progress = Progress::start("clocks", path_length(curve), false);
         let pulses = bench.machine().pulses.iter().map(|port| bench.columns().index(port.net)).collect();
-        RunProgress { progress, pulses, begun: false }
+        RunProgress { progress, pulses, trains: Vec::new(), begun: false }
     }
 
     /// Of a program of this many moves.
     pub(crate) fn of_moves(moves: u64) -> RunProgress {
-        RunProgress { progress: Progress::of(moves, "moves"), pulses: Vec::new(), begun: false }
+        RunProgress { progress: Progress::of(moves, "moves"), pulses: Vec::new(), trains: Vec::new(), begun: false }
+    }
+}
+
+impl RunProgress {
+    /// This many samples from a clock on, with their pulses.
+    fn show(&mut self, first_clock: u64, clocks: u64, pulses: u64) {
+        let shared = &self.progress.shared;
+        if !std::mem::replace(&mut self.begun, true) {
+            shared.begun.store(first_clock, Ordering::Relaxed);
+        }
+        shared.part.fetch_add(pulses, Ordering::Relaxed);
+        shared.done.store(first_clock + clocks - 1, Ordering::Relaxed);
     }
 }
 
@@ -228,14 +242,23 @@ impl Observer for RunProgress {
         if self.progress.drawer.is_none() || self.pulses.is_empty() || rows.is_empty() {
             return Ok(());
         }
-        let shared = &self.progress.shared;
-        if !std::mem::replace(&mut self.begun, true) {
-            shared.begun.store(rows.first_clock(), Ordering::Relaxed);
-        }
         let made = |column: &usize| rows.column(*column).iter().map(|&pulse| u64::from(pulse != 0)).sum::<u64>();
-        shared.part.fetch_add(self.pulses.iter().map(made).sum(), Ordering::Relaxed);
-        shared.done.store(rows.first_clock() + rows.len() as u64 - 1, Ordering::Relaxed);
+        let pulses = self.pulses.iter().map(made).sum();
+        self.show(rows.first_clock(), rows.len() as u64, pulses);
         Ok(())
+    }
+
+    fn want(&mut self, bench: &Testbench, wanted: &mut Wanted) -> bool {
+        self.trains = bench.machine().pulses.iter().map(|port| wanted.train(port.net)).collect();
+        true
+    }
+
+    fn digest(&mut self, digest: &Digest, _: &[u64]) {
+        if self.progress.drawer.is_some() {
+            let made =
+                |&train: &usize| digest.trains[train].iter().map(|word| u64::from(word.count_ones())).sum::<u64>();
+            self.show(digest.first_clock, digest.clocks, self.trains.iter().map(made).sum());
+        }
     }
 
     fn block_ended(&mut self, _: &BlockReport) -> Result<(), ObserverError> {

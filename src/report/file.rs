@@ -7,7 +7,8 @@ use serde_json::{Value, json};
 use super::plot::Plot;
 use super::program::Units;
 use super::{OfCurve, Report};
-use crate::testbench::{BlockReport, Observer, ObserverError, Step};
+use crate::engine::Wanted;
+use crate::testbench::{BlockReport, Observer, ObserverError, Step, Testbench};
 
 /// A file that a run writes, but for its waves.
 pub trait RunFile: Observer {
@@ -63,6 +64,10 @@ impl<W: Write> RunFile for JsonFile<W> {
 impl<W: Write> Observer for JsonFile<W> {
     fn wants_steps(&self) -> bool {
         false
+    }
+
+    fn want(&mut self, _: &Testbench, _: &mut Wanted) -> bool {
+        true
     }
 
     fn block_ended(&mut self, block: &BlockReport) -> Result<(), ObserverError> {

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use stepwave_engine::Wanted;
 use stepwave_models::Port;
 
 use super::{Report, RunFile};
@@ -136,6 +137,10 @@ impl TextbookTable {
 impl Observer for TextbookTable {
     fn wants_steps(&self) -> bool {
         self.complete
+    }
+
+    fn want(&mut self, _: &Testbench, _: &mut Wanted) -> bool {
+        true
     }
 
     fn recall(&mut self, _: &Memory) {

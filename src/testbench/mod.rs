@@ -1,6 +1,7 @@
 //! The test bench: the one place where geometry, model, engine and observers meet. It loads the blocks, runs the clock
 //! until the machine says `done`, and hands every sample and every step to the observers.
 
+mod ahead;
 mod block;
 mod checkpoint;
 mod coarse;
@@ -24,7 +25,7 @@ mod stimulus;
 mod tool;
 mod wave;
 
-use stepwave_engine::{EngineKind, Rows, Watch};
+use stepwave_engine::{Digest, EngineKind, Rows, Wanted, Watch};
 use stepwave_models::{CutWord, Hardware, Machine, Model, ModelError};
 use stepwave_netlist::{Design, Net};
 
@@ -63,6 +64,23 @@ pub trait Observer {
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         let _ = rows;
         Ok(())
+    }
+
+    /// Says what this observer must know of samples that it does not see; false if it must see every one.
+    fn want(&mut self, bench: &Testbench, wanted: &mut Wanted) -> bool {
+        let _ = (bench, wanted);
+        false
+    }
+
+    /// What these samples came to is enough for an observer that can [do without them](Self::want).
+    fn suffices(&self, digest: &Digest) -> bool {
+        let _ = digest;
+        true
+    }
+
+    /// Takes what samples came to in their place; `last` are the columns of the last of them.
+    fn digest(&mut self, digest: &Digest, last: &[u64]) {
+        let _ = (digest, last);
     }
 
     /// Writes down what this observer has gathered, under a name of its own, for [`recall`](Self::recall) of a run that

@@ -9,7 +9,7 @@ use num_bigint::BigInt;
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use stepwave_engine::Rows;
+use stepwave_engine::{Rows, Wanted};
 use stepwave_models::Machine;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_netlist::bits;
@@ -439,6 +439,11 @@ impl Observer for OverflowWatch {
         }
         self.line = block.of.place.line;
         Ok(())
+    }
+
+    fn want(&mut self, _: &Testbench, wanted: &mut Wanted) -> bool {
+        wanted.never.extend(self.watched.iter().map(|watched| watched.property.never));
+        true
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {

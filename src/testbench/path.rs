@@ -2,14 +2,14 @@
 
 use fearless_simd::{Level, dispatch};
 use serde_json::json;
-use stepwave_engine::Rows;
+use stepwave_engine::{Digest, Form, Rows, Term, Wanted};
 use stepwave_models::Port;
 use stepwave_nc::{BatchGauge, Curve, Gauge};
 use stepwave_netlist::bits::to_signed;
 
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::tool::Tool;
-use super::{Observer, ObserverError, StepColumns, Testbench};
+use super::{Observer, ObserverError, StepColumns, Testbench, ahead};
 
 /// The greatest path error of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +38,9 @@ pub struct PathWatch<'a> {
     /// Sorts out blocks of samples in which no greater error is.
     batch: Option<BatchGauge>,
     level: Level,
+    /// Indices in a digest: the number that the deviation follows from, and the completed steps.
+    form: usize,
+    stepped: usize,
     /// The first greatest so far.
     pub worst: Option<WorstError>,
 }
@@ -53,7 +56,8 @@ impl<'a> PathWatch<'a> {
         let batch = gauge.batch(1 << (widest - 1)).filter(|_| ports.len() == 2 && tool.is_trusted());
         let (columns, level) = (StepColumns::of(bench), Level::new());
         let every_pulse = bench.hardware().sampling.is_some();
-        PathWatch { gauge, every_pulse, columns, ports, rows: 0, tool, moved: false, batch, level, worst: None }
+        let (rows, moved, form, stepped, worst) = (0, false, 0, 0, None);
+        PathWatch { gauge, every_pulse, columns, ports, rows, tool, moved, batch, level, form, stepped, worst }
     }
 
     /// No sample of the block lies farther off than the worst so far.
@@ -96,6 +100,30 @@ impl Observer for PathWatch<'_> {
             };
             (self.rows, self.tool.place, self.worst) = (rows, position, worst.map(known));
         }
+    }
+
+    fn want(&mut self, bench: &Testbench, wanted: &mut Wanted) -> bool {
+        let Some(factors) = self.batch.map(|batch| batch.factors()) else { return false };
+        let terms = self.ports.iter().zip(factors);
+        let terms = terms.map(|(port, [linear, square])| Term { net: port.net, linear, square }).collect();
+        let Some(form) = Form::new(bench.design().netlist(), terms) else { return false };
+        self.form = wanted.form(form);
+        self.stepped = wanted.train(bench.machine().stepped.net);
+        true
+    }
+
+    fn suffices(&self, digest: &Digest) -> bool {
+        let [least, greatest] = digest.forms[self.form];
+        let within = |worst: &WorstError| {
+            least > greatest || self.batch.is_some_and(|batch| batch.within([least, greatest]) <= worst.error)
+        };
+        self.rows > 0 && self.worst.as_ref().is_some_and(within)
+    }
+
+    fn digest(&mut self, digest: &Digest, last: &[u64]) {
+        self.rows += ahead::count(&digest.trains[self.stepped]);
+        let places = self.tool.place.iter_mut().zip(&self.columns.positions).zip(&self.ports);
+        places.for_each(|((place, &column), port)| *place = to_signed(port.width, last[column]));
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {

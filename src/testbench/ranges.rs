@@ -3,7 +3,7 @@
 use std::fmt;
 
 use serde_json::json;
-use stepwave_engine::{Extremes, Rows};
+use stepwave_engine::{Digest, Extremes, Rows, Wanted};
 use stepwave_netlist::bits::Reading;
 use stepwave_netlist::cells::{Arithmetic, Claim, Netlist, Op};
 use stepwave_netlist::{Net, Width};
@@ -93,6 +93,7 @@ impl RegisterRange {
 }
 
 struct Watched {
+    net: Net,
     column: usize,
     /// With the bits of [`turned`] turned over; `None` before the first sample.
     seen: Option<Extremes>,
@@ -100,10 +101,18 @@ struct Watched {
     moved: [bool; 2],
 }
 
+impl Watched {
+    fn see(&mut self, later: Extremes) {
+        self.seen = Some(self.seen.map_or(later, |seen| seen.and(later)));
+    }
+}
+
 /// Watches every named register.
 pub struct RangeWatch {
     registers: Vec<RegisterRange>,
     watched: Vec<Watched>,
+    /// Index of the first of them in a digest.
+    first: usize,
 }
 
 impl RangeWatch {
@@ -112,13 +121,13 @@ impl RangeWatch {
     pub fn new(bench: &Testbench) -> RangeWatch {
         let netlist = bench.design().netlist();
         let widths = &bench.hardware().widths;
-        let mut watch = RangeWatch { registers: Vec::new(), watched: Vec::new() };
+        let mut watch = RangeWatch { registers: Vec::new(), watched: Vec::new(), first: 0 };
         for named in &netlist.names {
             let cell = netlist.cell(named.net);
             // The extremes of a word of several columns are not known.
             if matches!(cell.op, Op::Register { .. }) && !named.is_wide() {
                 let (column, moved) = (bench.columns().index(named.net), moved(netlist, named.net));
-                watch.watched.push(Watched { column, seen: None, moved });
+                watch.watched.push(Watched { net: named.net, column, seen: None, moved });
                 // Where another register has its name, or it is known by its path, that is its name here.
                 let (leaf, path) = (&named.name, netlist.path(named));
                 let known = |name: &str| widths.contains_key(name);
@@ -212,10 +221,24 @@ impl Observer for RangeWatch {
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         for (watched, range) in self.watched.iter_mut().zip(&self.registers) {
             if let Some(later) = rows.extremes(watched.column, turned(range)) {
-                watched.seen = Some(watched.seen.map_or(later, |seen| seen.and(later)));
+                watched.see(later);
             }
         }
         Ok(())
+    }
+
+    fn want(&mut self, _: &Testbench, wanted: &mut Wanted) -> bool {
+        self.first = wanted.ranges.len();
+        wanted
+            .ranges
+            .extend(self.watched.iter().zip(&self.registers).map(|(watched, range)| (watched.net, turned(range))));
+        true
+    }
+
+    fn digest(&mut self, digest: &Digest, _: &[u64]) {
+        for (watched, later) in self.watched.iter_mut().zip(&digest.ranges[self.first..]) {
+            watched.see(*later);
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use stepwave_engine::{self as engine, Engine, EngineKind, Idle, Rows, Stop, Watc
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_netlist::{Net, OnOverflow};
 
+use super::ahead::Lookout;
 use super::block::Account;
 use super::checkpoint::{self, Checkpoint, Checkpoints, Memory};
 use super::feeder::{Feeder, Next};
@@ -13,23 +14,25 @@ use super::steps::StepReader;
 use super::{CHUNK, Ending, Observer, ObserverError, Outcome, Testbench};
 
 /// A sample that a run may come back to.
-struct Anchor {
-    clock: u64,
+pub(super) struct Anchor {
+    pub(super) clock: u64,
     /// Values of the design's registers, in its order.
-    registers: Vec<u64>,
+    pub(super) registers: Vec<u64>,
 }
 
 /// A run in progress.
 pub(super) struct Run<'a, 'o> {
-    bench: &'a Testbench,
-    engine: Box<dyn Engine>,
+    pub(super) bench: &'a Testbench,
+    pub(super) engine: Box<dyn Engine>,
     rows: Rows,
     feeder: &'a mut dyn Feeder,
-    observers: &'a mut [&'o mut dyn Observer],
-    steps: StepReader<'a>,
-    account: Account,
+    pub(super) observers: &'a mut [&'o mut dyn Observer],
+    pub(super) steps: StepReader<'a>,
+    pub(super) account: Account,
+    /// Where no observer must see every sample.
+    pub(super) lookout: Option<Lookout>,
     /// Somebody wants the rows of the step table.
-    wants_steps: bool,
+    pub(super) wants_steps: bool,
     /// Blocks loaded so far.
     loaded: usize,
     /// They are of one geometry, and not of a program.
@@ -37,7 +40,7 @@ pub(super) struct Run<'a, 'o> {
     /// The first sample has been taken.
     is_reset: bool,
     /// A sample of the block that runs, not before half of its clocks.
-    anchor: Option<Anchor>,
+    pub(super) anchor: Option<Anchor>,
     /// Takes states of the run.
     states: Option<&'a mut Checkpoints>,
     /// Clock at which the run is given up.
@@ -66,8 +69,10 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let watch = Watch { columns: bench.columns().nets().to_vec(), stops };
         let columns = watch.columns.len();
+        let mut steps = StepReader::new(bench);
+        let (lookout, wanted) = Lookout::of(bench, &mut steps, observers).unzip();
         let (engine, rows) = match machine.buffer.filter(|_| !bench.every_sample) {
-            None => (kind.build(bench.design(), &watch), Rows::new(columns, CHUNK)),
+            None => (kind.build_digesting(bench.design(), &watch, wanted.as_ref()), Rows::new(columns, CHUNK)),
             Some(ports) => {
                 let idle = Idle { running: vec![ports.phase], flags };
                 (kind.build_passing(bench.design(), &watch, &idle), Rows::sparse(columns, CHUNK))
@@ -79,8 +84,9 @@ impl<'a, 'o> Run<'a, 'o> {
             rows,
             feeder,
             observers,
-            steps: StepReader::new(bench),
+            steps,
             account: Account::default(),
+            lookout,
             wants_steps: true,
             loaded: 0,
             alone: true,
@@ -266,6 +272,10 @@ impl<'a, 'o> Run<'a, 'o> {
             if self.left() == 0 {
                 return Ok(Some(Ending::Limit));
             }
+            if self.rows.is_empty() && self.look_ahead() {
+                self.keep_state();
+                continue;
+            }
             match self.engine.run(self.left(), &mut self.rows) {
                 Stop::Net(net) if net > usize::from(buffered) => return Ok(Some(Ending::Trapped)),
                 // The first of several that are 1 is reported: a trap may hide another.
@@ -333,7 +343,7 @@ impl<'a, 'o> Run<'a, 'o> {
     }
 
     /// Clocks that the run may still take.
-    fn left(&self) -> u64 {
+    pub(super) fn left(&self) -> u64 {
         self.limit.saturating_sub(self.engine.clock())
     }
 

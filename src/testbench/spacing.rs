@@ -2,9 +2,10 @@
 
 use fearless_simd::{Level, dispatch};
 use serde_json::json;
-use stepwave_engine::Rows;
+use stepwave_engine::{Digest, Rows, Wanted};
 use stepwave_nc::Curve;
 
+use super::ahead::StepTrains;
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Observer, ObserverError, StepColumns, Testbench};
 
@@ -130,6 +131,8 @@ impl Train {
 /// Watches the pulses of every axis.
 pub struct SpacingWatch {
     columns: StepColumns,
+    /// Where a digest has them.
+    digested: StepTrains,
     trains: Vec<Train>,
     /// Steps completed.
     steps: u64,
@@ -158,11 +161,20 @@ impl SpacingWatch {
         };
         SpacingWatch {
             columns: StepColumns::of(bench),
+            digested: StepTrains::default(),
             trains: travels.iter().map(train).collect(),
             steps: 0,
             loaded: None,
             stepped: 0,
             level: Level::new(),
+        }
+    }
+
+    /// Counts steps, a bit each, in the samples from a clock on.
+    fn count(&mut self, stepped: u64, clock: u64) {
+        self.steps += u64::from(stepped.count_ones());
+        if stepped != 0 {
+            self.stepped = clock + u64::from(stepped.ilog2());
         }
     }
 
@@ -190,13 +202,14 @@ fn reached(bits: u64, distance: u64) -> u64 {
     reached
 }
 
-/// The samples of a block from `first` on, at most [`SPAN`].
+/// Samples from `clock` on, at most [`SPAN`]: a bit for each in which an axis pulses, or which completes a step; `steps`
+/// are those before.
 #[inline(always)]
-fn scan(trains: &mut [Train], columns: &StepColumns, rows: &Rows, first: usize, stepped: u64, steps: u64) {
-    for (train, &column) in trains.iter_mut().zip(&columns.pulses) {
-        let pulses = rows.nonzero(column, first);
+fn scan(trains: &mut [Train], pulses: impl Fn(usize) -> u64, clock: u64, stepped: u64, steps: u64) {
+    for (axis, train) in trains.iter_mut().enumerate() {
+        let pulses = pulses(axis);
         if pulses != 0 {
-            train.space(pulses, rows.first_clock() + first as u64);
+            train.space(pulses, clock);
             train.measure(pulses, stepped, steps);
             train.pulses += u64::from(pulses.count_ones());
         }
@@ -233,6 +246,24 @@ impl Observer for SpacingWatch {
         }
     }
 
+    fn want(&mut self, bench: &Testbench, wanted: &mut Wanted) -> bool {
+        self.digested = StepTrains::want(bench, wanted);
+        true
+    }
+
+    fn suffices(&self, _: &Digest) -> bool {
+        self.loaded.is_some()
+    }
+
+    fn digest(&mut self, digest: &Digest, _: &[u64]) {
+        let clocks = (digest.first_clock..).step_by(digest.span);
+        for ((word, &stepped), clock) in digest.trains[self.digested.stepped].iter().enumerate().zip(clocks) {
+            let pulses = |axis: usize| digest.trains[self.digested.pulses[axis]][word];
+            dispatch!(self.level, _simd => scan(&mut self.trains, pulses, clock, stepped, self.steps));
+            self.count(stepped, clock);
+        }
+    }
+
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         for first in (0..rows.len()).step_by(SPAN) {
             if self.loaded.is_none() {
@@ -241,11 +272,10 @@ impl Observer for SpacingWatch {
                 self.loaded = (loaded != 0).then(|| clock(loaded.trailing_zeros()));
             }
             let stepped = rows.nonzero(self.columns.stepped, first);
-            dispatch!(self.level, _simd => scan(&mut self.trains, &self.columns, rows, first, stepped, self.steps));
-            self.steps += u64::from(stepped.count_ones());
-            if stepped != 0 {
-                self.stepped = rows.first_clock() + first as u64 + u64::from(stepped.ilog2());
-            }
+            let pulses = |axis: usize| rows.nonzero(self.columns.pulses[axis], first);
+            let clock = rows.first_clock() + first as u64;
+            dispatch!(self.level, _simd => scan(&mut self.trains, pulses, clock, stepped, self.steps));
+            self.count(stepped, clock);
         }
         Ok(())
     }

@@ -1,10 +1,11 @@
 //! The step table, read out of samples: row 0 is the state after load, row k that after step k.
 
-use stepwave_engine::Rows;
+use stepwave_engine::{Digest, Rows};
 use stepwave_netlist::bits::to_signed;
 
 use serde_json::json;
 
+use super::ahead::{self, StepTrains};
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::tool::signed;
 use super::{Ending, Outcome, Testbench};
@@ -70,6 +71,8 @@ type Gathered = (u64, Vec<u64>, u64, Vec<i64>, Vec<i64>);
 pub(super) struct StepReader<'a> {
     bench: &'a Testbench,
     columns: StepColumns,
+    /// Where a digest has them.
+    digested: StepTrains,
     pub(super) step: Step,
     /// Rows of the table so far, and how many of them were the first of their block.
     rows: u64,
@@ -105,6 +108,7 @@ impl<'a> StepReader<'a> {
         StepReader {
             bench,
             columns: StepColumns::of(bench),
+            digested: StepTrains::default(),
             step,
             rows: 0,
             first_rows: 0,
@@ -143,9 +147,42 @@ impl<'a> StepReader<'a> {
     }
 
     fn show(&mut self, rows: &Rows, row: usize) {
+        self.show_columns(|column| rows.value(column, row));
+    }
+
+    fn show_columns(&mut self, value: impl Fn(usize) -> u64) {
         let ports = &self.bench.machine().positions;
         for ((place, &column), port) in self.counters.iter_mut().zip(&self.columns.positions).zip(ports) {
-            *place = to_signed(port.width, rows.value(column, row));
+            *place = to_signed(port.width, value(column));
+        }
+    }
+
+    /// Says where digests have steps and pulses.
+    pub(super) fn want(&mut self, trains: StepTrains) {
+        self.digested = trains;
+    }
+
+    /// The block that runs has a row.
+    pub(super) fn has_row(&self) -> bool {
+        !self.fresh
+    }
+
+    /// Counts what many samples hold, in none of which the machine is loaded and none of whose counters overflows; `last`
+    /// are the columns of the last one.
+    pub(super) fn digest(&mut self, digest: &Digest, last: &[u64]) {
+        for (pulses, &train) in self.pulses.iter_mut().zip(&self.digested.pulses) {
+            let train = &digest.trains[train];
+            *pulses += ahead::count(train);
+            if let Some(word) = train.iter().rposition(|&word| word != 0) {
+                let clock = digest.first_clock + (word * digest.span) as u64 + u64::from(train[word].ilog2());
+                self.last_pulse = self.last_pulse.max(clock);
+            }
+        }
+        let before = self.counters.clone();
+        self.rows += ahead::count(&digest.trains[self.digested.stepped]);
+        self.show_columns(|column| last[column]);
+        for ((place, before), now) in self.position.iter_mut().zip(before).zip(&self.counters) {
+            *place = place.saturating_add(now - before);
         }
     }
 

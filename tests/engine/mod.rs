@@ -3,6 +3,7 @@
 
 #![cfg(test)]
 
+mod digest;
 mod lanes;
 mod memories;
 mod native;

@@ -30,6 +30,7 @@
 
 #[cfg(feature = "jit")]
 mod compiled;
+mod digest;
 mod gates;
 pub mod lanes;
 mod memories;
@@ -38,6 +39,7 @@ mod word;
 use stepwave_netlist::Design;
 use stepwave_netlist::cells::{Memory, Net, Op};
 
+pub use digest::{Digest, Form, Term, Wanted};
 pub use stepwave_netlist::{Extremes, Rows};
 
 /// What an engine is to observe, fixed before it is built so that it can be compiled in.
@@ -71,6 +73,17 @@ pub enum Stop {
     Net(usize),
 }
 
+/// What came of looking ahead.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Ahead {
+    /// Nobody can tell yet: [run](Engine::run) on.
+    NotNow,
+    /// Something happens in these samples that has to be seen: [run](Engine::run) them.
+    Eventful,
+    /// The digest holds what they came to.
+    Digest,
+}
+
 /// A machine that runs one design.
 pub trait Engine: Send {
     /// Sets an input from after the next edge (or from reset) on. Bits above its width are ignored, and so is a net
@@ -93,6 +106,16 @@ pub trait Engine: Send {
     /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded that is not passed over; what
     /// `rows` holds already must be the samples right before.
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
+
+    /// What the next samples come to, at most as many as `clocks`, if the engine was
+    /// [built to tell](EngineKind::build_digesting). The engine stays in the present sample.
+    fn look_ahead(&mut self, clocks: u64, digest: &mut Digest) -> Ahead {
+        let _ = (clocks, digest);
+        Ahead::NotNow
+    }
+
+    /// Continues to the last sample of the digest that was [looked at](Engine::look_ahead) right before.
+    fn skip_ahead(&mut self) {}
 
     /// Number of edges since reset.
     fn clock(&self) -> u64;
@@ -166,6 +189,17 @@ impl EngineKind {
         }
     }
 
+    /// As [`build`](Self::build), an engine that can [look ahead](Engine::look_ahead) for what is wanted, if anything is.
+    #[must_use]
+    #[cfg_attr(not(feature = "jit"), expect(unused_variables, reason = "only native code looks ahead"))]
+    pub fn build_digesting(self, design: &Design, watch: &Watch, wanted: Option<&Wanted>) -> Box<dyn Engine> {
+        match self {
+            #[cfg(feature = "jit")]
+            EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch).digesting(wanted.cloned())),
+            _ => self.build(design, watch),
+        }
+    }
+
     /// As [`build`](Self::build), an engine that may pass over idle samples where it gets [sparse rows](Rows::sparse).
     #[must_use]
     #[cfg_attr(not(feature = "jit"), expect(unused_variables, reason = "only native code passes over samples"))]
@@ -183,6 +217,13 @@ impl EngineKind {
 #[must_use]
 pub fn compiled_after(design: &Design, watch: &Watch, warm_up: u64) -> Box<dyn Engine> {
     Box::new(compiled::Compiled::after(design, watch, warm_up))
+}
+
+/// As [`compiled_after`], looking ahead.
+#[cfg(feature = "jit")]
+#[must_use]
+pub fn digesting_after(design: &Design, watch: &Watch, wanted: &Wanted, warm_up: u64) -> Box<dyn Engine> {
+    Box::new(compiled::Compiled::after(design, watch, warm_up).digesting(Some(wanted.clone())))
 }
 
 /// As [`compiled_after`], passing over idle samples.

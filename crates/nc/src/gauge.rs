@@ -130,6 +130,38 @@ impl BatchGauge {
     }
 }
 
+impl BatchGauge {
+    /// Factors of x and x², and of y and y², in a number of which [`within`](Self::within) is the deviation.
+    #[must_use]
+    pub fn factors(&self) -> [[i64; 2]; 2] {
+        match self.0 {
+            Plane::Line { delta: [dx, dy], .. } => [[-dy, 0], [dx, 0]],
+            Plane::Circle { center: [x0, y0], .. } => [[-2 * x0, 1], [-2 * y0, 1]],
+        }
+    }
+
+    /// The greatest deviation, in BLU, of positions for which that number lies in a range; both its ends are reached.
+    #[must_use]
+    pub fn within(&self, ends: [i64; 2]) -> f64 {
+        match self.0 {
+            Plane::Line { from: [x0, y0], delta: [dx, dy], length } => {
+                let cross = |end: i64| {
+                    (i128::from(end) + i128::from(dy) * i128::from(x0) - i128::from(dx) * i128::from(y0)).unsigned_abs()
+                };
+                cross(ends[0]).max(cross(ends[1])) as f64 / length
+            }
+            Plane::Circle { center: [x0, y0], radius_squared, radius } => {
+                let off = |end: i64| {
+                    let reached = i128::from(end) + i128::from(x0).pow(2) + i128::from(y0).pow(2);
+                    let reached = u64::try_from(reached).unwrap_or(0);
+                    reached.abs_diff(radius_squared) as f64 / ((reached as f64).sqrt() + radius)
+                };
+                off(ends[0]).max(off(ends[1]))
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -225,7 +225,7 @@ impl<'a, 'c> Generator<'a, 'c> {
     }
 
     /// Fixed registers are constants in this phase.
-    fn pin(&mut self, sample: &mut RegisterValues, phase: &Phase, widths: &[Width]) {
+    pub(super) fn pin(&mut self, sample: &mut RegisterValues, phase: &Phase, widths: &[Width]) {
         for (index, (net, _)) in self.plan.registers.iter().enumerate() {
             if let Some(&value) = phase.fixed.get(net) {
                 sample[index] = self.f.ins().iconst(kind(widths[index]), immediate(value));
@@ -315,9 +315,21 @@ impl<'a, 'c> Generator<'a, 'c> {
         next.map(|(index, &(_, next))| values.get(&logic.net(next)).copied().unwrap_or(sample[index])).collect()
     }
 
-    /// Leaves after an edge if a register is not as the phase expects. With `logic` the next values that are
-    /// constants in it need no comparison.
+    /// Leaves after an edge if a register is not as the phase expects.
     fn guard(&mut self, next: &RegisterValues, logic: Option<&Simplified>, phase: &Phase, recorded: Value) {
+        if let Some(unequal) = self.unexpected(next, logic, phase) {
+            self.leave_if(unequal, next, recorded, true);
+        }
+    }
+
+    /// Not 0 where a register is not as the phase expects after an edge; `None` where none can be. With `logic` the next
+    /// values that are constants in it need no comparison.
+    pub(super) fn unexpected(
+        &mut self,
+        next: &RegisterValues,
+        logic: Option<&Simplified>,
+        phase: &Phase,
+    ) -> Option<Value> {
         let mut unequal: Option<Value> = None;
         for (index, &(net, source)) in self.plan.registers.iter().enumerate() {
             let Some(&wanted) = phase.fixed.get(&net) else { continue };
@@ -327,9 +339,7 @@ impl<'a, 'c> Generator<'a, 'c> {
             let differs = self.f.ins().icmp_imm(IntCC::NotEqual, next[index], immediate(wanted));
             unequal = Some(unequal.map_or(differs, |others| self.f.ins().bor(others, differs)));
         }
-        if let Some(unequal) = unequal {
-            self.leave_if(unequal, next, recorded, true);
-        }
+        unequal
     }
 
     pub(super) fn record(&mut self, logic: &Simplified, values: &HashMap<Net, Value>, row: Value) -> Value {

@@ -9,17 +9,22 @@
 //!
 //! When inputs have changed (a block was loaded), a loop that was compiled for such inputs is entered at once.
 
+mod ahead;
 mod codegen;
+mod digesting;
+mod layout;
 mod memory;
 mod native;
 mod operation;
 mod passing;
+mod scan;
 mod specialise;
 
 use std::collections::HashMap;
 
 use super::word::WordEngine;
-use super::{Engine, Extremes, Idle, Rows, Stop, Watch};
+use super::{Ahead, Digest, Engine, Extremes, Idle, Rows, Stop, Wanted, Watch};
+use ahead::{Digests, LookedAt};
 use native::Native;
 use specialise::{History, Specialised};
 use stepwave_netlist::Design;
@@ -46,6 +51,8 @@ struct Variant {
     guards: u64,
     /// Clocks run.
     clocks: u64,
+    /// The same without recording, where digests are wanted.
+    digests: Option<Digests>,
 }
 
 impl Variant {
@@ -61,6 +68,10 @@ pub(super) struct Compiled {
     watch: Watch,
     /// Samples that are passed over.
     idle: Option<Idle>,
+    /// What digests are to hold.
+    wanted: Option<Wanted>,
+    /// The digest that was looked at last.
+    ahead: Option<LookedAt>,
     registers: Vec<(Net, Net)>,
     history: History,
     warm_up: u64,
@@ -96,6 +107,8 @@ impl Compiled {
             design: design.clone(),
             watch: watch.clone(),
             idle: None,
+            wanted: None,
+            ahead: None,
             history: History::new(netlist, &registers, LOOK_BACK.min(warm_up)),
             warm_up,
             registers,
@@ -118,6 +131,11 @@ impl Compiled {
         self.idle = (!running.is_empty() && !self.watch.columns.is_empty())
             .then(|| Idle { running, flags: idle.flags.clone() });
         self
+    }
+
+    /// Looks ahead for what is wanted.
+    pub(super) fn digesting(self, wanted: Option<Wanted>) -> Compiled {
+        Compiled { wanted, ..self }
     }
 
     /// One clock in the word engine, remembered.
@@ -181,22 +199,30 @@ impl Compiled {
             Some(native) => {
                 let last_phase = specialised.phases.last().map(|phase| phase.fixed.clone()).unwrap_or_default();
                 let assumes_registers = !last_phase.is_empty();
-                let inputs = specialised.inputs;
-                self.variants.push(Variant { native, inputs, last_phase, assumes_registers, guards: 0, clocks: 0 });
+                let inputs = specialised.inputs.clone();
+                let digests = self.wanted.as_ref().map(|wanted| {
+                    let never = [&wanted.never[..], &self.watch.stops].concat();
+                    Digests::of(specialised, self.design.netlist(), &self.registers, &never)
+                });
+                let (guards, clocks) = (0, 0);
+                self.variants.push(Variant { native, inputs, last_phase, assumes_registers, guards, clocks, digests });
             }
             None => self.unavailable = true,
+        }
+    }
+
+    /// Puts the present sample into the state.
+    fn load_state(&mut self) {
+        let nets = self.registers.iter().map(|&(net, _)| net).chain(self.design.inputs().iter().copied());
+        for (word, net) in self.state.iter_mut().zip(nets) {
+            *word = self.word.value(net);
         }
     }
 
     /// Runs a loop from the present sample on, at most `clocks` clocks.
     fn run_native(&mut self, variant: usize, clocks: u64, rows: &mut Rows) -> Option<Stop> {
         let count = self.registers.len();
-        for (word, &(net, _)) in self.state.iter_mut().zip(&self.registers) {
-            *word = self.word.value(net);
-        }
-        for (word, &net) in self.state[count..].iter_mut().zip(self.design.inputs()) {
-            *word = self.word.value(net);
-        }
+        self.load_state();
         if self.idle.is_some() {
             return self.run_passing(variant, clocks, rows);
         }
@@ -299,6 +325,14 @@ impl Engine for Compiled {
             }
         }
         Stop::Clocks
+    }
+
+    fn look_ahead(&mut self, clocks: u64, digest: &mut Digest) -> Ahead {
+        self.digest(clocks, digest)
+    }
+
+    fn skip_ahead(&mut self) {
+        self.accept();
     }
 
     fn clock(&self) -> u64 {

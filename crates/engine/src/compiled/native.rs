@@ -5,13 +5,16 @@
 //! after it and writes nothing.
 #![allow(unsafe_code)]
 
-use cranelift_codegen::ir::{AbiParam, types};
+use cranelift_codegen::ir::{AbiParam, Block, types};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
 
 use super::codegen::{self, Plan};
+use super::digesting;
+use super::layout::Layout;
 use super::passing;
+use crate::digest::Wanted;
 
 /// Values that an offset of 31 bits reaches.
 const FARTHEST: usize = 1 << 28;
@@ -19,10 +22,13 @@ const FARTHEST: usize = 1 << 28;
 /// The compiled loop: state, rows, clocks, memories → samples recorded, or clocks done where samples are passed over.
 type Loop = unsafe extern "C" fn(*mut u64, *mut u64, u64, *mut u64) -> u64;
 
+/// The compiled loop of a digest: state, narrow and wide records, words of trains, memories → 1, or 0 where it was
+/// abandoned.
+type DigestLoop = unsafe extern "C" fn(*mut u64, *mut u32, *mut i64, *mut u64, *mut u64) -> u64;
+
 /// A compiled plan.
 pub(super) struct Native {
-    /// Holds the memory of the code until it is dropped.
-    module: Option<JITModule>,
+    _memory: Code,
     code: Loop,
     state_words: usize,
     memory_words: usize,
@@ -44,37 +50,21 @@ impl Native {
         if values.max(memory_words) > FARTHEST {
             return None;
         }
-        let flags = [("opt_level", "speed"), ("enable_verifier", "false")];
-        let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
-        let mut module = JITModule::new(builder);
-        let mut context = module.make_context();
-        let signature = &mut context.func.signature;
-        signature.params.extend([AbiParam::new(types::I64); 4]);
-        signature.returns.push(AbiParam::new(types::I64));
-        let mut functions = FunctionBuilderContext::new();
-        let mut f = FunctionBuilder::new(&mut context.func, &mut functions);
-        let entry = f.create_block();
-        f.append_block_params_for_function_params(entry);
-        f.switch_to_block(entry);
         let resting = plan.resting();
-        if passes {
-            passing::generate(plan, &resting, &mut f, entry);
-        } else {
-            codegen::generate(plan, &resting, &mut f, entry);
-        }
-        f.seal_all_blocks();
-        f.finalize();
-        let id = module.declare_function("clocks", Linkage::Export, &context.func.signature).ok()?;
-        module.define_function(id, &mut context).ok()?;
-        module.clear_context(&mut context);
-        module.finalize_definitions().ok()?;
-        let address = module.get_finalized_function(id);
-        // SAFETY: `address` is the start of the function just finalised, whose signature is that of `Loop` in the
+        let (module, address, ()) = compiled(4, |f, entry| {
+            if passes {
+                passing::generate(plan, &resting, f, entry);
+            } else {
+                codegen::generate(plan, &resting, f, entry);
+            }
+            Some(())
+        })?;
+        // SAFETY: `address` is the start of a function just finalised, whose signature is that of `Loop` in the
         // platform's C calling convention, the default of the module.
         let code = unsafe { std::mem::transmute::<*const u8, Loop>(address) };
         let words = plan.registers.len() + plan.inputs.len();
         Some(Native {
-            module: Some(module),
+            _memory: module,
             code,
             state_words: words + if passes { passing::words(plan) } else { 1 },
             memory_words,
@@ -130,11 +120,104 @@ impl Native {
     }
 }
 
-impl Drop for Native {
+/// A module with one function of this many words that returns a word, its address, and what `generate` gives, which has the
+/// builder in the entry block.
+fn compiled<T>(
+    words: usize,
+    generate: impl FnOnce(&mut FunctionBuilder<'_>, Block) -> Option<T>,
+) -> Option<(Code, *const u8, T)> {
+    let flags = [("opt_level", "speed"), ("enable_verifier", "false")];
+    let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
+    let mut module = JITModule::new(builder);
+    let mut context = module.make_context();
+    let signature = &mut context.func.signature;
+    signature.params.extend(vec![AbiParam::new(types::I64); words]);
+    signature.returns.push(AbiParam::new(types::I64));
+    let mut functions = FunctionBuilderContext::new();
+    let mut f = FunctionBuilder::new(&mut context.func, &mut functions);
+    let entry = f.create_block();
+    f.append_block_params_for_function_params(entry);
+    f.switch_to_block(entry);
+    let generated = generate(&mut f, entry)?;
+    f.seal_all_blocks();
+    f.finalize();
+    let id = module.declare_function("clocks", Linkage::Export, &context.func.signature).ok()?;
+    module.define_function(id, &mut context).ok()?;
+    module.clear_context(&mut context);
+    module.finalize_definitions().ok()?;
+    let address = module.get_finalized_function(id);
+    Some((Code(Some(module)), address, generated))
+}
+
+/// Holds the memory of the code until it is dropped.
+struct Code(Option<JITModule>);
+
+impl Drop for Code {
     fn drop(&mut self) {
-        if let Some(module) = self.module.take() {
-            // SAFETY: the only pointer into the code is `self.code`, and nobody can call it any more.
+        if let Some(module) = self.0.take() {
+            // SAFETY: the only pointer into the code is that of the value that owns this one, and nobody can call it any
+            // more.
             unsafe { module.free_memory() };
         }
+    }
+}
+
+/// A compiled loop that records no samples.
+pub(super) struct Digester {
+    _memory: Code,
+    code: DigestLoop,
+    state_words: usize,
+    memory_words: usize,
+    pub(super) layout: Layout,
+    narrow: Vec<u32>,
+    wide: Vec<i64>,
+    words: Vec<u64>,
+}
+
+impl Digester {
+    /// Compiles a plan; `None` where this machine has no code generator, or the plan writes memories, which a loop that is
+    /// abandoned could not take back.
+    pub(super) fn compile(plan: &Plan<'_>, wanted: &Wanted) -> Option<Digester> {
+        let writes = plan.entry.netlist.memories.iter().any(|memory| !memory.writes.is_empty());
+        let memory_words = plan.memory_words();
+        if writes || memory_words > FARTHEST {
+            return None;
+        }
+        let (memory, address, layout) = compiled(5, |f, entry| digesting::generate(plan, wanted, f, entry))?;
+        // SAFETY: `address` is the start of a function just finalised, whose signature is that of `DigestLoop` in the
+        // platform's C calling convention, the default of the module.
+        let code = unsafe { std::mem::transmute::<*const u8, DigestLoop>(address) };
+        let [narrow, wide, words] = layout.room();
+        let (narrow, wide, words) = (vec![0; narrow], vec![0; wide], vec![0; words]);
+        let state_words = plan.registers.len() + plan.inputs.len();
+        Some(Digester { _memory: memory, code, state_words, memory_words, layout, narrow, wide, words })
+    }
+
+    /// Runs the clocks of a digest; `state` then holds the registers of the last one. False, with nothing changed, where
+    /// the loop was abandoned.
+    ///
+    /// # Panics
+    /// If `state` or `memories` is too short.
+    pub(super) fn call(&mut self, state: &mut [u64], memories: &mut [u64]) -> bool {
+        assert!(memories.len() >= self.memory_words, "{} words of memories", memories.len());
+        assert!(state.len() >= self.state_words, "state of {} words", state.len());
+        // SAFETY: the code touches `state_words` words of `state`, and of `narrow`, `wide` and `words` what its layout has
+        // room for, which `compile` has allocated; it reads the words of `memories` that the plan names, calls nothing
+        // and keeps no pointer. The module that holds it lives.
+        let whole = unsafe {
+            (self.code)(
+                state.as_mut_ptr(),
+                self.narrow.as_mut_ptr(),
+                self.wide.as_mut_ptr(),
+                self.words.as_mut_ptr(),
+                memories.as_mut_ptr(),
+            )
+        };
+        whole == 1
+    }
+
+    /// Records of the call before, narrow and wide, and the words of trains.
+    pub(super) fn found(&self) -> (&[u32], &[i64], &[u64]) {
+        (&self.narrow, &self.wide, &self.words)
     }
 }

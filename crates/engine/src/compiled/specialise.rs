@@ -139,6 +139,31 @@ impl Specialised {
     }
 }
 
+impl Specialised {
+    /// Fixes further registers in the phases: those that would end a digest, at 0, and those that take a constant in the
+    /// phase before.
+    pub(super) fn settle(&mut self, netlist: &Netlist, registers: &[(Net, Net)], never: &[Net]) {
+        let ends = registers.iter().map(|&(net, _)| net).filter(|net| never.contains(net));
+        let mut found: Vec<Vec<(Net, u64)>> = vec![ends.map(|net| (net, 0)).collect(); self.phases.len()];
+        while found.iter().any(|nets| !nets.is_empty()) {
+            for (phase, nets) in self.phases.iter_mut().zip(found) {
+                nets.into_iter().for_each(|(net, value)| {
+                    phase.fixed.entry(net).or_insert(value);
+                });
+                let mut all = self.inputs.clone();
+                all.extend(&phase.fixed);
+                phase.logic = simplify(netlist, &all);
+            }
+            let after = |(number, phase): (usize, &Phase)| {
+                let before = &self.phases[(number + self.phases.len() - 1) % self.phases.len()];
+                let unknown = registers.iter().filter(|(net, _)| !phase.fixed.contains_key(net));
+                unknown.filter_map(|&(net, next)| Some((net, before.logic.constant(next)?))).collect()
+            };
+            found = self.phases.iter().enumerate().map(after).collect();
+        }
+    }
+}
+
 /// The input of one bit that most live cells read, among those not fixed yet.
 fn busiest_input(
     logic: &Simplified,

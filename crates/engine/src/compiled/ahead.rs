@@ -1,0 +1,271 @@
+//! Looking ahead: native loops that record nothing, and what a digest is put together from.
+
+use fearless_simd::Level;
+
+use super::Compiled;
+use super::codegen::Plan;
+use super::layout::{RangeFrom, TrainFrom};
+use super::native::Digester;
+use super::scan::{self, Found};
+use super::specialise::Specialised;
+use crate::digest::{Digest, Wanted};
+use crate::{Ahead, Engine, Extremes};
+use stepwave_netlist::cells::{Net, Netlist};
+
+/// Vector units compare signed numbers; with the highest bit inverted they are in the order of the unsigned ones.
+const HIGHEST: u64 = 1 << 63;
+
+/// The loops of a variant that make digests.
+pub(super) struct Digests {
+    specialised: Specialised,
+    /// That which begins after each phase; `None` before it is compiled.
+    loops: Vec<Option<DigestLoop>>,
+    /// None can be compiled.
+    unavailable: bool,
+}
+
+/// A digest whose last registers are in the state.
+pub(super) struct LookedAt {
+    variant: usize,
+    clocks: u64,
+}
+
+/// A loop and what its records come to.
+struct DigestLoop {
+    digester: Digester,
+    level: Level,
+    /// Bits that are inverted in each lane.
+    turned_narrow: Vec<u32>,
+    turned_wide: Vec<i64>,
+    narrow: Vec<Found<u32>>,
+    wide: Vec<Found<i64>>,
+}
+
+impl Digests {
+    /// Those of a variant; a net of `never` that is 1 ends a digest.
+    pub(super) fn of(
+        mut specialised: Specialised,
+        netlist: &Netlist,
+        registers: &[(Net, Net)],
+        never: &[Net],
+    ) -> Digests {
+        specialised.settle(netlist, registers, never);
+        let loops = specialised.phases.iter().map(|_| None).collect();
+        Digests { specialised, loops, unavailable: false }
+    }
+}
+
+impl DigestLoop {
+    fn of(digester: Digester, wanted: &Wanted) -> DigestLoop {
+        let (narrow, wide) = (vec![0; digester.layout.narrow], vec![0; digester.layout.wide]);
+        let (found_narrow, found_wide) = (Vec::new(), Vec::new());
+        let mut found = DigestLoop {
+            digester,
+            level: Level::new(),
+            turned_narrow: narrow,
+            turned_wide: wide,
+            narrow: found_narrow,
+            wide: found_wide,
+        };
+        found.turn(wanted);
+        found
+    }
+
+    /// Which bits are inverted in each lane; forms are signed as they are.
+    fn turn(&mut self, wanted: &Wanted) {
+        let layout = &self.digester.layout;
+        for (&(_, turned), from) in wanted.ranges.iter().zip(&layout.ranges) {
+            match from {
+                // No bit of a register of a narrow lane is above the 32nd.
+                RangeFrom::Narrow(lanes) => {
+                    lanes.iter().for_each(|&lane| self.turned_narrow[lane] = u32::try_from(turned).unwrap_or(0));
+                }
+                RangeFrom::Wide(lanes) => {
+                    lanes.iter().for_each(|&lane| self.turned_wide[lane] = (turned ^ HIGHEST).cast_signed());
+                }
+                RangeFrom::Values(_) | RangeFrom::Counter { .. } | RangeFrom::Train { .. } => {}
+            }
+        }
+    }
+
+    /// Extremes of the records of the last call.
+    fn scan(&mut self) {
+        let (narrow, wide, _) = self.digester.found();
+        scan::scan(self.level, narrow, &self.turned_narrow, &mut self.narrow);
+        scan::scan(self.level, wide, &self.turned_wide, &mut self.wide);
+    }
+
+    /// Extremes of a register that was `before` in the sample before the digest and is `after` in its last.
+    fn range(&self, from: &RangeFrom, turned: u64, [before, after]: [u64; 2], trains: &[Vec<u64>]) -> Extremes {
+        let first = before ^ turned;
+        let found = |least: u64, greatest: u64, any: u64, all: u64| Extremes {
+            least: least.min(first),
+            greatest: greatest.max(first),
+            first,
+            toggled: any & !first | !all & first,
+        };
+        match from {
+            RangeFrom::Values(values) => {
+                let start = found(first, first, first, first);
+                values
+                    .iter()
+                    .map(|value| value ^ turned)
+                    .map(|value| found(value, value, value, value))
+                    .fold(start, Extremes::and)
+            }
+            RangeFrom::Train { train, value } => {
+                let full = u64::MAX >> (64 - self.digester.layout.span);
+                let is_set = trains[*train].iter().any(|&word| word != 0);
+                let is_clear = trains[*train].iter().any(|&word| word != full);
+                let seen = [(is_set, value ^ turned), (is_clear, turned)].into_iter().filter(|(seen, _)| *seen);
+                let each = seen.map(|(_, value)| found(value, value, value, value));
+                each.fold(found(first, first, first, first), Extremes::and)
+            }
+            RangeFrom::Counter { .. } => {
+                let last = after ^ turned;
+                // It takes every value between the two: all bits up to the highest that differs change.
+                let toggled = (first ^ last).checked_ilog2().map_or(0, |bit| u64::MAX >> (63 - bit));
+                Extremes { least: first.min(last), greatest: first.max(last), first, toggled }
+            }
+            RangeFrom::Narrow(lanes) => {
+                let each = lanes.iter().map(|&lane| self.narrow[lane]);
+                each.map(|of| found(of.least.into(), of.greatest.into(), of.any.into(), of.all.into()))
+                    .reduce(Extremes::and)
+                    .unwrap_or_else(|| found(first, first, first, first))
+            }
+            RangeFrom::Wide(lanes) => {
+                let unsigned = |value: i64| value.cast_unsigned() ^ HIGHEST;
+                let each = lanes.iter().map(|&lane| self.wide[lane]);
+                // Where the highest bit is inverted, it was 1 in any value where it was not 1 in all inverted ones.
+                let mixed = |low: i64, high: i64| low.cast_unsigned() & !HIGHEST | !high.cast_unsigned() & HIGHEST;
+                each.map(|of| {
+                    let (any, all) = (mixed(of.any, of.all), mixed(of.all, of.any));
+                    found(unsigned(of.least), unsigned(of.greatest), any, all)
+                })
+                .reduce(Extremes::and)
+                .unwrap_or_else(|| found(first, first, first, first))
+            }
+        }
+    }
+
+    /// Puts the words of the last call into a digest; the first sample is the highest bit of what the code stores.
+    fn words(&self, digest: &mut Digest) {
+        let (layout, (_, _, words)) = (&self.digester.layout, self.digester.found());
+        digest.span = layout.span;
+        digest.trains.resize(layout.trains.len(), Vec::new());
+        for (train, from) in digest.trains.iter_mut().zip(&layout.trains) {
+            train.clear();
+            match *from {
+                TrainFrom::Pattern(word) => train.resize(layout.words, word),
+                TrainFrom::Stored(index) => {
+                    let stored = words[index..].iter().step_by(layout.stored);
+                    train.extend(stored.map(|word| word.reverse_bits() >> (64 - layout.span)));
+                }
+            }
+        }
+    }
+}
+
+impl Compiled {
+    /// The variant that can make a digest from the present sample on, and the phase of that sample.
+    fn digesting_variant(&self) -> Option<(usize, usize)> {
+        let mut usable = self.variants.iter().enumerate().filter(|(_, variant)| {
+            variant.clocks >= self.warm_up && !variant.is_poor(self.warm_up) && self.holds(&variant.inputs)
+        });
+        usable.find_map(|(index, variant)| {
+            let digests = variant.digests.as_ref().filter(|digests| !digests.unavailable)?;
+            let phase = digests.specialised.phases.iter().position(|phase| self.holds(&phase.fixed))?;
+            Some((index, phase))
+        })
+    }
+
+    /// Compiles the loop of a variant that begins after a phase.
+    fn compile_digests(&mut self, variant: usize, phase: usize) {
+        let (Some(wanted), Some(digests)) = (&self.wanted, &mut self.variants[variant].digests) else { return };
+        let memories = self.word.memories().places().to_vec();
+        let first = (phase + 1) % digests.specialised.phases.len();
+        digests.specialised.phases.rotate_left(first);
+        let plan = Plan {
+            entry: &digests.specialised.entry,
+            phases: &digests.specialised.phases,
+            registers: &self.registers,
+            memories: &memories,
+            inputs: self.design.inputs(),
+            columns: &[],
+            stride: 0,
+            stops: &self.watch.stops,
+            running: &[],
+            flags: &[],
+        };
+        let digester = Digester::compile(&plan, wanted);
+        digests.specialised.phases.rotate_right(first);
+        digests.unavailable = digester.is_none();
+        digests.loops[phase] = digester.map(|digester| DigestLoop::of(digester, wanted));
+    }
+
+    /// What the next samples come to.
+    pub(super) fn digest(&mut self, clocks: u64, digest: &mut Digest) -> Ahead {
+        self.ahead = None;
+        if self.word.input_pending() || self.idle.is_some() {
+            return Ahead::NotNow;
+        }
+        let Some((variant, phase)) = self.digesting_variant() else { return Ahead::NotNow };
+        if self.variants[variant].digests.as_ref().is_some_and(|digests| digests.loops[phase].is_none()) {
+            self.compile_digests(variant, phase);
+        }
+        self.load_state();
+        let (Some(wanted), Some(digests)) = (&self.wanted, &mut self.variants[variant].digests) else {
+            return Ahead::NotNow;
+        };
+        let Some(native) = &mut digests.loops[phase] else { return Ahead::NotNow };
+        let length = native.digester.layout.clocks();
+        if clocks < length {
+            return Ahead::NotNow;
+        }
+        let word = &mut self.word;
+        let mut ranges = wanted.ranges.iter().zip(&native.digester.layout.ranges);
+        let wraps = ranges.any(|(&(net, turned), from)| match *from {
+            RangeFrom::Counter { up } => {
+                let (now, most) = (word.value(net) ^ turned, self.design.netlist().width(net).mask());
+                length > if up { most - now } else { now }
+            }
+            _ => false,
+        });
+        if wraps || !native.digester.call(&mut self.state, word.memories().words_mut()) {
+            return Ahead::Eventful;
+        }
+        (digest.first_clock, digest.clocks) = (word.clock() + 1, length);
+        self.ahead = Some(LookedAt { variant, clocks: length });
+        self.fill(variant, phase, digest);
+        Ahead::Digest
+    }
+
+    fn fill(&mut self, variant: usize, phase: usize, digest: &mut Digest) {
+        let (Some(wanted), Some(digests)) = (&self.wanted, &mut self.variants[variant].digests) else { return };
+        let Some(native) = &mut digests.loops[phase] else { return };
+        native.scan();
+        native.words(digest);
+        digest.ranges.clear();
+        for (&(net, turned), from) in wanted.ranges.iter().zip(&native.digester.layout.ranges) {
+            let before = self.word.value(net);
+            let place = self.registers.iter().position(|&(register, _)| register == net);
+            let after = place.map_or(before, |place| self.state[place]);
+            digest.ranges.push(native.range(from, turned, [before, after], &digest.trains));
+        }
+        digest.forms.clear();
+        for lanes in &native.digester.layout.forms {
+            let each = lanes.iter().map(|&lane| native.wide[lane]);
+            let [least, greatest] = [i64::MAX, i64::MIN];
+            digest.forms.push(
+                each.fold([least, greatest], |[least, greatest], of| [least.min(of.least), greatest.max(of.greatest)]),
+            );
+        }
+    }
+
+    /// Continues to the last sample of the digest.
+    pub(super) fn accept(&mut self) {
+        let Some(LookedAt { variant, clocks }) = self.ahead.take() else { return };
+        self.word.continue_from(clocks, &self.state[..self.registers.len()]);
+        self.variants[variant].clocks += clocks;
+    }
+}

@@ -1,0 +1,131 @@
+//! Where the code of a digest puts what is wanted, and what of it follows from the logic alone.
+
+use std::collections::BTreeSet;
+
+use stepwave_netlist::bits::Width;
+use stepwave_netlist::cells::{Net, Netlist, Op};
+
+/// Words of a train in a digest: at least this many, and then as many as make a multiple of [`CLOCKS`].
+pub(super) const WORDS: usize = 32;
+/// Samples of a digest are a multiple of this, so that it ends where a block of recorded samples would.
+pub(super) const CLOCKS: usize = 256;
+/// Widest value of a narrow lane, in bits.
+pub(super) const NARROW: u32 = 32;
+
+/// Bits of a counter that may come to the end of its range in each digest, so that its extremes are not looked for at their ends.
+pub(super) const SMALL_COUNTER: u32 = 15;
+
+/// Where the extremes of a register come from.
+#[derive(Clone, Debug)]
+pub(super) enum RangeFrom {
+    /// It has these values and no others, or where there are none, it rests.
+    Values(BTreeSet<u64>),
+    /// It counts one by one in one direction, up or down, and comes to no end of its range.
+    Counter { up: bool },
+    /// It is 0, or this value where the train says so.
+    Train { train: usize, value: u64 },
+    /// Lanes of the narrow record.
+    Narrow(Vec<usize>),
+    /// Lanes of the wide record.
+    Wide(Vec<usize>),
+}
+
+/// Where the words of a train come from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum TrainFrom {
+    /// All are the same.
+    Pattern(u64),
+    /// The n-th of the words stored.
+    Stored(usize),
+}
+
+/// Where the code puts what is wanted.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Layout {
+    /// Samples of a word, rounds of a word, words of a train.
+    pub(super) span: usize,
+    pub(super) rounds: usize,
+    pub(super) words: usize,
+    pub(super) ranges: Vec<RangeFrom>,
+    pub(super) trains: Vec<TrainFrom>,
+    /// Lanes of the wide record with values of each form.
+    pub(super) forms: Vec<Vec<usize>>,
+    /// Values from one record to the next.
+    pub(super) narrow: usize,
+    pub(super) wide: usize,
+    /// Words stored for each word of a train.
+    pub(super) stored: usize,
+}
+
+impl Layout {
+    /// Values in the narrow records, in the wide ones, and words, of a digest.
+    pub(super) fn room(&self) -> [usize; 3] {
+        let records = self.words * self.rounds;
+        [records * self.narrow, records * self.wide, self.words * self.stored]
+    }
+
+    /// Samples of a digest.
+    pub(super) fn clocks(&self) -> u64 {
+        (self.words * self.span) as u64
+    }
+}
+
+/// Values from one record of this many lanes to the next, so that records fill vectors of 8 values: a power of two, or a
+/// multiple of 8.
+pub(super) fn stride(lanes: usize) -> usize {
+    match lanes {
+        0 => 0,
+        1..=8 => lanes.next_power_of_two(),
+        _ => lanes.next_multiple_of(8),
+    }
+}
+
+/// A net is 0 or 1.
+pub(super) fn is_one(netlist: &Netlist, net: Net) -> bool {
+    match netlist.cell(net).op {
+        Op::Const(1) => true,
+        Op::ZeroExtend(bit) => netlist.width(bit) == Width::ONE,
+        // As extended from a width in which it is not the sign.
+        Op::SignExtend(of) => matches!(netlist.cell(of).op, Op::Const(1)) && netlist.width(of) > Width::ONE,
+        _ => false,
+    }
+}
+
+/// The only value but 0 that a net may have; 0 where it has none, `None` where it may have several.
+pub(super) fn only_value(netlist: &Netlist, net: Net) -> Option<u64> {
+    match netlist.cell(net).op {
+        Op::Const(value) => Some(value),
+        _ if netlist.width(net) == Width::ONE => Some(1),
+        Op::ZeroExtend(of) => only_value(netlist, of),
+        Op::Concat { high, low } => {
+            let shift = netlist.width(low).get();
+            match [only_value(netlist, high)?, only_value(netlist, low)?] {
+                [0, value] => Some(value),
+                [value, 0] => Some(value << shift),
+                [above, below] => (high == low).then_some(above << shift | below),
+            }
+        }
+        Op::Mux { high, low, .. } => match [only_value(netlist, high)?, only_value(netlist, low)?] {
+            [0, value] | [value, 0] => Some(value),
+            [a, b] => (a == b).then_some(a),
+        },
+        _ => None,
+    }
+}
+
+/// The directions in which a register moves, down and up, by at most one at a time; `None` where it may do anything.
+pub(super) fn moves(netlist: &Netlist, register: Net, next: Net) -> Option<[bool; 2]> {
+    if next == register {
+        return Some([false, false]);
+    }
+    let one = |net: Net| is_one(netlist, net);
+    match netlist.cell(next).op {
+        Op::Mux { high, low, .. } => {
+            let [high, low] = [moves(netlist, register, high)?, moves(netlist, register, low)?];
+            Some([high[0] | low[0], high[1] | low[1]])
+        }
+        Op::Add(a, b) if a == register && one(b) || b == register && one(a) => Some([false, true]),
+        Op::Sub(a, b) if a == register && one(b) => Some([true, false]),
+        _ => None,
+    }
+}
