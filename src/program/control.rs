@@ -3,13 +3,10 @@
 use std::collections::VecDeque;
 use std::io::BufRead;
 
-use stepwave_models::Words;
-use stepwave_models::parts::PULSE_RATE;
-use stepwave_models::program::{HardwareBlock, Moves, PROGRAM_WORDS, Pacing};
+use stepwave_models::program::Moves;
 use stepwave_nc::{PulseBlock, ToolMove};
 
-use super::ProgramFailure;
-use super::feed::{Pace, Rate, commanded, frequency, own_speed, rate, shown_feed};
+use super::feed::{Pace, Pacer};
 use super::stream::{Item, Stream};
 use super::tally::{CutWords, LeftOut};
 use crate::testbench::{Feeder, Next, ObserverError, Part, Testbench};
@@ -20,9 +17,9 @@ pub struct Control<'a, R> {
     machine: &'static dyn Moves,
     bench: &'a Testbench,
     pace: Pace,
+    pacer: Pacer<'a>,
     /// What waits to be asked for.
     ready: VecDeque<Next>,
-    speed: Option<f64>,
     moves: u64,
     /// Moves that the machine was not given, so far.
     pub left_out: LeftOut,
@@ -35,7 +32,8 @@ impl<'a, R: BufRead> Control<'a, R> {
     #[must_use]
     pub fn new(stream: Stream<R>, machine: &'static dyn Moves, bench: &'a Testbench, pace: Pace) -> Control<'a, R> {
         let (ready, left_out, cut) = (VecDeque::new(), LeftOut::default(), CutWords::default());
-        Control { stream, machine, bench, pace, ready, speed: None, moves: 0, left_out, cut }
+        let pacer = Pacer::new(machine, bench.hardware(), pace);
+        Control { stream, machine, bench, pace, pacer, ready, moves: 0, left_out, cut }
     }
 
     /// Makes the words of the next move.
@@ -47,7 +45,7 @@ impl<'a, R: BufRead> Control<'a, R> {
             Some(Item::Dwell(_, seconds)) => {
                 // Beyond all that can be simulated the cast saturates.
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-                let clocks = (seconds * self.pace.clock_hz).round() as u64;
+                let clocks = self.pace.dwell(seconds) as u64;
                 self.ready.push_back(Next::Wait(clocks));
             }
             Some(Item::Move(of, blocks)) => self.move_by(of, blocks)?,
@@ -57,23 +55,17 @@ impl<'a, R: BufRead> Control<'a, R> {
 
     fn move_by(&mut self, of: ToolMove, blocks: Vec<PulseBlock>) -> Result<(), ObserverError> {
         self.moves += 1;
-        let whole: f64 = blocks.iter().map(|block| block.curve.length()).sum();
-        if let Some(first) = blocks.first() {
-            self.speed = commanded(self.pace, first, whole, self.speed);
-        }
+        self.pacer.begin(&blocks);
         for block in blocks {
             let mut length = block.curve.length();
-            let speed = own_speed(self.pace, self.speed);
-            let refused = |error| ProgramFailure::Block { line: of.place.line, error };
-            for part in self.machine.words(self.bench.hardware(), &block, speed.word).map_err(refused)? {
-                let (words, source_hz, limited) = self.paced(&block, part, speed);
-                let loaded = self.bench.load(&[words])?;
+            for paced in self.pacer.blocks(&block)? {
+                let loaded = self.bench.load(&[paced.block.words])?;
                 self.cut.take(of.place.line, &loaded.cut);
                 let part = Part {
                     length: std::mem::take(&mut length),
-                    commanded: self.speed,
-                    source_hz,
-                    limited,
+                    commanded: self.pacer.speed,
+                    source_hz: paced.source.map(|(_, hz)| hz),
+                    limited: paced.limited,
                     promise: self.machine.promise(self.bench.hardware(), &block),
                     chords: self.stream.chord_limit(),
                     ..Part::new(self.moves, block.clone())
@@ -83,20 +75,6 @@ impl<'a, R: BufRead> Control<'a, R> {
             }
         }
         Ok(())
-    }
-
-    /// All words of a block of the machine, the frequency of our pulse source in Hz, and whether the feed is out of reach.
-    fn paced(&self, block: &PulseBlock, part: HardwareBlock, speed: Rate) -> (Words, Option<f64>, bool) {
-        if let Pacing::Hardware { reads_speed } = self.machine.pacing() {
-            return (part.words, None, reads_speed && speed.limited);
-        }
-        let rate = rate(self.pace, self.machine, block, &part, self.speed);
-        let source_hz = frequency(self.pace, rate.word);
-        let feed = shown_feed(self.pace, self.speed, &part, source_hz);
-        let place = block.place();
-        let [shown, speed] = PROGRAM_WORDS;
-        let words = part.words.set(PULSE_RATE, rate.word).set(shown, place.number.unwrap_or(place.line));
-        (words.set(speed, feed), Some(source_hz), rate.limited)
     }
 }
 

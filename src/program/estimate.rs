@@ -3,10 +3,10 @@
 use std::io::BufRead;
 
 use stepwave_models::Hardware;
-use stepwave_models::program::{FASTEST_SPEED, Moves, Pacing};
+use stepwave_models::program::{Moves, Pacing};
 
 use super::ProgramFailure;
-use super::feed::{Pace, commanded, frequency, rate};
+use super::feed::{Pace, Paced, Pacer};
 use super::stream::{Item, Preparation, Stream};
 
 /// What a run of a program comes to, from its feeds and lengths.
@@ -41,32 +41,29 @@ impl Estimate {
         if let Pacing::Hardware { .. } = moves.pacing() {
             return Ok(None);
         }
-        let mut estimate = Estimate::default();
-        let mut speed = None;
+        let (mut estimate, mut pacer) = (Estimate::default(), Pacer::new(moves, hardware, pace));
         for item in Stream::new(text, moves, preparation)? {
             match item? {
-                Item::Dwell(_, seconds) => estimate.clocks += (seconds * pace.clock_hz).round(),
+                Item::Dwell(_, seconds) => estimate.clocks += pace.dwell(seconds),
                 Item::Stop(_) | Item::LeftOut(..) => {}
                 Item::Move(_, blocks) => {
-                    let whole: f64 = blocks.iter().map(|block| block.curve.length()).sum();
-                    if let Some(first) = blocks.first() {
-                        speed = commanded(pace, first, whole, speed);
-                    }
+                    pacer.begin(&blocks);
                     for block in &blocks {
-                        for part in moves.words(hardware, block, FASTEST_SPEED)? {
-                            let word = rate(pace, moves, block, &part, speed).word;
-                            let source_hz = frequency(pace, word);
-                            estimate.steps += part.steps;
-                            estimate.moving += part.steps.min(part.length * PULSES);
-                            // Where the source gives a pulse every 2^n clocks, its phase comes round.
-                            estimate.drifting += if word.is_power_of_two() { 0.0 } else { part.steps };
-                            // The next block is taken over in one clock.
-                            estimate.clocks += part.steps * pace.clock_hz / source_hz + 1.0;
-                        }
+                        pacer.blocks(block)?.iter().for_each(|paced| estimate.add(paced, pace));
                     }
                 }
             }
         }
         Ok(Some(estimate))
+    }
+
+    fn add(&mut self, Paced { block, source, .. }: &Paced, pace: Pace) {
+        let Some((word, source_hz)) = source else { return };
+        self.steps += block.steps;
+        self.moving += block.steps.min(block.length * PULSES);
+        // Where the source gives a pulse every 2^n clocks, its phase comes round.
+        self.drifting += if word.is_power_of_two() { 0.0 } else { block.steps };
+        // The next block is taken over in one clock.
+        self.clocks += block.steps * pace.clock_hz / source_hz + 1.0;
     }
 }
