@@ -1,30 +1,37 @@
-//! The FST writer: the names, times and samples of the VCD writer in a compressed file, through the crate `fst-writer`.
+//! The FST writer: the names, times and samples of the VCD writer in a compressed file.
 //!
 //! As there, edge k is at k periods, the clock falls half a period later, and the same run gives the same bytes on
 //! any machine: the header's date is empty. FST has no comment, so the file does not name model and options.
+//!
+//! A file is a header and sections. A section has the changes of each signal by themselves, as the columns of the
+//! samples do: a column is turned into packed changes without a look at the others.
 
-use std::io::{self, Cursor, Seek, SeekFrom, Write};
+mod chain;
+mod header;
+mod lz4;
+mod numbers;
+mod section;
+#[cfg(test)]
+mod tests;
+
+use std::io::{self, Seek, Write};
 use std::ops::Range;
-
-use ::vcd::VarType;
-use fst_writer::{
-    FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType, FstVarDirection,
-    FstVarType, FstWriteError,
-};
 
 use super::moves::{Moves, SPAN};
 use super::probe::Probe;
 use super::timescale::ClockTime;
-use super::vcd::{digits, has_range, variable_type};
+use super::vcd::digits;
 use super::wide::Wide;
+use chain::{Chain, Press};
+use header::Declared;
+use section::Times;
 use stepwave_netlist::Rows;
 
-/// Bytes of changes that are gathered in memory before a section of the file is written.
-const SECTION: usize = 32 << 20;
-/// Type of a block that holds changes.
-const CHANGES: u8 = 8;
-/// Place of the time at which the file begins, in the header block.
-const START_TIME: u64 = 9;
+/// Bytes of changes and times, before they are packed, after which a section ends.
+const SECTION: usize = 8 << 20;
+/// Bytes of changes of all signals that wait to be packed, and of those of one signal.
+const WAITING: usize = 4 << 20;
+const PIECE: usize = 1 << 16;
 
 /// What the header says.
 #[derive(Clone, Debug)]
@@ -37,51 +44,27 @@ pub struct FstHeader<'a> {
     pub clk: bool,
 }
 
-/// One dumped net.
-struct Change {
-    column: usize,
-    width: u32,
-    id: FstSignalId,
-}
-
-/// What the header declares.
-struct Declared<W: Write + Seek> {
-    body: FstBodyWriter<W>,
-    clk: Option<FstSignalId>,
-    changes: Vec<Change>,
-    wide: Wide<FstSignalId>,
-}
-
 /// Takes samples, block by block.
 pub struct FstBody<W: Write + Seek> {
-    body: FstBodyWriter<W>,
-    clk: Option<FstSignalId>,
-    changes: Vec<Change>,
+    out: W,
+    clk: bool,
+    /// The changes of every signal; those of the clock first, if it is dumped.
+    chains: Vec<Chain>,
+    /// The signals of at most 64 bits: column and place among the chains.
+    narrow: Vec<(usize, usize)>,
     moves: Moves,
-    wide: Wide<FstSignalId>,
-    /// Room for the digits of the widest word.
-    digits: Vec<u8>,
+    wide: Wide<usize>,
+    press: Press,
+    times: Times,
+    /// The values with which the section begins, a digit a byte, and its first time.
+    frame: Vec<u8>,
+    begin: u64,
+    sections: u64,
+    /// Bytes after which a section ends.
+    limit: usize,
     ticks: u64,
-    /// Place of the first block of changes in the file.
-    first_section: u64,
     /// First and last clock written.
     written: Option<(u64, u64)>,
-}
-
-fn io_error(error: FstWriteError) -> io::Error {
-    match error {
-        FstWriteError::Io(error) => error,
-        other => io::Error::other(format!("cannot write the FST file: {other}")),
-    }
-}
-
-fn fst_type(probe: &Probe) -> FstVarType {
-    match variable_type(probe) {
-        VarType::Integer => FstVarType::Integer,
-        VarType::Parameter => FstVarType::Parameter,
-        VarType::Reg => FstVarType::Reg,
-        _ => FstVarType::Wire,
-    }
 }
 
 impl FstHeader<'_> {
@@ -89,80 +72,28 @@ impl FstHeader<'_> {
     ///
     /// # Errors
     /// The output cannot be written.
-    pub fn write<W: Write + Seek>(&self, out: W) -> io::Result<FstBody<W>> {
-        // The crate does not report where the changes begin; an empty wave with the same header does.
-        let empty = self.declare(Cursor::new(Vec::new())).and_then(|empty| empty.body.finish()).map_err(io_error)?;
-        let first_section =
-            first_section(empty.get_ref()).ok_or_else(|| io::Error::other("the FST header is broken"))?;
-        let Declared { mut body, clk, changes, wide } = self.declare(out).map_err(io_error)?;
-        // Only changes are handed over.
-        body.set_deduplicate(false);
-        let moves = Moves::new(changes.iter().map(|change| change.column).collect());
-        let (ticks, written) = (self.time.ticks(), None);
-        let digits = vec![0; wide.words().map(|(_, width)| width).max().unwrap_or(0)];
-        Ok(FstBody { body, clk, changes, moves, wide, digits, ticks, first_section, written })
+    pub fn write<W: Write + Seek>(&self, mut out: W) -> io::Result<FstBody<W>> {
+        let declared = Declared::new(self);
+        out.write_all(&declared.blocks(self.time.exponent()))?;
+        let Declared { widths, narrow, wide, .. } = declared;
+        Ok(FstBody {
+            out,
+            clk: self.clk,
+            press: Press::new((WAITING / widths.len().max(1)).min(PIECE)),
+            // No value is known without a sample.
+            frame: vec![b'x'; widths.iter().map(|&width| width as usize).sum()],
+            chains: widths.into_iter().map(Chain::new).collect(),
+            moves: Moves::new(narrow.iter().map(|(column, _)| *column).collect()),
+            narrow,
+            wide: Wide::new(wide),
+            times: Times::default(),
+            begin: 0,
+            sections: 0,
+            limit: SECTION,
+            ticks: self.time.ticks(),
+            written: None,
+        })
     }
-
-    fn declare<W: Write + Seek>(&self, out: W) -> Result<Declared<W>, FstWriteError> {
-        let info = FstInfo {
-            start_time: 0,
-            timescale_exponent: self.time.exponent(),
-            version: format!("stepwave {}", env!("CARGO_PKG_VERSION")),
-            date: String::new(),
-            file_type: FstFileType::Verilog,
-        };
-        let mut head = FstHeaderWriter::new(out, &info)?;
-        let mut open: Vec<&str> = Vec::new();
-        let mut changes: Vec<Change> = Vec::new();
-        let mut wide: Vec<(&Probe, FstSignalId)> = Vec::new();
-        let mut clk = None;
-        let top = self.probes.first().map_or("top", |probe| probe.scopes[0].as_str());
-        if self.clk {
-            head.scope(top, "", FstScopeType::Module)?;
-            open.push(top);
-            let bit = FstSignalType::bit_vec(1);
-            clk = Some(head.var("clk", bit, FstVarType::Wire, FstVarDirection::Implicit, None)?);
-        }
-        for probe in self.probes {
-            let common = open.iter().zip(&probe.scopes).take_while(|(a, b)| *a == b).count();
-            for _ in common..open.len() {
-                head.up_scope()?;
-            }
-            open.truncate(common);
-            for scope in &probe.scopes[common..] {
-                head.scope(scope, "", FstScopeType::Module)?;
-                open.push(scope);
-            }
-            let width = probe.width;
-            let name = if has_range(probe) { format!("{} [{}:0]", probe.name, width - 1) } else { probe.name.clone() };
-            let narrow = |column: usize| changes.iter().find(|change| change.column == column).map(|change| change.id);
-            let known = match probe.columns[..] {
-                [column] => narrow(column),
-                _ => wide.iter().find(|(other, _)| other.columns == probe.columns).map(|(_, id)| *id),
-            };
-            let bits = FstSignalType::bit_vec(width);
-            let id = head.var(name, bits, fst_type(probe), FstVarDirection::Implicit, known)?;
-            match probe.columns[..] {
-                _ if known.is_some() => {}
-                [column] => changes.push(Change { column, width, id }),
-                _ => wide.push((probe, id)),
-            }
-        }
-        for _ in 0..open.len() {
-            head.up_scope()?;
-        }
-        Ok(Declared { body: head.finish()?, clk, changes, wide: Wide::new(wide) })
-    }
-}
-
-/// Where the first block of changes begins. A block is its type in a byte, its length after that byte, and the rest.
-fn first_section(file: &[u8]) -> Option<u64> {
-    let mut at = 0;
-    while *file.get(at)? != CHANGES {
-        let length = u64::from_be_bytes(*file.get(at + 1..)?.first_chunk()?);
-        at += 1 + usize::try_from(length).ok()?;
-    }
-    Some(at as u64)
 }
 
 impl<W: Write + Seek> FstBody<W> {
@@ -177,85 +108,113 @@ impl<W: Write + Seek> FstBody<W> {
         let clock = |row: usize| rows.first_clock() + row as u64;
         let last = clock(range.end - 1);
         if self.written.is_none() {
-            self.first(clock(range.start), rows, range.start).map_err(io_error)?;
+            self.first(clock(range.start), rows, range.start);
             self.written = Some((clock(range.start), last));
             range.start += 1;
         }
         for start in range.clone().step_by(SPAN) {
-            let end = range.end.min(start + SPAN);
-            self.moves.scan(rows, start..end);
-            self.wide.scan(rows, start..end);
-            for row in start..end {
-                self.row(clock(row), rows, row, row - start).map_err(io_error)?;
-            }
+            self.span(clock(start), rows, start..range.end.min(start + SPAN));
         }
         self.written = self.written.map(|(first, _)| (first, last));
-        // The crate takes the end of a section only in front of a new time.
-        if self.body.size() >= SECTION { self.body.flush().map_err(io_error) } else { Ok(()) }
+        let changes: usize = self.chains.iter().map(Chain::length).sum();
+        if changes + self.times.length() >= self.limit { self.section() } else { Ok(()) }
     }
 
-    /// The state with which the file begins. What is given before the first time counts from the beginning, which
-    /// `finish` sets.
-    fn first(&mut self, clock: u64, rows: &Rows, row: usize) -> Result<(), FstWriteError> {
-        if let Some(clk) = self.clk {
-            self.body.signal_change(clk, if clock == 0 { b"0" } else { b"1" })?;
-        }
+    /// The sample with which the file begins.
+    fn first(&mut self, clock: u64, rows: &Rows, row: usize) {
         self.moves.start(rows, row);
-        for change in &self.changes {
-            let now = rows.value(change.column, row);
-            self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
-        }
         self.wide.start(rows, row);
-        let words = self.wide.words().len();
-        for word in 0..words {
-            self.wide_change(word, rows, row)?;
-        }
-        if let (Some(clk), true) = (self.clk, clock > 0) {
-            self.body.time_change(clock * self.ticks + self.ticks / 2)?;
-            self.body.signal_change(clk, b"0")?;
-        }
-        Ok(())
-    }
-
-    /// Writes a row, the `sample`th of those scanned last.
-    fn row(&mut self, clock: u64, rows: &Rows, row: usize, sample: usize) -> Result<(), FstWriteError> {
-        let time = clock * self.ticks;
-        let groups = self.changes.chunks(SPAN).enumerate();
-        let words = 0..self.wide.words().len();
-        let quiet = groups.clone().all(|(group, _)| self.moves.bits(group, sample) == 0);
-        if self.clk.is_some() || !quiet || words.clone().any(|word| self.wide.moves(word, sample)) {
-            self.body.time_change(time)?;
-        }
-        if let Some(clk) = self.clk {
-            self.body.signal_change(clk, b"1")?;
-        }
-        for (group, changes) in groups {
-            let mut bits = self.moves.bits(group, sample);
-            while bits != 0 {
-                let change = &changes[bits.trailing_zeros() as usize];
-                bits &= bits - 1;
-                let now = rows.value(change.column, row);
-                self.body.signal_change(change.id, digits(change.width, now, &mut [0; 64]))?;
+        self.begin = clock * self.ticks;
+        self.set_frame();
+        if let (true, Some(clk)) = (self.clk, self.frame.first_mut()) {
+            *clk = if clock == 0 { b'0' } else { b'1' };
+            if clock > 0 {
+                self.times.push(clock * self.ticks + self.ticks / 2);
+                self.chains[0].span(&[0], 1, |_| 0, &mut self.press);
             }
         }
-        for word in words {
-            if self.wide.moves(word, sample) {
-                self.wide_change(word, rows, row)?;
-            }
-        }
-        if let Some(clk) = self.clk {
-            self.body.time_change(time + self.ticks / 2)?;
-            self.body.signal_change(clk, b"0")?;
-        }
-        Ok(())
     }
 
-    /// Writes the value of a word of more than 64 bits.
-    fn wide_change(&mut self, word: usize, rows: &Rows, row: usize) -> Result<(), FstWriteError> {
-        let (id, width) = self.wide.word(word);
-        let digits = &mut self.digits[..width];
-        self.wide.digits(word, rows, row, digits);
-        self.body.signal_change(id, digits)
+    /// Takes up to [`SPAN`] samples.
+    fn span(&mut self, clock: u64, rows: &Rows, range: Range<usize>) {
+        self.moves.scan_nets(rows, range.clone());
+        self.wide.scan_nets(rows, range.clone());
+        #[allow(clippy::cast_possible_truncation)]
+        let samples = range.len() as u32;
+        let base = self.times.count();
+        if self.clk {
+            let (mut rise, half) = (clock * self.ticks, self.ticks / 2);
+            for _ in 0..samples {
+                self.times.push(rise);
+                self.times.push(rise + half);
+                rise += self.ticks;
+            }
+            self.chains[0].clock(samples, base, &mut self.press);
+            self.changes(rows, range, |sample| base + 2 * sample);
+        } else {
+            let mut any = self.moves.any() | self.wide.any();
+            let moved = any;
+            while any != 0 {
+                self.times.push((clock + u64::from(any.trailing_zeros())) * self.ticks);
+                any &= any - 1;
+            }
+            self.changes(rows, range, |sample| base + (moved & ((1 << sample) - 1)).count_ones());
+        }
+    }
+
+    /// Hands the changes of samples to the chains of their signals.
+    fn changes(&mut self, rows: &Rows, range: Range<usize>, index: impl Fn(u32) -> u32) {
+        for (net, &(column, signal)) in self.narrow.iter().enumerate() {
+            let changes = self.moves.net(net);
+            if changes != 0 {
+                self.chains[signal].span(&rows.column(column)[range.clone()], changes, &index, &mut self.press);
+            }
+        }
+        for word in 0..self.wide.words().len() {
+            let mut changes = self.wide.changes(word);
+            while changes != 0 {
+                let sample = changes.trailing_zeros();
+                changes &= changes - 1;
+                let row = range.start + sample as usize;
+                let parts = self.wide.columns(word).iter().map(|&column| rows.value(column, row));
+                self.chains[self.wide.word(word).0].change(parts, index(sample), &mut self.press);
+            }
+        }
+    }
+
+    /// Takes the values of the last sample as those with which a section begins.
+    fn set_frame(&mut self) {
+        let mut parts: Vec<&mut [u8]> = Vec::with_capacity(self.chains.len());
+        let mut rest = &mut self.frame[..];
+        for chain in &self.chains {
+            let (part, after) = rest.split_at_mut(chain.width() as usize);
+            parts.push(part);
+            rest = after;
+        }
+        if self.clk {
+            // It falls after every sample.
+            parts[0].copy_from_slice(b"0");
+        }
+        for (net, &(_, signal)) in self.narrow.iter().enumerate() {
+            let width = self.chains[signal].width();
+            parts[signal].copy_from_slice(digits(width, self.moves.last(net), &mut [0; 64]));
+        }
+        for word in 0..self.wide.words().len() {
+            let signal = self.wide.word(word).0;
+            self.wide.last_digits(word, parts[signal]);
+        }
+    }
+
+    /// Ends a section; the next one begins at its last time.
+    fn section(&mut self) -> io::Result<()> {
+        let Self { begin, frame, times, chains, press, .. } = self;
+        let end = times.last();
+        let block = section::block(*begin, frame, times, chains, press);
+        self.out.write_all(&block)?;
+        self.sections += 1;
+        self.begin = end;
+        self.set_frame();
+        Ok(())
     }
 
     /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
@@ -264,16 +223,11 @@ impl<W: Write + Seek> FstBody<W> {
     /// The output cannot be written.
     pub fn finish(mut self) -> io::Result<W> {
         let (first, last) = self.written.unwrap_or_default();
-        self.body.time_change((last + 1) * self.ticks).map_err(io_error)?;
-        let mut out = self.body.finish().map_err(io_error)?;
-        // The crate lets every file begin at 0.
-        let start = (first * self.ticks).to_be_bytes();
-        for place in [START_TIME, self.first_section + START_TIME] {
-            out.seek(SeekFrom::Start(place))?;
-            out.write_all(&start)?;
-        }
-        out.seek(SeekFrom::End(0))?;
-        out.flush()?;
-        Ok(out)
+        let end = (last + 1) * self.ticks;
+        self.times.push(end);
+        self.section()?;
+        header::finish(&mut self.out, [first * self.ticks, end], self.sections)?;
+        self.out.flush()?;
+        Ok(self.out)
     }
 }

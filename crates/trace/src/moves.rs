@@ -37,10 +37,32 @@ impl Moves {
         }
     }
 
-    /// Takes the next samples, at most [`SPAN`].
+    /// Takes the next samples, at most [`SPAN`], to be asked for [bits](Self::bits).
     pub(super) fn scan(&mut self, rows: &Rows, range: Range<usize>) {
+        self.scan_nets(rows, range);
+        dispatch!(self.level, _simd => self.groups.iter_mut().for_each(turn_over));
+    }
+
+    /// Takes the next samples, at most [`SPAN`], to be asked for changes [net by net](Self::net).
+    pub(super) fn scan_nets(&mut self, rows: &Rows, range: Range<usize>) {
         let nets = self.columns.iter().map(|&column| &rows.column(column)[range.clone()]).zip(&mut self.last);
         dispatch!(self.level, _simd => scan(&mut self.groups, nets));
+    }
+
+    /// The samples in which a net changes: a bit each, the first the lowest.
+    #[inline]
+    pub(super) fn net(&self, net: usize) -> u64 {
+        self.groups.as_flattened()[net]
+    }
+
+    /// The samples in which some net changes, after [`scan_nets`](Self::scan_nets).
+    pub(super) fn any(&self) -> u64 {
+        self.groups.as_flattened().iter().fold(0, |any, changes| any | changes)
+    }
+
+    /// The value of a net in the sample looked at last.
+    pub(super) fn last(&self, net: usize) -> u64 {
+        self.last[net]
     }
 
     /// The nets of a group that change in a sample: a bit each, the first the lowest. Group `g` begins with net
@@ -60,7 +82,6 @@ fn scan<'r>(groups: &mut [[u64; SPAN]], nets: impl Iterator<Item = (&'r [u64], &
         groups[index / SPAN][index % SPAN] = changes(values, *before);
         *before = values.last().copied().unwrap_or(*before);
     }
-    groups.iter_mut().for_each(turn_over);
 }
 
 /// A bit for each value that is not the one before it, the first the lowest.
@@ -123,10 +144,16 @@ mod tests {
                     })
                     .collect();
                 scan(&mut moves.groups, columns.iter().map(Vec::as_slice).zip(&mut before));
+                let by_net = moves.groups.clone();
+                moves.groups.iter_mut().for_each(turn_over);
                 let changes = |sample, &net: &usize| moves.bits(net / SPAN, sample) >> (net % SPAN) & 1 == 1;
                 let found: Vec<Vec<usize>> =
                     (0..len).map(|sample| (0..nets).filter(|net| changes(sample, net)).collect()).collect();
                 assert_eq!(found, expected, "{nets} nets, {len} samples");
+                let changes = |sample, &net: &usize| by_net.as_flattened()[net] >> sample & 1 == 1;
+                let found: Vec<Vec<usize>> =
+                    (0..len).map(|sample| (0..nets).filter(|net| changes(sample, net)).collect()).collect();
+                assert_eq!(found, expected, "{nets} nets, {len} samples, net by net");
                 assert!((0..nets).all(|net| before[net] == columns[net][len - 1]));
             }
         }

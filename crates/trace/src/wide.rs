@@ -62,6 +62,29 @@ impl<I: Copy> Wide<I> {
         }
     }
 
+    /// Takes the next samples, at most [`SPAN`], to be asked for changes [word by word](Self::changes).
+    pub(super) fn scan_nets(&mut self, rows: &Rows, range: Range<usize>) {
+        if !self.words.is_empty() {
+            self.moves.scan_nets(rows, range);
+        }
+    }
+
+    /// The samples in which a word changes: a bit each, the first the lowest.
+    pub(super) fn changes(&self, word: usize) -> u64 {
+        let Word { columns, first, .. } = &self.words[word];
+        (*first..first + columns.len()).fold(0, |changes, net| changes | self.moves.net(net))
+    }
+
+    /// The samples in which some word changes, after [`scan_nets`](Self::scan_nets).
+    pub(super) fn any(&self) -> u64 {
+        self.moves.any()
+    }
+
+    /// Columns of a word, the lowest 64 bits first.
+    pub(super) fn columns(&self, word: usize) -> &[usize] {
+        &self.words[word].columns
+    }
+
     /// A part of a word changes in a sample of those scanned last.
     pub(super) fn moves(&self, word: usize, sample: usize) -> bool {
         let Word { columns, first, .. } = &self.words[word];
@@ -70,10 +93,19 @@ impl<I: Copy> Wide<I> {
 
     /// Writes the digits of a word, the highest first, into `out`, which has one byte for each.
     pub(super) fn digits(&self, word: usize, rows: &Rows, row: usize, out: &mut [u8]) {
-        let columns = &self.words[word].columns;
-        for (column, part) in columns.iter().zip(out.rchunks_mut(PART)) {
-            let width = u32::try_from(part.len()).unwrap_or(64);
-            part.copy_from_slice(digits(width, rows.value(*column, row), &mut [0; PART]));
-        }
+        digits_of(self.columns(word).iter().map(|&column| rows.value(column, row)), out);
+    }
+
+    /// The same in the sample looked at last.
+    pub(super) fn last_digits(&self, word: usize, out: &mut [u8]) {
+        let Word { columns, first, .. } = &self.words[word];
+        digits_of((*first..first + columns.len()).map(|net| self.moves.last(net)), out);
+    }
+}
+
+fn digits_of(parts: impl Iterator<Item = u64>, out: &mut [u8]) {
+    for (value, part) in parts.zip(out.rchunks_mut(PART)) {
+        let width = u32::try_from(part.len()).unwrap_or(64);
+        part.copy_from_slice(digits(width, value, &mut [0; PART]));
     }
 }
