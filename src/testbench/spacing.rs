@@ -47,6 +47,37 @@ struct Train {
     /// The first pulses and steps with which the axis was farthest off, and how far, as [`off`](Train::off) says.
     worst: (u64, u64),
     greatest: u128,
+    /// What eight samples make of it that complete a step each, by the bits of their pulses; empty where the numbers are
+    /// too large for it, or the axis has no constant rate.
+    octets: Vec<Octet>,
+}
+
+/// How far eight steps move an axis off the uniform rate, as [`Train::off`] counts: in all, and at least and at most right
+/// before one of their pulses.
+#[derive(Clone, Copy, Debug)]
+struct Octet {
+    least: i64,
+    greatest: i64,
+    all: i64,
+}
+
+/// Steps of a line up to which octets are used: eight words of them stay below [`NO_PULSE`].
+const OCTET_STEPS: i64 = 1 << 48;
+/// What an octet without a pulse has as its least number.
+const NO_PULSE: i64 = 1 << 60;
+
+/// The octets of an axis, by the bits of its pulses.
+fn octets(rate: Option<(i64, i64)>) -> Vec<Octet> {
+    let Some((all, travel)) = rate.filter(|(all, _)| *all <= OCTET_STEPS) else { return Vec::new() };
+    let octet = |pulses: u32| {
+        let (least, greatest, end) = (0..8).fold((NO_PULSE, -NO_PULSE, 0), |(least, greatest, off), sample| {
+            let is_pulse = pulses >> sample & 1 == 1;
+            let ends = if is_pulse { (off.min(least), off.max(greatest)) } else { (least, greatest) };
+            (ends.0, ends.1, off + if is_pulse { all - travel } else { -travel })
+        });
+        Octet { least, greatest, all: end }
+    };
+    (0..256).map(octet).collect()
 }
 
 impl Train {
@@ -96,13 +127,7 @@ impl Train {
         let Some((all, travel)) = self.rate else { return };
         let done = |index: u32| u64::from((stepped & !(u64::MAX << index)).count_ones());
         let before = self.off(self.pulses, steps);
-        // Both are far below 2^63: all of a line, at most 2^56, in each of 64 samples.
-        let (mut least, mut greatest, mut made, mut rest) = (i64::MAX, i64::MIN, 0, pulses);
-        while rest != 0 {
-            let off = made - travel * done(rest.trailing_zeros()).cast_signed();
-            (least, greatest, made) = (least.min(off), greatest.max(off), made + all);
-            rest &= rest - 1;
-        }
+        let [least, greatest] = self.ends(pulses, stepped, (all, travel));
         let (least, greatest) = (before + i128::from(least), before + i128::from(greatest + all - travel));
         if least.unsigned_abs().max(greatest.unsigned_abs()) > self.greatest {
             let (mut count, mut rest) = (self.pulses, pulses);
@@ -113,6 +138,29 @@ impl Train {
                 (count, rest) = (count + 1, rest & (rest - 1));
             }
         }
+    }
+
+    /// How far the axis is off right before one of these pulses, at least and at most, beyond what it was off before them.
+    #[inline(always)]
+    fn ends(&self, pulses: u64, stepped: u64, (all, travel): (i64, i64)) -> [i64; 2] {
+        if let (u64::MAX, Some(octets)) = (stepped, self.octets.first_chunk::<256>()) {
+            let (mut least, mut greatest, mut off) = (i64::MAX, i64::MIN, 0);
+            for pulses in pulses.to_le_bytes() {
+                let octet = octets[usize::from(pulses)];
+                (least, greatest) = (least.min(off + octet.least), greatest.max(off + octet.greatest));
+                off += octet.all;
+            }
+            return [least, greatest];
+        }
+        let done = |index: u32| u64::from((stepped & !(u64::MAX << index)).count_ones());
+        // Both are far below 2^63: all of a line, at most 2^56, in each of 64 samples.
+        let (mut least, mut greatest, mut made, mut rest) = (i64::MAX, i64::MIN, 0, pulses);
+        while rest != 0 {
+            let off = made - travel * done(rest.trailing_zeros()).cast_signed();
+            (least, greatest, made) = (least.min(off), greatest.max(off), made + all);
+            rest &= rest - 1;
+        }
+        [least, greatest]
     }
 
     // Counts of clocks and pulses are far below 2^53.
@@ -151,13 +199,10 @@ impl SpacingWatch {
         // A line of more steps comes to no end.
         let steps = bench.hardware().steps(&travels).and_then(|steps| i64::try_from(steps).ok());
         let steps = steps.filter(|steps| (1..=1 << 56).contains(steps));
-        let train = |&travel: &u64| Train {
-            rate: steps.zip(i64::try_from(travel).ok()).filter(|(steps, travel)| travel <= steps),
-            pulses: 0,
-            last: None,
-            spacing: [u64::MAX, 0],
-            worst: (0, 0),
-            greatest: 0,
+        let train = |&travel: &u64| {
+            let rate = steps.zip(i64::try_from(travel).ok()).filter(|(steps, travel)| travel <= steps);
+            let (spacing, worst, octets) = ([u64::MAX, 0], (0, 0), octets(rate));
+            Train { rate, pulses: 0, last: None, spacing, worst, greatest: 0, octets }
         };
         SpacingWatch {
             columns: StepColumns::of(bench),
