@@ -4,11 +4,11 @@ use fearless_simd::Level;
 
 use super::Compiled;
 use super::codegen::Plan;
-use super::layout::{RangeFrom, TrainFrom};
+use super::layout::{FormFrom, RangeFrom, TrainFrom};
 use super::native::Digester;
-use super::scan::{self, Found};
+use super::scan::{self, Found, Operand};
 use super::specialise::Specialised;
-use crate::digest::{Digest, Wanted};
+use crate::digest::{Digest, Form, Term};
 use crate::{Ahead, Engine, Extremes};
 use stepwave_netlist::cells::{Net, Netlist};
 
@@ -30,15 +30,10 @@ pub(super) struct LookedAt {
     clocks: u64,
 }
 
-/// A loop and what its records come to.
+/// A loop and how its lanes are looked at.
 struct DigestLoop {
     digester: Digester,
     level: Level,
-    /// Bits that are inverted in each lane.
-    turned_narrow: Vec<u32>,
-    turned_wide: Vec<i64>,
-    narrow: Vec<Found<u32>>,
-    wide: Vec<Found<i64>>,
 }
 
 impl Digests {
@@ -56,43 +51,30 @@ impl Digests {
 }
 
 impl DigestLoop {
-    fn of(digester: Digester, wanted: &Wanted) -> DigestLoop {
-        let (narrow, wide) = (vec![0; digester.layout.narrow], vec![0; digester.layout.wide]);
-        let (found_narrow, found_wide) = (Vec::new(), Vec::new());
-        let mut found = DigestLoop {
-            digester,
-            level: Level::new(),
-            turned_narrow: narrow,
-            turned_wide: wide,
-            narrow: found_narrow,
-            wide: found_wide,
-        };
-        found.turn(wanted);
-        found
-    }
-
-    /// Which bits are inverted in each lane; forms are signed as they are.
-    fn turn(&mut self, wanted: &Wanted) {
-        let layout = &self.digester.layout;
-        for (&(_, turned), from) in wanted.ranges.iter().zip(&layout.ranges) {
-            match from {
-                // No bit of a register of a narrow lane is above the 32nd.
-                RangeFrom::Narrow(lanes) => {
-                    lanes.iter().for_each(|&lane| self.turned_narrow[lane] = u32::try_from(turned).unwrap_or(0));
-                }
-                RangeFrom::Wide(lanes) => {
-                    lanes.iter().for_each(|&lane| self.turned_wide[lane] = (turned ^ HIGHEST).cast_signed());
-                }
-                RangeFrom::Values(_) | RangeFrom::Counter { .. } | RangeFrom::Train { .. } => {}
-            }
+    /// Extremes of values that are compared as unsigned numbers with the bits of `turned` inverted.
+    fn narrow(&self, lane: usize, turned: u64) -> Found<u64> {
+        // No bit of a register of a narrow lane is above the 32nd.
+        let turned = u32::try_from(turned).unwrap_or(0);
+        let found = scan::extremes(self.level, self.digester.narrow(lane), turned);
+        Found {
+            least: found.least.into(),
+            greatest: found.greatest.into(),
+            any: found.any.into(),
+            all: found.all.into(),
         }
     }
 
-    /// Extremes of the records of the last call.
-    fn scan(&mut self) {
-        let (narrow, wide, _) = self.digester.found();
-        scan::scan(self.level, narrow, &self.turned_narrow, &mut self.narrow);
-        scan::scan(self.level, wide, &self.turned_wide, &mut self.wide);
+    fn wide(&self, lane: usize, turned: u64) -> Found<u64> {
+        let found = scan::extremes(self.level, self.digester.wide(lane), (turned ^ HIGHEST).cast_signed());
+        let unsigned = |value: i64| value.cast_unsigned() ^ HIGHEST;
+        // Where the highest bit is inverted, it was 1 in any value where it was not 1 in all inverted ones.
+        let mixed = |low: i64, high: i64| low.cast_unsigned() & !HIGHEST | !high.cast_unsigned() & HIGHEST;
+        Found {
+            least: unsigned(found.least),
+            greatest: unsigned(found.greatest),
+            any: mixed(found.any, found.all),
+            all: mixed(found.all, found.any),
+        }
     }
 
     /// Extremes of a register that was `before` in the sample before the digest and is `after` in its last.
@@ -104,22 +86,20 @@ impl DigestLoop {
             first,
             toggled: any & !first | !all & first,
         };
+        let start = found(first, first, first, first);
         match from {
-            RangeFrom::Values(values) => {
-                let start = found(first, first, first, first);
-                values
-                    .iter()
-                    .map(|value| value ^ turned)
-                    .map(|value| found(value, value, value, value))
-                    .fold(start, Extremes::and)
-            }
+            RangeFrom::Values(values) => values
+                .iter()
+                .map(|value| value ^ turned)
+                .map(|value| found(value, value, value, value))
+                .fold(start, Extremes::and),
             RangeFrom::Train { train, value } => {
                 let full = u64::MAX >> (64 - self.digester.layout.span);
                 let is_set = trains[*train].iter().any(|&word| word != 0);
                 let is_clear = trains[*train].iter().any(|&word| word != full);
                 let seen = [(is_set, value ^ turned), (is_clear, turned)].into_iter().filter(|(seen, _)| *seen);
                 let each = seen.map(|(_, value)| found(value, value, value, value));
-                each.fold(found(first, first, first, first), Extremes::and)
+                each.fold(start, Extremes::and)
             }
             RangeFrom::Counter { .. } => {
                 let last = after ^ turned;
@@ -128,29 +108,20 @@ impl DigestLoop {
                 Extremes { least: first.min(last), greatest: first.max(last), first, toggled }
             }
             RangeFrom::Narrow(lanes) => {
-                let each = lanes.iter().map(|&lane| self.narrow[lane]);
-                each.map(|of| found(of.least.into(), of.greatest.into(), of.any.into(), of.all.into()))
-                    .reduce(Extremes::and)
-                    .unwrap_or_else(|| found(first, first, first, first))
+                let each = lanes.iter().map(|&lane| self.narrow(lane, turned));
+                each.fold(start, |all, of| all.and(found(of.least, of.greatest, of.any, of.all)))
             }
             RangeFrom::Wide(lanes) => {
-                let unsigned = |value: i64| value.cast_unsigned() ^ HIGHEST;
-                let each = lanes.iter().map(|&lane| self.wide[lane]);
-                // Where the highest bit is inverted, it was 1 in any value where it was not 1 in all inverted ones.
-                let mixed = |low: i64, high: i64| low.cast_unsigned() & !HIGHEST | !high.cast_unsigned() & HIGHEST;
-                each.map(|of| {
-                    let (any, all) = (mixed(of.any, of.all), mixed(of.all, of.any));
-                    found(unsigned(of.least), unsigned(of.greatest), any, all)
-                })
-                .reduce(Extremes::and)
-                .unwrap_or_else(|| found(first, first, first, first))
+                let each = lanes.iter().map(|&lane| self.wide(lane, turned));
+                each.fold(start, |all, of| all.and(found(of.least, of.greatest, of.any, of.all)))
             }
         }
     }
 
-    /// Puts the words of the last call into a digest; the first sample is the highest bit of what the code stores.
-    fn words(&self, digest: &mut Digest) {
-        let (layout, (_, _, words)) = (&self.digester.layout, self.digester.found());
+    /// Puts the trains of the last call into a digest; `before` is what a net was in the sample before. The first sample is
+    /// the highest bit of a word that the code stores.
+    fn trains(&self, digest: &mut Digest, before: impl Fn(Net) -> u64) {
+        let (layout, words) = (&self.digester.layout, self.digester.words());
         digest.span = layout.span;
         digest.trains.resize(layout.trains.len(), Vec::new());
         for (train, from) in digest.trains.iter_mut().zip(&layout.trains) {
@@ -161,7 +132,39 @@ impl DigestLoop {
                     let stored = words[index..].iter().step_by(layout.stored);
                     train.extend(stored.map(|word| word.reverse_bits() >> (64 - layout.span)));
                 }
+                TrainFrom::Moved { counter, lane, .. } => {
+                    // A counter of a narrow lane.
+                    let mut before = u32::try_from(before(counter)).unwrap_or(0);
+                    train.extend(self.digester.narrow(lane).as_chunks::<64>().0.iter().map(|values| {
+                        let word = scan::changes(self.level, values, before);
+                        before = values[63];
+                        word
+                    }));
+                }
             }
+        }
+    }
+
+    /// The extremes of a form of these terms.
+    fn form(&self, form: &Form, from: &FormFrom, netlist: &Netlist) -> [i64; 2] {
+        let both = |[least, greatest]: [i64; 2], [less, more]: [i64; 2]| [least.min(less), greatest.max(more)];
+        let none = [i64::MAX, i64::MIN];
+        match (from, form.terms()) {
+            (FormFrom::Pairs(pairs), [a, b]) => {
+                let operand = |term: &Term, lane: usize| Operand {
+                    values: self.digester.narrow(lane),
+                    bits: netlist.width(term.net).get(),
+                    linear: i32::try_from(term.linear).unwrap_or(0),
+                    squared: term.square != 0,
+                };
+                let each = pairs.iter().map(|&[x, y]| scan::form(self.level, [operand(a, x), operand(b, y)]));
+                each.fold(none, both)
+            }
+            (FormFrom::Wide(lanes), _) => {
+                let each = lanes.iter().map(|&lane| scan::extremes(self.level, self.digester.wide(lane), 0));
+                each.fold(none, |ends, of| both(ends, [of.least, of.greatest]))
+            }
+            (FormFrom::Pairs(_), _) => none,
         }
     }
 }
@@ -200,7 +203,7 @@ impl Compiled {
         let digester = Digester::compile(&plan, wanted);
         digests.specialised.phases.rotate_right(first);
         digests.unavailable = digester.is_none();
-        digests.loops[phase] = digester.map(|digester| DigestLoop::of(digester, wanted));
+        digests.loops[phase] = digester.map(|digester| DigestLoop { digester, level: Level::new() });
     }
 
     /// What the next samples come to.
@@ -243,8 +246,14 @@ impl Compiled {
     fn fill(&mut self, variant: usize, phase: usize, digest: &mut Digest) {
         let (Some(wanted), Some(digests)) = (&self.wanted, &mut self.variants[variant].digests) else { return };
         let Some(native) = &mut digests.loops[phase] else { return };
-        native.scan();
-        native.words(digest);
+        native.trains(digest, |net| self.word.value(net));
+        for (train, from) in digest.trains.iter().zip(&native.digester.layout.trains) {
+            // What the code did not carry.
+            if let TrainFrom::Moved { register: Some((place, value)), .. } = *from {
+                let is_set = train.last().is_some_and(|word| word >> 63 == 1);
+                self.state[place] = if is_set { value } else { 0 };
+            }
+        }
         digest.ranges.clear();
         for (&(net, turned), from) in wanted.ranges.iter().zip(&native.digester.layout.ranges) {
             let before = self.word.value(net);
@@ -252,14 +261,9 @@ impl Compiled {
             let after = place.map_or(before, |place| self.state[place]);
             digest.ranges.push(native.range(from, turned, [before, after], &digest.trains));
         }
+        let forms = wanted.forms.iter().zip(&native.digester.layout.forms);
         digest.forms.clear();
-        for lanes in &native.digester.layout.forms {
-            let each = lanes.iter().map(|&lane| native.wide[lane]);
-            let [least, greatest] = [i64::MAX, i64::MIN];
-            digest.forms.push(
-                each.fold([least, greatest], |[least, greatest], of| [least.min(of.least), greatest.max(of.greatest)]),
-            );
-        }
+        digest.forms.extend(forms.map(|(form, from)| native.form(form, from, self.design.netlist())));
     }
 
     /// Continues to the last sample of the digest.

@@ -3,14 +3,14 @@
 //! ```text
 //! entry:   one edge from the sample that the caller holds; guard
 //! word:    the words of all trains are 0
-//! phase 0: settle; abandon at a stop or flag; a bit into the word of each train, values into the record; edge; guard
+//! phase 0: settle; abandon at a stop or flag; a bit into the word of each train, values into lanes; edge; guard
 //!   …
 //! phase p-1: …; after as many rounds as a word has room for: store the words, leave after the last; back to word or
 //!          phase 0
 //! ```
 //!
 //! Where anything happens that the caller would have to see (a stop net, a flag, a guard) the loop is abandoned, and
-//! nothing of it counts. What is put into records, one a round, is only what extremes need: a register that counts in one
+//! nothing of it counts. What is put into lanes, a value a round, is only what extremes need: a register that counts in one
 //! direction has them at the ends, one that rests or goes through known values has none, and a value that a register
 //! has held since the phase before is there already.
 
@@ -21,24 +21,22 @@ use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, Value, types};
 use cranelift_frontend::FunctionBuilder;
 
 use super::codegen::{Generator, Phase, Plan, RegisterValues, immediate, kind, trusted};
-use super::layout::{
-    CLOCKS, Layout, NARROW, RangeFrom, SMALL_COUNTER, TrainFrom, WORDS, is_one, moves, only_value, stride,
-};
+use super::layout::{CLOCKS, FormFrom, Layout, RangeFrom, TrainFrom, WORDS};
 use crate::digest::{Form, Wanted};
 use stepwave_netlist::bits::Width;
-use stepwave_netlist::cells::{Net, Op};
+use stepwave_netlist::cells::Net;
 use stepwave_netlist::passes::Simplified;
 
 /// A loop that is being generated.
-struct Digesting<'a, 'c> {
-    generator: Generator<'a, 'c>,
-    plan: &'a Plan<'a>,
-    wanted: &'a Wanted,
-    layout: Layout,
+pub(super) struct Digesting<'a, 'c> {
+    pub(super) generator: Generator<'a, 'c>,
+    pub(super) plan: &'a Plan<'a>,
+    pub(super) wanted: &'a Wanted,
+    pub(super) layout: Layout,
     /// Where the loop goes when it is abandoned.
-    abandoned: Block,
-    /// Lanes used of the narrow and of the wide record.
-    lanes: [usize; 2],
+    pub(super) abandoned: Block,
+    /// The narrow lane of a net in a phase.
+    pub(super) narrow: HashMap<(Net, usize), usize>,
 }
 
 /// Loop-carried values other than the registers.
@@ -79,9 +77,10 @@ pub(super) fn generate(plan: &Plan<'_>, wanted: &Wanted, f: &mut FunctionBuilder
     let span = rounds * phases;
     let words = (1..=CLOCKS).map(|times| times * WORDS).find(|words| (words * span).is_multiple_of(CLOCKS))?;
     let layout = Layout { span, rounds, words, ..Layout::default() };
-    let mut digesting = Digesting { generator, plan, wanted, layout, abandoned, lanes: [0; 2] };
+    let mut digesting = Digesting { generator, plan, wanted, layout, abandoned, narrow: HashMap::new() };
     digesting.place();
     digesting.body(start, [narrow, wide, out])?;
+    digesting.moved_lanes();
     let f = digesting.generator.f;
     f.switch_to_block(abandoned);
     let none = f.ins().iconst(types::I64, 0);
@@ -90,120 +89,6 @@ pub(super) fn generate(plan: &Plan<'_>, wanted: &Wanted, f: &mut FunctionBuilder
 }
 
 impl Digesting<'_, '_> {
-    /// Decides where ranges and trains come from; lanes are given as values are recorded.
-    fn place(&mut self) {
-        for &(net, _) in &self.wanted.ranges {
-            let from = self.range(net);
-            self.layout.ranges.push(from);
-        }
-        for &net in &self.wanted.trains {
-            let from = match self.pattern(net) {
-                Some(pattern) => TrainFrom::Pattern(pattern),
-                None => {
-                    self.layout.stored += 1;
-                    TrainFrom::Stored(self.layout.stored - 1)
-                }
-            };
-            self.layout.trains.push(from);
-        }
-        self.layout.forms = vec![Vec::new(); self.wanted.forms.len()];
-    }
-
-    fn range(&self, net: Net) -> RangeFrom {
-        let phases = &self.plan.phases;
-        let constants: Option<BTreeSet<u64>> = phases.iter().map(|phase| phase.logic.constant(net)).collect();
-        if let Some(values) = constants {
-            return RangeFrom::Values(values);
-        }
-        let next = self.plan.registers.iter().find(|(register, _)| *register == net).map_or(net, |(_, next)| *next);
-        let moved = phases.iter().map(|Phase { logic, .. }| moves(&logic.netlist, logic.net(net), logic.net(next)));
-        let directions = moved.reduce(|a, b| {
-            let ([down, up], [further_down, further_up]) = (a?, b?);
-            Some([down | further_down, up | further_up])
-        });
-        match directions.flatten() {
-            Some([false, false]) => return RangeFrom::Values(BTreeSet::new()),
-            Some([down, up]) if down != up && self.width(net).get() > SMALL_COUNTER => {
-                return RangeFrom::Counter { up };
-            }
-            _ => {}
-        }
-        if let (Some(train), Some(value)) = (self.wanted.trains.iter().position(|&train| train == net), self.only(next))
-        {
-            return RangeFrom::Train { train, value };
-        }
-        if self.width(net).get() <= NARROW { RangeFrom::Narrow(Vec::new()) } else { RangeFrom::Wide(Vec::new()) }
-    }
-
-    /// The only value but 0 of a net in all phases.
-    fn only(&self, net: Net) -> Option<u64> {
-        let each = self.plan.phases.iter().map(|Phase { logic, .. }| only_value(&logic.netlist, logic.net(net)));
-        let values: BTreeSet<u64> = each.collect::<Option<_>>()?;
-        let mut values = values.into_iter().filter(|&value| value != 0);
-        let value = values.next()?;
-        values.next().is_none().then_some(value)
-    }
-
-    /// A flag cannot be 1: it would be the overflow of a register that counts and comes to no end of its range.
-    fn is_excluded(&self, logic: &Simplified, flag: Net) -> bool {
-        let netlist = &logic.netlist;
-        let counter = |register: Net, by: Net, up: bool, signed: bool| {
-            let counts = |(&(net, turned), from): (&(Net, u64), &RangeFrom)| {
-                logic.net(net) == register
-                    && matches!(from, RangeFrom::Counter { up: counts_up } if *counts_up == up)
-                    && (turned != 0) == signed
-            };
-            is_one(netlist, by) && self.wanted.ranges.iter().zip(&self.layout.ranges).any(counts)
-        };
-        match netlist.cell(flag).op {
-            Op::Const(0) => true,
-            Op::And(a, b) => self.is_excluded(logic, a) || self.is_excluded(logic, b),
-            Op::Or(a, b) => self.is_excluded(logic, a) && self.is_excluded(logic, b),
-            Op::AddOverflow(a, b) => counter(a, b, true, true) || counter(b, a, true, true),
-            Op::SubOverflow(a, b) => counter(a, b, false, true),
-            Op::Carry(a, b) => counter(a, b, true, false) || counter(b, a, true, false),
-            Op::Borrow(a, b) => counter(a, b, false, false),
-            _ => false,
-        }
-    }
-
-    /// The value of a train where it is not 0, if there is but one.
-    fn known_pulse(&self, net: Net) -> Option<u64> {
-        let mut ranges = self.wanted.ranges.iter().zip(&self.layout.ranges);
-        ranges.find_map(|((register, _), from)| match from {
-            RangeFrom::Train { value, .. } if *register == net => Some(*value),
-            _ => None,
-        })
-    }
-
-    fn width(&self, net: Net) -> Width {
-        self.plan.entry.netlist.width(self.plan.entry.net(net))
-    }
-
-    /// The words of a train that is the same constant in each round.
-    fn pattern(&self, net: Net) -> Option<u64> {
-        let phases = self.plan.phases.iter();
-        let bits: Option<Vec<bool>> = phases.map(|phase| Some(phase.logic.constant(net)? != 0)).collect();
-        let bits = bits?;
-        let set = (0..self.layout.span).filter(|sample| bits[sample % bits.len()]);
-        Some(set.fold(0, |word, sample| word | 1 << sample))
-    }
-
-    /// A register is its own next value in the phase before this one.
-    fn kept(&self, net: Net, phase: usize) -> bool {
-        let before = &self.plan.phases[(phase + self.plan.phases.len() - 1) % self.plan.phases.len()];
-        let register = self.plan.registers.iter().find(|(register, _)| *register == net);
-        let changed = |&&(_, next): &&(Net, Net)| before.logic.net(net) != before.logic.net(next);
-        register.is_some_and(|register| !changed(&register) && !before.fixed.contains_key(&net))
-    }
-
-    /// A register changes in the loop, and its value in the first phase is not known.
-    fn is_carried(&self, index: usize) -> bool {
-        let (net, next) = self.plan.registers[index];
-        let holds = |Phase { logic, fixed }: &Phase| !fixed.contains_key(&net) && logic.net(net) == logic.net(next);
-        !self.plan.phases[0].fixed.contains_key(&net) && !self.plan.phases.iter().all(holds)
-    }
-
     fn body(&mut self, start: RegisterValues, [narrow, wide, out]: [Value; 3]) -> Option<()> {
         let plan = self.plan;
         let widths: Vec<Width> = plan.registers.iter().map(|&(net, _)| self.width(net)).collect();
@@ -339,41 +224,70 @@ impl Digesting<'_, '_> {
         }
     }
 
-    /// Puts the values of registers and forms that may be new in this phase into the records.
+    /// Puts the values of registers and forms that may be new in this phase into lanes.
     fn record(&mut self, number: usize, phase: &Phase, values: &HashMap<Net, Value>, [narrow, wide]: [Value; 2]) {
         for (index, &(net, _)) in self.wanted.ranges.iter().enumerate() {
             let recorded = matches!(self.layout.ranges[index], RangeFrom::Narrow(_) | RangeFrom::Wide(_));
             if !recorded || self.kept(net, number) {
                 continue;
             }
-            let value = self.generator.wide(values[&phase.logic.net(net)]);
             let is_narrow = matches!(self.layout.ranges[index], RangeFrom::Narrow(_));
-            let lane = if is_narrow { self.narrow_lane(narrow, value) } else { self.wide_lane(wide, value) };
+            let lane = if is_narrow {
+                self.narrow_lane(narrow, net, number, &phase.logic, values)
+            } else {
+                let value = self.generator.wide(values[&phase.logic.net(net)]);
+                self.wide_lane(wide, value)
+            };
             if let RangeFrom::Narrow(lanes) | RangeFrom::Wide(lanes) = &mut self.layout.ranges[index] {
                 lanes.push(lane);
             }
         }
         for (index, form) in self.wanted.forms.iter().enumerate() {
-            if !form.terms().iter().all(|term| self.kept(term.net, number)) {
-                let value = self.form(form, &phase.logic, values);
-                let lane = self.wide_lane(wide, value);
-                self.layout.forms[index].push(lane);
+            if form.terms().iter().all(|term| self.kept(term.net, number)) {
+                continue;
+            }
+            if let ([a, b], FormFrom::Pairs(_)) = (form.terms(), &self.layout.forms[index]) {
+                let lanes = [a, b].map(|term| self.narrow_lane(narrow, term.net, number, &phase.logic, values));
+                if let FormFrom::Pairs(pairs) = &mut self.layout.forms[index] {
+                    pairs.push(lanes);
+                }
+                continue;
+            }
+            let value = self.form(form, &phase.logic, values);
+            let lane = self.wide_lane(wide, value);
+            if let FormFrom::Wide(lanes) = &mut self.layout.forms[index] {
+                lanes.push(lane);
             }
         }
     }
 
-    fn narrow_lane(&mut self, record: Value, value: Value) -> usize {
-        let lane = self.lanes[0];
-        self.lanes[0] += 1;
+    /// The lane that the value of a net in a phase is put into.
+    fn narrow_lane(
+        &mut self,
+        place: Value,
+        net: Net,
+        phase: usize,
+        logic: &Simplified,
+        values: &HashMap<Net, Value>,
+    ) -> usize {
+        if let Some(&lane) = self.narrow.get(&(net, phase)) {
+            return lane;
+        }
+        let lane = self.layout.narrow;
+        self.layout.narrow += 1;
+        self.narrow.insert((net, phase), lane);
+        let value = self.generator.wide(values[&logic.net(net)]);
         let value = self.generator.f.ins().ireduce(types::I32, value);
-        self.generator.f.ins().store(trusted(), value, record, i32::try_from(4 * lane).unwrap_or(i32::MAX));
+        let offset = i32::try_from(4 * lane * self.layout.region()).unwrap_or(i32::MAX);
+        self.generator.f.ins().store(trusted(), value, place, offset);
         lane
     }
 
-    fn wide_lane(&mut self, record: Value, value: Value) -> usize {
-        let lane = self.lanes[1];
-        self.lanes[1] += 1;
-        self.generator.f.ins().store(trusted(), value, record, i32::try_from(8 * lane).unwrap_or(i32::MAX));
+    fn wide_lane(&mut self, place: Value, value: Value) -> usize {
+        let lane = self.layout.wide;
+        self.layout.wide += 1;
+        let offset = i32::try_from(8 * lane * self.layout.region()).unwrap_or(i32::MAX);
+        self.generator.f.ins().store(trusted(), value, place, offset);
         lane
     }
 
@@ -400,16 +314,17 @@ impl Digesting<'_, '_> {
 
     /// Counts the round; after the last of a word stores the words, and after the last word leaves.
     fn end_of_round(&mut self, sample: &RegisterValues, now: Carried, [word, round]: [Block; 2], next: Vec<Value>) {
-        (self.layout.narrow, self.layout.wide) = (stride(self.lanes[0]), stride(self.lanes[1]));
         let (full, finished, further) = {
             let f = &mut *self.generator.f;
             (f.create_block(), f.create_block(), f.create_block())
         };
-        let [narrow_bytes, wide_bytes, word_bytes] =
-            [4 * self.layout.narrow, 8 * self.layout.wide, 8 * self.layout.stored].map(|bytes| bytes as i64);
+        let word_bytes = 8 * self.layout.stored as i64;
+        let [narrow_bytes, wide_bytes] =
+            [(self.layout.narrow, 4), (self.layout.wide, 8)].map(|(lanes, bytes)| if lanes > 0 { bytes } else { 0 });
         let f = &mut *self.generator.f;
-        let narrow = f.ins().iadd_imm(now.narrow, narrow_bytes);
-        let wide = f.ins().iadd_imm(now.wide, wide_bytes);
+        let mut advance = |place: Value, bytes: i64| if bytes > 0 { f.ins().iadd_imm(place, bytes) } else { place };
+        let (narrow, wide) = (advance(now.narrow, narrow_bytes), advance(now.wide, wide_bytes));
+        let f = &mut *self.generator.f;
         let rounds = f.ins().iadd_imm(now.rounds, -1);
         let after = Carried { narrow, wide, rounds, ..now };
         let again: Vec<BlockArg> = next.iter().map(|&value| value.into()).chain(after.arguments()).collect();

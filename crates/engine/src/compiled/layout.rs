@@ -24,9 +24,9 @@ pub(super) enum RangeFrom {
     Counter { up: bool },
     /// It is 0, or this value where the train says so.
     Train { train: usize, value: u64 },
-    /// Lanes of the narrow record.
+    /// Narrow lanes.
     Narrow(Vec<usize>),
-    /// Lanes of the wide record.
+    /// Wide lanes.
     Wide(Vec<usize>),
 }
 
@@ -37,6 +37,18 @@ pub(super) enum TrainFrom {
     Pattern(u64),
     /// The n-th of the words stored.
     Stored(usize),
+    /// It is not 0 where a counter is another than in the sample before, which is in a narrow lane. Where `register` is
+    /// some, the code does not know what the train's own net, a register, comes to: 0, or this value.
+    Moved { counter: Net, lane: usize, register: Option<(usize, u64)> },
+}
+
+/// Where the values of a form come from.
+#[derive(Clone, Debug)]
+pub(super) enum FormFrom {
+    /// The two terms of it, from pairs of narrow lanes.
+    Pairs(Vec<[usize; 2]>),
+    /// Wide lanes.
+    Wide(Vec<usize>),
 }
 
 /// Where the code puts what is wanted.
@@ -48,9 +60,8 @@ pub(super) struct Layout {
     pub(super) words: usize,
     pub(super) ranges: Vec<RangeFrom>,
     pub(super) trains: Vec<TrainFrom>,
-    /// Lanes of the wide record with values of each form.
-    pub(super) forms: Vec<Vec<usize>>,
-    /// Values from one record to the next.
+    pub(super) forms: Vec<FormFrom>,
+    /// Lanes: of each, a value a round.
     pub(super) narrow: usize,
     pub(super) wide: usize,
     /// Words stored for each word of a train.
@@ -58,10 +69,20 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Values in the narrow records, in the wide ones, and words, of a digest.
+    /// Values of a lane.
+    pub(super) fn records(&self) -> usize {
+        self.words * self.rounds
+    }
+
+    /// From one lane to the next, in values: a line of the cache more, so that the values of a round do not all fall into
+    /// the same set of it.
+    pub(super) fn region(&self) -> usize {
+        self.records() + 16
+    }
+
+    /// Values of all narrow lanes, of all wide ones, and words, of a digest.
     pub(super) fn room(&self) -> [usize; 3] {
-        let records = self.words * self.rounds;
-        [records * self.narrow, records * self.wide, self.words * self.stored]
+        [self.region() * self.narrow, self.region() * self.wide, self.words * self.stored]
     }
 
     /// Samples of a digest.
@@ -70,14 +91,9 @@ impl Layout {
     }
 }
 
-/// Values from one record of this many lanes to the next, so that records fill vectors of 8 values: a power of two, or a
-/// multiple of 8.
-pub(super) fn stride(lanes: usize) -> usize {
-    match lanes {
-        0 => 0,
-        1..=8 => lanes.next_power_of_two(),
-        _ => lanes.next_multiple_of(8),
-    }
+/// A net is 1 in every sample.
+fn is_const_one(netlist: &Netlist, net: Net) -> bool {
+    is_one(netlist, net) && !matches!(netlist.cell(net).op, Op::ZeroExtend(_))
 }
 
 /// A net is 0 or 1.
@@ -87,6 +103,36 @@ pub(super) fn is_one(netlist: &Netlist, net: Net) -> bool {
         Op::ZeroExtend(bit) => netlist.width(bit) == Width::ONE,
         // As extended from a width in which it is not the sign.
         Op::SignExtend(of) => matches!(netlist.cell(of).op, Op::Const(1)) && netlist.width(of) > Width::ONE,
+        _ => false,
+    }
+}
+
+/// The bit that a net is 0 without, and one value with.
+pub(super) fn bit_of(netlist: &Netlist, net: Net) -> Option<Net> {
+    match netlist.cell(net).op {
+        _ if netlist.width(net) == Width::ONE => Some(net),
+        Op::ZeroExtend(of) => bit_of(netlist, of),
+        Op::Concat { high, low } if high == low => bit_of(netlist, low),
+        Op::Concat { high, low } => match [netlist.cell(high).op, netlist.cell(low).op] {
+            [Op::Const(0), _] => bit_of(netlist, low),
+            [_, Op::Const(0)] => bit_of(netlist, high),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// A register moves by one, in one direction, where this bit is 1 and in no other sample.
+pub(super) fn moves_with(netlist: &Netlist, register: Net, next: Net, bit: Net) -> bool {
+    let is_bit = |net: Net| matches!(netlist.cell(net).op, Op::ZeroExtend(of) if of == bit);
+    match netlist.cell(next).op {
+        Op::Add(a, b) => a == register && is_bit(b) || b == register && is_bit(a),
+        Op::Sub(a, b) => a == register && is_bit(b),
+        Op::Mux { select, high, low } if select == bit && low == register => match netlist.cell(high).op {
+            Op::Add(a, b) => a == register && is_const_one(netlist, b) || b == register && is_const_one(netlist, a),
+            Op::Sub(a, b) => a == register && is_const_one(netlist, b),
+            _ => false,
+        },
         _ => false,
     }
 }

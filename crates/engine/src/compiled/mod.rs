@@ -17,6 +17,7 @@ mod memory;
 mod native;
 mod operation;
 mod passing;
+mod placing;
 mod scan;
 mod specialise;
 

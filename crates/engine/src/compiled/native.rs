@@ -216,8 +216,18 @@ impl Digester {
         whole == 1
     }
 
-    /// Records of the call before, narrow and wide, and the words of trains.
-    pub(super) fn found(&self) -> (&[u32], &[i64], &[u64]) {
-        (&self.narrow, &self.wide, &self.words)
+    /// A narrow lane of the last call.
+    pub(super) fn narrow(&self, lane: usize) -> &[u32] {
+        &self.narrow[lane * self.layout.region()..][..self.layout.records()]
+    }
+
+    /// A wide lane of the last call.
+    pub(super) fn wide(&self, lane: usize) -> &[i64] {
+        &self.wide[lane * self.layout.region()..][..self.layout.records()]
+    }
+
+    /// The words of trains of the last call.
+    pub(super) fn words(&self) -> &[u64] {
+        &self.words
     }
 }

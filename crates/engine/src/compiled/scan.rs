@@ -1,6 +1,8 @@
-//! Extremes of records: values of several lanes, one record after another.
+//! What lanes of values come to: extremes, the extremes of a form, the samples in which one changes. Loops that compilers
+//! make vectors of.
 
 use fearless_simd::{Level, dispatch};
+use stepwave_netlist::packed;
 
 /// Least, greatest, the bits that were 1 in any and in all values of a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,19 +11,6 @@ pub(super) struct Found<T> {
     pub(super) greatest: T,
     pub(super) any: T,
     pub(super) all: T,
-}
-
-impl<T: Lane> Found<T> {
-    const NONE: Found<T> = Found { least: T::GREATEST, greatest: T::LEAST, any: T::ZERO, all: T::ONES };
-
-    fn and(self, other: Found<T>) -> Found<T> {
-        Found {
-            least: self.least.min(other.least),
-            greatest: self.greatest.max(other.greatest),
-            any: self.any | other.any,
-            all: self.all & other.all,
-        }
-    }
 }
 
 /// A number that lanes hold.
@@ -58,88 +47,145 @@ impl Lane for i64 {
     }
 }
 
-/// Values of a vector, or several.
-const SPAN: usize = 8;
+/// What the values of a lane come to, with the bits of `turned` inverted in each.
+pub(super) fn extremes<T: Lane>(level: Level, values: &[T], turned: T) -> Found<T> {
+    dispatch!(level, _simd => found(values, turned))
+}
 
-/// What each lane of records came to, with the bits of `turned` inverted in every value. A record has `turned.len()`
-/// lanes: a power of two up to 8, or a multiple of 8.
-pub(super) fn scan<T: Lane>(level: Level, records: &[T], turned: &[T], found: &mut Vec<Found<T>>) {
-    found.clear();
-    if turned.is_empty() {
-        return;
-    }
-    for first in (0..turned.len()).step_by(SPAN) {
-        let mut by = [T::ZERO; SPAN];
-        for (lane, by) in by.iter_mut().enumerate() {
-            *by = turned[(first + lane) % turned.len()];
-        }
-        let [least, greatest, any, all] = dispatch!(level, _simd => group(records, first, turned.len().max(SPAN), by));
-        let sums: [Found<T>; SPAN] = std::array::from_fn(|lane| Found {
-            least: least[lane],
-            greatest: greatest[lane],
-            any: any[lane],
-            all: all[lane],
-        });
-        let lanes = turned.len().min(SPAN);
-        let of = |lane: usize| sums[lane..].iter().step_by(lanes).fold(Found::NONE, |sum, other| sum.and(*other));
-        found.extend((0..lanes).map(of));
+#[inline(always)]
+fn found<T: Lane>(values: &[T], turned: T) -> Found<T> {
+    let none = Found { least: T::GREATEST, greatest: T::LEAST, any: T::ZERO, all: T::ONES };
+    values.iter().map(|value| value.turned(turned)).fold(none, |found, value| Found {
+        least: found.least.min(value),
+        greatest: found.greatest.max(value),
+        any: found.any | value,
+        all: found.all & value,
+    })
+}
+
+/// A term of a form: the values of its net, of this many bits in two's complement, and the factors of the number and of
+/// its square.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Operand<'a> {
+    pub(super) values: &'a [u32],
+    pub(super) bits: u32,
+    pub(super) linear: i32,
+    pub(super) squared: bool,
+}
+
+/// The least and the greatest sum of two terms, which stays within ±2^62.
+pub(super) fn form(level: Level, terms: [Operand<'_>; 2]) -> [i64; 2] {
+    match terms.map(|term| (term.linear != 0, term.squared)) {
+        [(_, false), (_, false)] => dispatch!(level, _simd => sums::<true, false>(terms)),
+        [(false, true), (false, true)] => dispatch!(level, _simd => sums::<false, true>(terms)),
+        _ => dispatch!(level, _simd => sums::<true, true>(terms)),
     }
 }
 
-/// Eight values from `first` on of each `stride` values: least, greatest, or, and. Returned as arrays, which compilers
-/// keep in vectors.
+/// The ends of the sum. Where no term has a linear factor, or a square, that need not be computed.
 #[inline(always)]
-fn group<T: Lane>(records: &[T], first: usize, stride: usize, turned: [T; SPAN]) -> [[T; SPAN]; 4] {
-    let (mut least, mut greatest) = ([T::GREATEST; SPAN], [T::LEAST; SPAN]);
-    let (mut any, mut all) = ([T::ZERO; SPAN], [T::ONES; SPAN]);
-    for record in records.chunks_exact(stride) {
-        let (values, _) = record[first..].as_chunks::<SPAN>();
-        let Some(values) = values.first() else { continue };
-        for lane in 0..SPAN {
-            let value = values[lane].turned(turned[lane]);
-            least[lane] = least[lane].min(value);
-            greatest[lane] = greatest[lane].max(value);
-            any[lane] = any[lane] | value;
-            all[lane] = all[lane] & value;
-        }
+fn sums<const LINEAR: bool, const SQUARE: bool>([a, b]: [Operand<'_>; 2]) -> [i64; 2] {
+    let number = |value: u32, of: Operand<'_>| ((value << (32 - of.bits)).cast_signed()) >> (32 - of.bits);
+    let term = |value: u32, of: Operand<'_>, squared: i32| {
+        let number = number(value, of);
+        let linear = if LINEAR { i64::from(number) * i64::from(of.linear) } else { 0 };
+        let square = if SQUARE { i64::from(number) * i64::from(number & squared) } else { 0 };
+        linear.wrapping_add(square)
+    };
+    let squared = |of: Operand<'_>| if of.squared { -1 } else { 0 };
+    let masks = [squared(a), squared(b)];
+    let sums = a.values.iter().zip(b.values);
+    let sums = sums.map(|(x, y)| term(*x, a, masks[0]).wrapping_add(term(*y, b, masks[1])));
+    let (least, greatest) =
+        sums.fold((i64::MAX, i64::MIN), |(least, greatest), sum| (least.min(sum), greatest.max(sum)));
+    [least, greatest]
+}
+
+/// A bit for each of 64 values, the first the lowest: 1 where it is another than the one before, the first of which follows
+/// `before`.
+pub(super) fn changes(level: Level, values: &[u32; 64], before: u32) -> u64 {
+    dispatch!(level, _simd => changed(values, before))
+}
+
+#[inline(always)]
+fn changed(values: &[u32; 64], before: u32) -> u64 {
+    let mut flags = [0; 64];
+    for index in 1..64 {
+        flags[index] = u8::from(values[index] != values[index - 1]);
     }
-    [least, greatest, any, all]
+    flags[0] = u8::from(values[0] != before);
+    packed(&flags)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Every number of lanes, and values on all sides, against one lane after another.
-    #[test]
-    fn each_lane_has_its_own_extremes() {
+    fn values(count: usize) -> Vec<u32> {
         let mut seed = 1u64;
-        for lanes in [1, 2, 4, 8, 16, 24] {
-            let values: Vec<u32> = (0..lanes * 64)
-                .map(|_| {
-                    seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                    u32::try_from(seed >> 40).unwrap() << (seed & 8)
-                })
-                .collect();
-            let turned: Vec<u32> = (0..lanes).map(|lane| if lane % 3 == 0 { 1 << 31 } else { 0 }).collect();
-            let mut found = Vec::new();
-            scan(Level::new(), &values, &turned, &mut found);
-            assert_eq!(found.len(), lanes);
-            let signed: Vec<i64> = values.iter().map(|&value| i64::from(value) - (1 << 30)).collect();
-            let mut signed_found = Vec::new();
-            scan(Level::new(), &signed, &vec![0; lanes], &mut signed_found);
-            for lane in 0..lanes {
-                let of = || values[lane..].iter().step_by(lanes).map(|value| value ^ turned[lane]);
-                let expected = Found {
-                    least: of().min().unwrap(),
-                    greatest: of().max().unwrap(),
-                    any: of().reduce(|a, b| a | b).unwrap(),
-                    all: of().reduce(|a, b| a & b).unwrap(),
+        let next = |_| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            u32::try_from(seed >> 40).unwrap() << (seed & 8)
+        };
+        (0..count).map(next).collect()
+    }
+
+    #[test]
+    fn extremes_are_those_of_all_values() {
+        let values = values(320);
+        for turned in [0, 1 << 31] {
+            let of = || values.iter().map(|value| value ^ turned);
+            let expected = Found {
+                least: of().min().unwrap(),
+                greatest: of().max().unwrap(),
+                any: of().reduce(|a, b| a | b).unwrap(),
+                all: of().reduce(|a, b| a & b).unwrap(),
+            };
+            assert_eq!(extremes(Level::new(), &values, turned), expected);
+        }
+        let signed: Vec<i64> = values.iter().map(|&value| i64::from(value) - (1 << 30)).collect();
+        let found = extremes(Level::new(), &signed, 0);
+        assert_eq!(
+            (Some(found.least), Some(found.greatest)),
+            (signed.iter().copied().min(), signed.iter().copied().max())
+        );
+    }
+
+    #[test]
+    fn forms_are_evaluated_with_and_without_squares() {
+        let values = values(128);
+        let (x, y): (Vec<u32>, Vec<u32>) = values.chunks(2).map(|pair| (pair[0] >> 3, pair[1] >> 9)).unzip();
+        for (linear, squared) in
+            [([5, -7], [false; 2]), ([0, 0], [true; 2]), ([3, 0], [true, false]), ([-1, 9], [true; 2])]
+        {
+            let terms = [(&x, 29, 0), (&y, 23, 1)].map(|(values, bits, index)| Operand {
+                values,
+                bits,
+                linear: linear[index],
+                squared: squared[index],
+            });
+            let number = |value: u32, bits: u32| i64::from((value << (32 - bits)).cast_signed() >> (32 - bits));
+            let sum = |(x, y): (&u32, &u32)| {
+                let each = [(number(*x, 29), 0), (number(*y, 23), 1)];
+                let term = |(number, index): (i64, usize)| {
+                    i64::from(linear[index]) * number + if squared[index] { number * number } else { 0 }
                 };
-                assert_eq!(found[lane], expected, "lane {lane} of {lanes}");
-                let of = || signed[lane..].iter().step_by(lanes);
-                let ends = (*of().min().unwrap(), *of().max().unwrap());
-                assert_eq!((signed_found[lane].least, signed_found[lane].greatest), ends, "lane {lane} of {lanes}");
+                each.into_iter().map(term).sum::<i64>()
+            };
+            let all: Vec<i64> = x.iter().zip(&y).map(sum).collect();
+            let expected = [*all.iter().min().unwrap(), *all.iter().max().unwrap()];
+            assert_eq!(form(Level::new(), terms), expected, "{linear:?} {squared:?}");
+        }
+    }
+
+    #[test]
+    fn every_value_that_is_another_than_the_one_before_has_its_bit() {
+        let values: [u32; 64] = std::array::from_fn(|index| u32::try_from(index * index / 100).unwrap());
+        for before in [0, 1] {
+            let bits = changes(Level::new(), &values, before);
+            for (index, value) in values.iter().enumerate() {
+                let earlier = index.checked_sub(1).map_or(before, |earlier| values[earlier]);
+                assert_eq!(bits >> index & 1 == 1, *value != earlier, "value {index}");
             }
         }
     }
