@@ -108,6 +108,8 @@ pub(super) struct Generator<'a, 'c> {
     inputs: Vec<Value>,
     /// Columns that are stored in every row, by index.
     pub(super) busy: Vec<usize>,
+    /// Sums and differences that are known not to leave their width.
+    pub(super) exact: HashSet<Net>,
 }
 
 /// Type of the value of a net.
@@ -201,7 +203,7 @@ impl<'a, 'c> Generator<'a, 'c> {
         [state, memories]: [Value; 2],
     ) -> (Generator<'a, 'c>, RegisterValues) {
         let busy = (0..plan.columns.len()).filter(|column| !resting.contains(column)).collect();
-        let mut generator = Generator { plan, f, state, memories, inputs: Vec::new(), busy };
+        let mut generator = Generator { plan, f, state, memories, inputs: Vec::new(), busy, exact: HashSet::new() };
         let nets = plan.registers.iter().map(|&(net, _)| net).chain(plan.inputs.iter().copied());
         let width = |net: Net| plan.entry.netlist.width(plan.entry.net(net));
         let mut words: RegisterValues =
@@ -285,12 +287,22 @@ impl<'a, 'c> Generator<'a, 'c> {
         for net in netlist.nets().filter(|net| needed[net.index()]) {
             let value = match values.get(&net) {
                 Some(&value) => value,
+                None if self.exact.contains(&net) => self.unmasked(netlist.cell(net).op, &values),
                 None => self.operation(netlist, &netlist.cell(net), &values),
             };
             let value = each(self.f, net, value);
             values.insert(net, value);
         }
         values
+    }
+
+    /// A sum or a difference that needs no cutting to its width.
+    fn unmasked(&mut self, op: Op, values: &HashMap<Net, Value>) -> Value {
+        match op {
+            Op::Add(a, b) => self.f.ins().iadd(values[&a], values[&b]),
+            Op::Sub(a, b) => self.f.ins().isub(values[&a], values[&b]),
+            _ => self.f.ins().iconst(types::I64, 0),
+        }
     }
 
     /// The memories are written; the next values of all registers.

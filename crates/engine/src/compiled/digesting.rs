@@ -21,7 +21,7 @@ use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, Value, types};
 use cranelift_frontend::FunctionBuilder;
 
 use super::codegen::{Generator, Phase, Plan, RegisterValues, immediate, kind, trusted};
-use super::layout::{CLOCKS, FormFrom, Layout, RangeFrom, TrainFrom, WORDS};
+use super::layout::{CLOCKS, FormFrom, Layout, ROUNDS, RangeFrom, TrainFrom};
 use crate::digest::{Form, Wanted};
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::Net;
@@ -75,7 +75,8 @@ pub(super) fn generate(plan: &Plan<'_>, wanted: &Wanted, f: &mut FunctionBuilder
     let rounds = 64usize.checked_div(phases)?;
     let (generator, start) = Generator::begin(plan, &[], f, [state, memories]);
     let span = rounds * phases;
-    let words = (1..=CLOCKS).map(|times| times * WORDS).find(|words| (words * span).is_multiple_of(CLOCKS))?;
+    let fits = |words: &usize| words * rounds >= ROUNDS && (words * span).is_multiple_of(CLOCKS);
+    let words = (1..=CLOCKS * ROUNDS).find(fits)?;
     let layout = Layout { span, rounds, words, ..Layout::default() };
     let mut digesting = Digesting { generator, plan, wanted, layout, abandoned, narrow: HashMap::new() };
     digesting.place();
@@ -147,6 +148,7 @@ impl Digesting<'_, '_> {
                 *sample = next;
             }
             self.generator.pin(sample, phase, widths);
+            self.generator.exact = self.exact(&phase.logic);
             let values = self.generator.settle(&phase.logic, sample, &self.observed());
             self.abandon_at(&phase.logic, &values);
             self.trains(&phase.logic, &values, &mut now.words, &mut pending);

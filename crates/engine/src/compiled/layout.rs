@@ -1,12 +1,12 @@
 //! Where the code of a digest puts what is wanted, and what of it follows from the logic alone.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Net, Netlist, Op};
 
-/// Words of a train in a digest: at least this many, and then as many as make a multiple of [`CLOCKS`].
-pub(super) const WORDS: usize = 32;
+/// Rounds of a digest, at least: as many as make the values of a lane fill a good part of the nearest cache.
+pub(super) const ROUNDS: usize = 2048;
 /// Samples of a digest are a multiple of this, so that it ends where a block of recorded samples would.
 pub(super) const CLOCKS: usize = 256;
 /// Widest value of a narrow lane, in bits.
@@ -156,6 +156,17 @@ pub(super) fn only_value(netlist: &Netlist, net: Net) -> Option<u64> {
             [a, b] => (a == b).then_some(a),
         },
         _ => None,
+    }
+}
+
+/// The sums and differences by which a register counts.
+pub(super) fn counting(netlist: &Netlist, register: Net, next: Net, found: &mut HashSet<Net>) {
+    match netlist.cell(next).op {
+        Op::Mux { high, low, .. } => [high, low].into_iter().for_each(|arm| counting(netlist, register, arm, found)),
+        Op::Add(a, b) | Op::Sub(a, b) if a == register || b == register => {
+            found.insert(next);
+        }
+        _ => {}
     }
 }
 

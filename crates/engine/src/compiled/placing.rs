@@ -1,11 +1,11 @@
 //! Code generation of digests: where each thing that is wanted comes from, decided before the loop is generated.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 use super::codegen::Phase;
 use super::digesting::Digesting;
 use super::layout::{
-    FormFrom, NARROW, RangeFrom, SMALL_COUNTER, TrainFrom, bit_of, is_one, moves, moves_with, only_value,
+    FormFrom, NARROW, RangeFrom, SMALL_COUNTER, TrainFrom, bit_of, counting, is_one, moves, moves_with, only_value,
 };
 use crate::digest::{Form, Term};
 use stepwave_netlist::bits::Width;
@@ -136,6 +136,18 @@ impl Digesting<'_, '_> {
             Op::Borrow(a, b) => counter(a, b, false, false),
             _ => false,
         }
+    }
+
+    /// Sums and differences that do not leave the width of an unsigned counter, since it comes to no end of its range.
+    pub(super) fn exact(&self, logic: &Simplified) -> HashSet<Net> {
+        let mut found = HashSet::new();
+        for (&(net, turned), from) in self.wanted.ranges.iter().zip(&self.layout.ranges) {
+            let next = self.plan.registers.iter().find(|(register, _)| *register == net).map(|(_, next)| *next);
+            if let (RangeFrom::Counter { .. }, 0, Some(next)) = (from, turned, next) {
+                counting(&logic.netlist, logic.net(net), logic.net(next), &mut found);
+            }
+        }
+        found
     }
 
     /// The value of a train where it is not 0, if there is but one.
