@@ -89,7 +89,7 @@ endmodule
 ";
 
 /// The folder that `.ci/import` leaves sources in.
-fn folder() -> Fallible<PathBuf> {
+pub(crate) fn folder() -> Fallible<PathBuf> {
     let folder = std::env::var_os("STEPWAVE_CORES").map_or_else(
         || Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap_or(Path::new(".")).join("import"),
         PathBuf::from,
@@ -157,8 +157,8 @@ pub(crate) fn cores(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let jobs = [
             own::core("compiled", EngineKind::Compiled, clocks, &dir)?,
             own::core("word", EngineKind::Word, clocks, &dir)?,
-            verilator::run(&unit, &dir.join("verilator"), Wave::None, &blocks)?.says(last),
-            cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::None, &blocks)?.says(last),
+            verilator::run(&unit.rtl(), &dir.join("verilator"), Wave::None, &blocks)?.says(last),
+            cxxrtl::run(&unit.rtl(), &dir.join("cxxrtl"), Wave::None, &blocks)?.says(last),
         ];
         let mut runs = race(sizes.rounds, &jobs)?;
         // Icarus is slow: fewer clocks, and the same as of our own engine.

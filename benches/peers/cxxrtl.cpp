@@ -20,7 +20,7 @@ struct Wave {
         top.debug_info(items);
         vcd.timescale(100, "ns");
         // The named nets alone, in their scopes.
-        for (const char *name : {SHOWN}) {
+        for (const char *name : {WAVED}) {
             std::string path = std::string("TOP ") + MODULE + " " + name;
             for (char &c : path)
                 if (c == '.') c = ' ';
@@ -60,12 +60,14 @@ static uint64_t run(TOP &top, Wave &wave) {
         // Both edges: what the next rising edge takes may have been evaluated at the falling one.
         top.p_clk.set<bool>(false);
         top.step();
+        // Logic after registers, too, has been evaluated only now.
+        if (DONE_IS_LOGIC && top.DONE.get<bool>()) return clocks;
         DUMP(10 * clocks + 5);
         ++clocks;
         top.p_clk.set<bool>(true);
         top.step();
         DUMP(10 * clocks);
-    } while (!top.DONE_REGISTER.get<bool>());
+    } while (DONE_IS_LOGIC || !top.DONE_REGISTER.get<bool>());
     // Outputs are evaluated before registers are committed.
     top.step();
     return clocks;

@@ -68,13 +68,13 @@ fn cells(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let blocks = unit.line(&synthetic::block(&unit, CLOCKS));
         let dir = dir.join(cells.to_string());
         let start = Instant::now();
-        let verilator = verilator::run(&unit, &dir, Wave::None, &blocks)?;
+        let verilator = verilator::run(&unit.rtl(), &dir, Wave::None, &blocks)?;
         let verilated = start.elapsed().as_secs_f64();
         let mut jobs = vec![own::cells(cells, CLOCKS, &dir)?, verilator];
         let mut builds = vec![number(verilated)];
         if cells <= CXXRTL_CELLS {
             let start = Instant::now();
-            jobs.push(cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::None, &blocks)?);
+            jobs.push(cxxrtl::run(&unit.rtl(), &dir.join("cxxrtl"), Wave::None, &blocks)?);
             builds.push(number(start.elapsed().as_secs_f64()));
         }
         let mut runs = race(sizes.rounds.min(3), &jobs)?;

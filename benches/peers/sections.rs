@@ -1,18 +1,21 @@
 //! What is measured, section by section.
 
+use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
+use crate::choice::Choice;
 use crate::contender::{Wave, first_line};
 use crate::measure::{Job, Measurement, race};
 use crate::table::{Table, median, number, times};
 use crate::unit::{Case, MODELS, Unit, block};
-use crate::{Fallible, cores, cxxrtl, growth, icarus, own, verilator};
+use crate::{Fallible, cores, cxxrtl, growth, icarus, lean, own, verilator};
 
 /// How much of everything; powers of two of clocks.
 pub(crate) struct Sizes {
-    models: &'static [&'static str],
+    pub(crate) models: Cow<'static, [&'static str]>,
     pub(crate) rounds: usize,
     /// A run without a wave, one with, one of many lanes.
     pub(crate) run: u32,
@@ -24,10 +27,18 @@ pub(crate) struct Sizes {
     pub(crate) cells: usize,
 }
 
-const FULL: Sizes =
-    Sizes { models: &MODELS, rounds: 3, run: 26, wave: 20, lane: 16, geometries: 4096, longest: 26, cells: 10_000 };
-const QUICK: Sizes = Sizes {
-    models: &["dda-line", "ppc-arc"],
+pub(crate) const FULL: Sizes = Sizes {
+    models: Cow::Borrowed(&MODELS),
+    rounds: 3,
+    run: 26,
+    wave: 20,
+    lane: 16,
+    geometries: 4096,
+    longest: 26,
+    cells: 10_000,
+};
+pub(crate) const QUICK: Sizes = Sizes {
+    models: Cow::Borrowed(&["dda-line", "ppc-arc"]),
     rounds: 1,
     run: 24,
     wave: 18,
@@ -37,34 +48,81 @@ const QUICK: Sizes = Sizes {
     cells: 100,
 };
 
-type Section = fn(&Sizes, &Path) -> Fallible<String>;
+/// What is measured together.
+pub(crate) struct Section {
+    pub(crate) name: &'static str,
+    pub(crate) about: &'static str,
+    /// It has a row for each model that is asked for.
+    pub(crate) by_model: bool,
+    /// Names of the other simulators that it starts.
+    pub(crate) peers: &'static [&'static str],
+    measure: fn(&Sizes, &Path) -> Fallible<String>,
+}
 
-const SECTIONS: [(&str, Section); 6] = [
-    ("first-wave", first_wave),
-    ("no-trace", no_trace),
-    ("waves", waves),
-    ("lanes", lanes),
-    ("growth", growth::growth),
-    ("cores", cores::cores),
+const ALL_PEERS: &[&str] = &["Icarus", "Verilator", "CXXRTL"];
+
+pub(crate) const SECTIONS: [Section; 6] = [
+    Section {
+        name: "first-wave",
+        about: "16 clocks from the source to a VCD, compilers included",
+        by_model: true,
+        peers: ALL_PEERS,
+        measure: first_wave,
+    },
+    Section {
+        name: "no-trace",
+        about: "long runs without a wave, of exported and of lean hand-written RTL",
+        by_model: true,
+        peers: ALL_PEERS,
+        measure: no_trace,
+    },
+    Section {
+        name: "waves",
+        about: "full VCD and FST to a file: speed, size, memory",
+        by_model: true,
+        peers: ALL_PEERS,
+        measure: waves,
+    },
+    Section {
+        name: "lanes",
+        about: "thousands of geometries of one hardware",
+        by_model: true,
+        peers: &["Verilator"],
+        measure: lanes,
+    },
+    Section {
+        name: "growth",
+        about: "longer runs, more lanes, larger netlists",
+        by_model: false,
+        peers: &["Verilator", "CXXRTL"],
+        measure: growth::growth,
+    },
+    Section {
+        name: "cores",
+        about: "processors that others wrote, imported; `.ci/import` fetches their sources",
+        by_model: false,
+        peers: ALL_PEERS,
+        measure: cores::cores,
+    },
 ];
 
 /// Measures what is asked for, and prints it.
 pub(crate) fn all(words: &[String]) -> Fallible<()> {
-    let sizes = if words.iter().any(|word| word == "--quick") { QUICK } else { FULL };
-    let wanted: Vec<&String> = words.iter().filter(|word| !word.starts_with('-')).collect();
-    if let Some(unknown) = wanted.iter().find(|word| SECTIONS.iter().all(|(name, _)| name != **word)) {
-        return Err(format!("no section {unknown}; there are {:?}", SECTIONS.map(|(name, _)| name)).into());
-    }
+    let choice = Choice::of(words)?;
+    choice.check_tools()?;
     let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("peers");
     if dir.exists() {
         fs::remove_dir_all(&dir)?;
     }
     println!("{}", machine());
-    for (name, section) in SECTIONS {
-        if wanted.is_empty() || wanted.iter().any(|word| *word == name) {
-            eprintln!("{name}");
-            println!("{}", section(&sizes, &dir.join(name))?);
-        }
+    for note in &choice.notes {
+        println!("{note}");
+    }
+    for section in &choice.sections {
+        let start = Instant::now();
+        eprintln!("{}", section.name);
+        println!("{}", (section.measure)(&choice.sizes, &dir.join(section.name))?);
+        eprintln!("{}: {:.0} s", section.name, start.elapsed().as_secs_f64());
     }
     Ok(())
 }
@@ -95,7 +153,7 @@ fn wall(runs: &[Measurement]) -> f64 {
     median(runs, |run| run.wall)
 }
 
-fn peak(runs: &[Measurement]) -> String {
+pub(crate) fn peak(runs: &[Measurement]) -> String {
     number(median(runs, |run| run.peak_mb))
 }
 
@@ -103,15 +161,15 @@ fn first_wave(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let head = ["16 clocks", "stepwave, ms", "Icarus, ms", "CXXRTL, ms", "Verilator, ms", "to Icarus", "to CXXRTL"];
     let head = [&head[..], &["to Verilator"]].concat();
     let mut table = Table::new("From source to first wave: time on the clock, all cores, compilers included", &head);
-    for &model in sizes.models {
+    for &model in sizes.models.iter() {
         let dir = dir.join(model);
         let (case, bench) = (Case::new(model, 4)?, Case::new(model, 4)?.bench()?);
         let unit = Unit::of(&bench);
         let blocks = unit.line(&block(&bench));
         let peers = [
             icarus::first_wave(&unit, &bench, &dir.join("icarus"))?,
-            cxxrtl::first_wave(&unit, &dir.join("cxxrtl"), &blocks)?,
-            verilator::first_wave(&unit, &dir.join("verilator"), &blocks)?,
+            cxxrtl::first_wave(&unit.rtl(), &dir.join("cxxrtl"), &blocks)?,
+            verilator::first_wave(&unit.rtl(), &dir.join("verilator"), &blocks)?,
         ];
         // The slow ones need fewer rounds: what disturbs is milliseconds long.
         let rounds = [4 * sizes.rounds, 4 * sizes.rounds, sizes.rounds, sizes.rounds.min(2)];
@@ -159,7 +217,7 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let mut speed = Table::new("Without a wave: million clocks a second, one core", &head);
     let head = ["model", "engine", "`stepwave run`", "Verilator", "CXXRTL", "Icarus"];
     let mut memory = Table::new("Without a wave: peak memory, MB", &head);
-    for &model in sizes.models {
+    for &model in sizes.models.iter() {
         let dir = dir.join(model);
         let case = Case::new(model, sizes.run)?;
         let bench = case.bench()?;
@@ -168,8 +226,8 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let jobs = [
             own::engine(&case, &dir)?,
             own::program(&case, &dir, Wave::None).rounds(2),
-            verilator::run(&unit, &dir, Wave::None, &blocks)?,
-            cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::None, &blocks)?,
+            verilator::run(&unit.rtl(), &dir, Wave::None, &blocks)?,
+            cxxrtl::run(&unit.rtl(), &dir.join("cxxrtl"), Wave::None, &blocks)?,
         ];
         let mut runs = race(sizes.rounds, &jobs)?;
         // Icarus is so slow that a shorter block must do.
@@ -183,7 +241,7 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         speed.row(model, [clocks].into_iter().chain(rates.iter().copied().map(number)).chain(ratios.map(times)));
         memory.row(model, runs.iter().map(|runs| peak(runs)));
     }
-    Ok(speed.text() + &memory.text())
+    Ok(speed.text() + &lean::no_trace(sizes, dir)? + &memory.text())
 }
 
 fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
@@ -194,7 +252,7 @@ fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let head = ["model", "VCD stepwave", "Verilator", "CXXRTL", "Icarus", "FST stepwave", "Verilator", "Icarus"];
     let mut bytes = Table::new("Wave files: bytes a clock", &head);
     let mut memory = Table::new("Writing waves: peak memory, MB", &head);
-    for &model in sizes.models {
+    for &model in sizes.models.iter() {
         let dir = dir.join(model);
         let case = Case::new(model, sizes.wave)?;
         let bench = case.bench()?;
@@ -204,11 +262,11 @@ fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         // Icarus is slow: one round is enough for a ratio of a hundred.
         let jobs = [
             own(Wave::Vcd, "own.vcd"),
-            verilator::run(&unit, &dir.join("vcd"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
-            cxxrtl::run(&unit, &dir.join("cxxrtl"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
+            verilator::run(&unit.rtl(), &dir.join("vcd"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
+            cxxrtl::run(&unit.rtl(), &dir.join("cxxrtl"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
             icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Vcd)?.wave("wave.vcd").rounds(1),
             own(Wave::Fst, "own.fst"),
-            verilator::run(&unit, &dir.join("fst"), Wave::Fst, &blocks)?.wave("wave.vcd"),
+            verilator::run(&unit.rtl(), &dir.join("fst"), Wave::Fst, &blocks)?.wave("wave.vcd"),
             icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Fst)?.wave("wave.vcd").rounds(1),
         ];
         fs::create_dir_all(&dir)?;
@@ -238,7 +296,7 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
     let one = ["one thread", "with all checks", "Verilator, one after another", "to Verilator", "with all checks"];
     let many = ["1 thread, on the clock", &threads, "gain"];
     let mut table = Table::new(&title, &[&["model"][..], &one, &many].concat());
-    for &model in sizes.models {
+    for &model in sizes.models.iter() {
         let dir = dir.join(model);
         let case = Case::new(model, sizes.lane)?;
         let (unit, blocks) = many_blocks(&case, sizes.geometries)?;
@@ -246,7 +304,7 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
             own::lanes(&case, sizes.geometries, 1, &dir)?,
             own::lanes(&case, sizes.geometries, all, &dir)?,
             own::bare_lanes(&case, sizes.geometries, &dir)?,
-            verilator::run(&unit, &dir, Wave::None, &blocks)?.rounds(2),
+            verilator::run(&unit.rtl(), &dir, Wave::None, &blocks)?.rounds(2),
         ];
         let runs = race(sizes.rounds, &jobs)?;
         let computed = |runs: &Vec<Measurement>| median(runs, |run| run.all_clocks() / run.computed / 1e6);

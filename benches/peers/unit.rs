@@ -1,9 +1,5 @@
 //! What is simulated: a design with its ports, as Verilog for the peers and as it stands for us.
 
-use std::fmt::Write as _;
-use std::fs;
-use std::path::Path;
-
 use stepwave::engine::{Engine, EngineKind, Rows, Stop, Watch};
 use stepwave::export;
 use stepwave::models::options::{PRESET, WIDTH};
@@ -14,6 +10,7 @@ use stepwave::testbench::Testbench;
 use stepwave::trace::timescale::ClockTime;
 
 use crate::Fallible;
+use crate::rtl::{Rtl, Shown};
 
 /// A machine of a model with a block, on one side as types, on the other as words of the command line.
 #[derive(Clone, Debug)]
@@ -21,6 +18,8 @@ pub(crate) struct Case {
     pub(crate) model: &'static Model,
     pub(crate) width: u32,
     pub(crate) curve: Curve,
+    /// Remainders of the integrators before the first step; `None`: the model has none, or begins with its own.
+    pub(crate) preset: Option<Preset>,
 }
 
 pub(crate) const MODELS: [&str; 4] = ["dda-line", "ppc-line", "dda-arc", "ppc-arc"];
@@ -30,7 +29,8 @@ impl Case {
     /// circle for arcs.
     pub(crate) fn new(model: &str, power: u32) -> Fallible<Case> {
         let all = 1i64 << power;
-        Ok(Case { model: find(model)?, width: power, curve: curve(model, all, 0)? })
+        let preset = (model == "dda-arc").then_some(Preset::Half);
+        Ok(Case { model: find(model)?, width: power, curve: curve(model, all, 0)?, preset })
     }
 
     /// The `index`-th of many geometries for the same hardware.
@@ -41,8 +41,7 @@ impl Case {
     }
 
     fn choices(&self) -> Fallible<Options> {
-        let preset = (self.model.name == "dda-arc").then_some(Preset::Half);
-        Ok(Options::default().with_all(&WIDTH, Width::new(u64::from(self.width))?).with_all(&PRESET, preset))
+        Ok(Options::default().with_all(&WIDTH, Width::new(u64::from(self.width))?).with_all(&PRESET, self.preset))
     }
 
     pub(crate) fn bench(&self) -> Fallible<Testbench> {
@@ -62,8 +61,8 @@ impl Case {
             Curve::Conic(_) | Curve::Helix(_) => {}
         }
         words.extend(["--width".to_owned(), self.width.to_string()]);
-        if self.model.name == "dda-arc" {
-            words.extend(["--preset".to_owned(), "half".to_owned()]);
+        if let Some(preset) = self.preset {
+            words.extend(["--preset".to_owned(), preset.to_string()]);
         }
         words
     }
@@ -141,30 +140,26 @@ impl Unit {
         self.loaded().map(|net| value(net).to_string()).collect::<Vec<_>>().join(" ") + "\n"
     }
 
-    /// Writes the Verilog module `model.v`, and `ports.h` for a C++ main in which a port is the member that `member`
-    /// makes of its name.
-    pub(crate) fn write(&self, dir: &Path, top: &str, member: impl Fn(&str) -> String) -> Fallible<()> {
-        fs::create_dir_all(dir)?;
-        fs::write(dir.join("model.v"), self.verilog())?;
-        let each = |nets: &mut dyn Iterator<Item = Net>| {
-            nets.fold(String::new(), |list, net| list + &format!(" X({})", member(&self.port(net))))
-        };
-        let mut text = format!("#define MODULE \"{}\"\n#define TOP {top}\n", self.name());
-        writeln!(text, "#define INPUTS(X){}", each(&mut self.loaded()))?;
-        writeln!(text, "#define STROBES(X){}", each(&mut self.strobes.iter().copied()))?;
-        writeln!(text, "#define DONE {}", member(&self.port(self.done)))?;
-        writeln!(text, "#define DONE_REGISTER {}", member(&self.path(self.done)))?;
-        let width = |net| self.design.netlist().width(net).get();
-        let shown = self.result.iter().fold(String::new(), |list, &(net, signed)| {
-            list + &format!(" X({}, {}, {signed})", member(&self.port(net)), width(net))
-        });
-        writeln!(text, "#define RESULT(X){shown}")?;
-        let mut names: Vec<String> = self.design.netlist().names.iter().map(|named| self.path(named.net)).collect();
-        names.push("clk".to_owned());
-        names.sort();
-        names.dedup();
-        writeln!(text, "#define SHOWN {}", names.iter().map(|name| format!("\"{name}\", ")).collect::<String>())?;
-        Ok(fs::write(dir.join("ports.h"), text)?)
+    /// The Verilog module and its ports.
+    pub(crate) fn rtl(&self) -> Rtl {
+        let netlist = self.design.netlist();
+        let ports = |nets: &mut dyn Iterator<Item = Net>| nets.map(|net| self.port(net)).collect();
+        let mut waved: Vec<String> = netlist.names.iter().map(|named| self.path(named.net)).collect();
+        waved.push("clk".to_owned());
+        waved.sort();
+        waved.dedup();
+        let shown =
+            |&(net, signed): &(Net, bool)| Shown { port: self.port(net), width: netlist.width(net).get(), signed };
+        Rtl {
+            name: self.name().to_owned(),
+            text: self.verilog(),
+            inputs: ports(&mut self.loaded()),
+            strobes: ports(&mut self.strobes.iter().copied()),
+            done: self.port(self.done),
+            done_register: Some(self.path(self.done)),
+            result: self.result.iter().map(shown).collect(),
+            waved,
+        }
     }
 
     pub(crate) fn verilog(&self) -> String {

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::Fallible;
 use crate::contender::{Wave, shell};
 use crate::measure::Job;
-use crate::unit::Unit;
+use crate::rtl::Rtl;
 
 const MAIN: &str = include_str!("verilator.cpp");
 
@@ -16,7 +16,7 @@ const FAST: &str = "-O3 -march=native -flto";
 const SOON: &str = "-O0";
 
 /// The commands that build `obj/Vmodel` from `model.v`.
-fn commands(unit: &Unit, wave: Wave, optimise: &str) -> String {
+fn commands(rtl: &Rtl, wave: Wave, optimise: &str) -> String {
     let (trace, define) = match wave {
         Wave::None => ("", ""),
         Wave::Vcd => ("--trace", "-CFLAGS -DWAVE_VCD"),
@@ -28,26 +28,26 @@ fn commands(unit: &Unit, wave: Wave, optimise: &str) -> String {
          -LDFLAGS '{optimise}' main.cpp model.v >verilator.log 2>&1 && \
          make -j -C obj -f Vmodel.mk OPT_FAST='{optimise}' OPT_SLOW='{optimise}' OPT_GLOBAL='{optimise}' \
          >>verilator.log 2>&1",
-        unit.name()
+        rtl.name
     )
 }
 
-fn write(unit: &Unit, dir: &Path, blocks: &str) -> Fallible<()> {
-    unit.write(dir, "Vmodel", str::to_owned)?;
+fn write(rtl: &Rtl, dir: &Path, blocks: &str) -> Fallible<()> {
+    rtl.write(dir, "Vmodel", str::to_owned)?;
     fs::write(dir.join("main.cpp"), MAIN)?;
     Ok(fs::write(dir.join("blocks"), blocks)?)
 }
 
 /// A job that runs blocks in a model that has been built.
-pub(crate) fn run(unit: &Unit, dir: &Path, wave: Wave, blocks: &str) -> Fallible<Job> {
-    write(unit, dir, blocks)?;
-    shell(dir, &commands(unit, wave, FAST))?;
+pub(crate) fn run(rtl: &Rtl, dir: &Path, wave: Wave, blocks: &str) -> Fallible<Job> {
+    write(rtl, dir, blocks)?;
+    shell(dir, &commands(rtl, wave, FAST))?;
     Ok(Job::new("Verilator", dir, &["obj/Vmodel", "blocks", "wave.vcd"]))
 }
 
 /// A job from the source to the wave.
-pub(crate) fn first_wave(unit: &Unit, dir: &Path, blocks: &str) -> Fallible<Job> {
-    write(unit, dir, blocks)?;
-    let all = format!("{} && obj/Vmodel blocks wave.vcd", commands(unit, Wave::Vcd, SOON));
+pub(crate) fn first_wave(rtl: &Rtl, dir: &Path, blocks: &str) -> Fallible<Job> {
+    write(rtl, dir, blocks)?;
+    let all = format!("{} && obj/Vmodel blocks wave.vcd", commands(rtl, Wave::Vcd, SOON));
     Ok(Job::new("Verilator", dir, &["sh", "-c", &all]))
 }
