@@ -242,7 +242,8 @@ impl Simulation {
     /// As [`run`](Self::run).
     pub fn run_traced(&self) -> Result<(Report, Trace), Error> {
         let mut outputs = self.outputs();
-        let ran = self.run_on(self.prepare()?.bench, &mut outputs, |bench, _| Ok(Recording::new(bench)))?;
+        let bench = self.leaving_out(self.prepare()?.bench);
+        let ran = self.run_on(bench, &mut outputs, |bench, _| Ok(Recording::new(bench)))?;
         outputs.commit()?;
         Ok((ran.report, ran.onlookers.into_trace()))
     }

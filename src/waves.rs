@@ -11,7 +11,7 @@ use clap::builder::StringValueParser;
 use crate::netlist::cells::Format;
 use crate::netlist::{Design, Net, Width};
 use crate::testbench::{
-    Columns, Observer, OverflowEvent, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window, net_named,
+    Columns, Observer, OverflowEvent, Running, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window, net_named,
 };
 use crate::trace::fst::{FstBody, FstHeader};
 use crate::trace::gtkw::{View, side_files};
@@ -73,6 +73,9 @@ pub struct WaveOptions {
     /// Dump one sample a step, and those behind which a block is loaded, instead of every clock
     #[cfg_attr(feature = "cli", arg(id = "trace_steps", long = "trace-steps", requires = "wave"))]
     pub steps: bool,
+    /// Of a program, dump also what changes at every clock: `clk`, and the phase of the pulse source
+    #[cfg_attr(feature = "cli", arg(skip))]
+    pub every_clock: bool,
     /// Write a wave of more than 1 GB
     #[cfg_attr(feature = "cli", arg(long, requires = "wave"))]
     pub large: bool,
@@ -82,7 +85,8 @@ impl Default for WaveOptions {
     fn default() -> WaveOptions {
         let (signals, excluded) = (Vec::new(), Vec::new());
         let (vcd, fst, depth, to, on) = (None, None, None, None, None);
-        WaveOptions { vcd, fst, signals, excluded, depth, from: 0, to, on, clk: true, steps: false, large: false }
+        let (clk, steps, every_clock, large) = (true, false, false, false);
+        WaveOptions { vcd, fst, signals, excluded, depth, from: 0, to, on, clk, steps, every_clock, large }
     }
 }
 
@@ -118,12 +122,14 @@ pub(crate) struct Shown<'b> {
     pub(crate) design: &'b Design,
     pub(crate) columns: &'b Columns,
     pub(crate) steps: Option<[Net; 2]>,
+    /// What is left out unless it is named, and the clock with it.
+    pub(crate) running: Option<&'b Running>,
 }
 
 impl<'b> From<&'b Testbench> for Shown<'b> {
     fn from(bench: &'b Testbench) -> Shown<'b> {
         let steps = Some([bench.machine().stepped.net, bench.machine().loaded.net]);
-        Shown { design: bench.design(), columns: bench.columns(), steps }
+        Shown { design: bench.design(), columns: bench.columns(), steps, running: bench.running() }
     }
 }
 
@@ -135,6 +141,7 @@ pub(crate) struct Waves<'a> {
     clk: bool,
     time: ClockTime,
     leading: &'static [&'static str],
+    without: Vec<String>,
 }
 
 /// One of them.
@@ -163,16 +170,21 @@ impl<'a> Waves<'a> {
         };
         let steps = shown.steps.filter(|_| args.steps).map(|nets| nets.map(|net| shown.columns.index(net)));
         let window = Window { from: args.from, to: args.to, trigger, steps };
-        let clk = args.clk;
+        let clk = args.clk && shown.running.is_none();
         let narrow = |probe: &Probe| match probe.columns[..] {
             [column] => Some((column, Width::new(u64::from(probe.width)).ok()?)),
             _ => None,
         };
         let curves = probes.iter().filter(|probe| probe.format == Format::Analog).filter_map(narrow);
         let curves: Vec<(usize, Width)> = curves.collect();
+        let without = without(shown, &probes)?;
+        let comment = match without.join(", ") {
+            none if none.is_empty() => title.to_owned(),
+            names => format!("{title}; without {names}, which --every-clock shows"),
+        };
         let vcd = match sinks.vcd {
             Some((path, sink)) => {
-                let header = VcdHeader { comment: title, probes: &probes, time, clk };
+                let header = VcdHeader { comment: &comment, probes: &probes, time, clk };
                 Some(Wave {
                     path,
                     writer: WaveWriter::new(header.write(Background::new(Limited::new(sink, args.large)))?, window)
@@ -191,7 +203,7 @@ impl<'a> Waves<'a> {
             }
             None => None,
         };
-        Ok(Waves { vcd, fst, probes, clk, time, leading: &[] })
+        Ok(Waves { vcd, fst, probes, clk, time, leading: &[], without })
     }
 
     /// The same with rows that come first: their paths without the design's name.
@@ -260,6 +272,7 @@ impl<'a> Waves<'a> {
             stem: &text(stem),
             probes: &self.probes,
             clk: self.clk,
+            without: &self.without,
             time: self.time,
             first_clock: if jumps { 1 } else { first_clock },
             last_clock,
@@ -286,6 +299,7 @@ struct Written {
 
 /// Ends a wave; returns what it holds.
 fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Error> {
+    writer.end(clocks)?;
     let Some(written) = writer.written else {
         return Err(Error::Invalid(format!(
             "the wave would be empty: no clock from 0 to {clocks} of this run falls into its window"
@@ -303,7 +317,38 @@ pub(crate) fn probes<'b>(shown: impl Into<Shown<'b>>, args: &WaveOptions) -> Res
     let depth = args.depth.map(|depth| usize::try_from(depth).unwrap_or(usize::MAX));
     let selection = Selection::new(&args.signals, &args.excluded, depth)?;
     let shown = shown.into();
-    Ok(selection.probes(shown.design, shown.columns.nets())?)
+    let mut probes = selection.probes(shown.design, shown.columns.nets())?;
+    let left = left_out(shown, &probes, &args.signals);
+    if left.len() < probes.len() {
+        probes.retain(|probe| !left.contains(&probe.path()));
+    }
+    Ok(probes)
+}
+
+/// Paths of those of the probes that run with the phase of the pulse source and that no pattern names in full.
+fn left_out(shown: Shown<'_>, probes: &[Probe], patterns: &[String]) -> Vec<String> {
+    let Some(running) = shown.running else { return Vec::new() };
+    let paths = probes.iter().filter(|probe| runs(probe, shown.columns, running)).map(Probe::path);
+    let names = |path: &str, pattern: &String| path == pattern || path.ends_with(&format!(".{pattern}"));
+    paths.filter(|path| !patterns.iter().any(|pattern| names(path, pattern))).collect()
+}
+
+/// What a wave with these probes is without, by its inner path: the clock, and what runs with the phase of the pulse
+/// source.
+fn without(shown: Shown<'_>, probes: &[Probe]) -> Result<Vec<String>, Error> {
+    if shown.running.is_none() {
+        return Ok(Vec::new());
+    }
+    let all = Selection::default().probes(shown.design, shown.columns.nets())?;
+    let missing =
+        left_out(shown, &all, &[]).into_iter().filter(|path| probes.iter().all(|probe| probe.path() != *path));
+    let inner = missing.map(|path| path.split_once('.').map_or(path.clone(), |(_, inner)| inner.to_owned()));
+    Ok(std::iter::once("clk".to_owned()).chain(inner).collect())
+}
+
+/// A probe shows what runs with the phase of the pulse source.
+pub(crate) fn runs(probe: &Probe, columns: &Columns, running: &Running) -> bool {
+    probe.columns.iter().any(|&column| running.nets.contains(&columns.nets()[column]))
 }
 
 /// Column of the 1-bit net of this name, path, or end of a path.

@@ -161,6 +161,10 @@ pub(crate) struct ProgramArgs {
     pub(crate) simulation: SimulationArgs,
     #[command(flatten)]
     pub(crate) trace: WaveOptions,
+    /// Dump also what changes at every clock: clk, and the phase of the pulse source and its sum (--trace phase dumps
+    /// these alone); some hundred times as large
+    #[arg(long, requires = "wave", help_heading = "Wave")]
+    pub(crate) every_clock: bool,
     #[command(flatten)]
     pub(crate) outputs: FileOptions,
 }

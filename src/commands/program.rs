@@ -16,6 +16,7 @@ use super::size::Size;
 use crate::Error;
 use crate::cli::{HardwareArgs, ProgramArgs, TextArgs, Tool};
 use crate::output::Outputs;
+use crate::waves::WaveOptions;
 
 /// Runs a whole program and writes what was asked for.
 pub(crate) fn program(args: &ProgramArgs) -> Result<(), Error> {
@@ -55,11 +56,16 @@ pub(super) fn simulation(
     Ok(simulation.options(hardware.choices()).clock_hz(clock_hz).blu_mm(hardware.blu))
 }
 
+/// The waves that a command line wants.
+fn waves(args: &ProgramArgs) -> WaveOptions {
+    WaveOptions { every_clock: args.every_clock, ..args.trace.clone() }
+}
+
 /// The run that a command line wants.
 pub(super) fn asked(args: &ProgramArgs) -> Result<Simulation, Error> {
-    let ProgramArgs { file, method, bench, text, hardware, clock, simulation: how, trace, outputs } = args;
+    let ProgramArgs { file, method, bench, text, hardware, clock, simulation: how, outputs, .. } = args;
     let simulation = simulation(file, bench.machine(method)?, text, hardware, clock.clock_hz)?;
-    let simulation = simulation.engine(how.engine).max_clocks(how.max_clocks).waves(trace.clone());
+    let simulation = simulation.engine(how.engine).max_clocks(how.max_clocks).waves(waves(args));
     Ok(simulation.files(outputs.clone(), None))
 }
 
@@ -73,9 +79,10 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
     let bench = simulation.lean(bench);
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     if args.trace.wanted() {
-        let (size, estimate) = (Size::of(&bench, &args.trace, time)?, simulation.estimate(&bench)?);
+        let waves = waves(args);
+        let (size, estimate) = (Size::of(&bench, &waves, time)?, simulation.estimate(&bench)?);
         if let Some(estimate) = estimate {
-            size.check(&args.trace, args.simulation.max_clocks, &estimate)?;
+            size.check(&waves, args.simulation.max_clocks, &estimate)?;
         }
     }
     let ran = simulation.run_on(bench, outputs, |_, _| {

@@ -21,6 +21,8 @@ const BIT: f64 = 0.14;
 const COUNTING: [&str; 6] = ["q", "jrx", "jry", "accx", "accy", "accz"];
 /// Bytes of the three flags that come and go with each step.
 const FLAGS: f64 = 18.0;
+/// Times at which something changes around a step: its pulse comes, it is taken, and its flags go.
+const STAMPS: f64 = 3.0;
 /// Bytes of FST that a clock takes where the pulse source is shown, less where its phase comes round; and what changes
 /// at a step, and counts at every step, as parts of what they take as VCD; all as measured.
 const FST_CLOCK: f64 = 12.0;
@@ -36,6 +38,8 @@ pub(super) struct Size {
     step: f64,
     /// What changes at every step.
     count: f64,
+    /// The clock itself is shown.
+    clk: bool,
     ticks: f64,
 }
 
@@ -61,7 +65,8 @@ impl Size {
                 step += width * BIT;
             }
         }
-        Ok(Size { clock, step, count, ticks: time.ticks() as f64 })
+        let clk = args.clk && bench.running().is_none();
+        Ok(Size { clock, step, count, clk, ticks: time.ticks() as f64 })
     }
 
     /// Bytes of the VCD and of the FST that are asked for, 0 where they are not.
@@ -74,8 +79,12 @@ impl Size {
         let samples = if args.steps { steps } else { shown };
         // A #, the time and the end of the line.
         let stamp = 2.0 + (end * self.ticks).max(1.0).log10().floor() + 1.0;
-        let edges = if args.clk { 2.0 * stamp + 6.0 } else { stamp };
-        let edges = if !args.clk && self.clock == 0.0 { edges * steps } else { edges * samples };
+        let edges = if self.clk { 2.0 * stamp + 6.0 } else { stamp };
+        let edges = match (self.clk || self.clock > 0.0, args.steps) {
+            (true, _) => edges * samples,
+            (false, true) => edges * steps,
+            (false, false) => edges * STAMPS * steps,
+        };
         // At steps alone the flags of a step stay up, and of the source only the phase between two steps is seen.
         let (changing, flags) = if args.steps { (drifting, 0.0) } else { (samples, FLAGS) };
         let vcd = edges + self.clock * changing + (self.count + flags) * steps + self.step * moving;
@@ -99,10 +108,11 @@ impl Size {
             )));
         }
         if most > NOTED {
+            let less = if args.every_clock { "no --every-clock, " } else { "" };
             // If nobody listens, the wave is still written.
             let _ = writeln!(
                 io::stderr(),
-                "stepwave: the wave will have about {size}; --trace-steps, --no-clk, a window or --fst make it small"
+                "stepwave: the wave will have about {size}; {less}--trace-steps, a window or --fst make it small"
             );
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! In what recorded files differ from simulated ones, in words.
 
-use crate::trace::diverge::{self, Options};
+use crate::trace::diverge::{self, By, Options};
 use crate::trace::read::Wave;
 
 /// Clocks shown before a divergence.
@@ -27,7 +27,10 @@ pub(super) fn first(name: &str, recorded: &[u8], made: &[u8]) -> String {
 /// Where two waves part, in words; `None` if they agree in all values and differ only as text.
 fn first_divergence(recorded: &[u8], made: &[u8]) -> Option<String> {
     let (recorded, made) = (Wave::from_bytes(recorded.to_vec()).ok()?, Wave::from_bytes(made.to_vec()).ok()?);
-    let options = Options { context: CONTEXT, ..Options::default() };
+    // Waves of programs are without their clock.
+    let clockless = recorded.clock().is_err() && made.clock().is_err();
+    let by = if clockless { By::Time } else { Options::default().by };
+    let options = Options { by, context: CONTEXT, ..Options::default() };
     let divergence = diverge::first_divergence(&recorded, &made, &options).ok()??;
     Some(format!("recorded is A, simulated is B\n{divergence}"))
 }

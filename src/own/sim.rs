@@ -115,7 +115,7 @@ impl Sim {
     pub(crate) fn staged(&self, outputs: &mut Outputs, to: &mut dyn std::io::Write) -> Result<SimReport, Error> {
         let time = ClockTime::from_hz(self.clock_hz)?;
         let columns = Columns::of_design(&self.design);
-        let shown = Shown { design: &self.design, columns: &columns, steps: None };
+        let shown = Shown { design: &self.design, columns: &columns, steps: None, running: None };
         let sinks = Sinks::open(&self.waves, outputs)?;
         let json = self.json.as_deref().map(|path| outputs.open(path)).transpose()?;
         let title = format!("{}; {} clocks", self.design.netlist().scopes[0].name, self.clocks);

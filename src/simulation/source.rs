@@ -13,6 +13,7 @@ use crate::nc::Curve;
 use crate::program::{Control, CutWords, Estimate, Pace, Preparation, ProgramFailure, Stream, Survey};
 use crate::report::{OfCurve, OfProgram, Report, Subject};
 use crate::testbench::Testbench;
+use crate::waves::{probes, runs};
 
 /// What the wave of a program begins with: where the machine is, how fast it is to be, and in which block.
 const LEADING: [&str; 5] = ["axis_x.x", "axis_y.y", "program.feed", "program.block", "axis_z.z"];
@@ -122,10 +123,26 @@ impl Simulation {
         Ok(Prepared { bench: bench.limited_to(self.max_clocks), moves })
     }
 
-    /// The same bench where nobody looks at its samples but a report: a program without a wave runs much faster.
+    /// The same bench where nobody looks at its samples but a report and waves: a program runs much faster where these do
+    /// not show the phase of the pulse source.
     pub(crate) fn lean(&self, bench: Testbench) -> Testbench {
-        let whole = self.waves.wanted() || matches!(self.source, Source::Curve(_));
-        if whole { bench } else { bench.without_wave() }
+        match &self.source {
+            Source::Curve(_) => bench,
+            Source::Program(_) if !self.waves.wanted() => bench.without_wave(),
+            Source::Program(_) => {
+                let bench = self.leaving_out(bench);
+                let shown = probes(&bench, &self.waves).unwrap_or_default();
+                let running = bench.running();
+                let shows = |running| shown.iter().any(|probe| runs(probe, bench.columns(), running));
+                if running.is_some_and(shows) { bench } else { bench.passing_over() }
+            }
+        }
+    }
+
+    /// The same bench, whose waves leave out what they leave out by default.
+    pub(super) fn leaving_out(&self, bench: Testbench) -> Testbench {
+        let all = self.waves.every_clock || matches!(self.source, Source::Curve(_));
+        if all { bench } else { bench.leaving_out_phase() }
     }
 
     /// Reads the program anew, and feeds its machine; `None` of a curve, whose blocks the bench has.

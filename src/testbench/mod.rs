@@ -19,6 +19,7 @@ mod ranges;
 mod recording;
 mod ripple;
 mod run;
+mod running;
 mod spacing;
 mod steps;
 mod stimulus;
@@ -44,6 +45,7 @@ pub use ranges::{RangeWatch, RegisterRange, StuckBits};
 pub use recording::{Recording, Trace};
 pub use ripple::Ripple;
 use run::Run;
+pub(crate) use running::Running;
 pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
 pub use steps::Step;
 use steps::StepColumns;
@@ -218,8 +220,10 @@ pub struct Testbench {
     /// Those of the blocks that were.
     cut: Vec<CutWord>,
     columns: Columns,
-    /// Every sample is shown, for a wave; otherwise those of a program in which its machine is idle are passed over.
+    /// Every sample is shown; otherwise those of a program in which its machine is idle are passed over.
     every_sample: bool,
+    /// What waves of its programs leave out.
+    running: Option<Running>,
     /// Clocks after which a run is given up.
     limit: u64,
 }
@@ -239,8 +243,8 @@ impl Testbench {
     pub fn of_machine(hardware: Hardware, machine: Machine) -> Testbench {
         let columns = Columns::of(&machine);
         let (blocks, cut, start) = (Vec::new(), Vec::new(), vec![0; hardware.axes]);
-        let (cuts, every_sample, limit) = (false, true, u64::MAX);
-        Testbench { hardware, machine, blocks, start, cuts, cut, columns, every_sample, limit }
+        let (cuts, every_sample, running, limit) = (false, true, None, u64::MAX);
+        Testbench { hardware, machine, blocks, start, cuts, cut, columns, every_sample, running, limit }
     }
 
     /// The same machine where nobody writes a wave of its programs: much faster, but columns are those of
@@ -248,6 +252,23 @@ impl Testbench {
     #[must_use]
     pub fn without_wave(self) -> Testbench {
         Testbench { columns: Columns::without_wave(&self.machine), every_sample: false, ..self }
+    }
+
+    /// The same machine for waves of its programs that leave out, if nobody names it, what changes at every clock: the
+    /// clock itself, and what runs with the phase of the pulse source. Of hardware without a buffer nothing is left out.
+    pub(crate) fn leaving_out_phase(self) -> Testbench {
+        Testbench { running: Running::of(&self.machine, &self.columns), ..self }
+    }
+
+    /// What waves of its programs leave out.
+    pub(crate) fn running(&self) -> Option<&Running> {
+        self.running.as_ref()
+    }
+
+    /// The same machine, whose idle samples are passed over: waves that [leave out](Self::leaving_out_phase) what
+    /// changes in these are the same, and much faster.
+    pub(crate) fn passing_over(self) -> Testbench {
+        Testbench { every_sample: self.running.is_none(), ..self }
     }
 
     /// The same bench, whose runs are aborted after this many clocks.

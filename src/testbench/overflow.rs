@@ -221,7 +221,12 @@ impl Testbench {
         let shown = netlist.showing_operands(netlist.properties.iter().find(of_event)?)?;
         let machine = Machine { design: elaborate(shown).ok()?, ..self.machine().clone() };
         let columns = Columns::of(&machine);
-        Some(Testbench { machine, columns, ..self.clone() })
+        let bench = Testbench { machine, columns, ..self.clone() };
+        let Some(before) = self.running() else { return Some(bench) };
+        let bench = bench.leaving_out_phase();
+        // An operand that runs with the phase is shown, so that nothing may be passed over.
+        let alike = bench.running().is_some_and(|running| running.nets == before.nets);
+        Some(if alike { bench } else { Testbench { running: Some(before.clone()), every_sample: true, ..bench } })
     }
 }
 

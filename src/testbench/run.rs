@@ -75,6 +75,7 @@ impl<'a, 'o> Run<'a, 'o> {
             None => (kind.build_digesting(bench.design(), &watch, wanted.as_ref()), Rows::new(columns, CHUNK)),
             Some(ports) => {
                 let idle = Idle { running: vec![ports.phase], flags };
+                let idle = bench.running().map_or(idle.clone(), |running| running.idle(idle));
                 (kind.build_passing(bench.design(), &watch, &idle), Rows::sparse(columns, CHUNK))
             }
         };

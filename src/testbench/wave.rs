@@ -38,13 +38,8 @@ pub struct Window {
 impl Window {
     /// The rows of a block that fall between its first and last clock.
     fn rows(&self, rows: &Rows) -> Range<usize> {
-        // A clock beyond the block is after its last row, for any size of a usize.
-        let index = |clock: u64| {
-            let index = usize::try_from(clock.saturating_sub(rows.first_clock()));
-            index.map_or(rows.len(), |index| index.min(rows.len()))
-        };
-        let end = self.to.map_or(rows.len(), |to| index(to.saturating_add(1)));
-        index(self.from).min(end)..end
+        let end = self.to.map_or(rows.len(), |to| rows.before(to.saturating_add(1)));
+        rows.before(self.from).min(end)..end
     }
 }
 
@@ -58,6 +53,9 @@ pub trait WaveBody {
     /// # Errors
     /// The output cannot be written.
     fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()>;
+
+    /// Samples up to this clock, after the last row, are as that row.
+    fn rest(&mut self, clock: u64);
 
     /// Ends the wave.
     ///
@@ -73,6 +71,10 @@ impl<W: Write> WaveBody for VcdBody<W> {
         VcdBody::rows(self, rows, range)
     }
 
+    fn rest(&mut self, clock: u64) {
+        VcdBody::rest(self, clock);
+    }
+
     fn finish(self) -> io::Result<W> {
         VcdBody::finish(self)
     }
@@ -83,6 +85,10 @@ impl<W: Write + Seek> WaveBody for FstBody<W> {
 
     fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
         FstBody::rows(self, rows, range)
+    }
+
+    fn rest(&mut self, clock: u64) {
+        FstBody::rest(self, clock);
     }
 
     fn finish(self) -> io::Result<W> {
@@ -113,7 +119,7 @@ impl Taken {
 
     fn take(&mut self, rows: &Rows, range: Range<usize>) {
         let mut values = rows.column(self.column)[range.clone()].iter().map(|&value| to_signed(self.width, value));
-        if rows.first_clock() + range.start as u64 == 0 {
+        if rows.clock(range.start) == 0 {
             self.reset = values.next();
         }
         for value in values {
@@ -129,6 +135,10 @@ pub struct WaveWriter<B> {
     body: B,
     window: Window,
     open: bool,
+    /// Samples are passed over.
+    sparse: bool,
+    /// The row before the window, as the sample of its first clock, while nothing is written.
+    held: Option<Rows>,
     /// What the columns took that are looked at.
     pub taken: Vec<Taken>,
     /// First and last clock written.
@@ -140,7 +150,7 @@ impl<B: WaveBody> WaveWriter<B> {
     #[must_use]
     pub fn new(body: B, window: Window) -> WaveWriter<B> {
         let open = window.trigger == Trigger::Immediately;
-        WaveWriter { body, window, open, taken: Vec::new(), written: None }
+        WaveWriter { body, window, open, sparse: false, held: None, taken: Vec::new(), written: None }
     }
 
     /// Looks at what these columns take, too.
@@ -151,11 +161,51 @@ impl<B: WaveBody> WaveWriter<B> {
     }
 
     fn write(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
-        let clock = |index: usize| rows.first_clock() + index as u64;
-        let (first, last) = (clock(range.start), clock(range.end - 1));
+        let (first, last) = (rows.clock(range.start), rows.clock(range.end - 1));
         self.taken.iter_mut().for_each(|taken| taken.take(rows, range.clone()));
         self.body.rows(rows, range)?;
         self.written = Some((self.written.map_or(first, |(first, _)| first), last));
+        Ok(())
+    }
+
+    /// Holds the row before the window, and writes it once it is known that its first sample was passed over.
+    fn begin(&mut self, rows: &Rows) -> io::Result<()> {
+        let first = rows.before(self.window.from);
+        if first > 0 {
+            let held = self.held.get_or_insert_with(|| Rows::sparse(rows.columns(), 1));
+            held.clear();
+            held.push(self.window.from, |column| rows.value(column, first - 1));
+        }
+        if first == rows.len() {
+            return Ok(());
+        }
+        if rows.clock(first) > self.window.from {
+            return self.begin_between();
+        }
+        self.held = None;
+        Ok(())
+    }
+
+    /// Begins the window with the row that is held, where that opens it.
+    fn begin_between(&mut self) -> io::Result<()> {
+        let Some(held) = self.held.take() else { return Ok(()) };
+        self.open |= matches!(self.window.trigger, Trigger::Column(column) if held.value(column, 0) == 1);
+        let shown = self.open && self.window.to.is_none_or(|to| to >= self.window.from);
+        if shown { self.write(&held, 0..1) } else { Ok(()) }
+    }
+
+    /// The last sample of the run is that of `clock`: those passed over after the last row belong to the wave too.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn end(&mut self, clock: u64) -> io::Result<()> {
+        if self.written.is_none() && clock >= self.window.from {
+            self.begin_between()?;
+        }
+        if let (true, None, Some((_, last))) = (self.sparse, self.window.steps, &mut self.written) {
+            *last = clock.min(self.window.to.unwrap_or(u64::MAX));
+            self.body.rest(*last);
+        }
         Ok(())
     }
 
@@ -174,6 +224,10 @@ impl<B: WaveBody> Observer for WaveWriter<B> {
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        self.sparse = rows.is_sparse();
+        if self.sparse && self.written.is_none() {
+            self.begin(rows)?;
+        }
         let mut range = self.window.rows(rows);
         if let (Trigger::Column(column), false) = (self.window.trigger, self.open) {
             match rows.column(column)[range.clone()].iter().position(|&value| value == 1) {

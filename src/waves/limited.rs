@@ -4,8 +4,8 @@ use std::io::{self, Seek, SeekFrom, Write};
 
 /// Bytes above which a wave wants `--large`.
 pub(crate) const LARGE: u64 = 1_000_000_000;
-pub(crate) const REMEDIES: &str = "make it small by --trace-steps (one sample a step), --no-clk, a window (--trace-from, --trace-to), \
-    fewer signals (--trace) or --fst; or give --large";
+pub(crate) const REMEDIES: &str = "make it small by --trace-steps (one sample a step), --no-clk or, of a program, without --every-clock, \
+    a window (--trace-from, --trace-to), fewer signals (--trace) or --fst; or give --large";
 
 /// An output that takes no more than 1 GB, unless more is wanted.
 pub(crate) struct Limited<W> {

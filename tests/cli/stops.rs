@@ -231,7 +231,7 @@ fn a_large_wave_is_reported_before_it_is_written_where_it_may_be() {
     for (option, large, unit) in [("X100", " --large", " GB; "), ("X5", "", " MB; ")] {
         let folder = Folder::new();
         folder.write("p.ngc", &format!("G1 {option} F60\n"));
-        let words = format!("program p.ngc --method ppc --vcd -{large}");
+        let words = format!("program p.ngc --method ppc --every-clock --vcd -{large}");
         let mut command = folder.command();
         let mut child = command.args(words.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut first = String::new();
@@ -239,7 +239,7 @@ fn a_large_wave_is_reported_before_it_is_written_where_it_may_be() {
         let message = errors(&child.wait_with_output().unwrap());
         assert!(first.starts_with("$version") && message.lines().count() == 1, "{first}{message}");
         assert!(message.starts_with("stepwave: the wave will have about ") && message.contains(unit), "{message}");
-        assert!(["--trace-steps", "--no-clk", "--fst"].iter().all(|hint| message.contains(hint)), "{message}");
+        assert!(["--trace-steps", "--every-clock", "--fst"].iter().all(|hint| message.contains(hint)), "{message}");
     }
 }
 

@@ -110,16 +110,20 @@ fn a_tool_of_radius_0_runs_on_the_contour() {
 fn a_wave_that_would_be_large_is_reported_before_it_is_written() {
     let folder = Folder::new();
     fs::write(folder.path("p.ngc"), "G1 X100 F60\n").unwrap();
-    let wanted = ["the wave would have about", "--trace-steps", "--no-clk", "--fst", "--large"];
-    refused(&folder, "program p.ngc --method ppc --vcd w.vcd", &wanted);
+    let wanted = ["the wave would have about", "--trace-steps", "without --every-clock", "--fst", "--large"];
+    refused(&folder, "program p.ngc --method ppc --every-clock --vcd w.vcd", &wanted);
     assert!(!folder.path("w.vcd").exists());
 }
 
 #[test]
 fn the_estimate_is_near_the_wave_that_comes() {
     // One path a hundred times as long would be too large; its hundredth part is written.
-    for options in ["--method ppc", "--method dda", "--method cim --no-clk", "--method mindev --trace phase --trace x"]
-    {
+    for options in [
+        "--method ppc --every-clock",
+        "--method dda --every-clock",
+        "--method cim --every-clock --no-clk",
+        "--method mindev --trace phase --trace x",
+    ] {
         let folder = Folder::new();
         fs::write(folder.path("p.ngc"), "G1 X400 Y300 F60\n").unwrap();
         let ran = folder.run(&format!("program p.ngc {options} --vcd w.vcd"));
@@ -137,7 +141,7 @@ fn the_estimate_is_near_the_wave_that_comes() {
 fn a_wave_of_steps_has_one_sample_a_step() {
     let folder = Folder::new();
     let report: Value =
-        report(&folder, "G1 X0.1 F60\n", "--method ppc --vcd w.vcd --trace-steps --no-clk --steps s.csv");
+        report(&folder, "G1 X0.1 F60\n", "--method ppc --vcd w.vcd --trace-steps --trace phase --steps s.csv");
     let wave = fs::read_to_string(folder.path("w.vcd")).unwrap();
     let stamps = wave.lines().filter(|line| line.starts_with('#')).count() as u64;
     // The beginning, the loading, every step, and the end.

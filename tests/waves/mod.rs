@@ -3,6 +3,7 @@
 mod cases;
 mod fst;
 mod header;
+mod idle;
 mod own_designs;
 mod pane;
 mod save_file;

@@ -52,13 +52,13 @@ pub struct Watch {
 }
 
 /// When a machine is idle: in a sample in which no register but the running ones has just changed or is about to, and
-/// no flag or stop is 1. An engine [built to pass over idle samples](EngineKind::build_passing) may skip such a sample,
+/// no flag or stop is 1 or was just before. An engine [built to pass over idle samples](EngineKind::build_passing) may skip such a sample,
 /// recording only what the running registers reached.
 #[derive(Clone, Debug)]
 pub struct Idle {
     /// Registers that change at every clock, read as unsigned numbers: the phase of a pulse source.
     pub running: Vec<Net>,
-    /// Nets (1 bit) whose 1 is always recorded.
+    /// Nets (1 bit) whose 1 is always recorded, with the sample after it.
     pub flags: Vec<Net>,
 }
 

@@ -102,6 +102,22 @@ impl Rows {
         if self.sparse { self.values[self.columns * self.stride + row] } else { self.first_clock + row as u64 }
     }
 
+    /// Number of rows before the sample of a clock.
+    #[must_use]
+    pub fn before(&self, clock: u64) -> usize {
+        if self.sparse {
+            return self.values[self.columns * self.stride..][..self.len].partition_point(|&of| of < clock);
+        }
+        // A clock beyond the block is after its last row, for any size of a usize.
+        usize::try_from(clock.saturating_sub(self.first_clock)).map_or(self.len, |rows| rows.min(self.len))
+    }
+
+    /// Number of values of a row.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
     /// The values of a column, one a row held.
     ///
     /// # Panics
@@ -306,6 +322,16 @@ mod tests {
         assert_eq!(all.and(later), Extremes { least: 3, greatest: 14, first: 6, toggled: 0b1111 });
         let same = Extremes { least: 4, greatest: 4, first: 4, toggled: 0 };
         assert_eq!(all.and(same).toggled, 0b1011);
+    }
+
+    #[test]
+    fn rows_before_a_clock_are_counted_with_samples_passed_over_and_without() {
+        let (mut all, mut some) = (Rows::new(1, 10), Rows::sparse(1, 10));
+        (5..9).for_each(|clock| all.push(clock, |_| clock));
+        [5, 6, 20, 31].into_iter().for_each(|clock| some.push(clock, |_| clock));
+        let before = |rows: &Rows| [0, 5, 6, 8, 9, 20, 21, 31, 32, u64::MAX].map(|clock| rows.before(clock));
+        assert_eq!(before(&all), [0, 0, 1, 3, 4, 4, 4, 4, 4, 4]);
+        assert_eq!(before(&some), [0, 0, 1, 2, 2, 2, 3, 3, 4, 4]);
     }
 
     #[test]

@@ -97,7 +97,8 @@ impl FstHeader<'_> {
 }
 
 impl<W: Write + Seek> FstBody<W> {
-    /// Writes some rows of a block, which follow those written before.
+    /// Writes some rows of a block, which follow those written before. Where the clock is not dumped, samples in which no
+    /// probe changes may be missing.
     ///
     /// # Errors
     /// The output cannot be written.
@@ -105,19 +106,23 @@ impl<W: Write + Seek> FstBody<W> {
         if range.is_empty() {
             return Ok(());
         }
-        let clock = |row: usize| rows.first_clock() + row as u64;
-        let last = clock(range.end - 1);
+        let (first, last) = (rows.clock(range.start), rows.clock(range.end - 1));
         if self.written.is_none() {
-            self.first(clock(range.start), rows, range.start);
-            self.written = Some((clock(range.start), last));
+            self.first(first, rows, range.start);
+            self.written = Some((first, last));
             range.start += 1;
         }
         for start in range.clone().step_by(SPAN) {
-            self.span(clock(start), rows, start..range.end.min(start + SPAN));
+            self.span(rows, start..range.end.min(start + SPAN));
         }
         self.written = self.written.map(|(first, _)| (first, last));
         let changes: usize = self.chains.iter().map(Chain::length).sum();
         if changes + self.times.length() >= self.limit { self.section() } else { Ok(()) }
+    }
+
+    /// Samples up to this clock, after the last row, are as that row.
+    pub fn rest(&mut self, clock: u64) {
+        self.written = self.written.map(|(first, _)| (first, clock));
     }
 
     /// The sample with which the file begins.
@@ -136,14 +141,14 @@ impl<W: Write + Seek> FstBody<W> {
     }
 
     /// Takes up to [`SPAN`] samples.
-    fn span(&mut self, clock: u64, rows: &Rows, range: Range<usize>) {
+    fn span(&mut self, rows: &Rows, range: Range<usize>) {
         self.moves.scan_nets(rows, range.clone());
         self.wide.scan_nets(rows, range.clone());
         #[allow(clippy::cast_possible_truncation)]
         let samples = range.len() as u32;
         let base = self.times.count();
         if self.clk {
-            let (mut rise, half) = (clock * self.ticks, self.ticks / 2);
+            let (mut rise, half) = (rows.clock(range.start) * self.ticks, self.ticks / 2);
             for _ in 0..samples {
                 self.times.push(rise);
                 self.times.push(rise + half);
@@ -155,7 +160,7 @@ impl<W: Write + Seek> FstBody<W> {
             let mut any = self.moves.any() | self.wide.any();
             let moved = any;
             while any != 0 {
-                self.times.push((clock + u64::from(any.trailing_zeros())) * self.ticks);
+                self.times.push(rows.clock(range.start + any.trailing_zeros() as usize) * self.ticks);
                 any &= any - 1;
             }
             self.changes(rows, range, |sample| base + (moved & ((1 << sample) - 1)).count_ones());

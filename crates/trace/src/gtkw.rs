@@ -40,6 +40,8 @@ mod flag {
     pub(super) const SHUT_GROUP_CLOSE: &str = "@1401200";
     /// One more row of height for the analog trace above.
     pub(super) const HEIGHT: &str = "@20200";
+    /// A line of text in place of a row.
+    pub(super) const TEXT: &str = "@200";
     /// Colour of the next row.
     pub(super) const RED: &str = "[color] 1";
 }
@@ -71,6 +73,8 @@ pub struct View<'a> {
     pub probes: &'a [Probe],
     /// The wave holds the clock as `clk` in the top scope.
     pub clk: bool,
+    /// Paths without the design's name that the wave is without and a reader may look for: a line names them.
+    pub without: &'a [String],
     /// Time of a clock.
     pub time: ClockTime,
     /// Clock of the first sample in view.
@@ -155,6 +159,10 @@ fn save_file(view: &View<'_>, states: &[(&[(u64, String)], SideFile)]) -> String
         line(flag::BINARY);
         line(&format!("{top}.clk"));
     }
+    if let Some(text) = without(view) {
+        line(flag::TEXT);
+        line(&format!("-{text}"));
+    }
     for (title, probes) in groups(&rest) {
         let shut = !view.flagged && probes.iter().all(|probe| probe.role == Role::Flag);
         let [open, close] =
@@ -174,6 +182,12 @@ fn save_file(view: &View<'_>, states: &[(&[(u64, String)], SideFile)]) -> String
     text
 }
 
+/// The line that names what the wave is without.
+fn without(view: &View<'_>) -> Option<String> {
+    let names: Vec<&str> = view.without.iter().filter_map(|path| path.rsplit('.').next()).collect();
+    (!names.is_empty()).then(|| format!("without {}", names.join(", ")))
+}
+
 /// The place of a row among those that come first.
 fn leading_place(view: &View<'_>, probe: &Probe) -> Option<usize> {
     let inner = [&probe.scopes[1..], std::slice::from_ref(&probe.name)].concat().join(".");
@@ -185,7 +199,8 @@ fn signals_width(view: &View<'_>) -> usize {
     // Titles of groups count too: `TITLE {`.
     let title = |probe: &Probe| probe.scopes[1..].join(" ").len() + 2;
     let name = |probe: &Probe| shown_name(&probe.name, probe).len().max(title(probe));
-    let names = view.probes.iter().map(name).max().unwrap_or(0);
+    let text = without(view).map_or(0, |text| text.len());
+    let names = view.probes.iter().map(name).max().unwrap_or(0).max(text);
     let values = view.probes.iter().map(longest_value).max().unwrap_or(0);
     (names + 1 + values) * LETTER + NAME_FRAME
 }
@@ -354,6 +369,7 @@ mod tests {
             stem: "w",
             probes: &probes,
             clk: true,
+            without: &[],
             time: ClockTime::from_hz(1e6).unwrap(),
             first_clock: 0,
             last_clock: 16,

@@ -170,6 +170,7 @@ impl VcdHeader<'_> {
 
 impl<W: Write> VcdBody<W> {
     /// Writes some rows of a block, which are later than those written before; a row holds every column of the probes.
+    /// Where the clock is not dumped, samples in which no probe changes may be missing.
     ///
     /// # Errors
     /// The output cannot be written.
@@ -177,29 +178,41 @@ impl<W: Write> VcdBody<W> {
         if range.is_empty() {
             return Ok(());
         }
-        let clock = |row: usize| rows.first_clock() + row as u64;
-        if self.seek(clock(range.start)) {
-            self.first(clock(range.start), rows, range.start);
-            range.start += 1;
+        let (first, last) = (rows.clock(range.start), rows.clock(range.end - 1));
+        if self.seek(first) {
+            self.first(first, rows, range.start);
+            (self.last_clock, range.start) = (Some(first), range.start + 1);
         }
         for start in range.clone().step_by(SPAN) {
             let end = range.end.min(start + SPAN);
             self.moves.scan(rows, start..end);
             self.wide.scan(rows, start..end);
             for row in start..end {
+                if rows.is_sparse() {
+                    let clock = rows.clock(row);
+                    self.seek(clock);
+                    self.last_clock = Some(clock);
+                }
                 self.row(rows, row, row - start);
                 self.spill()?;
             }
         }
-        self.last_clock = Some(clock(range.end) - 1);
+        self.last_clock = Some(last);
         Ok(())
+    }
+
+    /// Samples up to this clock, after the last row, are as that row.
+    pub fn rest(&mut self, clock: u64) {
+        self.last_clock = Some(clock);
     }
 
     /// Sets the stamps to a clock, where they are not there yet; true before the first sample.
     fn seek(&mut self, clock: u64) -> bool {
         if self.last_clock.is_none_or(|last| clock != last + 1) {
             self.rise.set(clock * self.ticks);
-            self.fall.set(clock * self.ticks + self.ticks / 2);
+            if self.clk.is_some() {
+                self.fall.set(clock * self.ticks + self.ticks / 2);
+            }
         }
         self.last_clock.is_none()
     }

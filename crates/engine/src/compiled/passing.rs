@@ -169,7 +169,8 @@ impl Passing<'_, '_> {
         self.leave_at_the_end(&sample, &account);
         let done = self.generator.f.ins().iadd_imm(account.done, 1);
         let account = Account { done, ..account };
-        let woken = self.woken(&sample, &[]);
+        let flags: Vec<Net> = plan.flags.iter().chain(plan.stops).copied().collect();
+        let woken = self.woken(&sample, &flags);
         let (edge, rest) = (self.generator.f.create_block(), self.generator.f.create_block());
         self.generator.f.ins().brif(woken, edge, &[], rest, &[]);
         self.generator.f.switch_to_block(edge);
@@ -181,7 +182,6 @@ impl Passing<'_, '_> {
 
         // All registers but the running ones are those of the sample that was awake.
         let (sample, account) = self.enter(idle, &running, &sample);
-        let flags: Vec<Net> = plan.flags.iter().chain(plan.stops).copied().collect();
         let woken = self.woken(&sample, &flags);
         let stay = self.generator.f.create_block();
         let arguments = self.arguments(&carried, &sample, &account);
