@@ -19,11 +19,15 @@ struct Recorded {
 
 impl Recorded {
     fn of(design: Design, inputs: &[(Net, u64)]) -> Recorded {
+        Recorded::of_clocks(design, inputs, CLOCKS)
+    }
+
+    fn of_clocks(design: Design, inputs: &[(Net, u64)], clocks: u64) -> Recorded {
         let columns: Vec<Net> = design.netlist().nets().collect();
-        let mut rows = Rows::new(columns.len(), usize::try_from(CLOCKS).unwrap() + 1);
+        let mut rows = Rows::new(columns.len(), usize::try_from(clocks).unwrap() + 1);
         let mut engine = EngineKind::Word.build(&design, &Watch { columns, stops: Vec::new() });
         start(engine.as_mut(), inputs, &mut rows);
-        engine.run(CLOCKS, &mut rows);
+        engine.run(clocks, &mut rows);
         Recorded { design, rows }
     }
 
@@ -55,6 +59,7 @@ fn start(engine: &mut dyn Engine, inputs: &[(Net, u64)], rows: &mut Rows) {
 /// Takes digests wherever there are some, and compares each; their number.
 fn compare(recorded: &Recorded, inputs: &[(Net, u64)], wanted: &Wanted, strides: &[u64]) -> Result<u64, TestCaseError> {
     let (design, mut taken, mut digest) = (&recorded.design, 0, Digest::default());
+    let end = recorded.rows.len() as u64 - 1;
     let watch = Watch { columns: vec![design.registers()[0]], stops: Vec::new() };
     let mut engine = digesting_after(design, &watch, wanted, 64);
     let mut rows = Rows::new(1, 512);
@@ -62,10 +67,10 @@ fn compare(recorded: &Recorded, inputs: &[(Net, u64)], wanted: &Wanted, strides:
     for &stride in strides.iter().cycle() {
         rows.clear();
         let clock = engine.clock();
-        if clock + stride >= CLOCKS {
+        if clock + stride >= end {
             break;
         }
-        if engine.look_ahead(CLOCKS - clock, &mut digest) != Ahead::Digest {
+        if engine.look_ahead(end - clock, &mut digest) != Ahead::Digest {
             engine.run(stride, &mut rows);
             continue;
         }
@@ -246,6 +251,28 @@ fn machines_of_every_period_have_digests() {
         let (design, wanted, inputs) = machine(&shape);
         let taken = compare(&Recorded::of(design, &inputs), &inputs, &wanted, &[256]).unwrap();
         assert!(taken > 0, "none of period {period}");
+    }
+}
+
+/// A counter that moves in every clock and comes to the end of its range after any number of clocks: its flag is 1 in that
+/// sample, and it is the last of a digest in some of these runs.
+#[test]
+fn a_flag_that_rises_in_the_last_sample_of_a_digest_is_seen() {
+    for (clocks, up) in (4000..6048).flat_map(|clocks| [(clocks, true), (clocks, false)]) {
+        let module = Module::new("counter");
+        let m = module.top();
+        let reset = if up { 0xffff - clocks } else { 0x1_0000 + clocks };
+        let count = m.reg_signed("count", 17).reset(reset);
+        let one = m.lit_signed(2, 1);
+        let enable = m.lit(1, 1);
+        count.set(if up { count.q.strict_add(one, enable) } else { count.q.strict_sub(one, enable) });
+        let design = elaborate(module.finish().unwrap()).unwrap();
+        let netlist = design.netlist();
+        let register = design.registers()[0];
+        let never = netlist.properties.iter().map(|property| property.never).collect();
+        let ranges = vec![(register, netlist.width(register).sign_bit())];
+        let wanted = Wanted { never, ranges, ..Wanted::default() };
+        compare(&Recorded::of_clocks(design, &[], 8000), &[], &wanted, &[256]).unwrap();
     }
 }
 

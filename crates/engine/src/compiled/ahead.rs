@@ -227,14 +227,15 @@ impl Compiled {
         }
         let word = &mut self.word;
         let mut ranges = wanted.ranges.iter().zip(&native.digester.layout.ranges);
-        let wraps = ranges.any(|(&(net, turned), from)| match *from {
+        let ends = ranges.any(|(&(net, turned), from)| match *from {
             RangeFrom::Counter { up } => {
                 let (now, most) = (word.value(net) ^ turned, self.design.netlist().width(net).mask());
-                length > if up { most - now } else { now }
+                // At the end of its range its flag may be 1 in that very sample.
+                length >= if up { most - now } else { now }
             }
             _ => false,
         });
-        if wraps || !native.digester.call(&mut self.state, word.memories().words_mut()) {
+        if ends || !native.digester.call(&mut self.state, word.memories().words_mut()) {
             return Ahead::Eventful;
         }
         (digest.first_clock, digest.clocks) = (word.clock() + 1, length);
