@@ -58,7 +58,7 @@ pub static MODEL: Model = Model {
         &UNIT,
         &QUAD.about("quadrant of the sector, Q1 = 0 … Q4 = 3"),
         &END,
-        &E.about("end-point down-counter of both axes (total)"),
+        &E.about("end-point down-counter of both axes"),
         &POSITION,
     ],
     options: &[

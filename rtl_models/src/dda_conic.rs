@@ -58,15 +58,14 @@ use crate::model::{Interpolates, Method, Model};
 use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{Block, E, END, IntegratorPair, JR, JV, Normalizer, POSITION, PairSide, SIGN, shifted_left};
 use crate::plan::Plan;
-use crate::registers::{AS_NEEDED, N, Reg, Rule};
+use crate::registers::{AS_NEEDED, N, Reg, Rule, With};
 use crate::sizes;
 use crate::words::{self, GROWS};
 
 const UX_UY: Reg<2> = Reg::each(["ux", "uy"], AS_NEEDED, "corrections of jvx by a Y, of jvy by an X pulse")
     .follows(|plan| plan.get(&NORMALIZE));
-const JVM: Reg = Reg::new("jvm", N, "greatest integrand or correction of the sector (normalised)")
-    .inner()
-    .when(|plan| plan.get(&NORMALIZE));
+const JVM: Reg = Reg::new("jvm", N, "greatest integrand or correction of the sector").inner().when(&NORMALIZED);
+static NORMALIZED: With<bool> = With(&NORMALIZE, |normalize| *normalize);
 
 /// Digital differential analyser, ellipse, parabola, hyperbola.
 pub static MODEL: Model = Model {
@@ -82,7 +81,7 @@ pub static MODEL: Model = Model {
         &UX_UY,
         &JVM,
         &END.width(AS_NEEDED).about("end-point down-counter of each axis"),
-        &E.width(Rule::Planned("as it needs")).about("end-point down-counter of both axes (total)"),
+        &E.width(Rule::Planned("as it needs")).about("end-point down-counter of both axes"),
         &POSITION,
     ],
     options: &[

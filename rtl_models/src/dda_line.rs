@@ -66,7 +66,7 @@ pub static MODEL: Model = Model {
     title: "Digital differential analyser, line of 2 to 6 axes",
     method: "digital differential analyser",
     source: "数字积分法, the DDA linear interpolator of early NC systems, as in Chinese NC textbooks",
-    registers: &[&(JV, JR), &E.about("end-point down-counter (iterations, total, longest)"), &END, &PLACE, &POSITION],
+    registers: &[&(JV, JR), &E, &END, &PLACE, &POSITION],
     options: &[
         &WIDTH.about("N or REGISTER=N,… (default: the least that holds the line)"),
         &PRESET,

@@ -52,19 +52,21 @@ use crate::model::{Interpolates, Method, Model};
 use crate::options::{CASCADE, END_POINT, EndPoint, ON_OVERFLOW, OVERRIDE, RADIX, Radix, WIDTH};
 use crate::parts::{Block, COEFFICIENT, POSITION, Q, RateMultiplier, SIGN, Units, axis_scope};
 use crate::plan::Plan;
-use crate::registers::{Reg, Rule};
+use crate::registers::{Reg, Rule, Where, With};
 use crate::sizes;
 
 const NAME: &str = "dpm-line";
 
 /// The number of the feed override.
 const PERCENT: Reg = Reg::new("percent", Rule::Bits(8), "the feed override, two decimal digits");
-const O: Reg = Reg::new("o", Rule::Bits(8), "count of the feed override, two decimal digits (override)")
-    .when(|plan| plan.get(&OVERRIDE).is_some());
+const O: Reg = Reg::new("o", Rule::Bits(8), "count of the feed override, two decimal digits").when(&OVERRIDDEN);
+static OVERRIDDEN: With<Option<u64>> = With(&OVERRIDE, Option::is_some);
 /// The counters of a cascade.
-const Q_UNITS: Reg<64> = Reg::each(UNITS, Rule::Planned("BITS"), "counters of the units, the fastest first (cascade)")
-    .when(|plan| units_of(plan).radix == Radix::Binary && units_of(plan).count > 1)
+const Q_UNITS: Reg<64> = Reg::each(UNITS, Rule::Planned("BITS"), "counters of the units, the fastest first")
+    .when(&CASCADED)
     .count(|plan| units_of(plan).count as usize);
+static CASCADED: Where = Where("--cascade with fewer bits than n", is_cascaded);
+static NOT_CASCADED: Where = Where("without --cascade, or with --cascade n", |plan| !is_cascaded(plan));
 #[rustfmt::skip]
 const UNITS: [&str; 64] = [
     "q1", "q2", "q3", "q4", "q5", "q6", "q7", "q8", "q9", "q10", "q11", "q12", "q13",
@@ -86,8 +88,7 @@ pub static MODEL: Model = Model {
              counts of a decade are a definition of this project",
     registers: &[
         &O,
-        &Q.when(|plan| units_of(plan).radix == Radix::Decimal || units_of(plan).count == 1)
-            .follows(|plan| plan.get(&RADIX) == Radix::Decimal),
+        &Q.when(&NOT_CASCADED).follows(|plan| plan.get(&RADIX) == Radix::Decimal),
         &Q_UNITS,
         &COEFFICIENT,
         &POSITION,
@@ -182,6 +183,10 @@ fn units(radix: Radix, cascade: Option<Width>, n: u32) -> Units {
     let whole = radix == Radix::Binary && cascade.is_none();
     let bits = if whole { n } else { unit(radix, cascade) };
     Units { radix, bits, count: n / bits }
+}
+
+fn is_cascaded(plan: &Plan) -> bool {
+    units_of(plan).radix == Radix::Binary && units_of(plan).count > 1
 }
 
 fn units_of(plan: &Plan) -> Units {

@@ -147,7 +147,7 @@ impl Plan {
     fn each(&self, mut visit: impl FnMut(&'static str, &'static Declaration)) {
         for declared in self.registers {
             let (first, second) = declared.rows();
-            let names = |RegisterGroup { names, declaration }: RegisterGroup| match (declaration.when)(self) {
+            let names = |RegisterGroup { names, declaration }: RegisterGroup| match declaration.when.holds(self) {
                 true => &names[..(declaration.count)(self).min(names.len())],
                 false => &[],
             };

@@ -61,7 +61,7 @@ pub static MODEL: Model = Model {
         &F.width(N.plus(1)).about("deviation F, two's complement"),
         &GX_GY,
         &UX_UY,
-        &E.width(Rule::Planned("as it needs")).about("end-point down-counter of the sector (total)"),
+        &E.width(Rule::Planned("as it needs")).about("end-point down-counter of the sector"),
         &END.width(AS_NEEDED).about("end-point down-counter of each axis"),
         &POSITION,
     ],

@@ -44,7 +44,7 @@ pub static MODEL: Model = Model {
     title: "Point-by-point comparison, line",
     method: "point-by-point comparison",
     source: "逐点比较法, the linear interpolator of early NC systems, as in Chinese NC textbooks",
-    registers: &[&XE, &YE, &F.width(N.plus(1)), &E.about("end-point down-counter (total, longest)"), &END, &POSITION],
+    registers: &[&XE, &YE, &F.width(N.plus(1)), &E, &END, &POSITION],
     options: &[
         &WIDTH.about("N or REGISTER=N,… (default: the least that holds the line)"),
         &FORM,

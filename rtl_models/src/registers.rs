@@ -17,6 +17,7 @@ use std::fmt;
 
 use stepwave_netlist::formula::{Formula, name};
 
+use crate::options::{OptionDef, Takes, Values};
 use crate::plan::Plan;
 
 /// Letters of up to six axes.
@@ -81,6 +82,57 @@ impl fmt::Display for Rule {
     }
 }
 
+/// When hardware has a register.
+pub trait Condition: Sync {
+    /// This hardware has it.
+    fn holds(&self, plan: &Plan) -> bool;
+
+    /// In words, by the values that a model takes: `--end-point total or longest`; empty where it always has it.
+    fn words(&self, options: &'static [&'static dyn Takes]) -> String;
+}
+
+impl fmt::Debug for dyn Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words(&[]))
+    }
+}
+
+/// With the values of an option of which this is true.
+pub struct With<T: 'static>(pub &'static OptionDef<T>, pub fn(&T) -> bool);
+
+impl<T: Clone + PartialEq + Send + Sync + 'static> Condition for With<T> {
+    fn holds(&self, plan: &Plan) -> bool {
+        (self.1)(&plan.get(self.0))
+    }
+
+    fn words(&self, options: &'static [&'static dyn Takes]) -> String {
+        let With(option, is_so) = self;
+        let Some(taken) = options.iter().find(|takes| takes.name() == option.name) else { return String::new() };
+        let taken = taken.words();
+        let known = match option.values {
+            Values::Words(known) if !option.value_name.is_empty() => known,
+            _ => return format!("--{}", option.name),
+        };
+        let so = known.iter().filter(|(word, value)| is_so(value) && taken.iter().any(|(taken, _)| taken == word));
+        format!("--{} {}", option.name, so.map(|(word, _)| *word).collect::<Vec<_>>().join(" or "))
+    }
+}
+
+/// Where this is true of the plan, which these words say.
+pub struct Where(pub &'static str, pub fn(&Plan) -> bool);
+
+impl Condition for Where {
+    fn holds(&self, plan: &Plan) -> bool {
+        (self.1)(plan)
+    }
+
+    fn words(&self, _: &'static [&'static dyn Takes]) -> String {
+        self.0.to_owned()
+    }
+}
+
+static ALWAYS: Where = Where("", |_| true);
+
 /// What is said of registers that are declared together.
 #[derive(Clone, Copy, Debug)]
 pub struct Declaration {
@@ -94,8 +146,8 @@ pub struct Declaration {
     pub shown: bool,
     /// They start from `--preset`.
     pub preset: bool,
-    /// Whether the hardware has them.
-    pub when: fn(&Plan) -> bool,
+    /// Which hardware has them.
+    pub when: &'static dyn Condition,
     /// How many of them it has at most.
     pub count: fn(&Plan) -> usize,
     /// Whether their width follows from that of others, so that the user cannot change it.
@@ -149,7 +201,7 @@ impl<const K: usize> Reg<K> {
             signed: false,
             shown: true,
             preset: false,
-            when: |_| true,
+            when: &ALWAYS,
             count: if K == AXES.len() { Plan::axes } else { |_| K },
             follows: |_| false,
         };
@@ -209,9 +261,9 @@ impl<const K: usize> Reg<K> {
         self
     }
 
-    /// Only in hardware of which this is true.
+    /// Only in this hardware.
     #[must_use]
-    pub const fn when(mut self, when: fn(&Plan) -> bool) -> Reg<K> {
+    pub const fn when(mut self, when: &'static dyn Condition) -> Reg<K> {
         self.declaration.when = when;
         self
     }

@@ -63,14 +63,16 @@ use crate::parts::{
 };
 use crate::plan::Plan;
 use crate::registers::{Reg, Rule};
-use crate::sampling::Sampling;
+use crate::sampling::{BY_STEP_FACTOR, Sampling};
 use crate::sizes;
 
 const P_XY: Reg<2> =
     Reg::each(["px", "py"], Rule::Planned("n+1+q"), "coarse point that is calculated, about the centre, signed")
+        .signed()
         .inner();
-const REMAINDERS: Reg<2> =
-    Reg::each(["remx", "remy"], Rule::Planned("n+q"), "remainder of each below the fraction (7360)").inner();
+const REMAINDERS: Reg<2> = Reg::each(["remx", "remy"], Rule::Planned("n+q"), "remainder of each below the fraction")
+    .inner()
+    .when(&BY_STEP_FACTOR);
 const ENDS: Reg<2> = Reg::each(["xe", "ye"], Rule::Planned("n+1"), "end point about the centre, signed");
 
 /// Data sampling with a fine DDA, arc.

@@ -52,13 +52,14 @@ use crate::parts::{
 };
 use crate::plan::Plan;
 use crate::registers::{Reg, Rule};
-use crate::sampling::Sampling;
+use crate::sampling::{BY_STEP_FACTOR, Sampling};
 use crate::{sizes, words};
 
 const FAR_NEAR: Reg<2> =
     Reg::each(["far", "near"], Rule::Planned("n+1+q"), "coarse way of the long and the short axis").inner();
-const REMAINDERS: Reg<2> =
-    Reg::each(["remf", "remn"], Rule::Planned("n"), "remainder of each below the fraction").inner();
+const REM_NEAR: Reg = Reg::new("remn", Rule::Planned("n"), "remainder of near below the fraction").inner();
+const REM_FAR: Reg =
+    Reg::new("remf", Rule::Planned("n"), "remainder of far below the fraction").inner().when(&BY_STEP_FACTOR);
 const LONG_SHORT: Reg<2> = Reg::each(["long", "short"], Rule::Planned("n"), "|d| of the long and the short axis");
 const NEGATIVE: Reg<2> = Reg::each(["negative_x", "negative_y"], Rule::Bits(1), "direction of each axis");
 
@@ -68,7 +69,7 @@ pub static MODEL: Model = Model {
     title: "Data sampling with a fine DDA, line of 2 axes",
     method: "data sampling",
     source: "数据采样法, the two-stage interpolation of CNC systems, as in Chinese NC textbooks",
-    registers: &[&STATE, &FAR_NEAR, &REMAINDERS, &POINT, &BURST, &POSITION],
+    registers: &[&STATE, &FAR_NEAR, &REM_FAR, &REM_NEAR, &POINT, &BURST, &POSITION],
     options: &[
         &SAMPLED_SYSTEM,
         &FRACTION,
@@ -154,7 +155,7 @@ fn own_rows<'m>(
     let factor = m.reg(if by_direction { "step" } else { "lambda" }, bits + 1);
     let [far, near] = [0, 1].map(|axis| m.reg(FAR_NEAR.of(axis).name(), bits + 1));
     // What is below the fraction is kept for the next period.
-    let near_rest = m.reg(REMAINDERS.of(1).name(), n);
+    let near_rest = m.reg(REM_NEAR.name(), n);
     let (product, quotient, length) = (program.multiplier.product(), program.divider.quotient(), program.root.root());
     let beyond = quotient.slice(bits, quotient.bits() - bits).is_nonzero();
     let limited = beyond.mux(m.lit(1, 1).concat(m.lit(bits, 0)), quotient.slice(0, bits + 1));
@@ -174,7 +175,7 @@ fn own_rows<'m>(
         ]
     } else {
         // λ = f / length; {travel, rest} := {travel, rest} + λ·L.
-        let far_rest = m.reg(REMAINDERS.of(0).name(), n);
+        let far_rest = m.reg(REM_FAR.name(), n);
         cleared.push(far_rest);
         let [far, near] = [(far, far_rest), (near, near_rest)].map(|(travel, rest)| {
             let sum = travel.q.concat(rest.q).wrapping_add(product);

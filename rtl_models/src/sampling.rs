@@ -5,6 +5,10 @@ use stepwave_netlist::Width;
 use crate::error::ModelError;
 use crate::options::{FRACTION, Millionths, STEP, SYSTEM, System, TOLERANCE};
 use crate::plan::Plan;
+use crate::registers::With;
+
+/// With the coarse stage that calculates by the step factor.
+pub(crate) static BY_STEP_FACTOR: With<System> = With(&SYSTEM, |system| *system == System::StepFactor);
 
 /// The coarse stage of data sampling: all that fixes it.
 #[derive(Clone, Copy, PartialEq, Debug)]

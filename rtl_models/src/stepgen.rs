@@ -52,19 +52,18 @@ use crate::machine::Words;
 use crate::model::{Interpolates, Method, Model};
 use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PICK_OFF, PRESET, Preset, StepTiming, TIMING, WIDTH};
 use crate::parts::{ACC, Block, E, POSITION, PhaseAccumulator, RATE, StepOutput, axis_scope};
+use crate::per_axis;
 use crate::plan::Plan;
-use crate::registers::{AXES, Reg, Rule};
+use crate::registers::{AXES, PerAxis, Reg, Rule};
 use crate::sizes;
 
 const NAME: &str = "stepgen";
 
 /// The outputs of each axis.
-const OUTPUTS: Reg<12> = Reg::each(
-    ["stepx", "dirx", "stepy", "diry", "stepz", "dirz", "stepa", "dira", "stepb", "dirb", "stepc", "dirc"],
-    Rule::Bits(1),
-    "step and direction output of each axis",
-)
-.hidden();
+const OUTPUTS: (PerAxis, PerAxis) = (
+    Reg::each(per_axis!("step"), Rule::Bits(1), "step output of each axis").hidden(),
+    Reg::each(per_axis!("dir"), Rule::Bits(1), "direction output of each axis").hidden(),
+);
 
 /// Longest time of an output, in clocks.
 const LONGEST_TIME: u64 = 1 << 20;

@@ -43,7 +43,7 @@ pub static MODEL: Model = Model {
         &F,
         &XI_YI,
         &QUAD,
-        &E.width(N.plus(3)).about("end-point down-counter of the pulses of both axes (total)"),
+        &E.width(N.plus(3)).about("end-point down-counter of the pulses of both axes"),
         &END,
         &POSITION,
     ],

@@ -73,7 +73,9 @@ impl Columns {
         let _ = writeln!(text, "    registers");
         for row in model.rows() {
             let (label, rule) = (row.label(model.curve().max_axes()), row.declaration.rule.to_string());
-            let _ = writeln!(text, "      {label:<name$}  {rule:<width$}  {}", row.declaration.about);
+            let when = row.declaration.when.words(model.options);
+            let when = if when.is_empty() { when } else { format!(" ({when})") };
+            let _ = writeln!(text, "      {label:<name$}  {rule:<width$}  {}{when}", row.declaration.about);
         }
         let _ = writeln!(text, "    options");
         for takes in model.options {
@@ -93,7 +95,11 @@ fn as_json(model: &Model) -> Value {
     };
     let registers = model.rows().map(|row| {
         let (label, rule) = (row.label(model.curve().max_axes()), row.declaration.rule.to_string());
-        json!({ "name": label, "default_width": rule, "about": row.declaration.about })
+        let declared = row.declaration;
+        let when = Some(declared.when.words(model.options)).filter(|words| !words.is_empty());
+        json!({
+            "name": label, "default_width": rule, "signed": declared.signed, "about": declared.about, "when": when,
+        })
     });
     let options = model.options.iter().map(|takes| {
         json!({

@@ -42,7 +42,7 @@ fn values(option: &dyn AnyOption) -> &'static [&'static str] {
 }
 
 /// A small and an awkward curve that the model takes.
-fn curves(model: &Model) -> [Curve; 2] {
+pub(super) fn curves(model: &Model) -> [Curve; 2] {
     let line = |from: &[i64], to: &[i64]| Curve::Line(Line::new(from.to_vec(), to.to_vec()).unwrap());
     let arc = |from, to, center, direction| Arc::new(from, to, center, direction).unwrap();
     let (cw, ccw) = (Direction::Clockwise, Direction::CounterClockwise);

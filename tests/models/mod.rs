@@ -15,6 +15,7 @@ mod dpm;
 mod mindev_vector;
 mod ppc;
 mod promises;
+mod registers;
 mod sampled;
 mod spacing;
 mod stepgen_bresenham;

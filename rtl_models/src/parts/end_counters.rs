@@ -6,14 +6,14 @@ use super::{Block, DownCounter};
 use crate::hardware::Hardware;
 use crate::options::{END_POINT, EndPoint};
 use crate::per_axis;
-use crate::registers::{N, PerAxis, Reg};
+use crate::registers::{N, PerAxis, Reg, With};
 
 /// The end-point down-counter of hardware that has one for all axes.
-pub const E: Reg =
-    Reg::new("e", N.plus(1), "end-point down-counter (total)").when(|plan| plan.get(&END_POINT) != EndPoint::PerAxis);
+pub const E: Reg = Reg::new("e", N.plus(1), "end-point down-counter").when(&ONE_FOR_ALL);
+static ONE_FOR_ALL: With<EndPoint> = With(&END_POINT, |end_point| *end_point != EndPoint::PerAxis);
 /// The end-point down-counters of hardware that has one for each axis.
-pub const END: PerAxis = Reg::each(per_axis!("e"), N, "end-point down-counter of each axis (per-axis)")
-    .when(|plan| plan.get(&END_POINT) == EndPoint::PerAxis);
+pub const END: PerAxis = Reg::each(per_axis!("e"), N, "end-point down-counter of each axis").when(&ONE_EACH);
+static ONE_EACH: With<EndPoint> = With(&END_POINT, |end_point| *end_point == EndPoint::PerAxis);
 
 /// End-point counters of two axes: `ex` and `ey` with [`EndPoint::PerAxis`], else `e`.
 #[derive(Clone, Copy, Debug)]

@@ -6,13 +6,12 @@ use stepwave_netlist::dsl::{Scope, Signal};
 use super::{Block, JR};
 use crate::hardware::Hardware;
 use crate::options::{ADDER, Adder, RADIX};
-use crate::registers::{Reg, Rule};
+use crate::registers::{Reg, Rule, With};
 
 /// The digit that serial integrators add next.
 pub const PLACE: Reg =
-    Reg::new("place", Rule::Planned("as it needs"), "digit that is added next, 0 the lowest (serial)")
-        .inner()
-        .when(|plan| plan.get(&ADDER) == Adder::Serial);
+    Reg::new("place", Rule::Planned("as it needs"), "digit that is added next, 0 the lowest").inner().when(&SERIAL);
+static SERIAL: With<Adder> = With(&ADDER, |adder| *adder == Adder::Serial);
 
 /// When integrators add; 1 bit each.
 #[derive(Clone, Copy, Debug)]
