@@ -64,7 +64,8 @@ use crate::words::{self, GROWS};
 
 const UX_UY: Reg<2> = Reg::each(["ux", "uy"], AS_NEEDED, "corrections of jvx by a Y, of jvy by an X pulse")
     .follows(|plan| plan.get(&NORMALIZE));
-const JVM: Reg = Reg::new("jvm", N, "greatest integrand or correction of the sector").inner().when(&NORMALIZED);
+const JVM: Reg =
+    Reg::new("jvm", N, "greatest integrand or correction of the sector").scaled().inner().when(&NORMALIZED);
 static NORMALIZED: With<bool> = With(&NORMALIZE, |normalize| *normalize);
 
 /// Digital differential analyser, ellipse, parabola, hyperbola.

@@ -124,7 +124,6 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
     let n = plan.bits(COEFFICIENT.of(0));
     let clocks = u64::try_from(modulus(units.radix, n)).unwrap_or(u64::MAX);
     plan.stall_clocks = clocks.saturating_mul(if slower { 100 } else { 1 }).saturating_add(16);
-    plan.scale = &["m"];
     plan.pace = Pace::Cycle(COEFFICIENT.of(0));
     let bound = rate_bound(units.radix, n);
     plan.rate_bound = Some(bound);

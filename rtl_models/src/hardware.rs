@@ -51,8 +51,8 @@ pub struct Hardware {
     pub pace: Pace,
     /// Greatest deviation of an axis from its uniform rate, in pulses, that the method promises, if it promises one.
     pub rate_bound: Option<f64>,
-    /// Beginnings of the names of registers that share one scale and are widened together.
-    pub scale: &'static [&'static str],
+    /// Registers that share one scale and are widened together.
+    pub scale: Vec<&'static str>,
 }
 
 impl Hardware {
@@ -158,7 +158,7 @@ impl Hardware {
     /// The register is widened together with others.
     #[must_use]
     pub fn shares_a_scale(&self, register: &str) -> bool {
-        self.scale.iter().any(|kind| register.starts_with(kind))
+        self.scale.contains(&register)
     }
 
     /// Bits of the fraction in a register of an integrator: those that the remainder of its axis has beyond `jrx`.

@@ -33,8 +33,6 @@ pub struct Plan {
     pub rate_bound: Option<f64>,
     /// No pulse for this many clocks while a block runs means that none will come; `u64::MAX` where that is not known.
     pub stall_clocks: u64,
-    /// Beginnings of the names of registers that share one scale and are widened together.
-    pub scale: &'static [&'static str],
     pub(crate) sampling: Option<Sampling>,
 }
 
@@ -52,7 +50,6 @@ impl Plan {
             pace: Pace::default(),
             rate_bound: None,
             stall_clocks: 16,
-            scale: &[],
             sampling: None,
         }
     }
@@ -210,9 +207,12 @@ impl Plan {
         single.get(name).or_else(|| single.get(kind(&self.names(), name)?)).copied()
     }
 
-    /// Calls with every register that the hardware has: its name, its width if the user may choose it, and whether the
-    /// step table shows it.
-    fn resolve(&self, mut take: impl FnMut(&'static str, Option<Width>, bool)) -> Result<(), ModelError> {
+    /// Calls with every register that the hardware has: its name, its width if the user may choose it, and its
+    /// declaration.
+    fn resolve(
+        &self,
+        mut take: impl FnMut(&'static str, Option<Width>, &'static Declaration),
+    ) -> Result<(), ModelError> {
         let single = self.options.get(&WIDTH).map(|widths| &widths.single).filter(|single| !single.is_empty());
         let known = if single.is_some() { self.names() } else { Vec::new() };
         for given in single.into_iter().flat_map(BTreeMap::keys) {
@@ -235,7 +235,7 @@ impl Plan {
                 single.map_or_else(default, |width| Ok(*width))
             });
             match width.transpose() {
-                Ok(width) => take(name, width, declaration.shown),
+                Ok(width) => take(name, width, declaration),
                 Err(error) if result.is_ok() => result = Err(error),
                 Err(_) => {}
             }
@@ -279,10 +279,11 @@ impl Plan {
     /// The hardware: widths and all options as given or by default.
     pub(crate) fn finish(self) -> Result<Hardware, ModelError> {
         let presets = self.presets()?;
-        let (mut widths, mut table) = (Vec::with_capacity(16), Vec::with_capacity(16));
-        self.resolve(|name, width, shown| {
+        let (mut widths, mut table, mut scale) = (Vec::with_capacity(16), Vec::with_capacity(16), Vec::new());
+        self.resolve(|name, width, declaration| {
             widths.extend(width.map(|width| (name, width)));
-            table.extend(shown.then_some(name));
+            table.extend(declaration.shown.then_some(name));
+            scale.extend(declaration.scaled.then_some(name));
         })?;
         Ok(Hardware {
             presets,
@@ -297,7 +298,7 @@ impl Plan {
             error_bound: self.error_bound,
             pace: self.pace,
             rate_bound: self.rate_bound,
-            scale: self.scale,
+            scale,
         })
     }
 
@@ -316,7 +317,6 @@ impl Plan {
     /// # Errors
     /// The widths chosen are of several scales.
     pub fn integrators_with_fraction(&mut self, whole: usize, clocks: u64) -> Result<(), ModelError> {
-        self.scale = &["jv", "jr"];
         self.check()?;
         let (model, radix) = (self.model, self.get(&RADIX));
         // All of them are in range.

@@ -146,6 +146,8 @@ pub struct Declaration {
     pub shown: bool,
     /// They start from `--preset`.
     pub preset: bool,
+    /// They share one scale with all others that do, and are widened together.
+    pub scaled: bool,
     /// Which hardware has them.
     pub when: &'static dyn Condition,
     /// How many of them it has at most.
@@ -201,6 +203,7 @@ impl<const K: usize> Reg<K> {
             signed: false,
             shown: true,
             preset: false,
+            scaled: false,
             when: &ALWAYS,
             count: if K == AXES.len() { Plan::axes } else { |_| K },
             follows: |_| false,
@@ -258,6 +261,13 @@ impl<const K: usize> Reg<K> {
     #[must_use]
     pub const fn preset(mut self) -> Reg<K> {
         self.declaration.preset = true;
+        self
+    }
+
+    /// On one scale with all others that are: they are widened together.
+    #[must_use]
+    pub const fn scaled(mut self) -> Reg<K> {
+        self.declaration.scaled = true;
         self
     }
 

@@ -10,9 +10,9 @@ use crate::per_axis;
 use crate::registers::{N, PerAxis, Reg};
 
 /// Integrands.
-pub const JV: PerAxis = Reg::each(per_axis!("jv"), N, "integrand J_V of each axis, |d|");
+pub const JV: PerAxis = Reg::each(per_axis!("jv"), N, "integrand J_V of each axis, |d|").scaled();
 /// Remainders.
-pub const JR: PerAxis = Reg::each(per_axis!("jr"), N, "remainder J_R of each axis, from the preset").preset();
+pub const JR: PerAxis = Reg::each(per_axis!("jr"), N, "remainder J_R of each axis, from the preset").preset().scaled();
 
 /// One DDA integrator: in every iteration it adds the integrand J_V into the remainder register J_R of its axis (at
 /// least as wide as the integrand); returns the carry (1 bit), which is the axis's pulse.

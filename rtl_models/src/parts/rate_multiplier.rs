@@ -10,7 +10,7 @@ use crate::per_axis;
 use crate::registers::{N, PerAxis, Reg};
 
 /// Coefficients.
-pub const COEFFICIENT: PerAxis = Reg::each(per_axis!("m"), N, "coefficient M of each axis, |d|");
+pub const COEFFICIENT: PerAxis = Reg::each(per_axis!("m"), N, "coefficient M of each axis, |d|").scaled();
 /// The counter that all axes share.
 pub const Q: Reg = Reg::new("q", N, "counter that all axes share");
 

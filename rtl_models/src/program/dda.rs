@@ -73,7 +73,6 @@ fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
     planar::common_plan(plan, size);
     // Normalised, a block takes no more steps than its integrands need.
     planar::one_scale(plan, &[JV.of(0), JV.of(1), JR.of(0), JR.of(1)], !normalized)?;
-    plan.scale = &["jv", "jr"];
     plan.stall_clocks = planar::stall_clocks(plan.bits(JR.of(0)));
     Ok(())
 }

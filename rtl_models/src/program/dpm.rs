@@ -54,7 +54,6 @@ fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
     plan.fix(&END_POINT, EndPoint::Iterations);
     let registers = [Q, COEFFICIENT.of(0), COEFFICIENT.of(1), COEFFICIENT.of(2)];
     planar::one_scale(plan, &registers[..=plan.axes()], true)?;
-    plan.scale = &["m"];
     plan.stall_clocks = planar::stall_clocks(plan.bits(Q));
     Ok(())
 }
