@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::models::Millionths;
-use crate::nc::Opens;
+use crate::nc::{Drawn, Opens};
 use clap::{Args, Parser, Subcommand};
 
 use crate::commands::diff::DiffArgs;
@@ -283,4 +283,16 @@ pub(crate) struct GeometryArgs {
     /// Counter-clockwise arc (G03, NR); on a parabola or hyperbola the ends alone say the way
     #[arg(long)]
     pub(crate) ccw: bool,
+}
+
+impl GeometryArgs {
+    /// What is drawn, and its sizes, where these are given.
+    pub(crate) fn sized(&self) -> Option<(Drawn, Vec<i64>)> {
+        let conics = [
+            self.ellipse.map(|semi_axes| (Drawn::Ellipse, semi_axes.to_vec())),
+            self.parabola.map(|c| (Drawn::Parabola(self.opens), vec![c])),
+            self.hyperbola.map(|semi_axes| (Drawn::Hyperbola(self.opens), semi_axes.to_vec())),
+        ];
+        conics.into_iter().flatten().next()
+    }
 }

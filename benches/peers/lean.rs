@@ -36,7 +36,7 @@ fn case(model: &str, power: u32) -> Fallible<(Case, Vec<i64>)> {
     let words = match &case.curve {
         Curve::Arc(arc) => [arc.from(), arc.to()].concat(),
         Curve::Line(line) => line.to().to_vec(),
-        Curve::Conic(_) | Curve::Helix(_) => return Err(format!("no lean {model}").into()),
+        _ => return Err(format!("no lean {model}").into()),
     };
     Ok((case, words))
 }

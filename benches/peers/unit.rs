@@ -58,7 +58,7 @@ impl Case {
                 words.extend(["--from".to_owned(), point(arc.from()), "--to".to_owned(), point(arc.to())]);
                 words.push("--ccw".to_owned());
             }
-            Curve::Conic(_) | Curve::Helix(_) => {}
+            _ => {}
         }
         words.extend(["--width".to_owned(), self.width.to_string()]);
         if let Some(preset) = self.preset {

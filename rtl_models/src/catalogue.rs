@@ -3,12 +3,10 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
-
 use crate::MODELS;
 use crate::described::known;
 use crate::error::ModelError;
-use crate::model::{CurveKind, Model};
+use crate::model::Model;
 use crate::options::{ALL, AnyOption, Options, Shape};
 
 /// Models, in the order of `stepwave list`.
@@ -100,17 +98,6 @@ impl Catalogue {
     }
 }
 
-/// A small curve of each kind.
-fn sample(kind: CurveKind) -> Option<Curve> {
-    let turn = Direction::CounterClockwise;
-    match kind {
-        CurveKind::Line { .. } => Line::new(vec![0, 0], vec![8, 6]).ok().map(Curve::Line),
-        CurveKind::Arc | CurveKind::Move => Arc::new([5, 0], [0, 5], [0, 0], turn).ok().map(Curve::Arc),
-        CurveKind::Conic => Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], turn).ok().map(Curve::Conic),
-        CurveKind::Helix => Helix::new([5, 0, 0], [0, 5, 3], [0, 0], turn).ok().map(Curve::Helix),
-    }
-}
-
 /// Options that are tried: every word, and of numbers the least.
 fn tried(model: &'static Model) -> Result<Vec<Options>, ModelError> {
     let mut tried = vec![Options::default()];
@@ -131,7 +118,7 @@ fn tried(model: &'static Model) -> Result<Vec<Options>, ModelError> {
 /// Plans, wires and loads a small curve with every word of every option; a register that the model lists must be there
 /// with one of them, as wide as it is planned.
 fn check(model: &'static Model) -> Result<(), ModelError> {
-    let Some(curve) = sample(model.curve()) else { return Ok(()) };
+    let Ok(curve) = model.curve().sample() else { return Ok(()) };
     let mut missing = BTreeSet::new();
     for name in model.rows().flat_map(|row| row.names(curve.axes())) {
         if !missing.insert(*name) {

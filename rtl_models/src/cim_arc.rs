@@ -34,8 +34,9 @@ use stepwave_netlist::formula::{Formula, name};
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model};
+use crate::model::Model;
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH, Weights};
 use crate::parts::{
     A_B, ArcKind, BASE, Block, CCW, Change, END, F, POSITION, QUAD, Side, comparison_integral, quadrant_register,

@@ -38,8 +38,9 @@ use stepwave_netlist::dsl::Scope;
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model};
+use crate::model::Model;
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WEIGHTS, WIDTH};
 use crate::parts::{A_B, BASE, Block, Change, END, F, POSITION, SIGN, Side, comparison_integral};
 use crate::plan::Plan;

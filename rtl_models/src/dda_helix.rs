@@ -35,8 +35,9 @@ use stepwave_netlist::dsl::Scope;
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model};
+use crate::model::Model;
 use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{
     ArcKind, Block, END, IntegratorPair, Iteration, JR, JV, Normalizer, POSITION, QUAD, SIGN, axis_scope, integrator,

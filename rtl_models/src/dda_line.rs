@@ -48,8 +48,9 @@ use stepwave_netlist::formula::{Clause, Formula, name, number};
 use crate::claims::{Claims, Region, steps_left};
 use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace, modulus};
+use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model};
+use crate::model::Model;
 use crate::options::{ADDER, Adder, END_POINT, EndPoint, NORMALIZE, ON_OVERFLOW, PRESET, RADIX, Radix, WIDTH};
 use crate::parts::{
     Block, E, END, Iteration, JR, JV, LONGEST, Normalizer, PLACE, POSITION, SIGN, axis_scope, digits, integrator,

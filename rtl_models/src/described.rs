@@ -7,8 +7,9 @@ use stepwave_nc::Curve;
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::interpolates::CurveKind;
 use crate::machine::{Machine, Words};
-use crate::model::{CurveKind, Model};
+use crate::model::Model;
 use crate::plan::Plan;
 use crate::program::Moves;
 

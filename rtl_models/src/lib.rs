@@ -77,6 +77,7 @@ mod described;
 mod docs;
 mod error;
 mod hardware;
+mod interpolates;
 mod machine;
 mod model;
 mod plan;
@@ -96,7 +97,8 @@ pub use options::{
     Radix, StepTiming, System, Takes, Weights,
 };
 
-pub use model::{CurveKind, Interpolates, Method, Model};
+pub use interpolates::{CurveKind, Interpolates, Method};
+pub use model::Model;
 pub use plan::Plan;
 pub use promise::Promise;
 pub use registers::{AXES, N, PerAxis, Reg};

@@ -29,7 +29,8 @@ use crate::claims::{Claims, Region};
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::{Interpolates, Method, Model};
+use crate::interpolates::{Interpolates, Method};
+use crate::model::Model;
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
 use crate::parts::{
     ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, POSITION, QUAD, XI_YI, judged_by_sign, step_of_circle,

@@ -35,8 +35,9 @@ use stepwave_netlist::dsl::Scope;
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model};
+use crate::model::Model;
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WIDTH};
 use crate::parts::{
     BeatRing, Block, DeviationAccumulator, E, END, EndCounters, F, POSITION, SIGN, axis_scope, up_down_counter,

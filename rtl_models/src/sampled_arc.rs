@@ -53,8 +53,9 @@ use stepwave_netlist::dsl::{Register, Scope, Signal};
 use crate::docs::{SAMPLED_SYSTEM, SAMPLED_WIDTH};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model};
+use crate::model::Model;
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System, TOLERANCE};
 use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
 use crate::parts::{

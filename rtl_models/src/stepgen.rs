@@ -48,8 +48,9 @@ use stepwave_netlist::dsl::{Scope, Signal};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model};
+use crate::model::Model;
 use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PICK_OFF, PRESET, Preset, StepTiming, TIMING, WIDTH};
 use crate::parts::{ACC, Block, E, POSITION, PhaseAccumulator, RATE, StepOutput, axis_scope};
 use crate::per_axis;

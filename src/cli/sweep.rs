@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::models::options::{AnyOption, Shape, all};
-use crate::nc::Opens;
+use crate::nc::{Drawn, Opens};
 use crate::study::{Grid, Range};
 use clap::builder::StringValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
@@ -145,6 +145,18 @@ pub(crate) struct SpaceArgs {
     /// Geometries from a CSV file: to_x,to_y and what else is not by default (from_x, center_x, direction, …)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["from", "from_grid", "to", "to_grid", "radius", "center", "sizes", "opens", "cw", "ccw"])]
     pub(crate) file: Option<PathBuf>,
+}
+
+impl SpaceArgs {
+    /// What is drawn, and its sizes, where these are given.
+    pub(crate) fn sized(&self) -> Option<(Drawn, &Grid)> {
+        let conics = [
+            self.ellipse.as_ref().map(|sizes| (Drawn::Ellipse, sizes)),
+            self.parabola.as_ref().map(|sizes| (Drawn::Parabola(self.opens), sizes)),
+            self.hyperbola.as_ref().map(|sizes| (Drawn::Hyperbola(self.opens), sizes)),
+        ];
+        conics.into_iter().flatten().next()
+    }
 }
 
 /// Lists of values of hardware options.

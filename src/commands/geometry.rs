@@ -2,7 +2,7 @@
 
 use crate::models::options::TOLERANCE;
 use crate::models::{CurveKind, Model, Options};
-use crate::nc::{Arc, Conic, Curve, Direction, Helix, Line};
+use crate::nc::{Curve, Description, Direction, Drawn};
 
 use crate::Error;
 use crate::cli::{GeometryArgs, HardwareArgs, Point};
@@ -23,51 +23,31 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
             return invalid(format!("{} interpolates {takes}, which have no {option}: leave it out", who));
         }
     }
-    let direction = || match (args.cw, args.ccw) {
-        (true, _) => Ok(Direction::Clockwise),
-        (_, true) => Ok(Direction::CounterClockwise),
-        _ => invalid(format!("the direction of the arc is missing: give {} --cw or --ccw", who)),
+    let sized = args.sized();
+    let (drawn, sizes) = match (kind.drawn(), sized) {
+        ([one], None) => (*one, Vec::new()),
+        (_, Some(sized)) => sized,
+        (_, None) => return invalid(format!("the curve is missing: {who} takes {}", kind.describe())),
     };
-    let what = match kind {
-        CurveKind::Line { .. } | CurveKind::Move => "a line",
-        CurveKind::Arc => "an arc",
-        CurveKind::Conic => "a conic",
-        CurveKind::Helix => "a helix",
+    let what = drawn.noun();
+    if args.opens.is_some() && !drawn.is_open() {
+        return invalid(format!("{what} does not open: leave --opens out"));
+    }
+    let direction = match (args.cw, args.ccw) {
+        (true, _) => Direction::Clockwise,
+        (false, false) if drawn.turns() => {
+            return invalid(format!("the direction of the arc is missing: give {who} --cw or --ccw"));
+        }
+        _ => Direction::CounterClockwise,
     };
-    let from = args.from.as_ref();
-    let center = || point::<2>(what, "--center", args.center.as_ref());
-    Ok(match kind {
-        CurveKind::Line { .. } | CurveKind::Move => {
-            let from = from.map_or_else(|| vec![0; to.0.len()], |from| from.0.clone());
-            Line::new(from, to.0.clone())?.into()
-        }
-        CurveKind::Arc => {
-            let direction = direction()?;
-            let (from, to) = (point(what, "--from", from)?, point(what, "--to", Some(to))?);
-            Arc::within(from, to, center()?, direction, radii)?.into()
-        }
-        CurveKind::Helix => {
-            let direction = direction()?;
-            let (from, to) = (point(what, "--from", from)?, point(what, "--to", Some(to))?);
-            Helix::within(from, to, center()?, direction, radii)?.into()
-        }
-        CurveKind::Conic => {
-            let (from, to, center) = (point(what, "--from", from)?, point(what, "--to", Some(to))?, center()?);
-            match (args.ellipse, args.parabola, args.hyperbola) {
-                (Some(_), ..) if args.opens.is_some() => {
-                    return invalid("an ellipse does not open: leave --opens out".to_owned());
-                }
-                (Some(semi_axes), ..) => Conic::ellipse(semi_axes, from, to, center, direction()?)?,
-                (_, Some(c), _) => Conic::parabola(c, args.opens, from, to, center)?,
-                (.., Some(semi_axes)) => Conic::hyperbola(semi_axes, args.opens, from, to, center)?,
-                (None, None, None) => {
-                    let takes = kind.describe();
-                    return invalid(format!("the curve is missing: {} takes {takes}", who));
-                }
-            }
-            .into()
-        }
-    })
+    let ends = |name, end: Option<&Point>| match (drawn, end) {
+        (Drawn::Line, Some(Point(end))) => Ok(end.clone()),
+        (Drawn::Line, None) => Ok(vec![0; to.0.len()]),
+        _ => point(what, name, end, drawn.axes()),
+    };
+    let (from, to) = (ends("--from", args.from.as_ref())?, ends("--to", Some(to))?);
+    let center = plane(what, args)?;
+    Ok(Description { drawn, sizes, from, to, center, direction, radii }.curve()?)
 }
 
 /// The kind of move that the options give: an arc or a helix where there is a centre or a direction, else a line.
@@ -83,17 +63,13 @@ pub(super) fn move_kind(args: &GeometryArgs) -> CurveKind {
 /// The options that have no meaning for such curves: whether each is given, and its name.
 fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)> {
     let mut options = Vec::new();
-    if matches!(kind, CurveKind::Line { .. }) {
+    if *kind.drawn() == [Drawn::Line] {
         options.extend([(args.center.is_some(), "--center"), (args.cw || args.ccw, "--cw or --ccw")]);
     }
-    if kind != CurveKind::Conic {
-        options.extend([
-            (args.ellipse.is_some(), "--ellipse"),
-            (args.parabola.is_some(), "--parabola"),
-            (args.hyperbola.is_some(), "--hyperbola"),
-            (args.opens.is_some(), "--opens"),
-        ]);
+    if let Some((drawn, _)) = args.sized() {
+        options.push((!kind.has(drawn), drawn.option()));
     }
+    options.push((args.opens.is_some() && !kind.drawn().iter().any(|drawn| drawn.is_open()), "--opens"));
     options
 }
 
@@ -104,31 +80,33 @@ pub(super) fn given(args: &GeometryArgs) -> Option<&'static str> {
     options.into_iter().find(|(given, _)| *given).map(|(_, option)| option)
 }
 
-/// The coordinates of a point of `N` axes of such a curve; the origin if none is given.
-fn point<const N: usize>(what: &str, name: &str, given: Option<&Point>) -> Result<[i64; N], Error> {
-    let Some(Point(point)) = given else { return Ok([0; N]) };
-    <[i64; N]>::try_from(point.as_slice()).or_else(|_| {
-        let form = if N == 2 { "X,Y" } else { "X,Y,Z" };
-        invalid(format!("{name} of {what} has {} coordinates: give {form}", point.len()))
-    })
+/// The coordinates of a point of this many axes of such a curve; the origin if none is given.
+fn point(what: &str, name: &str, given: Option<&Point>, axes: usize) -> Result<Vec<i64>, Error> {
+    let Some(Point(point)) = given else { return Ok(vec![0; axes]) };
+    if point.len() == axes {
+        return Ok(point.clone());
+    }
+    let form = if axes == 2 { "X,Y" } else { "X,Y,Z" };
+    invalid(format!("{name} of {what} has {} coordinates: give {form}", point.len()))
+}
+
+/// The centre that is given, or the origin.
+fn plane(what: &str, args: &GeometryArgs) -> Result<[i64; 2], Error> {
+    point(what, "--center", args.center.as_ref(), 2).map(|center| [0, 1].map(|axis| center[axis]))
 }
 
 /// The choices made for a model and a clock in Hz: the tolerance counts for the radii of an arc alone where the model
 /// itself takes none.
 pub(crate) fn choices(model: &Model, curve: &Curve, hardware: &HardwareArgs, clock_hz: f64) -> Options {
-    let of_radii = matches!(curve, Curve::Arc(_) | Curve::Helix(_));
+    let of_radii = curve.arc().is_some();
     let choices = hardware.choices_at(clock_hz);
     if model.takes(&TOLERANCE) || !of_radii { choices } else { choices.without(&TOLERANCE) }
 }
 
 /// What is to be reported where the radii of an arc are so different that its centre has moved.
 pub(crate) fn moved_center(curve: &Curve, args: &GeometryArgs) -> Option<String> {
-    let center = match curve {
-        Curve::Arc(arc) => arc.center(),
-        Curve::Helix(helix) => helix.arc().center(),
-        Curve::Line(_) | Curve::Conic(_) => return None,
-    };
-    let given: [i64; 2] = point("an arc", "--center", args.center.as_ref()).ok()?;
+    let center = curve.arc()?.center();
+    let given = plane("an arc", args).ok()?;
     (center != given).then(|| {
         let ([x, y], [to_x, to_y]) = (given, center);
         format!(

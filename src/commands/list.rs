@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::models::options::{Shape, Takes};
-use crate::models::{CurveKind, Model, installed};
+use crate::models::{Model, installed};
 use serde_json::{Value, json};
 
 use crate::Error;
@@ -86,13 +86,6 @@ impl Columns {
 }
 
 fn as_json(model: &Model) -> Value {
-    let kind = match model.curve() {
-        CurveKind::Line { .. } => "line",
-        CurveKind::Arc => "arc",
-        CurveKind::Conic => "conic",
-        CurveKind::Helix => "helix",
-        CurveKind::Move => "move",
-    };
     let registers = model.rows().map(|row| {
         let (label, rule) = (row.label(model.curve().max_axes()), row.declaration.rule.to_string());
         let declared = row.declaration;
@@ -113,7 +106,7 @@ fn as_json(model: &Model) -> Value {
         "name": model.name,
         "title": model.title,
         "method": model.method,
-        "curve": { "kind": kind, "max_axes": model.curve().max_axes() },
+        "curve": { "kind": model.curve().name(), "max_axes": model.curve().max_axes() },
         "registers": registers.collect::<Vec<_>>(),
         "options": options.collect::<Vec<_>>(),
         "source": model.source,

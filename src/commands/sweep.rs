@@ -73,7 +73,7 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
     let sizes = sizes(model, args, drawn)?;
     let who = model.name;
     let axes = to.as_ref().or(from.as_ref()).map_or(2, Vec::len);
-    let least = if drawn == Drawn::Helix { 3 } else { 2 };
+    let least = drawn.axes();
     let most = model.curve().max_axes();
     for (option, points) in [("--to", &to), ("--from", &from)] {
         let count = points.as_ref().map_or(axes.max(least), Vec::len);
@@ -88,7 +88,7 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
     if drawn == Drawn::Line {
         from = from.or_else(|| Some(vec![Range::one(0); axes]));
     }
-    if matches!(drawn, Drawn::Arc | Drawn::Helix) && from.is_none() && args.radius.is_none() {
+    if drawn.is_round() && from.is_none() && args.radius.is_none() {
         return invalid(format!("the start points are missing: give {who} --radius, --from or --from-grid"));
     }
     let center = center(args)?;
@@ -104,16 +104,11 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
 
 /// The radius and height, the semi-axes or the parameter: as many as the curve has.
 fn sizes(model: &Model, args: &SpaceArgs, drawn: Drawn) -> Result<Vec<Range>, Error> {
-    let sizes = [&args.ellipse, &args.parabola, &args.hyperbola].into_iter().flatten().next();
-    let mut sizes: Vec<Range> = sizes.map(|Grid(ranges)| ranges.clone()).unwrap_or_default();
-    sizes.extend(args.radius.into_iter().chain(args.height));
+    let mut sizes: Vec<Range> = args.sized().map(|(_, Grid(ranges))| ranges.clone()).unwrap_or_default();
+    let own = args.radius.into_iter().chain(args.height);
+    let wanted = drawn.sizes() + own.clone().count();
+    sizes.extend(own);
     let who = model.name;
-    let wanted = match drawn {
-        Drawn::Ellipse | Drawn::Hyperbola(_) => 2,
-        Drawn::Parabola(_) => 1,
-        Drawn::Helix if args.height.is_some() => 2,
-        _ => usize::from(args.radius.is_some()),
-    };
     if sizes.len() != wanted {
         return invalid(format!(
             "{} sizes were given where {who} takes {wanted}: see `stepwave sweep --help`",
@@ -141,41 +136,36 @@ fn to_axes(args: &SpaceArgs) -> Option<usize> {
 
 /// What the model interpolates, if nothing was given that it has not.
 fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Error> {
-    let drawn = match model.curve() {
-        CurveKind::Line { .. } => Drawn::Line,
-        CurveKind::Arc => Drawn::Arc,
-        CurveKind::Helix => Drawn::Helix,
-        CurveKind::Move if !(args.cw || args.ccw || args.center.is_some() || args.radius.is_some()) => Drawn::Line,
-        CurveKind::Move if args.height.is_some() || to_axes(args) == Some(3) => Drawn::Helix,
-        CurveKind::Move => Drawn::Arc,
-        CurveKind::Conic => match (&args.ellipse, &args.parabola, &args.hyperbola) {
-            (Some(_), ..) => Drawn::Ellipse,
-            (_, Some(_), _) => Drawn::Parabola(args.opens),
-            (.., Some(_)) => Drawn::Hyperbola(args.opens),
-            _ => {
-                return invalid(format!(
-                    "the curves are missing: give {} --ellipse, --parabola or --hyperbola",
-                    model.name
-                ));
+    let (kind, sized) = (model.curve(), args.sized());
+    let drawn = match kind.drawn() {
+        [one] => *one,
+        _ if kind == CurveKind::Move && !(args.cw || args.ccw || args.center.is_some() || args.radius.is_some()) => {
+            Drawn::Line
+        }
+        _ if kind == CurveKind::Move && (args.height.is_some() || to_axes(args) == Some(3)) => Drawn::Helix,
+        _ if kind == CurveKind::Move => Drawn::Arc,
+        several => match sized {
+            Some((drawn, _)) => drawn,
+            None => {
+                let options: Vec<&str> = several.iter().map(|drawn| drawn.option()).collect();
+                let options = options.join(", ");
+                return invalid(format!("the curves are missing: give {} one of {options}", model.name));
             }
         },
     };
-    let turns = matches!(drawn, Drawn::Arc | Drawn::Helix | Drawn::Ellipse);
-    let conic = model.curve() == CurveKind::Conic;
-    let round = matches!(drawn, Drawn::Arc | Drawn::Helix);
     let superfluous = [
-        (args.ellipse.is_some() || args.parabola.is_some() || args.hyperbola.is_some(), conic, "sizes of conics"),
-        (args.opens.is_some(), conic && drawn != Drawn::Ellipse, "--opens"),
-        (args.radius.is_some(), round, "--radius"),
+        (sized.is_some(), drawn.sizes() > 0, "sizes of conics"),
+        (args.opens.is_some(), drawn.is_open(), "--opens"),
+        (args.radius.is_some(), drawn.is_round(), "--radius"),
         (args.height.is_some(), drawn == Drawn::Helix, "--height"),
-        (args.cw || args.ccw, turns, "--cw or --ccw"),
+        (args.cw || args.ccw, drawn.turns(), "--cw or --ccw"),
         (args.center.is_some(), drawn != Drawn::Line, "--center"),
     ];
     if let Some((_, _, option)) = superfluous.into_iter().find(|(given, taken, _)| *given && !taken) {
         let takes = model.curve().describe();
         return invalid(format!("{} interpolates {takes}, which have no {option}: leave it out", model.name));
     }
-    if turns && !args.cw && !args.ccw {
+    if drawn.turns() && !args.cw && !args.ccw {
         return invalid(format!("the direction is missing: give {} --cw, --ccw or both", model.name));
     }
     Ok(drawn)
@@ -196,7 +186,7 @@ fn variants(args: &VariantArgs) -> Result<Variants, StudyError> {
 fn radii(model: &Model, variants: &mut Variants) -> Result<Millionths, Error> {
     let is_tolerance = |dimension: &Dimension| dimension.option.name() == TOLERANCE.name;
     let Some(place) = variants.0.iter().position(is_tolerance) else { return Ok(Millionths(0)) };
-    if !matches!(model.curve(), CurveKind::Arc | CurveKind::Helix | CurveKind::Move) {
+    if !model.curve().drawn().iter().any(|drawn| drawn.is_round()) {
         let takes = model.curve().describe();
         return invalid(format!("{} interpolates {takes}, which have no --tolerance: leave it out", model.name));
     }

@@ -53,12 +53,7 @@ impl OfCurve {
         }
         if let (false, Some(worst), Some(promise)) = (self.path_within_bound(report), &self.worst, self.promise(report))
         {
-            let curve = match self.curve {
-                Curve::Line(_) => "line",
-                Curve::Arc(_) => "arc",
-                Curve::Conic(_) => "conic",
-                Curve::Helix(_) => "helix",
-            };
+            let curve = self.curve.description().drawn.name();
             failures.push(format!(
                 "the path left the {curve}: {:.3} BLU off at {} after step {}, where the method promises at most {promise}",
                 worst.error,

@@ -2,78 +2,43 @@
 
 use serde_json::{Value, json};
 use stepwave_models::{Hardware, Model, Options, Takes};
-use stepwave_nc::{Arc, Curve, Direction, Opens, Shape};
+use stepwave_nc::{Curve, Description, Direction, Drawn};
 
 use crate::testbench::point;
-
-/// What gives a curve besides its ends.
-#[derive(Default)]
-struct Form {
-    name: &'static str,
-    /// c of a parabola, or the semi-axes of another conic, in BLU.
-    sizes: Vec<i64>,
-    opens: Option<Opens>,
-    center: Option<[i64; 2]>,
-    direction: Option<Direction>,
-    radius: Option<f64>,
-}
-
-impl Form {
-    fn of(curve: &Curve) -> Form {
-        let round = |name, arc: &Arc| {
-            let (center, direction, radius) = (Some(arc.center()), Some(arc.direction()), Some(arc.radius()));
-            Form { name, center, direction, radius, ..Form::default() }
-        };
-        match curve {
-            Curve::Line(_) => Form { name: "line", ..Form::default() },
-            Curve::Arc(arc) => round("arc", arc),
-            Curve::Helix(helix) => round("helix", helix.arc()),
-            Curve::Conic(conic) => {
-                let (name, sizes) = match conic.shape() {
-                    Shape::Ellipse { semi_axes } => ("ellipse", semi_axes.to_vec()),
-                    Shape::Parabola { c, .. } => ("parabola", vec![c]),
-                    Shape::Hyperbola { semi_axes, .. } => ("hyperbola", semi_axes.to_vec()),
-                };
-                let (opens, center, direction) = (conic.opens(), Some(conic.center()), conic.direction());
-                Form { name, sizes, opens, center, direction, radius: None }
-            }
-        }
-    }
-}
 
 /// The geometry in words: `line (0, 0) to (8, 6)`.
 #[must_use]
 pub fn geometry(curve: &Curve) -> String {
-    let Form { name, sizes, opens, center, direction, .. } = Form::of(curve);
+    let Description { drawn, sizes, center, direction, .. } = curve.description();
     let full = matches!(curve, Curve::Arc(arc) if arc.is_full_circle());
-    let mut words = vec![if full { "full circle" } else { name }.to_owned()];
+    let mut words = vec![if full { "full circle" } else { drawn.name() }.to_owned()];
     match sizes[..] {
         [] => {}
         [c] => words.push(c.to_string()),
         _ => words.push(point(&sizes)),
     }
-    words.extend(opens.map(|opens| format!("opening to {opens}")));
+    words.extend(drawn.opens().map(|opens| format!("opening to {opens}")));
     words.push(format!("{} to {}", point(curve.from()), point(curve.to())));
-    words.extend(direction.map(|direction| direction.to_string()));
+    words.extend(drawn.turns().then(|| direction.to_string()));
     let about = if sizes.len() == 1 { "from the vertex" } else { "about" };
-    words.extend(center.map(|center| format!("{about} {}", point(&center))));
+    words.extend((drawn != Drawn::Line).then(|| format!("{about} {}", point(&center))));
     words.join(" ")
 }
 
 /// The geometry in the JSON report.
 pub(super) fn json(curve: &Curve) -> Value {
-    let Form { name, sizes, opens, center, direction, radius } = Form::of(curve);
-    let mut fields = json!({ "curve": name, "from": curve.from(), "to": curve.to() });
-    if let Some(center) = center {
+    let Description { drawn, sizes, center, direction, .. } = curve.description();
+    let mut fields = json!({ "curve": drawn.name(), "from": curve.from(), "to": curve.to() });
+    if drawn != Drawn::Line {
         fields["center"] = json!(center);
-        fields["direction"] = json!(direction.map(|direction| direction.to_string()));
+        fields["direction"] = json!(drawn.turns().then(|| direction.to_string()));
     }
-    if let Some(radius) = radius {
-        fields["radius"] = json!(radius);
+    if let Some(arc) = curve.arc() {
+        fields["radius"] = json!(arc.radius());
     }
     if !sizes.is_empty() {
         fields["sizes"] = json!(sizes);
-        fields["opens"] = json!(opens.map(|opens| opens.to_string()));
+        fields["opens"] = json!(drawn.opens().map(|opens| opens.to_string()));
     }
     fields
 }
@@ -82,23 +47,24 @@ pub(super) fn json(curve: &Curve) -> Value {
 #[must_use]
 pub fn geometry_options(curve: &Curve) -> Vec<String> {
     let list = |numbers: &[i64]| numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
-    let Form { name, sizes, opens, center, direction, .. } = Form::of(curve);
+    let Description { drawn, sizes, center, direction, .. } = curve.description();
     let mut words = Vec::new();
     let mut option = |name: &str, value: String| words.extend([format!("--{name}"), value]);
     if !sizes.is_empty() {
-        option(name, list(&sizes));
+        option(drawn.name(), list(&sizes));
     }
-    if let Some(opens) = opens {
+    if let Some(opens) = drawn.opens() {
         option("opens", opens.to_string());
     }
     if curve.from().iter().any(|coordinate| *coordinate != 0) {
         option("from", list(curve.from()));
     }
     option("to", list(curve.to()));
-    if let Some(center) = center.filter(|center| *center != [0, 0]) {
+    if center != [0, 0] {
         option("center", list(&center));
     }
-    words.extend(direction.map(|turn| if turn == Direction::Clockwise { "--cw" } else { "--ccw" }.to_owned()));
+    let turn = if direction == Direction::Clockwise { "--cw" } else { "--ccw" };
+    words.extend(drawn.turns().then(|| turn.to_owned()));
     words
 }
 

@@ -177,14 +177,8 @@ impl Plot {
 
     /// The deviation against the step as an area from zero: bars if they are few, otherwise an envelope.
     fn draw_deviation(&self, page: &mut Page, view: &View, steps: f64) {
-        let step = match &self.curve {
-            Curve::Arc(_) => "step (deviation positive outside the circle)",
-            Curve::Conic(_) => "step (deviation positive where the implicit function is)",
-            Curve::Helix(_) => "step (deviation positive outside the cylinder)",
-            Curve::Line(line) if line.axes() == 2 => "step (deviation positive left of the line)",
-            Curve::Line(_) => "step (deviation in all axes, without sign)",
-        };
-        page.axes(view, [step, "deviation (BLU)"], false, 0.1);
+        let step = format!("step (deviation {})", self.curve.positive_side());
+        page.axes(view, [&step, "deviation (BLU)"], false, 0.1);
         let gap = if self.spans.len() <= FEW_STEPS + 1 { (0.5 - 8.0 / view.scale(0)).max(0.15) } else { 0.0 };
         let (mut area, mut below) = (Vec::new(), Vec::new());
         for (place, &[least, most]) in self.spans.iter().enumerate() {

@@ -1,9 +1,9 @@
 //! Which columns a sweep has, what a run puts into them, and the words that repeat the run.
 
 use stepwave_models::{AXES, Model};
-use stepwave_nc::Opens;
+use stepwave_nc::{Description, Drawn};
 
-use super::space::{Drawn, Site, Space};
+use super::space::Space;
 use super::table::{Column, ColumnType, Row, Value};
 use super::{StudyError, Variants};
 use crate::testbench::{Ending, Measured, is_ended};
@@ -41,7 +41,7 @@ impl Layout {
         let mut add = |name: &str, kind| columns.push(Column { name: name.to_owned(), kind });
         let letters = &AXES[..axes];
         add("index", ColumnType::Whole);
-        if is_conic(drawn) {
+        if drawn.sizes() > 0 {
             add("curve", ColumnType::Word);
             add("size_a", ColumnType::Whole);
             add("size_b", ColumnType::Whole);
@@ -78,19 +78,17 @@ impl Layout {
     }
 
     /// The row of a run, or of a refusal with its reason.
-    pub(super) fn row(&self, index: u64, site: &Site, words: &[&str], run: Result<Measured, String>) -> Row {
+    pub(super) fn row(&self, index: u64, site: &Description, words: &[&str], run: Result<Measured, String>) -> Row {
         let word_of = |text: &str| Value::Word(text.to_owned());
         let mut row = vec![index.into()];
-        if is_conic(self.drawn) {
-            let (curve, opens) = shape(site.drawn);
-            row.extend([word_of(curve), size(site, 0), size(site, 1)]);
-            row.push(opens.map(|opens| opens.to_string()).into());
+        if self.drawn.sizes() > 0 {
+            row.extend([word_of(site.drawn.name()), size(site, 0), size(site, 1)]);
+            row.push(site.drawn.opens().map(|opens| opens.to_string()).into());
         }
         row.extend(site.from.iter().chain(&site.to).map(|&coordinate| Value::Whole(coordinate)));
         if self.drawn != Drawn::Line {
             row.extend(site.center.map(Value::Whole));
-            let turns = !matches!(site.drawn, Drawn::Parabola(_) | Drawn::Hyperbola(_));
-            row.push(if turns { word_of(turn(site)) } else { Value::None });
+            row.push(if site.drawn.turns() { word_of(turn(site)) } else { Value::None });
         }
         row.extend(words.iter().map(|text| word_of(text)));
         let cut = run.iter().flat_map(|run| &run.cut).map(ToString::to_string).collect::<Vec<String>>();
@@ -122,26 +120,11 @@ impl Layout {
     }
 }
 
-fn is_conic(drawn: Drawn) -> bool {
-    matches!(drawn, Drawn::Ellipse | Drawn::Parabola(_) | Drawn::Hyperbola(_))
-}
-
-fn shape(drawn: Drawn) -> (&'static str, Option<Opens>) {
-    match drawn {
-        Drawn::Parabola(opens) => ("parabola", opens),
-        Drawn::Hyperbola(opens) => ("hyperbola", opens),
-        Drawn::Ellipse => ("ellipse", None),
-        Drawn::Line => ("line", None),
-        Drawn::Arc => ("arc", None),
-        Drawn::Helix => ("helix", None),
-    }
-}
-
-fn size(site: &Site, index: usize) -> Value {
+fn size(site: &Description, index: usize) -> Value {
     site.sizes.get(index).map_or(Value::None, |&size| Value::Whole(size))
 }
 
-fn turn(site: &Site) -> &'static str {
+fn turn(site: &Description) -> &'static str {
     if site.direction == stepwave_nc::Direction::Clockwise { "cw" } else { "ccw" }
 }
 

@@ -4,11 +4,11 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
 use stepwave_models::{AXES, CurveKind, Millionths, Model};
-use stepwave_nc::{Direction, Opens};
+use stepwave_nc::{Description, Direction, Drawn, Opens};
 use stepwave_netlist::did_you_mean;
 
 use super::StudyError;
-use super::space::{Drawn, Site, Space};
+use super::space::Space;
 use super::table::fields;
 
 /// Reads geometries for a model: `to_x,to_y` and every other column that is not as by default: `from_x`, `center_x`,
@@ -46,7 +46,7 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
         let line = Line { heading: &heading, words: &words, axes, radii };
         line.site(model.curve()).map_err(|what| mistake(index + 1, what))
     };
-    let points: Vec<Site> = lines.map(site).collect::<Result<_, _>>()?;
+    let points: Vec<Description> = lines.map(site).collect::<Result<_, _>>()?;
     let mut hasher = DefaultHasher::new();
     text.hash(&mut hasher);
     Ok(Space::Points { points, content: hasher.finish() })
@@ -56,11 +56,11 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
 fn known(model: &Model) -> Vec<String> {
     let axes = &AXES[..model.curve().max_axes()];
     let mut known: Vec<String> = Vec::new();
-    if model.curve() == CurveKind::Conic {
+    if model.curve().drawn().iter().any(|drawn| drawn.sizes() > 0) {
         known.extend(["curve", "size_a", "size_b", "opens"].map(str::to_owned));
     }
     known.extend(["from", "to"].iter().flat_map(|point| axes.iter().map(move |axis| format!("{point}_{axis}"))));
-    if !matches!(model.curve(), CurveKind::Line { .. }) {
+    if *model.curve().drawn() != [Drawn::Line] {
         known.extend(["center_x", "center_y", "direction"].map(str::to_owned));
     }
     known
@@ -89,44 +89,36 @@ impl Line<'_> {
         AXES[..axes].iter().map(|axis| self.number(&format!("{name}_{axis}"))).collect()
     }
 
-    fn site(&self, kind: CurveKind) -> Result<Site, String> {
+    fn site(&self, kind: CurveKind) -> Result<Description, String> {
         let opens = match self.word("opens") {
             None => None,
-            Some("+x") => Some(Opens::PlusX),
-            Some("-x") => Some(Opens::MinusX),
-            Some("+y") => Some(Opens::PlusY),
-            Some("-y") => Some(Opens::MinusY),
-            Some(word) => return Err(format!("'{word}' in opens is none of +x, -x, +y, -y")),
+            Some(word) => {
+                let known = Opens::ALL.into_iter().find(|opens| opens.to_string() == word);
+                Some(known.ok_or_else(|| format!("'{word}' in opens is none of +x, -x, +y, -y"))?)
+            }
         };
-        let drawn = match (kind, self.word("curve")) {
-            (CurveKind::Line { .. }, _) => Drawn::Line,
-            (CurveKind::Arc, _) => Drawn::Arc,
-            (CurveKind::Helix, _) => Drawn::Helix,
+        let drawn = match kind.drawn() {
+            [one] => *one,
             // All lines of a file are of one kind: arcs where it has a column for their direction.
-            (CurveKind::Move, _) if self.heading.iter().all(|name| name != "direction") => Drawn::Line,
-            (CurveKind::Move, _) if self.axes == 3 => Drawn::Helix,
-            (CurveKind::Move, _) => Drawn::Arc,
-            (CurveKind::Conic, Some("ellipse")) => Drawn::Ellipse,
-            (CurveKind::Conic, Some("parabola")) => Drawn::Parabola(opens),
-            (CurveKind::Conic, Some("hyperbola")) => Drawn::Hyperbola(opens),
-            (CurveKind::Conic, _) => return Err("curve is none of ellipse, parabola, hyperbola".to_owned()),
+            _ if kind == CurveKind::Move && self.heading.iter().all(|name| name != "direction") => Drawn::Line,
+            _ if kind == CurveKind::Move && self.axes == 3 => Drawn::Helix,
+            _ if kind == CurveKind::Move => Drawn::Arc,
+            several => {
+                let named = several.iter().find(|drawn| Some(drawn.name()) == self.word("curve"));
+                let names = || several.iter().map(|drawn| drawn.name()).collect::<Vec<_>>().join(", ");
+                named.ok_or_else(|| format!("curve is none of {}", names()))?.opening(opens)
+            }
         };
         let direction = match self.word("direction") {
             Some("cw") => Direction::Clockwise,
             Some("ccw") => Direction::CounterClockwise,
-            None if matches!(drawn, Drawn::Line | Drawn::Parabola(_) | Drawn::Hyperbola(_)) => {
-                Direction::CounterClockwise
-            }
+            None if !drawn.turns() => Direction::CounterClockwise,
             word => return Err(format!("'{}' in direction is neither cw nor ccw", word.unwrap_or(""))),
         };
-        let sizes = if kind == CurveKind::Conic {
-            let count = if matches!(drawn, Drawn::Parabola(_)) { 1 } else { 2 };
-            ["size_a", "size_b"][..count].iter().map(|name| self.number(name)).collect::<Result<_, _>>()?
-        } else {
-            Vec::new()
-        };
+        let sizes = ["size_a", "size_b"].iter().take(drawn.sizes()).map(|name| self.number(name));
+        let sizes = sizes.collect::<Result<_, _>>()?;
         let (from, to) = (self.point("from", self.axes)?, self.point("to", self.axes)?);
         let center = [self.number("center_x")?, self.number("center_y")?];
-        Ok(Site { drawn, sizes, from, to, center, direction, radii: self.radii })
+        Ok(Description { drawn, sizes, from, to, center, direction, radii: self.radii.units() })
     }
 }

@@ -2,26 +2,9 @@
 //! number, from which alone it is made, so that any part of a sweep can be done anywhere.
 
 use stepwave_models::Millionths;
-use stepwave_nc::{Arc, Conic, Curve, Direction, GeometryError, Helix, Line, Opens};
+use stepwave_nc::{Curve, Description, Direction, Drawn, GeometryError};
 
 use super::Range;
-
-/// What is drawn through the points of a grid.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Drawn {
-    /// Lines.
-    Line,
-    /// Arcs, or full circles.
-    Arc,
-    /// Arcs with a travel in z.
-    Helix,
-    /// Ellipses of two semi-axes.
-    Ellipse,
-    /// Parabolas of one parameter.
-    Parabola(Option<Opens>),
-    /// Branches of hyperbolas of two semi-axes.
-    Hyperbola(Option<Opens>),
-}
 
 /// A grid of geometries: every size, with every start point, with every end point, in every direction.
 #[derive(Clone, Debug)]
@@ -45,46 +28,6 @@ pub struct Cells {
 /// A geometry, or why there is none.
 pub type Geometry = Result<Curve, GeometryError>;
 
-/// The description of one geometry, whether it can be built or not.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Site {
-    /// The curve.
-    pub drawn: Drawn,
-    /// Semi-axes or parameter of a conic.
-    pub sizes: Vec<i64>,
-    /// Start point, in BLU.
-    pub from: Vec<i64>,
-    /// End point, in BLU.
-    pub to: Vec<i64>,
-    /// Centre, in BLU.
-    pub center: [i64; 2],
-    /// Direction, where it counts.
-    pub direction: Direction,
-    /// How far the two radii of an arc may differ beyond what rounding makes, in BLU.
-    pub radii: Millionths,
-}
-
-impl Site {
-    /// The geometry.
-    ///
-    /// # Errors
-    /// There is no such curve.
-    pub fn geometry(&self) -> Geometry {
-        let plane = |point: &[i64]| [0, 1].map(|axis| point.get(axis).copied().unwrap_or(0));
-        let space = |point: &[i64]| [0, 1, 2].map(|axis| point.get(axis).copied().unwrap_or(0));
-        let (sizes, from, to) = (plane(&self.sizes), plane(&self.from), plane(&self.to));
-        let (center, direction, radii) = (self.center, self.direction, self.radii.units());
-        Ok(match self.drawn {
-            Drawn::Line => Line::new(self.from.clone(), self.to.clone())?.into(),
-            Drawn::Arc => Arc::within(from, to, center, direction, radii)?.into(),
-            Drawn::Helix => Helix::within(space(&self.from), space(&self.to), center, direction, radii)?.into(),
-            Drawn::Ellipse => Conic::ellipse(sizes, from, to, center, direction)?.into(),
-            Drawn::Parabola(opens) => Conic::parabola(sizes[0], opens, from, to, center)?.into(),
-            Drawn::Hyperbola(opens) => Conic::hyperbola(sizes, opens, from, to, center)?.into(),
-        })
-    }
-}
-
 impl Cells {
     fn ranges(&self) -> impl Iterator<Item = &Range> {
         self.sizes.iter().chain(self.from.iter().flatten()).chain(self.to.iter().flatten())
@@ -99,7 +42,7 @@ impl Cells {
 
     /// The geometry of a cell; none where the ends of the cell lie on no such curve.
     #[must_use]
-    pub fn site(&self, cell: u64) -> Option<(Site, Geometry)> {
+    pub fn site(&self, cell: u64) -> Option<(Description, Geometry)> {
         let mut rest = cell;
         let mut digit = |count: u64| {
             let digit = rest % count;
@@ -119,29 +62,18 @@ impl Cells {
             *z = z.saturating_add(*height);
         }
         let direction = direction.copied().unwrap_or(Direction::CounterClockwise);
-        let (drawn, sizes, center, radii) = (self.drawn, sizes.to_vec(), self.center, self.radii);
-        let site = Site { drawn, sizes, from, to, center, direction, radii };
-        let geometry = site.geometry();
+        let (drawn, sizes, center, radii) = (self.drawn, sizes.to_vec(), self.center, self.radii.units());
+        let site = Description { drawn, sizes, from, to, center, direction, radii };
+        let geometry = site.curve();
         let none = self.count() > 1 && geometry.as_ref().is_err_and(lies_on_no_curve);
         (!none).then_some((site, geometry))
     }
 
     /// Where a curve of this size begins.
     fn vertex(&self, sizes: &[i64]) -> Vec<i64> {
-        let size = sizes.first().copied().unwrap_or(0);
-        let opens = match self.drawn {
-            Drawn::Hyperbola(opens) => opens,
-            _ => None,
-        };
-        let [x, y] = match opens.unwrap_or(Opens::PlusX) {
-            _ if matches!(self.drawn, Drawn::Parabola(_)) => [0, 0],
-            Opens::PlusX => [size, 0],
-            Opens::MinusX => [size.saturating_neg(), 0],
-            Opens::PlusY => [0, size],
-            Opens::MinusY => [0, size.saturating_neg()],
-        };
+        let [x, y] = self.drawn.vertex(sizes.first().copied().unwrap_or(0));
         let mut start = vec![self.center[0].saturating_add(x), self.center[1].saturating_add(y)];
-        start.extend((self.drawn == Drawn::Helix).then_some(0));
+        start.resize(self.drawn.axes(), 0);
         start
     }
 }
@@ -180,7 +112,7 @@ pub enum Space {
     /// The geometries of a file.
     Points {
         /// In the order of its lines.
-        points: Vec<Site>,
+        points: Vec<Description>,
         /// Distinguishes the file from others of the same name.
         content: u64,
     },
@@ -199,7 +131,7 @@ impl Space {
 
     /// The geometry with a number, if there is one.
     #[must_use]
-    pub fn site(&self, number: u64) -> Option<(Site, Geometry)> {
+    pub fn site(&self, number: u64) -> Option<(Description, Geometry)> {
         match self {
             Space::Cells(cells) => cells.site(number),
             Space::Samples { cells, seed, .. } => {
@@ -209,7 +141,7 @@ impl Space {
             }
             Space::Points { points, .. } => {
                 let site = points.get(usize::try_from(number).ok()?)?.clone();
-                let geometry = site.geometry();
+                let geometry = site.curve();
                 Some((site, geometry))
             }
         }
@@ -230,7 +162,7 @@ impl Space {
         match self {
             Space::Cells(cells) | Space::Samples { cells, .. } => {
                 let axes = cells.to.as_ref().or(cells.from.as_ref()).map_or(2, Vec::len);
-                Some((cells.drawn, if cells.drawn == Drawn::Helix { 3 } else { axes }))
+                Some((cells.drawn, axes.max(cells.drawn.axes())))
             }
             Space::Points { points, .. } => points.first().map(|site| (site.drawn, site.to.len())),
         }
@@ -291,6 +223,8 @@ impl SweepPart {
 
 #[cfg(test)]
 mod tests {
+    use stepwave_nc::Opens;
+
     use super::*;
 
     fn cells(drawn: Drawn, sizes: &[&str], to: Option<[&str; 2]>) -> Cells {

@@ -6,11 +6,11 @@ use std::ops::Range;
 use rayon::prelude::*;
 use serde_json::{Value as Json, json};
 use stepwave_models::{Model, Options};
-use stepwave_nc::Curve;
+use stepwave_nc::{Curve, Description};
 
 use super::columns::Layout;
 use super::hardware_cache::{HardwareCache, PlannedHardware};
-use super::space::{Site, Space, SweepPart};
+use super::space::{Space, SweepPart};
 use super::table::{Column, Row};
 use super::{StudyError, Variants};
 use crate::testbench::Measured;
@@ -154,7 +154,7 @@ impl Sweep {
     pub fn rows(&self, places: Range<u64>) -> Result<Vec<Row>, StudyError> {
         let variants = usize::try_from(self.variants()).unwrap_or(usize::MAX);
         let numbers: Vec<u64> = places.map(|place| self.part.geometry(place)).collect();
-        let geometries: Vec<(u64, Site, Result<Curve, String>)> = numbers
+        let geometries: Vec<(u64, Description, Result<Curve, String>)> = numbers
             .into_par_iter()
             .filter_map(|number| {
                 let (site, geometry) = self.space.site(number)?;

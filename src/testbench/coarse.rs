@@ -56,7 +56,7 @@ impl<'a> CoarseWatch<'a> {
                 let (reached, wanted) = (x * x + y * y, arc.radius_squared() * self.unit * self.unit);
                 (reached - wanted).abs() as f64 / ((reached as f64).sqrt() + (wanted as f64).sqrt()) / unit
             }
-            Curve::Conic(_) | Curve::Helix(_) => f64::NAN,
+            _ => f64::NAN,
         }
     }
 

@@ -74,7 +74,7 @@ impl Instruments {
         let (ideal, deviation, seen) = match kind {
             CurveKind::Line { .. } => line(m, bits, steps),
             CurveKind::Arc => circle(m, bits, steps, loads),
-            CurveKind::Conic | CurveKind::Helix | CurveKind::Move => return None,
+            _ => return None,
         };
         let every = bench.hardware().sampling.is_some().then(|| seen.net());
         let seen = stepped.mux(seen, m.lit(bits, 0)).net();
@@ -175,7 +175,7 @@ impl Instruments {
                 let ((inside, near), (outside, far)) = (at(signed(*least)), at(signed(*greatest)));
                 (inside.max(outside), *sum as f64 / ROOT_GAP_UNIT, near.max(far))
             }
-            Curve::Conic(_) | Curve::Helix(_) => return None,
+            _ => return None,
         };
         // What 32 bits may not have held.
         if u128::from(most) * u128::from(outcome.steps) >= 1 << 32 && !self.has_wide_sums() {
@@ -257,7 +257,7 @@ fn reached(curve: &Curve, position: &[i64]) -> Option<i128> {
     Some(match curve {
         Curve::Line(line) => cross(line, position)?,
         Curve::Arc(arc) => offset(arc, position)?,
-        Curve::Conic(_) | Curve::Helix(_) => return None,
+        _ => return None,
     })
 }
 

@@ -1,6 +1,6 @@
-//! The ideal curve of a block, of any kind.
+//! The ideal curve of a block, of any kind, and what gives one.
 
-use crate::{Arc, Conic, Helix, Line};
+use crate::{Arc, Conic, Direction, GeometryError, Helix, Line, Opens, Shape};
 
 /// The greatest number of points of an outline, so that no request exhausts the memory.
 pub const OUTLINE_LIMIT: usize = 1 << 16;
@@ -132,29 +132,246 @@ impl Curve {
             Curve::Helix(helix) => helix.outline(max_points),
         }
     }
-}
 
-impl From<Line> for Curve {
-    fn from(line: Line) -> Curve {
-        Curve::Line(line)
+    /// The circular arc that it is, or that a helix makes in x and y.
+    #[must_use]
+    pub fn arc(&self) -> Option<&Arc> {
+        match self {
+            Curve::Arc(arc) => Some(arc),
+            Curve::Helix(helix) => Some(helix.arc()),
+            _ => None,
+        }
+    }
+
+    /// Where the [deviation with its side](Curve::signed_deviation) is positive, in words.
+    #[must_use]
+    pub fn positive_side(&self) -> &'static str {
+        match self {
+            Curve::Line(line) if line.axes() == 2 => "positive left of the line",
+            Curve::Line(_) => "in all axes, without sign",
+            Curve::Arc(_) => "positive outside the circle",
+            Curve::Conic(_) => "positive where the implicit function is",
+            Curve::Helix(_) => "positive outside the cylinder",
+        }
+    }
+
+    /// What gives this curve.
+    #[must_use]
+    pub fn description(&self) -> Description {
+        let (drawn, sizes, center, direction) = match self {
+            Curve::Line(_) => (Drawn::Line, Vec::new(), [0, 0], None),
+            Curve::Arc(arc) => (Drawn::Arc, Vec::new(), arc.center(), Some(arc.direction())),
+            Curve::Helix(helix) => (Drawn::Helix, Vec::new(), helix.arc().center(), Some(helix.arc().direction())),
+            Curve::Conic(conic) => {
+                let (drawn, sizes) = match conic.shape() {
+                    Shape::Ellipse { semi_axes } => (Drawn::Ellipse, semi_axes.to_vec()),
+                    Shape::Parabola { c, .. } => (Drawn::Parabola(conic.opens()), vec![c]),
+                    Shape::Hyperbola { semi_axes, .. } => (Drawn::Hyperbola(conic.opens()), semi_axes.to_vec()),
+                };
+                (drawn, sizes, conic.center(), conic.direction())
+            }
+        };
+        let direction = direction.unwrap_or(Direction::CounterClockwise);
+        let (from, to) = (self.from().to_vec(), self.to().to_vec());
+        Description { drawn, sizes, from, to, center, direction, radii: 0.0 }
     }
 }
 
-impl From<Arc> for Curve {
-    fn from(arc: Arc) -> Curve {
-        Curve::Arc(arc)
+/// A curve of its own type within a [`Curve`].
+pub trait CurveType: Sized {
+    /// The curve, if it is of this type.
+    fn of(curve: &Curve) -> Option<&Self>;
+}
+
+macro_rules! curve_types {
+    ($($kind:ident),*) => {
+        $(
+            impl From<$kind> for Curve {
+                fn from(curve: $kind) -> Curve {
+                    Curve::$kind(curve)
+                }
+            }
+
+            impl CurveType for $kind {
+                fn of(curve: &Curve) -> Option<&$kind> {
+                    if let Curve::$kind(own) = curve { Some(own) } else { None }
+                }
+            }
+        )*
+    };
+}
+
+curve_types!(Line, Arc, Conic, Helix);
+
+/// What is drawn through given points.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Drawn {
+    /// Lines.
+    Line,
+    /// Arcs, or full circles.
+    Arc,
+    /// Arcs with a travel in z.
+    Helix,
+    /// Ellipses of two semi-axes.
+    Ellipse,
+    /// Parabolas of one parameter.
+    Parabola(Option<Opens>),
+    /// Branches of hyperbolas of two semi-axes.
+    Hyperbola(Option<Opens>),
+}
+
+/// What is said of one kind of curve.
+struct Traits {
+    /// With its article.
+    noun: &'static str,
+    /// The option that gives its size.
+    option: &'static str,
+    /// Least number of axes, and that of all but lines.
+    axes: usize,
+    /// Numbers that give its size.
+    sizes: usize,
+    /// It has a direction.
+    turns: bool,
+}
+
+impl Drawn {
+    fn traits(self) -> Traits {
+        let (noun, option, axes, sizes, turns) = match self {
+            Drawn::Line => ("a line", "", 2, 0, false),
+            Drawn::Arc => ("an arc", "", 2, 0, true),
+            Drawn::Helix => ("a helix", "", 3, 0, true),
+            Drawn::Ellipse => ("an ellipse", "--ellipse", 2, 2, true),
+            Drawn::Parabola(_) => ("a parabola", "--parabola", 2, 1, false),
+            Drawn::Hyperbola(_) => ("a hyperbola", "--hyperbola", 2, 2, false),
+        };
+        Traits { noun, option, axes, sizes, turns }
+    }
+
+    /// What one is called: `an arc`.
+    #[must_use]
+    pub fn noun(self) -> &'static str {
+        self.traits().noun
+    }
+
+    /// The option that gives its sizes: `--ellipse`; empty where it has none.
+    #[must_use]
+    pub fn option(self) -> &'static str {
+        self.traits().option
+    }
+
+    /// The noun alone: `ellipse`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.noun().split_once(' ').map_or("", |(_, name)| name)
+    }
+
+    /// Axes of its points; the least of a line.
+    #[must_use]
+    pub fn axes(self) -> usize {
+        self.traits().axes
+    }
+
+    /// How many numbers besides its points give it: c of a parabola, the semi-axes of another conic.
+    #[must_use]
+    pub fn sizes(self) -> usize {
+        self.traits().sizes
+    }
+
+    /// It runs clockwise or counter-clockwise; others lead from their start to their end.
+    #[must_use]
+    pub fn turns(self) -> bool {
+        self.traits().turns
+    }
+
+    /// It is about a centre, from which its ends have two radii.
+    #[must_use]
+    pub fn is_round(self) -> bool {
+        matches!(self, Drawn::Arc | Drawn::Helix)
+    }
+
+    /// It opens to one side.
+    #[must_use]
+    pub fn is_open(self) -> bool {
+        self.opening(Some(Opens::PlusX)).opens().is_some()
+    }
+
+    /// Where it opens to, if that is given.
+    #[must_use]
+    pub fn opens(self) -> Option<Opens> {
+        match self {
+            Drawn::Parabola(opens) | Drawn::Hyperbola(opens) => opens,
+            _ => None,
+        }
+    }
+
+    /// One that opens there, if it opens at all.
+    #[must_use]
+    pub fn opening(self, opens: Option<Opens>) -> Drawn {
+        match self {
+            Drawn::Parabola(_) => Drawn::Parabola(opens),
+            Drawn::Hyperbola(_) => Drawn::Hyperbola(opens),
+            other => other,
+        }
+    }
+
+    /// Where a curve of this first size begins, in BLU relative to its centre.
+    #[must_use]
+    pub fn vertex(self, size: i64) -> [i64; 2] {
+        match (self, self.opens().unwrap_or(Opens::PlusX)) {
+            (Drawn::Parabola(_), _) => [0, 0],
+            (_, Opens::PlusX) => [size, 0],
+            (_, Opens::MinusX) => [size.saturating_neg(), 0],
+            (_, Opens::PlusY) => [0, size],
+            (_, Opens::MinusY) => [0, size.saturating_neg()],
+        }
     }
 }
 
-impl From<Conic> for Curve {
-    fn from(conic: Conic) -> Curve {
-        Curve::Conic(conic)
-    }
+/// What gives one curve, whether it can be built or not; lengths are in BLU.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Description {
+    /// What is drawn.
+    pub drawn: Drawn,
+    /// Semi-axes or parameter of a conic.
+    pub sizes: Vec<i64>,
+    /// Start point.
+    pub from: Vec<i64>,
+    /// End point.
+    pub to: Vec<i64>,
+    /// Centre, or vertex of a parabola; it does not count for a line.
+    pub center: [i64; 2],
+    /// Direction, where it counts.
+    pub direction: Direction,
+    /// How far the two radii of an arc may differ beyond what rounding makes.
+    pub radii: f64,
 }
 
-impl From<Helix> for Curve {
-    fn from(helix: Helix) -> Curve {
-        Curve::Helix(helix)
+impl Description {
+    /// The curve.
+    ///
+    /// ```
+    /// use stepwave_nc::{Arc, Curve, Direction};
+    ///
+    /// let arc: Curve = Arc::new([5, 0], [0, 5], [0, 0], Direction::CounterClockwise)?.into();
+    /// assert_eq!(arc.description().curve()?, arc);
+    /// # Ok::<(), stepwave_nc::GeometryError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// There is no such curve.
+    pub fn curve(&self) -> Result<Curve, GeometryError> {
+        let plane = |point: &[i64]| [0, 1].map(|axis| point.get(axis).copied().unwrap_or(0));
+        let space = |point: &[i64]| [0, 1, 2].map(|axis| point.get(axis).copied().unwrap_or(0));
+        let (sizes, from, to) = (plane(&self.sizes), plane(&self.from), plane(&self.to));
+        let (center, direction, radii) = (self.center, self.direction, self.radii);
+        Ok(match self.drawn {
+            Drawn::Line => Line::new(self.from.clone(), self.to.clone())?.into(),
+            Drawn::Arc => Arc::within(from, to, center, direction, radii)?.into(),
+            Drawn::Helix => Helix::within(space(&self.from), space(&self.to), center, direction, radii)?.into(),
+            Drawn::Ellipse => Conic::ellipse(sizes, from, to, center, direction)?.into(),
+            Drawn::Parabola(opens) => Conic::parabola(sizes[0], opens, from, to, center)?.into(),
+            Drawn::Hyperbola(opens) => Conic::hyperbola(sizes, opens, from, to, center)?.into(),
+        })
     }
 }
 
@@ -175,6 +392,25 @@ mod tests {
         assert_eq!(arc.length(), 2.5 * std::f64::consts::PI);
         assert_eq!((arc.deviation(&[0, 3]), arc.signed_deviation(&[0, 3])), (2.0, -2.0));
         assert_eq!(arc.outline(9).len(), 9);
+        Ok(())
+    }
+
+    #[test]
+    fn every_kind_of_curve_is_built_again_from_its_description() -> Result<(), GeometryError> {
+        let clockwise = Direction::Clockwise;
+        let curves: [(Curve, &str); 6] = [
+            (Line::new(vec![1, 2, 3, 4], vec![-1, 2, 8, 0])?.into(), "a line"),
+            (Arc::new([8, 2], [3, 7], [3, 2], clockwise)?.into(), "an arc"),
+            (Helix::new([5, 0, 1], [0, 5, -3], [0, 0], clockwise)?.into(), "a helix"),
+            (Conic::ellipse([6, 4], [7, 0], [1, 4], [1, 0], clockwise)?.into(), "an ellipse"),
+            (Conic::parabola(4, Some(Opens::MinusY), [0, 0], [4, -4], [0, 0])?.into(), "a parabola"),
+            (Conic::hyperbola([4, 3], Some(Opens::MinusX), [-4, 0], [-5, 2], [0, 0])?.into(), "a hyperbola"),
+        ];
+        for (curve, noun) in curves {
+            let description = curve.description();
+            assert_eq!((description.drawn.noun(), description.sizes.len()), (noun, description.drawn.sizes()));
+            assert_eq!(description.curve()?, curve);
+        }
         Ok(())
     }
 }

@@ -51,7 +51,7 @@ impl Curve {
         let plane = match self {
             Curve::Line(given) => line(given),
             Curve::Arc(arc) => circle(arc),
-            Curve::Conic(_) | Curve::Helix(_) => None,
+            _ => None,
         };
         let ruler = if let Curve::Helix(helix) = self { Some(helix.ruler()) } else { None };
         Gauge { curve: self, plane, ruler }

@@ -42,7 +42,7 @@ pub use arc::Arc;
 pub use compensation::{CompensationError, CompensationErrorKind, Compensator, Corner, Scheme, WAITING_LIMIT};
 pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
 pub use contour::{Cause, Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove};
-pub use curve::{Curve, OUTLINE_LIMIT};
+pub use curve::{Curve, CurveType, Description, Drawn, OUTLINE_LIMIT};
 pub use error::{End, GeometryError};
 pub use gauge::{BatchGauge, Gauge};
 pub use helix::{Helix, HelixSector};

@@ -35,20 +35,14 @@ impl PulseBlock {
     /// any other curve.
     #[must_use]
     pub fn alone(curve: &Curve) -> Option<PulseBlock> {
-        let arc = match curve {
-            Curve::Line(line) if line.axes() <= 3 => None,
-            Curve::Arc(arc) => Some(arc),
-            Curve::Helix(helix) => Some(helix.arc()),
-            Curve::Line(_) | Curve::Conic(_) => return None,
-        };
         let place = |point: &[i64]| [0, 1, 2].map(|axis| point.get(axis).copied().unwrap_or(0));
         let [from, to] = [curve.from(), curve.to()].map(place);
-        let (plane, curve) = match arc {
-            None => straight(from, to).ok()?,
-            Some(_) => (Plane::Xy, curve.clone()),
+        let (plane, curve) = match curve {
+            Curve::Line(line) if line.axes() <= 3 => straight(from, to).ok()?,
+            _ => curve.arc().map(|_| (Plane::Xy, curve.clone()))?,
         };
         // Within 2^53, as every coordinate is.
-        let shape = arc.map_or(SegmentShape::Line, |arc| SegmentShape::Arc {
+        let shape = curve.arc().map_or(SegmentShape::Line, |arc| SegmentShape::Arc {
             plane,
             center: arc.center().map(|c| c as f64),
             direction: arc.direction(),
@@ -88,15 +82,10 @@ impl PulseBlock {
     #[must_use]
     pub fn reach(&self) -> [[i64; 2]; 3] {
         let mut reach = [0, 1, 2].map(|axis| [self.from[axis].min(self.to[axis]), self.from[axis].max(self.to[axis])]);
-        let circle = match &self.curve {
-            Curve::Arc(arc) => Some((arc.center(), arc.radius())),
-            Curve::Helix(helix) => Some((helix.arc().center(), helix.arc().radius())),
-            Curve::Line(_) | Curve::Conic(_) => None,
-        };
-        if let Some((center, radius)) = circle {
+        if let Some(arc) = self.curve.arc() {
             #[allow(clippy::cast_possible_truncation)]
-            let radius = radius.ceil() as i64 + 1;
-            for (axis, center) in self.plane.axes().into_iter().zip(center) {
+            let radius = arc.radius().ceil() as i64 + 1;
+            for (axis, center) in self.plane.axes().into_iter().zip(arc.center()) {
                 let [low, high] = reach[axis];
                 reach[axis] = [low.min(center - radius), high.max(center + radius)];
             }

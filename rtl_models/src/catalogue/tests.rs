@@ -6,8 +6,9 @@ use stepwave_nc::Line;
 use stepwave_netlist::dsl::Scope;
 
 use super::catalogue;
+use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
-use crate::model::{Interpolates, Method, Model};
+use crate::model::Model;
 use crate::options::WIDTH;
 use crate::parts::{Block, E, END, F, POSITION};
 use crate::plan::Plan;

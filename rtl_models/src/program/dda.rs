@@ -24,7 +24,8 @@ use crate::claims::{Claims, Region};
 use crate::dda_line;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::model::{Interpolates, Model};
+use crate::interpolates::Interpolates;
+use crate::model::Model;
 use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{
     Buffer, END, Iteration, JR, JV, PLANE, POSITION, QUAD, WHOLE, integrator, shifted_left, up_down_counter,

@@ -15,9 +15,10 @@ use stepwave_netlist::dsl::Scope;
 use super::{HardwareBlock, Paced, planar};
 use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
+use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::mindev_line;
-use crate::model::{Interpolates, Model};
+use crate::model::Model;
 use crate::options::{ON_OVERFLOW, WIDTH};
 use crate::parts::{DeviationAccumulator, F, LeastDeviation, XI_YI, line_change, square_gains};
 

@@ -22,8 +22,9 @@ use stepwave_nc::{Crossing, Curve, PulseBlock};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
+use crate::interpolates::Interpolates;
 use crate::machine::Words;
-use crate::model::{Interpolates, Model};
+use crate::model::Model;
 use crate::options::{Options, chosen};
 use crate::parts::{FASTEST_RATE, POSITION, PULSE_RATE, SHARE, WHOLE};
 use crate::plan::Plan;
@@ -59,11 +60,7 @@ impl Size {
 
     /// Of one block alone.
     fn of(crossing: Crossing, block: &PulseBlock) -> Size {
-        let arc = match &block.curve {
-            Curve::Arc(arc) => Some(arc),
-            Curve::Helix(helix) => Some(helix.arc()),
-            Curve::Line(_) | Curve::Conic(_) => None,
-        };
+        let arc = block.curve.arc();
         let travels = (0..3).map(|axis| block.from[axis].abs_diff(block.to[axis]));
         let sectors = arc.map(|arc| arc.sectors(crossing)).unwrap_or_default();
         let radius = arc.map_or(0, crate::sizes::off_circle_radius);

@@ -104,7 +104,7 @@ pub(super) fn blocks(
             };
             sectors(crossing, block, helix.arc(), third, &own)
         }
-        Curve::Conic(_) => Vec::new(),
+        _ => Vec::new(),
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::Progress;
 use crate::cli::ProveArgs;
-use crate::models::{CurveKind, Model, Options};
+use crate::models::{Model, Options};
 use crate::nc::Curve;
 use crate::output::{self, Outputs};
 use crate::own::is_netlist;
@@ -30,13 +30,7 @@ pub(super) fn prove(args: &ProveArgs, name: &str, extent: &Extent) -> Result<(),
     let found = exhausted(model, &options, extent, &|more| progress.add(more));
     progress.finish();
     let Exhausted { simulated, all, example, why } = found.map_err(|error| args.hardware.explain_study(error))?;
-    let what = match model.curve() {
-        CurveKind::Line { .. } => "lines from the origin",
-        CurveKind::Arc => "arcs about the origin inside a quadrant, with both ends on the circle",
-        CurveKind::Move => "lines from the origin, and arcs about it inside a quadrant with both ends on the circle",
-        CurveKind::Conic => "conics about the origin",
-        CurveKind::Helix => "helices about the origin",
-    };
+    let what = model.curve().in_box();
     // Of a netlist no option changes the hardware.
     let choices = if is_netlist(name) { Vec::new() } else { options.words() };
     let of = match extent {

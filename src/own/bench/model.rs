@@ -190,7 +190,7 @@ impl Described for Bench {
     }
 
     fn plan(&self, curve: &Curve, plan: &mut Plan) -> Result<(), ModelError> {
-        if let Curve::Helix(_) | Curve::Conic(_) = curve {
+        if !matches!(curve, Curve::Line(_) | Curve::Arc(_)) {
             let (model, takes) = (plan.model(), "lines, and arcs in the plane");
             return Err(ModelError::Curve { model, takes, given: "another curve".to_owned() });
         }

@@ -23,7 +23,7 @@ impl Moves for Bench {
         match &block.curve {
             Curve::Line(_) => true,
             Curve::Arc(_) => self.arcs() && block.plane == Plane::Xy,
-            Curve::Helix(_) | Curve::Conic(_) => false,
+            _ => false,
         }
     }
 

@@ -115,7 +115,7 @@ fn region(model: &Model) -> Option<Region> {
         (None, CurveKind::Line { .. }) => Some(Region::Lines),
         (None, CurveKind::Arc) => Some(Region::QuadrantArcs),
         (None, CurveKind::Move) => Some(Region::LinesAndArcs),
-        (None, CurveKind::Conic | CurveKind::Helix) => None,
+        (None, _) => None,
     }
 }
 
@@ -199,8 +199,9 @@ impl Geometries {
         let integrates = model.method == "digital differential analyser";
         let (whole, of): (_, fn(u32, bool) -> Vec<Curve>) = match model.curve() {
             CurveKind::Helix => (WHOLE_HELICES, helices::helices),
-            _ if integrates => (WHOLE_INTEGRATED_CONICS, conics::conics),
-            _ => (WHOLE_CONICS, conics::conics),
+            CurveKind::Conic if integrates => (WHOLE_INTEGRATED_CONICS, conics::conics),
+            CurveKind::Conic => (WHOLE_CONICS, conics::conics),
+            other => return Err(ProofError::Box(format!("there are no boxes of such curves: {}", other.describe()))),
         };
         let all = wanted && k <= whole;
         let curves = of(k, all);

@@ -1,0 +1,202 @@
+//! What models interpolate: the kinds of curves, and how a model plans its hardware for a curve and loads it.
+
+use stepwave_nc::{Arc, Conic, Curve, CurveType, Direction, Drawn, GeometryError, Helix, Line};
+
+use crate::described::Described;
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::machine::Words;
+use crate::plan::Plan;
+use crate::program::Paced;
+
+/// What a model interpolates.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum CurveKind {
+    /// Lines of 2 up to this many axes.
+    Line {
+        /// Most axes.
+        max_axes: usize,
+    },
+    /// Circular arcs in the plane.
+    Arc,
+    /// Arcs of ellipses, parabolas and hyperbolas in the plane.
+    Conic,
+    /// Circular arcs in the plane with a displacement in z.
+    Helix,
+    /// What a program is made of: lines of 2 or 3 axes, circular arcs in the plane, and helices.
+    Move,
+}
+
+/// What is said of one kind.
+struct Traits {
+    name: &'static str,
+    takes: &'static str,
+    in_box: &'static str,
+    max_axes: usize,
+    drawn: &'static [Drawn],
+}
+
+impl CurveKind {
+    /// All kinds, of lines those of most axes.
+    pub const ALL: [CurveKind; 5] =
+        [CurveKind::Line { max_axes: 6 }, CurveKind::Arc, CurveKind::Conic, CurveKind::Helix, CurveKind::Move];
+
+    fn traits(self) -> Traits {
+        match self {
+            CurveKind::Line { max_axes } => Traits {
+                name: "line",
+                takes: match max_axes {
+                    2 => "lines of 2 axes (--from X,Y --to X,Y)",
+                    3 => "lines of 2 or 3 axes (--from X,Y[,Z] --to X,Y[,Z])",
+                    _ => "lines of 2 to 6 axes (--from X,Y,… --to X,Y,…)",
+                },
+                in_box: "lines from the origin",
+                max_axes,
+                drawn: &[Drawn::Line],
+            },
+            CurveKind::Arc => Traits {
+                name: "arc",
+                takes: "arcs (--from X,Y --to X,Y --center X,Y --cw|--ccw)",
+                in_box: "arcs about the origin inside a quadrant, with both ends on the circle",
+                max_axes: 2,
+                drawn: &[Drawn::Arc],
+            },
+            CurveKind::Conic => Traits {
+                name: "conic",
+                takes: "conics (--ellipse A,B --cw|--ccw, --parabola C or --hyperbola A,B; --from X,Y --to X,Y --center X,Y)",
+                in_box: "conics about the origin",
+                max_axes: 2,
+                drawn: &[Drawn::Ellipse, Drawn::Parabola(None), Drawn::Hyperbola(None)],
+            },
+            CurveKind::Helix => Traits {
+                name: "helix",
+                takes: "helices (--from X,Y,Z --to X,Y,Z --center X,Y --cw|--ccw)",
+                in_box: "helices about the origin",
+                max_axes: 3,
+                drawn: &[Drawn::Helix],
+            },
+            CurveKind::Move => Traits {
+                name: "move",
+                takes: "lines of 2 or 3 axes, arcs and helices (--from X,Y[,Z] --to X,Y[,Z], of arcs --center X,Y --cw|--ccw)",
+                in_box: "lines from the origin, and arcs about it inside a quadrant with both ends on the circle",
+                max_axes: 3,
+                drawn: &[Drawn::Line, Drawn::Arc, Drawn::Helix],
+            },
+        }
+    }
+
+    /// The noun: `arc`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.traits().name
+    }
+
+    /// In words, with the options that give it.
+    #[must_use]
+    pub fn describe(self) -> &'static str {
+        self.traits().takes
+    }
+
+    /// Those that a box of coordinates is made of.
+    #[must_use]
+    pub fn in_box(self) -> &'static str {
+        self.traits().in_box
+    }
+
+    /// Most axes of such a curve.
+    #[must_use]
+    pub fn max_axes(self) -> usize {
+        self.traits().max_axes
+    }
+
+    /// What may be drawn.
+    #[must_use]
+    pub fn drawn(self) -> &'static [Drawn] {
+        self.traits().drawn
+    }
+
+    /// This may be drawn, wherever it opens to.
+    #[must_use]
+    pub fn has(self, drawn: Drawn) -> bool {
+        self.drawn().contains(&drawn.opening(None))
+    }
+
+    /// The curve is of this kind.
+    #[must_use]
+    pub fn fits(self, curve: &Curve) -> bool {
+        self.has(curve.description().drawn) && curve.axes() <= self.max_axes()
+    }
+
+    /// A small curve of this kind.
+    pub(crate) fn sample(self) -> Result<Curve, GeometryError> {
+        let turn = Direction::CounterClockwise;
+        Ok(match self {
+            CurveKind::Line { .. } => Line::new(vec![0, 0], vec![8, 6])?.into(),
+            CurveKind::Arc | CurveKind::Move => Arc::new([5, 0], [0, 5], [0, 0], turn)?.into(),
+            CurveKind::Conic => Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], turn)?.into(),
+            CurveKind::Helix => Helix::new([5, 0, 0], [0, 5, 3], [0, 0], turn)?.into(),
+        })
+    }
+}
+
+/// How a model plans its hardware for a curve of type C, and loads one.
+#[derive(Debug)]
+pub struct Method<C: 'static> {
+    /// Fixes registers, widths and promises for a curve; all that the hardware depends on comes from here.
+    ///
+    /// An error names a width or a value that cannot be.
+    pub plan: fn(&C, &mut Plan) -> Result<(), ModelError>,
+    /// The words of every block of a curve: one for a line, one for each sector of an arc where the loader has to reload
+    /// the registers.
+    pub load: fn(&C, &Hardware) -> Vec<Words>,
+}
+
+/// What a model interpolates, and how it plans and loads it.
+#[derive(Debug)]
+pub enum Interpolates {
+    /// Lines of 2 up to this many axes.
+    Lines(usize, Method<Line>),
+    /// Circular arcs in the plane.
+    Arcs(Method<Arc>),
+    /// Arcs of ellipses, parabolas and hyperbolas in the plane.
+    Conics(Method<Conic>),
+    /// Circular arcs in the plane with a displacement in z.
+    Helices(Method<Helix>),
+    /// The moves of a program, or one of them alone.
+    Moves(Paced),
+    /// What data describe, wiring included: [`Model::hardware`] is not called.
+    Described(&'static dyn Described),
+}
+
+/// How a model plans its hardware for a curve, and loads one, whatever the type of its curves.
+pub(crate) trait AnyMethod {
+    /// Plans for a curve; `None` of another type.
+    fn plan(&self, curve: &Curve, plan: &mut Plan) -> Option<Result<(), ModelError>>;
+    /// The words of every block; none of a curve of another type.
+    fn load(&self, curve: &Curve, hardware: &Hardware) -> Vec<Words>;
+}
+
+impl<C: CurveType> AnyMethod for Method<C> {
+    fn plan(&self, curve: &Curve, plan: &mut Plan) -> Option<Result<(), ModelError>> {
+        C::of(curve).map(|curve| (self.plan)(curve, plan))
+    }
+
+    fn load(&self, curve: &Curve, hardware: &Hardware) -> Vec<Words> {
+        C::of(curve).map_or_else(Vec::new, |curve| (self.load)(curve, hardware))
+    }
+}
+
+impl Interpolates {
+    /// The curves, and the method for each of them if they are all of one type.
+    pub(crate) fn of(&self) -> (CurveKind, Option<&dyn AnyMethod>) {
+        match self {
+            Interpolates::Lines(max_axes, method) => (CurveKind::Line { max_axes: *max_axes }, Some(method)),
+            Interpolates::Arcs(method) => (CurveKind::Arc, Some(method)),
+            Interpolates::Conics(method) => (CurveKind::Conic, Some(method)),
+            Interpolates::Helices(method) => (CurveKind::Helix, Some(method)),
+            Interpolates::Moves(moves) if moves.arcs => (CurveKind::Move, None),
+            Interpolates::Moves(_) => (CurveKind::Line { max_axes: 3 }, None),
+            Interpolates::Described(described) => (described.curve(), None),
+        }
+    }
+}
