@@ -19,7 +19,8 @@ pub struct Catalogue {
 /// The models of this crate.
 #[must_use]
 pub fn catalogue() -> Catalogue {
-    Catalogue { models: MODELS.to_vec(), options: ALL.to_vec() }
+    let options = Catalogue { models: Vec::with_capacity(MODELS.len()), options: ALL.to_vec() };
+    MODELS.iter().fold(options, |catalogue, model| catalogue.with(model))
 }
 
 #[cfg(test)]

@@ -194,7 +194,7 @@ impl Interpolates {
             Interpolates::Arcs(method) => (CurveKind::Arc, Some(method)),
             Interpolates::Conics(method) => (CurveKind::Conic, Some(method)),
             Interpolates::Helices(method) => (CurveKind::Helix, Some(method)),
-            Interpolates::Moves(moves) if moves.arcs => (CurveKind::Move, None),
+            Interpolates::Moves(moves) if moves.arcs.is_some() => (CurveKind::Move, None),
             Interpolates::Moves(_) => (CurveKind::Line { max_axes: 3 }, None),
             Interpolates::Described(described) => (described.curve(), None),
         }

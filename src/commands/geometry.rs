@@ -25,7 +25,7 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
     }
     let sized = args.sized();
     let (drawn, sizes) = match (kind.drawn(), sized) {
-        ([one], None) => (*one, Vec::new()),
+        ([one], None) if one.sizes() == 0 => (*one, Vec::new()),
         (_, Some(sized)) => sized,
         (_, None) => return invalid(format!("the curve is missing: {who} takes {}", kind.describe())),
     };
@@ -62,14 +62,15 @@ pub(super) fn move_kind(args: &GeometryArgs) -> CurveKind {
 
 /// The options that have no meaning for such curves: whether each is given, and its name.
 fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)> {
-    let mut options = Vec::new();
-    if *kind.drawn() == [Drawn::Line] {
-        options.extend([(args.center.is_some(), "--center"), (args.cw || args.ccw, "--cw or --ccw")]);
-    }
+    let none = |has: fn(Drawn) -> bool| !kind.drawn().iter().copied().any(has);
+    let mut options = vec![
+        (args.center.is_some() && none(Drawn::is_centered), "--center"),
+        ((args.cw || args.ccw) && none(Drawn::turns), "--cw or --ccw"),
+        (args.opens.is_some() && none(Drawn::is_open), "--opens"),
+    ];
     if let Some((drawn, _)) = args.sized() {
         options.push((!kind.has(drawn), drawn.option()));
     }
-    options.push((args.opens.is_some() && !kind.drawn().iter().any(|drawn| drawn.is_open()), "--opens"));
     options
 }
 

@@ -159,7 +159,7 @@ fn drawn(model: &Model, args: &SpaceArgs) -> Result<Drawn, Error> {
         (args.radius.is_some(), drawn.is_round(), "--radius"),
         (args.height.is_some(), drawn == Drawn::Helix, "--height"),
         (args.cw || args.ccw, drawn.turns(), "--cw or --ccw"),
-        (args.center.is_some(), drawn != Drawn::Line, "--center"),
+        (args.center.is_some(), drawn.is_centered(), "--center"),
     ];
     if let Some((_, _, option)) = superfluous.into_iter().find(|(given, taken, _)| *given && !taken) {
         let takes = model.curve().describe();

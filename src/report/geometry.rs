@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use stepwave_models::{Hardware, Model, Options, Takes};
-use stepwave_nc::{Curve, Description, Direction, Drawn};
+use stepwave_nc::{Curve, Description, Direction};
 
 use crate::testbench::point;
 
@@ -21,7 +21,7 @@ pub fn geometry(curve: &Curve) -> String {
     words.push(format!("{} to {}", point(curve.from()), point(curve.to())));
     words.extend(drawn.turns().then(|| direction.to_string()));
     let about = if sizes.len() == 1 { "from the vertex" } else { "about" };
-    words.extend((drawn != Drawn::Line).then(|| format!("{about} {}", point(&center))));
+    words.extend(drawn.is_centered().then(|| format!("{about} {}", point(&center))));
     words.join(" ")
 }
 
@@ -29,7 +29,7 @@ pub fn geometry(curve: &Curve) -> String {
 pub(super) fn json(curve: &Curve) -> Value {
     let Description { drawn, sizes, center, direction, .. } = curve.description();
     let mut fields = json!({ "curve": drawn.name(), "from": curve.from(), "to": curve.to() });
-    if drawn != Drawn::Line {
+    if drawn.is_centered() {
         fields["center"] = json!(center);
         fields["direction"] = json!(drawn.turns().then(|| direction.to_string()));
     }

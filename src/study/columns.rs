@@ -50,7 +50,7 @@ impl Layout {
         for point in ["from", "to"] {
             letters.iter().for_each(|axis| add(&format!("{point}_{axis}"), ColumnType::Whole));
         }
-        if drawn != Drawn::Line {
+        if drawn.is_centered() {
             add("center_x", ColumnType::Whole);
             add("center_y", ColumnType::Whole);
             add("direction", ColumnType::Word);
@@ -86,7 +86,7 @@ impl Layout {
             row.push(site.drawn.opens().map(|opens| opens.to_string()).into());
         }
         row.extend(site.from.iter().chain(&site.to).map(|&coordinate| Value::Whole(coordinate)));
-        if self.drawn != Drawn::Line {
+        if self.drawn.is_centered() {
             row.extend(site.center.map(Value::Whole));
             row.push(if site.drawn.turns() { word_of(turn(site)) } else { Value::None });
         }

@@ -60,7 +60,7 @@ fn known(model: &Model) -> Vec<String> {
         known.extend(["curve", "size_a", "size_b", "opens"].map(str::to_owned));
     }
     known.extend(["from", "to"].iter().flat_map(|point| axes.iter().map(move |axis| format!("{point}_{axis}"))));
-    if *model.curve().drawn() != [Drawn::Line] {
+    if model.curve().drawn().iter().any(|drawn| drawn.is_centered()) {
         known.extend(["center_x", "center_y", "direction"].map(str::to_owned));
     }
     known

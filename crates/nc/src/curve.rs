@@ -277,13 +277,19 @@ impl Drawn {
         self.traits().sizes
     }
 
+    /// It is about a centre or vertex.
+    #[must_use]
+    pub fn is_centered(self) -> bool {
+        self != Drawn::Line
+    }
+
     /// It runs clockwise or counter-clockwise; others lead from their start to their end.
     #[must_use]
     pub fn turns(self) -> bool {
         self.traits().turns
     }
 
-    /// It is about a centre, from which its ends have two radii.
+    /// Its ends have two radii about its centre.
     #[must_use]
     pub fn is_round(self) -> bool {
         matches!(self, Drawn::Arc | Drawn::Helix)

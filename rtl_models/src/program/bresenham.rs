@@ -8,7 +8,7 @@
 //!
 //! It draws lines: the control gives it the chords of an arc. Ticks are two clocks apart at least, as a step event is.
 
-use stepwave_nc::{Crossing, PulseBlock};
+use stepwave_nc::PulseBlock;
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::{delta, program_words};
@@ -33,8 +33,7 @@ pub static MODEL: Model = Model {
     options: bresenham::MODEL.options,
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
-        arcs: false,
-        crossing: Crossing::RoundedRadius,
+        arcs: None,
         direct: false,
         plan,
         load,

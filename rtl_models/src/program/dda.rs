@@ -52,8 +52,7 @@ pub static MODEL: Model = Model {
     options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N"), &NORMALIZE, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: Interpolates::Moves(Paced {
-        arcs: true,
-        crossing: CROSSING,
+        arcs: Some(CROSSING),
         direct: false,
         plan,
         load,

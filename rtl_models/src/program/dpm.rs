@@ -9,7 +9,7 @@
 //!
 //! A pulse multiplier draws lines: the control gives it the chords of an arc.
 
-use stepwave_nc::{Crossing, PulseBlock};
+use stepwave_nc::PulseBlock;
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::program_words;
@@ -35,8 +35,7 @@ pub static MODEL: Model = Model {
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
-        arcs: false,
-        crossing: Crossing::RoundedRadius,
+        arcs: None,
         direct: false,
         plan,
         load,

@@ -35,8 +35,7 @@ pub static MODEL: Model = Model {
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: Interpolates::Moves(Paced {
-        arcs: true,
-        crossing: CROSSING,
+        arcs: Some(CROSSING),
         direct: true,
         plan: planar::judged,
         load,

@@ -151,10 +151,8 @@ pub trait Moves: fmt::Debug + Sync {
 /// How a machine with our pulse source takes moves: lines in three axes, arcs and helices.
 #[derive(Debug)]
 pub struct Paced {
-    /// It interpolates arcs; else the control gives it chords.
-    pub arcs: bool,
-    /// Where arcs are split.
-    pub crossing: Crossing,
+    /// Where it splits the arcs that it interpolates; `None`: the control gives it chords.
+    pub arcs: Option<Crossing>,
     /// A commanded feed sets the frequency of the pulse source, f_g = v / (60 δ), whatever the direction of the block;
     /// else it is a feed rate number: f_g makes the block take the time that the feed wants.
     pub direct: bool,
@@ -170,7 +168,7 @@ pub struct Paced {
 
 impl Moves for Paced {
     fn arcs(&self) -> bool {
-        self.arcs
+        self.arcs.is_some()
     }
 
     fn takes(&self, block: &PulseBlock) -> bool {
@@ -178,7 +176,7 @@ impl Moves for Paced {
     }
 
     fn crossing(&self) -> Crossing {
-        self.crossing
+        self.arcs.unwrap_or(Crossing::RoundedRadius)
     }
 
     fn pacing(&self) -> Pacing {
@@ -204,13 +202,13 @@ impl Paced {
     fn too_steep(&self, block: &PulseBlock) -> bool {
         let Curve::Helix(_) = block.curve else { return false };
         let word = |sector: &HardwareBlock, wanted| sector.words.get(wanted).unwrap_or(0);
-        let sectors = planar::blocks(self.crossing, block, |_| (Words::new(), 0.0));
+        let sectors = planar::blocks(self.crossing(), block, |_| (Words::new(), 0.0));
         sectors.iter().any(|sector| 2 * word(sector, SHARE) > word(sector, WHOLE))
     }
 
     /// The block of a curve that the machine runs alone; `None` of one that it does not interpolate.
     pub(crate) fn block(&self, curve: &Curve) -> Option<PulseBlock> {
-        let takes = self.arcs || matches!(curve, Curve::Line(_));
+        let takes = self.arcs.is_some() || matches!(curve, Curve::Line(_));
         takes.then(|| PulseBlock::alone(curve)).flatten()
     }
 
@@ -283,7 +281,7 @@ impl Model {
                 self.name
             )));
         }
-        (moves.plan)(&Size::of(moves.crossing, block), &mut plan)?;
+        (moves.plan)(&Size::of(moves.crossing(), block), &mut plan)?;
         let hardware = plan.finish()?;
         // A program divides a helix, so that its third axis strays by less than a pulse; alone it is not divided.
         let divided = !matches!(block.curve, Curve::Helix(_));

@@ -10,7 +10,7 @@
 //! It draws lines: the control gives it the chords of an arc. A block takes the least 2^k accumulations that its rates
 //! allow. The pulse source waits with the accumulators.
 
-use stepwave_nc::{Crossing, PulseBlock};
+use stepwave_nc::PulseBlock;
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::{delta, program_words};
@@ -34,8 +34,7 @@ pub static MODEL: Model = Model {
     options: stepgen::MODEL.options,
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
-        arcs: false,
-        crossing: Crossing::RoundedRadius,
+        arcs: None,
         direct: false,
         plan,
         load,
