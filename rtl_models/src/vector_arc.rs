@@ -23,16 +23,14 @@
 use stepwave_nc::{Arc, Crossing};
 use stepwave_netlist::dsl::Scope;
 
-use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::{Interpolates, Method};
 use crate::model::Model;
-use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, POSITION, QUAD, XI_YI};
+use crate::options::BEATS;
+use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, F};
 use crate::plan::Plan;
-use crate::registers::N;
-use crate::{sizes, words};
+use crate::{ppc_arc, sizes, words};
 
 /// Vector discrimination, arc.
 pub static MODEL: Model = Model {
@@ -40,15 +38,8 @@ pub static MODEL: Model = Model {
     title: "Vector discrimination, arc",
     method: "vector discrimination",
     source: "矢量判别法; no primary source survives: a definition of this project",
-    registers: &[
-        &F,
-        &XI_YI,
-        &QUAD,
-        &E.width(N.plus(3)).about("end-point down-counter of the pulses of both axes"),
-        &END,
-        &POSITION,
-    ],
-    options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
+    registers: ppc_arc::MODEL.registers,
+    options: ppc_arc::MODEL.options,
     claims: None,
     interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
     hardware,

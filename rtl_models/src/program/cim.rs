@@ -15,11 +15,10 @@ use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::MODE;
-use super::{HardwareBlock, Paced, planar};
+use super::{HardwareBlock, planar};
 use crate::cim_line;
 use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
-use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{ON_OVERFLOW, WIDTH, Weights};
@@ -38,13 +37,7 @@ pub static MODEL: Model = Model {
     registers: &[&MODE, &PLANE, &QUAD, &F, &A_B, &BASE, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesAndArcs)),
-    interpolates: Interpolates::Moves(Paced {
-        arcs: Some(CROSSING),
-        direct: true,
-        plan: planar::judged,
-        load,
-        error_bound: |_, block| Some(planar::bound(block, 1.0)),
-    }),
+    interpolates: planar::judging(CROSSING, load, |_, block| Some(planar::bound(block, 1.0))),
     hardware,
 };
 

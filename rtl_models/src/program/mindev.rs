@@ -12,10 +12,9 @@
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
-use super::{HardwareBlock, Paced, planar};
+use super::{HardwareBlock, planar};
 use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
-use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::mindev_line;
 use crate::model::Model;
@@ -34,13 +33,7 @@ pub static MODEL: Model = Model {
     registers: planar::JUDGED,
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesAndArcs)),
-    interpolates: Interpolates::Moves(Paced {
-        arcs: Some(CROSSING),
-        direct: true,
-        plan: planar::judged,
-        load,
-        error_bound: |_, block| Some(planar::bound(block, 0.5)),
-    }),
+    interpolates: planar::judging(CROSSING, load, |_, block| Some(planar::bound(block, 0.5))),
     hardware,
 };
 

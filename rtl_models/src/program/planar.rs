@@ -3,8 +3,10 @@
 use stepwave_nc::{Arc, Crossing, Curve, Direction, Plane, PulseBlock, Sector};
 
 use super::frame::{MODE, THIRD_SIGN};
-use super::{HardwareBlock, Size};
+use super::{HardwareBlock, Paced, Size};
 use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::options::{END_POINT, EndPoint, Preset};
 use crate::parts::{CCW, END, F, PLANE, POSITION, QUAD, REST, SHARE, WHOLE, XI_YI};
@@ -35,8 +37,17 @@ pub(super) fn common_plan(plan: &mut Plan, size: &Size) {
 /// The registers of a machine that judges its steps by a deviation.
 pub(super) const JUDGED: Registers = &[&MODE, &PLANE, &QUAD, &F, &XI_YI, &END.pair(), &WHOLE, &POSITION];
 
+/// The moves of a machine that judges its steps by a deviation; a commanded feed sets the frequency of its pulse source.
+pub(super) const fn judging(
+    crossing: Crossing,
+    load: fn(&PulseBlock, &Hardware) -> Vec<HardwareBlock>,
+    error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
+) -> Interpolates {
+    Interpolates::Moves(Paced { arcs: Some(crossing), direct: true, plan: judged, load, error_bound })
+}
+
 /// Plans a machine that judges its steps by a deviation `f`, with the coordinates or displacements `xi` and `yi`.
-pub(super) fn judged(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
+fn judged(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
     plan.n = plan.magnitude_bits(size.magnitude);
     common_plan(plan, size);
     Ok(())

@@ -13,10 +13,9 @@
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
-use super::{HardwareBlock, Paced, planar};
+use super::{HardwareBlock, planar};
 use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
-use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{ON_OVERFLOW, WIDTH};
@@ -35,13 +34,7 @@ pub static MODEL: Model = Model {
     registers: planar::JUDGED,
     options: &[&WIDTH, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesAndArcs)),
-    interpolates: Interpolates::Moves(Paced {
-        arcs: Some(CROSSING),
-        direct: true,
-        plan: planar::judged,
-        load,
-        error_bound: |_, block| Some(planar::bound(block, 1.0)),
-    }),
+    interpolates: planar::judging(CROSSING, load, |_, block| Some(planar::bound(block, 1.0))),
     hardware,
 };
 
