@@ -7,12 +7,12 @@ use std::collections::{BTreeMap, HashMap};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngSeed, TestRunner};
-use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, compiled_after, contents};
+use stepwave_engine::{Engine, EngineKind, Rows, Stop, Watch, branching_after, compiled_after, contents};
 use stepwave_netlist::cells::{NamedNet, Op};
 use stepwave_netlist::passes::simplify;
 use stepwave_netlist::{Design, Net, elaborate, text};
 
-use recipe::{build, recipe, recipe_of, value};
+use recipe::{build, choosing, recipe, recipe_of, value};
 
 /// What a test bench does to an engine.
 #[derive(Clone, Debug)]
@@ -84,8 +84,18 @@ fn play(design: &Design, kind: EngineKind, script: &Script) -> Vec<Seen> {
 
 fn play_on(design: &Design, engine: impl Fn(&Watch) -> Box<dyn Engine>, script: &Script) -> Vec<Seen> {
     // Those too that nothing depends on.
-    let columns: Vec<Net> = design.netlist().nets().collect();
-    let flags: Vec<Net> = columns.iter().copied().filter(|&net| design.netlist().width(net).get() == 1).collect();
+    play_watching(design, design.netlist().nets().collect(), engine, script)
+}
+
+/// The same, with these nets in the rows.
+fn play_watching(
+    design: &Design,
+    columns: Vec<Net>,
+    engine: impl Fn(&Watch) -> Box<dyn Engine>,
+    script: &Script,
+) -> Vec<Seen> {
+    let nets: Vec<Net> = design.netlist().nets().collect();
+    let flags: Vec<Net> = nets.iter().copied().filter(|&net| design.netlist().width(net).get() == 1).collect();
     let stops = script.stops.iter().filter_map(|&stop| flags.get(usize::from(stop) % flags.len().max(1)).copied());
     let watch = Watch { columns: columns.clone(), stops: stops.collect() };
     let mut engine = engine(&watch);
@@ -120,7 +130,7 @@ fn play_on(design: &Design, engine: impl Fn(&Watch) -> Box<dyn Engine>, script: 
             stop,
             clock: engine.clock(),
             rows: rows.iter().map(|(clock, row)| (clock, row.to_vec())).collect(),
-            values: columns.iter().map(|&net| engine.value(net)).collect(),
+            values: nets.iter().map(|&net| engine.value(net)).collect(),
             memories: contents(engine.as_ref(), design),
         });
         if clear_after {
@@ -187,6 +197,23 @@ proptest! {
         let gates = play(&design, EngineKind::Gates, &script);
         let compiled = play_on(&design, |watch| compiled_after(&design, watch, warm_up), &script);
         assert_same(&design, &script, &gates, &compiled, "native code")?;
+    }
+
+    #[test]
+    fn branches_of_large_machines_evaluate_all_that_is_looked_at(
+        recipe in recipe().prop_map(choosing),
+        script in script(),
+        warm_up in 0u64..6,
+        worth in 0u32..4,
+        watched in prop::collection::vec(any::<u16>(), 0..4),
+    ) {
+        let design = elaborate(build(&recipe)).unwrap();
+        let nets: Vec<Net> = design.netlist().nets().collect();
+        let columns: Vec<Net> = watched.iter().map(|&pick| nets[usize::from(pick) % nets.len()]).collect();
+        let gates = play_watching(&design, columns.clone(), |watch| EngineKind::Gates.build(&design, watch), &script);
+        let native = |watch: &Watch| branching_after(&design, watch, warm_up, worth);
+        let branching = play_watching(&design, columns, native, &script);
+        assert_same(&design, &script, &gates, &branching, "native code with branches")?;
     }
 
     #[test]

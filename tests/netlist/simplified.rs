@@ -209,3 +209,40 @@ fn sums_that_are_cut_and_numbers_that_still_fit_when_they_are() {
         }
     }
 }
+
+#[test]
+fn concatenations_of_parts_that_meet_are_repeated_or_are_selected_together() {
+    for bits in 1..=4u32 {
+        let parts = || (0..bits).flat_map(|low| (1..=bits - low).map(move |width| (width, low)));
+        for ((w, high), (v, low)) in parts().flat_map(|high| parts().map(move |low| (high, low))) {
+            let two = lines([format!("{w} slice %0 {high}"), format!("{v} slice %0 {low}")]);
+            assert_same(bits, &[&two[..], &[format!("{} concat %2 %3", w + v)]].concat());
+            // With the whole word, and a further part, below.
+            let whole = [format!("{} concat %2 %0", w + bits), format!("{} concat %3 %4", v + w + bits)];
+            assert_same(bits, &[&two[..], &whole].concat());
+            let three = [format!("{} concat %3 %2", v + w), format!("{} concat %2 %4", w + v + w)];
+            assert_same(bits, &[&two[..], &three].concat());
+            if w == 1 {
+                let signs = [
+                    "3 sign-extend %2".to_owned(),
+                    format!("{} concat %4 %3", 3 + v),
+                    format!("{} concat %2 %5", 4 + v),
+                    format!("{} concat %3 %4", 3 + v),
+                    format!("{} concat %6 %7", 7 + 2 * v),
+                ];
+                assert_same(bits, &[&two[..], &signs].concat());
+            }
+            for select in ["%2 %4", "%4 %2"] {
+                let chosen = [
+                    format!("{w} const 0x1"),
+                    format!("{v} const 0x0"),
+                    format!("{w} mux %1 {select}"),
+                    format!("{v} mux %1 {}", select.replace('2', "3").replace('4', "5")),
+                    format!("{} concat %6 %7", w + v),
+                    format!("{} concat %7 %8", w + v + v),
+                ];
+                assert_same(bits, &[&two[..], &chosen].concat());
+            }
+        }
+    }
+}

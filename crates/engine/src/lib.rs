@@ -219,6 +219,14 @@ pub fn compiled_after(design: &Design, watch: &Watch, warm_up: u64) -> Box<dyn E
     Box::new(compiled::Compiled::after(design, watch, warm_up))
 }
 
+/// As [`compiled_after`], as if the machine were large: with a branch for every select in whose branches there is as
+/// much to do as `worth`, in cells.
+#[cfg(feature = "jit")]
+#[must_use]
+pub fn branching_after(design: &Design, watch: &Watch, warm_up: u64, worth: u32) -> Box<dyn Engine> {
+    Box::new(compiled::Compiled::after(design, watch, warm_up).branching(worth))
+}
+
 /// As [`compiled_after`], looking ahead.
 #[cfg(feature = "jit")]
 #[must_use]

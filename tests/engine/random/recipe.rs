@@ -163,6 +163,19 @@ fn cell() -> impl Strategy<Value = CellRecipe> {
         .prop_map(|(operator, operands, parameter, named)| CellRecipe { operator, operands, parameter, named })
 }
 
+/// The same with many multiplexers and gates, so that what most cells come to is not needed in every clock.
+pub(crate) fn choosing(mut recipe: Recipe) -> Recipe {
+    for cell in &mut recipe.cells {
+        cell.operator = match cell.parameter % 5 {
+            0 | 1 => Operator::Mux,
+            2 if cell.operands[0] % 2 == 0 => Operator::And,
+            2 => Operator::Or,
+            _ => cell.operator,
+        };
+    }
+    recipe
+}
+
 /// Random netlists.
 pub(crate) fn recipe() -> impl Strategy<Value = Recipe> {
     recipe_of(1..40)

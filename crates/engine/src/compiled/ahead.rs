@@ -199,6 +199,7 @@ impl Compiled {
             stops: &self.watch.stops,
             running: &[],
             flags: &[],
+            branches: None,
         };
         let digester = Digester::compile(&plan, wanted);
         digests.specialised.phases.rotate_right(first);

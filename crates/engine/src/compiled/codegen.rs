@@ -52,6 +52,17 @@ pub(super) struct Plan<'a> {
     pub(super) running: &'a [Net],
     /// Nets that are never passed over while they are 1.
     pub(super) flags: &'a [Net],
+    /// Where the machine is large: [branches](super::branching) instead of several phases.
+    pub(super) branches: Option<Branches>,
+}
+
+/// How a large machine is compiled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branches {
+    /// Work in the two branches of a select, in cells, from which on one of them is taken, rather than both evaluated.
+    pub(super) worth: u32,
+    /// The code will run for long, and is not too large to be made with care.
+    pub(super) lasting: bool,
 }
 
 impl Plan<'_> {
@@ -110,6 +121,8 @@ pub(super) struct Generator<'a, 'c> {
     pub(super) busy: Vec<usize>,
     /// Sums and differences that are known not to leave their width.
     pub(super) exact: HashSet<Net>,
+    /// Nets of 2 to 32 bits are words of 32 bits.
+    pub(super) narrow: bool,
 }
 
 /// Type of the value of a net.
@@ -203,13 +216,24 @@ impl<'a, 'c> Generator<'a, 'c> {
         [state, memories]: [Value; 2],
     ) -> (Generator<'a, 'c>, RegisterValues) {
         let busy = (0..plan.columns.len()).filter(|column| !resting.contains(column)).collect();
-        let mut generator = Generator { plan, f, state, memories, inputs: Vec::new(), busy, exact: HashSet::new() };
+        let mut generator =
+            Generator { plan, f, state, memories, inputs: Vec::new(), busy, exact: HashSet::new(), narrow: false };
         let nets = plan.registers.iter().map(|&(net, _)| net).chain(plan.inputs.iter().copied());
         let width = |net: Net| plan.entry.netlist.width(plan.entry.net(net));
         let mut words: RegisterValues =
             nets.enumerate().map(|(word, net)| generator.load(word, kind(width(net)))).collect();
         generator.inputs = words.split_off(plan.registers.len());
         (generator, words)
+    }
+
+    /// A generator of narrow code that loads what it needs where it needs it.
+    pub(super) fn narrow(
+        plan: &'a Plan<'a>,
+        f: &'a mut FunctionBuilder<'c>,
+        [state, memories]: [Value; 2],
+    ) -> Generator<'a, 'c> {
+        let (inputs, busy) = (Vec::new(), Vec::new());
+        Generator { plan, f, state, memories, inputs, busy, exact: HashSet::new(), narrow: true }
     }
 
     /// A word of the state.
@@ -223,7 +247,12 @@ impl<'a, 'c> Generator<'a, 'c> {
     }
 
     pub(super) fn wide(&mut self, value: Value) -> Value {
-        if self.f.func.dfg.value_type(value) == types::I8 { self.f.ins().uextend(types::I64, value) } else { value }
+        self.converted(value, types::I64)
+    }
+
+    /// Type of the value of a net.
+    pub(super) fn kind(&self, width: Width) -> Type {
+        if self.narrow && (2..=32).contains(&width.get()) { types::I32 } else { kind(width) }
     }
 
     /// Fixed registers are constants in this phase.
@@ -288,7 +317,7 @@ impl<'a, 'c> Generator<'a, 'c> {
             let value = match values.get(&net) {
                 Some(&value) => value,
                 None if self.exact.contains(&net) => self.unmasked(netlist.cell(net).op, &values),
-                None => self.operation(netlist, &netlist.cell(net), &values),
+                None => self.operation(netlist, &netlist.cell(net), |net| values[&net]),
             };
             let value = each(self.f, net, value);
             values.insert(net, value);

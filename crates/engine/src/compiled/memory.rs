@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{InstBuilder, Value, types};
 
-use super::codegen::{Generator, kind, offset, trusted};
+use super::codegen::{Generator, offset, trusted};
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Net, Netlist, WritePort};
 
@@ -19,38 +19,39 @@ impl Generator<'_, '_> {
         let at = self.word_at(inside);
         let flags = if changes { trusted() } else { trusted().with_readonly().with_can_move() };
         let word = self.f.ins().load(types::I64, flags, at, offset(place.first));
-        if kind(width) == types::I8 { self.f.ins().ireduce(types::I8, word) } else { word }
+        self.converted(word, self.kind(width))
     }
 
     /// All ports write, one after another, what their nets were before the edge.
     pub(super) fn write_memories(&mut self, netlist: &Netlist, values: &HashMap<Net, Value>) {
-        for (memory, size) in netlist.memories.iter().enumerate().map(|(index, memory)| (index, memory.size)) {
-            for port in &netlist.memories[memory].writes {
-                let address = self.wide(values[&port.address]);
-                let inside = self.f.ins().icmp_imm(IntCC::UnsignedLessThan, address, size.cast_signed());
-                let writes = self.f.ins().band(values[&port.enable], inside);
-                let (write, after) = (self.f.create_block(), self.f.create_block());
-                self.f.ins().brif(writes, write, &[], after, &[]);
-                self.f.switch_to_block(write);
-                self.write(memory, *port, address, values);
-                self.f.ins().jump(after, &[]);
-                self.f.switch_to_block(after);
+        for (memory, of) in netlist.memories.iter().enumerate() {
+            for port in &of.writes {
+                self.write(memory, *port, |net| values[&net]);
             }
         }
     }
 
-    /// A port writes a word inside of the memory.
-    fn write(&mut self, memory: usize, port: WritePort, address: Value, values: &HashMap<Net, Value>) {
+    /// A port writes, if its enable is 1 and its address inside of the memory.
+    pub(super) fn write(&mut self, memory: usize, port: WritePort, value: impl Fn(Net) -> Value) {
+        let size = self.plan.memories[memory].size.cast_signed();
+        let address = self.wide(value(port.address));
+        let inside = self.f.ins().icmp_imm(IntCC::UnsignedLessThan, address, size);
+        let writes = self.f.ins().band(value(port.enable), inside);
+        let (write, after) = (self.f.create_block(), self.f.create_block());
+        self.f.ins().brif(writes, write, &[], after, &[]);
+        self.f.switch_to_block(write);
         let (at, place) = (self.word_at(address), offset(self.plan.memories[memory].first));
-        let mut word = self.wide(values[&port.data]);
+        let mut word = self.wide(value(port.data));
         if let Some(mask) = port.mask {
-            let mask = self.wide(values[&mask]);
+            let mask = self.wide(value(mask));
             let old = self.f.ins().load(types::I64, trusted(), at, place);
             let changed = self.f.ins().bxor(old, word);
             let changed = self.f.ins().band(changed, mask);
             word = self.f.ins().bxor(old, changed);
         }
         self.f.ins().store(trusted(), word, at, place);
+        self.f.ins().jump(after, &[]);
+        self.f.switch_to_block(after);
     }
 
     /// Where the word of this index is, counted from the first of all words.

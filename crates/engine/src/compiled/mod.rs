@@ -7,27 +7,33 @@
 //! after some tries. Every sample is recorded, so the outside sees no difference; or, where that is asked for, every
 //! sample in which a machine driven by a pulse source is not idle.
 //!
-//! When inputs have changed (a block was loaded), a loop that was compiled for such inputs is entered at once.
+//! When inputs have changed (a block was loaded), a loop that was compiled for such inputs is entered at once. A
+//! [large] machine is compiled much earlier, into code of another kind.
 
 mod ahead;
+mod branching;
 mod codegen;
 mod digesting;
+mod large;
 mod layout;
 mod memory;
 mod native;
 mod operation;
 mod passing;
 mod placing;
+mod regions;
 mod scan;
 mod specialise;
+mod steps;
 
 use std::collections::HashMap;
 
 use super::word::WordEngine;
 use super::{Ahead, Digest, Engine, Extremes, Idle, Rows, Stop, Wanted, Watch};
 use ahead::{Digests, LookedAt};
+use large::Large;
 use native::Native;
-use specialise::{History, Specialised};
+use specialise::{History, Periodic, Specialised};
 use stepwave_netlist::Design;
 use stepwave_netlist::cells::{Net, Op};
 
@@ -39,6 +45,8 @@ const LOOK_BACK: u64 = 1024;
 const STEADY: u64 = 16;
 /// Loops compiled with assumptions on registers before one without is used.
 const TRIES: usize = 6;
+/// Loops of a large machine from which on one is compiled that takes no inputs for granted.
+const MANY: usize = 8;
 
 /// A compiled loop and what it takes for granted.
 struct Variant {
@@ -81,6 +89,8 @@ pub(super) struct Compiled {
     /// Inputs have changed since a loop was left, and there is one for them.
     known: bool,
     variants: Vec<Variant>,
+    /// A large machine, and what is known of its registers.
+    large: Option<Large>,
     /// No code generator for this machine, or its rows or memories are too large for one.
     unavailable: bool,
     state: Vec<u64>,
@@ -103,40 +113,46 @@ impl Compiled {
             })
             .collect();
         let words = registers.len() + design.inputs().len() + 1;
-        Compiled {
+        let is_large = large::is_large(design);
+        let engine = Compiled {
             word: WordEngine::new(design, watch),
             design: design.clone(),
             watch: watch.clone(),
             idle: None,
             wanted: None,
             ahead: None,
-            history: History::new(netlist, &registers, LOOK_BACK.min(warm_up)),
+            history: if is_large { History::none() } else { History::new(netlist, &registers, LOOK_BACK.min(warm_up)) },
             warm_up,
             registers,
             quiet: 0,
             known: false,
             variants: Vec::new(),
+            large: None,
             unavailable: false,
             state: vec![0; words],
-        }
+        };
+        if is_large { engine.branching(large::WORTH) } else { engine }
     }
 
     /// Passes over the samples in which the machine is idle, in sparse rows.
-    pub(super) fn passing(mut self, idle: &Idle) -> Compiled {
+    pub(super) fn passing(self, idle: &Idle) -> Compiled {
+        let mut this = self.unbranched();
         // Of what no cell drives by itself nothing is known while samples are passed over.
-        let registers: Vec<Net> = self.registers.iter().map(|&(net, _)| net).collect();
+        let registers: Vec<Net> = this.registers.iter().map(|&(net, _)| net).collect();
         let running: Vec<Net> = idle.running.iter().copied().filter(|net| registers.contains(net)).collect();
         let words = passing::HEAD + passing::EXTREMES * running.len();
-        self.state.resize(registers.len() + self.design.inputs().len() + words, 0);
-        self.history = History::new(self.design.netlist(), &self.registers, STEADY.min(self.warm_up));
-        self.idle = (!running.is_empty() && !self.watch.columns.is_empty())
+        this.state.resize(registers.len() + this.design.inputs().len() + words, 0);
+        this.history = History::new(this.design.netlist(), &this.registers, STEADY.min(this.warm_up));
+        this.idle = (!running.is_empty() && !this.watch.columns.is_empty())
             .then(|| Idle { running, flags: idle.flags.clone() });
-        self
+        this
     }
 
     /// Looks ahead for what is wanted.
     pub(super) fn digesting(self, wanted: Option<Wanted>) -> Compiled {
-        Compiled { wanted, ..self }
+        // What digests are made of are short loops.
+        let engine = if wanted.is_some() { self.unbranched() } else { self };
+        Compiled { wanted, ..engine }
     }
 
     /// One clock in the word engine, remembered.
@@ -172,17 +188,22 @@ impl Compiled {
         self.variants.iter().position(|variant| !variant.is_poor(self.warm_up) && fits(variant))
     }
 
-    /// Compiles a loop for what the recent clocks were like.
-    fn compile(&mut self, stride: usize) {
+    /// The registers that have cycled in the recent clocks, unless it was of no use to assume that.
+    fn period(&self) -> Option<Periodic> {
         let assumes_registers = self.variants.iter().filter(|variant| variant.assumes_registers).count() < TRIES;
+        if assumes_registers && self.idle.is_none() { self.history.period() } else { None }
+    }
+
+    /// Compiles a loop in which these registers cycle.
+    fn compile(&mut self, stride: usize, period: Option<Periodic>) {
         let value = |net: Net| self.word.value(net);
-        let period = if assumes_registers && self.idle.is_none() { self.history.period() } else { None };
-        let specialised =
-            Specialised::new(self.design.netlist(), self.design.inputs(), &self.registers, period, value, |nets| {
-                nets.extend(&self.watch.columns);
-                nets.extend(&self.watch.stops);
-                nets.extend(self.idle.iter().flat_map(|idle| &idle.flags));
-            });
+        let any_inputs = self.large.is_some() && self.variants.len() >= MANY;
+        let inputs = if any_inputs { &[] } else { self.design.inputs() };
+        let specialised = Specialised::new(self.design.netlist(), inputs, &self.registers, period, value, |nets| {
+            nets.extend(&self.watch.columns);
+            nets.extend(&self.watch.stops);
+            nets.extend(self.idle.iter().flat_map(|idle| &idle.flags));
+        });
         let memories = self.word.memories().places().to_vec();
         let plan = codegen::Plan {
             entry: &specialised.entry,
@@ -195,9 +216,11 @@ impl Compiled {
             stops: &self.watch.stops,
             running: self.idle.as_ref().map_or(&[], |idle| &idle.running),
             flags: self.idle.as_ref().map_or(&[], |idle| &idle.flags),
+            branches: self.large.as_ref().map(Large::branches),
         };
         match Native::compile(&plan) {
             Some(native) => {
+                self.state.resize(native.state_words().max(self.state.len()), 0);
                 let last_phase = specialised.phases.last().map(|phase| phase.fixed.clone()).unwrap_or_default();
                 let assumes_registers = !last_phase.is_empty();
                 let inputs = specialised.inputs.clone();
@@ -218,6 +241,7 @@ impl Compiled {
         for (word, net) in self.state.iter_mut().zip(nets) {
             *word = self.word.value(net);
         }
+        self.state[self.registers.len() + self.design.inputs().len()] = 0;
     }
 
     /// Runs a loop from the present sample on, at most `clocks` clocks.
@@ -234,7 +258,7 @@ impl Compiled {
             rows.fill(column, recorded, self.word.value(self.watch.columns[column]));
         }
         rows.grow(self.word.clock() + 1, recorded);
-        let edge = self.state[self.state.len() - 1] == 1;
+        let edge = self.state[count + self.design.inputs().len()] == 1;
         self.word.continue_from(recorded, &self.state[..count]);
         self.variants[variant].clocks += recorded;
         if edge {
@@ -302,8 +326,20 @@ impl Engine for Compiled {
             if records && rows.is_full() {
                 return Stop::RowsFull;
             }
+            if self.large.is_some() && (self.known || self.quiet >= self.warm_up) {
+                match self.run_large(end, rows) {
+                    Some(Some(stop)) => return stop,
+                    Some(None) => continue,
+                    None => {}
+                }
+            }
             let fills = self.idle.is_none() || rows.is_sparse();
-            if fills && (self.known || self.quiet >= self.warm_up) && !self.unavailable && !self.word.input_pending() {
+            if self.large.is_none()
+                && fills
+                && (self.known || self.quiet >= self.warm_up)
+                && !self.unavailable
+                && !self.word.input_pending()
+            {
                 let left = end - self.word.clock();
                 let bounded = records && self.idle.is_none();
                 let room = if bounded { rows.room().min(left) } else { left.min(i64::MAX as u64) };
@@ -315,7 +351,7 @@ impl Engine for Compiled {
                         continue;
                     }
                     None if self.quiet >= self.warm_up && self.history.is_full() => {
-                        self.compile(rows.stride());
+                        self.compile(rows.stride(), self.period());
                         self.history.clear();
                     }
                     _ => {}

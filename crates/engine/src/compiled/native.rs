@@ -10,6 +10,7 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
 
+use super::branching;
 use super::codegen::{self, Plan};
 use super::digesting;
 use super::layout::Layout;
@@ -18,6 +19,9 @@ use crate::digest::Wanted;
 
 /// Values that an offset of 31 bits reaches.
 const FARTHEST: usize = 1 << 28;
+
+/// Bytes that code may take of the stack: about three a cell of a large machine.
+const MOST_FRAME: u32 = 1 << 20;
 
 /// The compiled loop: state, rows, clocks, memories → samples recorded, or clocks done where samples are passed over.
 type Loop = unsafe extern "C" fn(*mut u64, *mut u64, u64, *mut u64) -> u64;
@@ -50,23 +54,35 @@ impl Native {
         if values.max(memory_words) > FARTHEST {
             return None;
         }
+        if plan.branches.is_some() && cfg!(target_endian = "big") {
+            // Parts of words are stored at their first byte.
+            return None;
+        }
         let resting = plan.resting();
-        let (module, address, ()) = compiled(4, |f, entry| {
+        let words = plan.registers.len() + plan.inputs.len();
+        let effort = match plan.branches {
+            None => Effort::Loop,
+            Some(branches) if branches.lasting => Effort::Lasting,
+            Some(_) => Effort::Fast,
+        };
+        let (module, address, state_words) = compiled(4, effort, |f, entry| {
+            if plan.branches.is_some() {
+                return branching::generate(plan, &resting, f, entry);
+            }
             if passes {
                 passing::generate(plan, &resting, f, entry);
-            } else {
-                codegen::generate(plan, &resting, f, entry);
+                return Some(words + passing::words(plan));
             }
-            Some(())
+            codegen::generate(plan, &resting, f, entry);
+            Some(words + 1)
         })?;
         // SAFETY: `address` is the start of a function just finalised, whose signature is that of `Loop` in the
         // platform's C calling convention, the default of the module.
         let code = unsafe { std::mem::transmute::<*const u8, Loop>(address) };
-        let words = plan.registers.len() + plan.inputs.len();
         Some(Native {
             _memory: module,
             code,
-            state_words: words + if passes { passing::words(plan) } else { 1 },
+            state_words,
             memory_words,
             columns: plan.columns.len() + usize::from(passes),
             stride: plan.stride,
@@ -74,6 +90,11 @@ impl Native {
             phases: plan.phases.len() as u64,
             room: passes.then_some(words + passing::ROOM),
         })
+    }
+
+    /// Words of the state that the code touches.
+    pub(super) fn state_words(&self) -> usize {
+        self.state_words
     }
 
     /// Number of phases: a call needs at least as many clocks.
@@ -120,13 +141,39 @@ impl Native {
     }
 }
 
+/// What is done for good code.
+#[derive(Clone, Copy)]
+enum Effort {
+    /// All: a loop of few clocks.
+    Loop,
+    /// Registers are given with care: large code that will run for long.
+    Lasting,
+    /// As little as can be, in a time that grows as the code does.
+    Fast,
+}
+
 /// A module with one function of this many words that returns a word, its address, and what `generate` gives, which has the
 /// builder in the entry block.
 fn compiled<T>(
     words: usize,
+    effort: Effort,
     generate: impl FnOnce(&mut FunctionBuilder<'_>, Block) -> Option<T>,
 ) -> Option<(Code, *const u8, T)> {
-    let flags = [("opt_level", "speed"), ("enable_verifier", "false")];
+    let effort = match effort {
+        Effort::Loop => [("opt_level", "speed"), ("regalloc_algorithm", "backtracking")],
+        Effort::Lasting => [("opt_level", "none"), ("regalloc_algorithm", "backtracking")],
+        Effort::Fast => [("opt_level", "none"), ("regalloc_algorithm", "single_pass")],
+    };
+    let pinned = if matches!(effort[1].1, "single_pass") { "true" } else { "false" };
+    let flags = [
+        effort[0],
+        effort[1],
+        ("enable_pinned_reg", pinned),
+        // A large frame must not reach beyond the end of the stack unnoticed.
+        ("enable_probestack", "true"),
+        ("probestack_strategy", "inline"),
+        ("enable_verifier", "false"),
+    ];
     let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
     let mut module = JITModule::new(builder);
     let mut context = module.make_context();
@@ -143,6 +190,10 @@ fn compiled<T>(
     f.finalize();
     let id = module.declare_function("clocks", Linkage::Export, &context.func.signature).ok()?;
     module.define_function(id, &mut context).ok()?;
+    let frame = context.compiled_code()?.buffer.frame_layout()?.frame_to_fp_offset;
+    if frame > MOST_FRAME {
+        return None;
+    }
     module.clear_context(&mut context);
     module.finalize_definitions().ok()?;
     let address = module.get_finalized_function(id);
@@ -183,7 +234,8 @@ impl Digester {
         if writes || memory_words > FARTHEST {
             return None;
         }
-        let (memory, address, layout) = compiled(5, |f, entry| digesting::generate(plan, wanted, f, entry))?;
+        let (memory, address, layout) =
+            compiled(5, Effort::Loop, |f, entry| digesting::generate(plan, wanted, f, entry))?;
         // SAFETY: `address` is the start of a function just finalised, whose signature is that of `DigestLoop` in the
         // platform's C calling convention, the default of the module.
         let code = unsafe { std::mem::transmute::<*const u8, DigestLoop>(address) };

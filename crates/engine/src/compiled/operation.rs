@@ -1,34 +1,36 @@
-//! Native code of a single cell. One-bit nets are bytes of 0 or 1, wider ones 64-bit words with zeros above the width.
+//! Native code of a single cell. One-bit nets are bytes of 0 or 1, wider ones words of 64 bits (or of 32, where the code
+//! is [narrow](Generator::narrow) and they fit) with zeros above the width.
 
-use std::collections::HashMap;
+use std::cmp::Ordering;
 
 use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{InstBuilder, Value, types};
+use cranelift_codegen::ir::{InstBuilder, Type, Value, types};
 
-use super::codegen::{Generator, immediate, kind};
+use super::codegen::{Generator, immediate};
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Cell, Net, Netlist, Op};
 
 impl Generator<'_, '_> {
     /// The value of a combinational cell or a constant.
-    pub(super) fn operation(&mut self, netlist: &Netlist, cell: &Cell, values: &HashMap<Net, Value>) -> Value {
-        let at = |net: Net| values[&net];
+    pub(super) fn operation(&mut self, netlist: &Netlist, cell: &Cell, at: impl Fn(Net) -> Value) -> Value {
         let width_of = |net: Net| netlist.width(net);
         let width = cell.width;
+        let kind = self.kind(width);
         match cell.op {
             // Inputs and registers are given before; nothing else is without operands but a constant.
-            Op::Input | Op::Register { .. } => self.f.ins().iconst(kind(width), 0),
+            Op::Input | Op::Register { .. } => self.f.ins().iconst(kind, 0),
             Op::Read { memory, address } => {
                 let changes = !netlist.memories[memory as usize].writes.is_empty();
                 self.read(memory as usize, changes, at(address), width)
             }
-            Op::Const(value) => self.f.ins().iconst(kind(width), immediate(value)),
+            Op::Const(value) => self.f.ins().iconst(kind, immediate(value)),
             Op::Not(a) if width == Width::ONE => match netlist.cell(a).op {
-                Op::Equal(a, b) => self.f.ins().icmp(IntCC::NotEqual, at(a), at(b)),
+                // A narrow loop evaluates the operands of this cell alone.
+                Op::Equal(a, b) if !self.narrow => self.f.ins().icmp(IntCC::NotEqual, at(a), at(b)),
                 _ => self.f.ins().bxor_imm(at(a), 1),
             },
             Op::Not(a) => {
-                let ones = self.f.ins().iconst(types::I64, immediate(width.mask()));
+                let ones = self.f.ins().iconst(kind, immediate(width.mask()));
                 self.f.ins().bxor(at(a), ones)
             }
             Op::And(a, b) => self.f.ins().band(at(a), at(b)),
@@ -72,47 +74,49 @@ impl Generator<'_, '_> {
                 self.f.ins().icmp(IntCC::SignedLessThan, x, y)
             }
             Op::Slice { of, low } => {
-                let whole = self.wide(at(of));
-                let shifted = self.f.ins().ushr_imm(whole, i64::from(low));
-                let top = u32::from(low) + width.get();
-                if width == Width::ONE {
-                    let byte = self.f.ins().ireduce(types::I8, shifted);
-                    if top == width_of(of).get() { byte } else { self.f.ins().band_imm(byte, 1) }
-                } else if top == width_of(of).get() {
-                    shifted
-                } else {
-                    self.masked(shifted, width)
-                }
+                let shifted = self.f.ins().ushr_imm(at(of), i64::from(low));
+                let part = self.converted(shifted, kind);
+                let is_top = u32::from(low) + width.get() == width_of(of).get();
+                if is_top { part } else { self.masked(part, width) }
             }
             Op::Concat { high, low } => {
-                let (high, low_value) = (self.wide(at(high)), self.wide(at(low)));
+                let [high, low_value] = [high, low].map(|part| self.converted(at(part), kind));
                 let high = self.f.ins().ishl_imm(high, i64::from(width_of(low).get()));
                 self.f.ins().bor(high, low_value)
             }
-            Op::ZeroExtend(a) if width == Width::ONE => at(a),
-            Op::ZeroExtend(a) => self.wide(at(a)),
+            Op::ZeroExtend(a) => self.converted(at(a), kind),
             Op::SignExtend(a) if width == Width::ONE => at(a),
             Op::SignExtend(a) => {
-                let signed = self.signed(at(a), width_of(a));
+                let value = self.converted(at(a), kind);
+                let signed = self.signed(value, width_of(a));
                 self.masked(signed, width)
             }
         }
     }
 
-    fn masked(&mut self, value: Value, width: Width) -> Value {
-        match width {
-            Width::ONE => self.f.ins().band_imm(value, 1),
-            Width::MAX => value,
-            _ => {
-                let mask = self.f.ins().iconst(types::I64, immediate(width.mask()));
-                self.f.ins().band(value, mask)
-            }
+    /// The low bits of a value, or zeros above it.
+    pub(super) fn converted(&mut self, value: Value, kind: Type) -> Value {
+        let from = self.f.func.dfg.value_type(value);
+        match from.bits().cmp(&kind.bits()) {
+            Ordering::Less => self.f.ins().uextend(kind, value),
+            Ordering::Equal => value,
+            Ordering::Greater => self.f.ins().ireduce(kind, value),
         }
+    }
+
+    fn masked(&mut self, value: Value, width: Width) -> Value {
+        let kind = self.f.func.dfg.value_type(value);
+        if width.get() == kind.bits() {
+            return value;
+        }
+        let mask = self.f.ins().iconst(kind, immediate(width.mask()));
+        self.f.ins().band(value, mask)
     }
 
     /// Quotient or remainder of words. Native code takes no divisor of 0.
     fn divide(&mut self, op: Op, a: Value, b: Value) -> Value {
-        let [zero, one] = [0, 1].map(|number| self.f.ins().iconst(types::I64, number));
+        let kind = self.f.func.dfg.value_type(a);
+        let [zero, one] = [0, 1].map(|number| self.f.ins().iconst(kind, number));
         let none = self.f.ins().icmp_imm(IntCC::Equal, b, 0);
         let divisor = self.f.ins().select(none, one, b);
         if matches!(op, Op::Rem(..)) {
@@ -123,14 +127,15 @@ impl Generator<'_, '_> {
         self.f.ins().select(none, zero, quotient)
     }
 
-    /// A shift by an amount of any width. Native code takes an amount modulo 64.
+    /// A shift by an amount of any width. Native code takes an amount modulo that of the word.
     fn shift(&mut self, op: Op, a: Value, by: Value, width: Width) -> Value {
         let by = self.wide(by);
-        let zero = self.f.ins().iconst(kind(width), 0);
+        let kind = self.kind(width);
+        let zero = self.f.ins().iconst(kind, 0);
         match op {
             Op::ShiftArithmetic(..) if width == Width::ONE => a,
             Op::ShiftArithmetic(..) => {
-                let all = self.f.ins().iconst(types::I64, 63);
+                let all = self.f.ins().iconst(types::I64, i64::from(kind.bits()) - 1);
                 let by = self.f.ins().umin(by, all);
                 let signed = self.signed(a, width);
                 let shifted = self.f.ins().sshr(signed, by);
@@ -151,18 +156,16 @@ impl Generator<'_, '_> {
     }
 
     fn carry(&mut self, a: Value, b: Value, width: Width) -> Value {
-        match width {
-            Width::ONE => self.f.ins().band(a, b),
-            Width::MAX => {
-                let sum = self.f.ins().iadd(a, b);
-                self.f.ins().icmp(IntCC::UnsignedLessThan, sum, a)
-            }
-            _ => {
-                let sum = self.f.ins().iadd(a, b);
-                let carry = self.f.ins().ushr_imm(sum, i64::from(width.get()));
-                self.f.ins().ireduce(types::I8, carry)
-            }
+        let kind = self.f.func.dfg.value_type(a);
+        if width == Width::ONE {
+            return self.f.ins().band(a, b);
         }
+        let sum = self.f.ins().iadd(a, b);
+        if width.get() == kind.bits() {
+            return self.f.ins().icmp(IntCC::UnsignedLessThan, sum, a);
+        }
+        let carry = self.f.ins().ushr_imm(sum, i64::from(width.get()));
+        self.f.ins().ireduce(types::I8, carry)
     }
 
     /// The sign bit of `x & y`, as a byte.
@@ -176,14 +179,18 @@ impl Generator<'_, '_> {
         self.f.ins().band_imm(byte, 1)
     }
 
-    /// The number in two's complement of 64 bits.
+    /// The number in two's complement of all bits of a word; of a bit, of 64.
     fn signed(&mut self, value: Value, width: Width) -> Value {
-        let value = self.wide(value);
-        let unused = 64 - i64::from(width.get());
+        let value = if width == Width::ONE && !self.is_word(value) { self.wide(value) } else { value };
+        let unused = i64::from(self.f.func.dfg.value_type(value).bits()) - i64::from(width.get());
         if unused == 0 {
             return value;
         }
         let top = self.f.ins().ishl_imm(value, unused);
         self.f.ins().sshr_imm(top, unused)
+    }
+
+    fn is_word(&self, value: Value) -> bool {
+        self.f.func.dfg.value_type(value) != types::I8
     }
 }

@@ -10,6 +10,8 @@ use stepwave_netlist::passes::{Simplified, simplify};
 const FEW_BITS: u32 = 4;
 /// Longest period considered.
 const LONGEST_PERIOD: usize = 8;
+/// Inputs that are folded in at most: each takes a pass over the netlist, and its other value another loop.
+const MOST_INPUTS: usize = 16;
 
 /// Values that registers of few bits had in recent clocks.
 pub(super) struct History {
@@ -34,6 +36,11 @@ impl History {
             samples: Vec::new(),
             window,
         }
+    }
+
+    /// Of no register.
+    pub(super) fn none() -> History {
+        History { registers: Vec::new(), samples: Vec::new(), window: 0 }
     }
 
     pub(super) fn window(&self) -> u64 {
@@ -122,7 +129,9 @@ impl Specialised {
         let mut fixed: HashMap<Net, u64> = HashMap::new();
         let mut entry = simplify(netlist, &fixed);
         // The input with most readers first: `load` makes all others idle.
-        while let Some(input) = busiest_input(&entry, inputs, &roots, netlist, &fixed) {
+        while fixed.len() < MOST_INPUTS
+            && let Some(input) = busiest_input(&entry, inputs, &roots, netlist, &fixed)
+        {
             fixed.insert(input, value(input));
             entry = simplify(netlist, &fixed);
         }

@@ -1,5 +1,6 @@
 //! Algebraic identities: a cell that is one of its operands, a constant, or a simpler operator.
 
+use super::concat;
 use super::share::Builder;
 use crate::bits::Width;
 use crate::cells::{Net, Op};
@@ -95,7 +96,7 @@ pub(super) fn rewrite(builder: &mut Builder, op: Op, width: Width) -> Option<Rew
         },
         Op::Mux { select, high, low } => mux(builder, select, high, low, width),
         Op::Slice { of, low } => slice(builder, of, low, width),
-        Op::Concat { high, low } => (known(builder, high) == Some(0)).then_some(As(Op::ZeroExtend(low))),
+        Op::Concat { high, low } => concat::rewrite(builder, high, low),
         Op::ZeroExtend(a) | Op::SignExtend(a) if builder.width(a) == width => Some(Same(a)),
         Op::ZeroExtend(a) => match builder.op(a) {
             Op::ZeroExtend(inner) => Some(As(Op::ZeroExtend(inner))),

@@ -4,6 +4,7 @@
 //! `constant` computes it if its operands are known, `identity` replaces it by an operand or a simpler operator,
 //! `share` finds an equal cell that exists already.
 
+mod concat;
 pub mod constant;
 mod identity;
 mod share;
