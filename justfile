@@ -26,7 +26,7 @@ bench *SECTIONS:
 
 # Record new golden cases of waves/cases.toml
 record *CASES:
-    cargo run --release -- golden record waves {{CASES}}
+    cargo run -- golden record waves {{CASES}}
 
 # The documentation of all crates
 doc:

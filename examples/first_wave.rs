@@ -1,7 +1,7 @@
 //! The first wave: a DDA line to (8, 6) in four bits, with its step table, its report and a wave for GTKWave.
 //!
 //! ```sh
-//! cargo run --release --example first_wave && gtkwave line.gtkw
+//! cargo run --example first_wave && gtkwave line.gtkw
 //! ```
 
 #![allow(clippy::print_stdout, reason = "an example prints")]

@@ -1,7 +1,7 @@
 //! A sweep: which width and which beat does a point-by-point line need, over every line to a grid of end points.
 //!
 //! ```sh
-//! cargo run --release --example sweep
+//! cargo run --example sweep
 //! ```
 
 #![allow(clippy::print_stdout, reason = "an example prints")]

@@ -84,6 +84,7 @@ invalid_by!(
     crate::study::proof::ProofError,
     crate::study::proof::SolverError,
     crate::testbench::ObserverError,
+    crate::testbench::SignalError,
     crate::trace::diverge::CompareError,
     crate::trace::merge::MergeError,
     crate::trace::probe::PatternError,

@@ -34,6 +34,7 @@ pub use stepwave_models as models;
 pub use stepwave_nc as nc;
 pub use stepwave_netlist as netlist;
 pub use stepwave_prove as prove;
+pub use stepwave_testbench as testbench;
 pub use stepwave_trace as trace;
 
 #[cfg(feature = "cli")]
@@ -56,7 +57,6 @@ mod simulation;
 #[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]
 mod stop;
 pub mod study;
-pub mod testbench;
 #[cfg_attr(not(feature = "cli"), allow(dead_code, reason = "commands use the rest"))]
 mod waves;
 

@@ -355,7 +355,7 @@ pub(crate) fn runs(probe: &Probe, columns: &Columns, running: &Running) -> bool 
 fn flag_column(shown: Shown<'_>, name: &str) -> Result<usize, Error> {
     let refuse = |why: String| Error::Invalid(format!("--trace-on: {why}"));
     let netlist = shown.design.netlist();
-    let named = net_named(netlist, name).map_err(refuse)?;
+    let named = net_named(netlist, name).map_err(|error| refuse(error.to_string()))?;
     let bits = netlist.bits(named.nets());
     if bits != 1 {
         return Err(refuse(format!("{name} has {bits} bits, but a trigger is 1 bit wide")));

@@ -157,7 +157,7 @@ fn word<'n>(netlist: &'n Netlist, name: &str) -> Result<&'n NamedNet, String> {
     let of_top = format!("{}.{name}", netlist.scopes[0].name);
     let found = netlist.names.iter().find(|named| named.name == name && named.scope == ScopeId::TOP);
     let found = found.or_else(|| netlist.names.iter().find(|named| netlist.path(named) == of_top));
-    found.map_or_else(|| net_named(netlist, name), Ok)
+    found.map_or_else(|| net_named(netlist, name).map_err(|error| error.to_string()), Ok)
 }
 
 /// The same of up to 64 bits.

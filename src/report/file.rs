@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 
 use super::plot::Plot;
-use super::program::Units;
+use super::program::{Units, move_json};
 use super::{OfCurve, Report};
 use crate::engine::Wanted;
 use crate::testbench::{BlockReport, Observer, ObserverError, Step, Testbench};
@@ -73,7 +73,7 @@ impl<W: Write> Observer for JsonFile<W> {
     fn block_ended(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
         let comma = if self.moves == 0 { "" } else { "," };
         self.moves += 1;
-        write!(self.out, "{comma}\n    {}", block.json(self.units))?;
+        write!(self.out, "{comma}\n    {}", move_json(block, self.units))?;
         Ok(())
     }
 }

@@ -190,39 +190,37 @@ impl Units {
     }
 }
 
-impl BlockReport {
-    /// The move in the JSON report.
-    pub(super) fn json(&self, units: Units) -> Value {
-        let clock_hz = units.clock_hz;
-        json!({
-            "line": self.of.place.line,
-            "n": self.of.place.number,
-            "kind": self.kind(),
-            "begun": self.begun,
-            "clocks": self.clocks,
-            "seconds": self.clocks as f64 / clock_hz,
-            "steps": self.steps,
-            "pulses": of_axes(self.pulses),
-            "end_point": { "wanted": self.wanted, "reached": self.reached, "exact": self.end_exact() },
-            "length": self.length,
-            "compensation": match self.of.side {
-                Side::On => json!(null),
-                Side::Left(radius) => json!({ "side": "left", "radius": radius }),
-                Side::Right(radius) => json!({ "side": "right", "radius": radius }),
-            },
-            "path_error": { "greatest": self.error, "bound": self.promise.map(Promise::bound), "within_bound": self.within_bound() },
-            "compensated_contour_error": self.off_compensated,
-            "compensated_contour_bound": self.contour_bound,
-            "programmed_contour_error": self.off_programmed,
-            "feed": {
-                "commanded_mm_per_min": self.commanded.map(|speed| units.feed(speed)),
-                "reached_mm_per_min": self.reached_feed(clock_hz).map(|speed| units.feed(speed)),
-                "source_hz": self.source_hz,
-                "limited": self.limited,
-                "ripple": self.ripple.value(),
-            },
-        })
-    }
+/// A move in the JSON report.
+pub(super) fn move_json(block: &BlockReport, units: Units) -> Value {
+    let clock_hz = units.clock_hz;
+    json!({
+        "line": block.of.place.line,
+        "n": block.of.place.number,
+        "kind": block.kind(),
+        "begun": block.begun,
+        "clocks": block.clocks,
+        "seconds": block.clocks as f64 / clock_hz,
+        "steps": block.steps,
+        "pulses": of_axes(block.pulses),
+        "end_point": { "wanted": block.wanted, "reached": block.reached, "exact": block.end_exact() },
+        "length": block.length,
+        "compensation": match block.of.side {
+            Side::On => json!(null),
+            Side::Left(radius) => json!({ "side": "left", "radius": radius }),
+            Side::Right(radius) => json!({ "side": "right", "radius": radius }),
+        },
+        "path_error": { "greatest": block.error, "bound": block.promise.map(Promise::bound), "within_bound": block.within_bound() },
+        "compensated_contour_error": block.off_compensated,
+        "compensated_contour_bound": block.contour_bound,
+        "programmed_contour_error": block.off_programmed,
+        "feed": {
+            "commanded_mm_per_min": block.commanded.map(|speed| units.feed(speed)),
+            "reached_mm_per_min": block.reached_feed(clock_hz).map(|speed| units.feed(speed)),
+            "source_hz": block.source_hz,
+            "limited": block.limited,
+            "ripple": block.ripple.value(),
+        },
+    })
 }
 
 /// The table of a program for people, kept up to 64 moves.

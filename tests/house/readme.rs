@@ -40,8 +40,8 @@ fn commands_of_the_documents_print_what_is_shown() {
         if language != "sh" {
             continue;
         }
-        // `cargo run --release -- run …` and `stepwave run …` are the same program.
-        let words = command.trim().strip_prefix("cargo run --release -- ").or(command.strip_prefix("stepwave "));
+        // `cargo run -- run …` and `stepwave run …` are the same program.
+        let words = command.trim().strip_prefix("cargo run -- ").or(command.strip_prefix("stepwave "));
         let Some(arguments) = words.filter(|words| words.starts_with("run ") || words.starts_with("program ")) else {
             continue;
         };

@@ -32,7 +32,7 @@ fn trace_reads_positions_and_pulses_in_two_s_complement() {
 #[test]
 fn trace_refuses_what_it_cannot_show_with_the_reason() {
     let trace = traced([8, 6], &[]);
-    let said = |error: stepwave::Error| error.to_string();
+    let said = |error: stepwave::testbench::SignalError| error.to_string();
     assert!(
         said(trace.i64("jrxx").unwrap_err())
             .contains("there is no signal 'jrxx' in this netlist (did you mean 'jrx'?)")

@@ -133,7 +133,7 @@ impl<'a> Design<'a> {
 
     /// The output of a register with an asynchronous control.
     pub(crate) fn output(&mut self, node: &Node<'_>) -> Word {
-        debug_assert_eq!(node.part, Part::Output);
+        assert_eq!(node.part, Part::Output);
         match self.states.get(node.name).cloned() {
             Some(state) => self.controlled(node.cell, &state),
             None => self.word(node.cell.pin("D")),

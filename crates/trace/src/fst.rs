@@ -47,6 +47,11 @@ pub struct FstHeader<'a> {
 /// Takes samples, block by block.
 pub struct FstBody<W: Write + Seek> {
     out: W,
+    sections: Sections,
+}
+
+/// The sections of the file, which are the same whatever they are written to: compiled once, with this crate.
+struct Sections {
     clk: bool,
     /// The changes of every signal; those of the clock first, if it is dumped.
     chains: Vec<Chain>,
@@ -59,7 +64,7 @@ pub struct FstBody<W: Write + Seek> {
     /// The values with which the section begins, a digit a byte, and its first time.
     frame: Vec<u8>,
     begin: u64,
-    sections: u64,
+    count: u64,
     /// Bytes after which a section ends.
     limit: usize,
     ticks: u64,
@@ -76,8 +81,7 @@ impl FstHeader<'_> {
         let declared = Declared::new(self);
         out.write_all(&declared.blocks(self.time.exponent()))?;
         let Declared { widths, narrow, wide, .. } = declared;
-        Ok(FstBody {
-            out,
+        let sections = Sections {
             clk: self.clk,
             press: Press::new((WAITING / widths.len().max(1)).min(PIECE)),
             // No value is known without a sample.
@@ -88,11 +92,12 @@ impl FstHeader<'_> {
             wide: Wide::new(wide),
             times: Times::default(),
             begin: 0,
-            sections: 0,
+            count: 0,
             limit: SECTION,
             ticks: self.time.ticks(),
             written: None,
-        })
+        };
+        Ok(FstBody { out, sections })
     }
 }
 
@@ -102,9 +107,36 @@ impl<W: Write + Seek> FstBody<W> {
     ///
     /// # Errors
     /// The output cannot be written.
-    pub fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
+    pub fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
+        if self.sections.rows(rows, range) {
+            self.out.write_all(&self.sections.section())?;
+        }
+        Ok(())
+    }
+
+    /// Samples up to this clock, after the last row, are as that row.
+    pub fn rest(&mut self, clock: u64) {
+        self.sections.written = self.sections.written.map(|(first, _)| (first, clock));
+    }
+
+    /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn finish(mut self) -> io::Result<W> {
+        let (last, times) = self.sections.end();
+        self.out.write_all(&last)?;
+        header::finish(&mut self.out, times, self.sections.count)?;
+        self.out.flush()?;
+        Ok(self.out)
+    }
+}
+
+impl Sections {
+    /// Takes rows; true where a section is full.
+    fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> bool {
         if range.is_empty() {
-            return Ok(());
+            return false;
         }
         let (first, last) = (rows.clock(range.start), rows.clock(range.end - 1));
         if self.written.is_none() {
@@ -117,12 +149,7 @@ impl<W: Write + Seek> FstBody<W> {
         }
         self.written = self.written.map(|(first, _)| (first, last));
         let changes: usize = self.chains.iter().map(Chain::length).sum();
-        if changes + self.times.length() >= self.limit { self.section() } else { Ok(()) }
-    }
-
-    /// Samples up to this clock, after the last row, are as that row.
-    pub fn rest(&mut self, clock: u64) {
-        self.written = self.written.map(|(first, _)| (first, clock));
+        changes + self.times.length() >= self.limit
     }
 
     /// The sample with which the file begins.
@@ -210,29 +237,22 @@ impl<W: Write + Seek> FstBody<W> {
         }
     }
 
-    /// Ends a section; the next one begins at its last time.
-    fn section(&mut self) -> io::Result<()> {
+    /// Ends a section; the next one begins at its last time. Its bytes.
+    fn section(&mut self) -> Vec<u8> {
         let Self { begin, frame, times, chains, press, .. } = self;
         let end = times.last();
         let block = section::block(*begin, frame, times, chains, press);
-        self.out.write_all(&block)?;
-        self.sections += 1;
+        self.count += 1;
         self.begin = end;
         self.set_frame();
-        Ok(())
+        block
     }
 
-    /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    pub fn finish(mut self) -> io::Result<W> {
+    /// The last section, and the first and last time of the wave.
+    fn end(&mut self) -> (Vec<u8>, [u64; 2]) {
         let (first, last) = self.written.unwrap_or_default();
         let end = (last + 1) * self.ticks;
         self.times.push(end);
-        self.section()?;
-        header::finish(&mut self.out, [first * self.ticks, end], self.sections)?;
-        self.out.flush()?;
-        Ok(self.out)
+        (self.section(), [first * self.ticks, end])
     }
 }

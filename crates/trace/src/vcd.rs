@@ -55,6 +55,11 @@ struct Declared {
 /// Takes samples, one after another.
 pub struct VcdBody<W: Write> {
     out: W,
+    text: Text,
+}
+
+/// The text of samples, which is the same whatever it is written to: compiled once, with this crate.
+struct Text {
     /// Room for `BUFFER` bytes and the longest row after them; the first `filled` bytes wait to be written.
     buffer: Vec<u8>,
     filled: usize,
@@ -103,8 +108,7 @@ impl VcdHeader<'_> {
         // A `b`, the digits, and a tail.
         let longest = longest + wide.words().map(|(_, width)| width + WINDOW).sum::<usize>();
         let ticks = self.time.ticks();
-        Ok(VcdBody {
-            out,
+        let text = Text {
             // Two stamps and `$dumpvars` fit into a window too.
             buffer: vec![0; BUFFER + longest + 3 * WINDOW],
             filled: 0,
@@ -116,7 +120,8 @@ impl VcdHeader<'_> {
             fall: Stamps::new(ticks),
             ticks,
             last_clock: None,
-        })
+        };
+        Ok(VcdBody { out, text })
     }
 
     /// Declares the clock and every probe in its scope.
@@ -174,7 +179,28 @@ impl<W: Write> VcdBody<W> {
     ///
     /// # Errors
     /// The output cannot be written.
-    pub fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
+    pub fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
+        self.text.rows(rows, range, &mut self.out)
+    }
+
+    /// Samples up to this clock, after the last row, are as that row.
+    pub fn rest(&mut self, clock: u64) {
+        self.text.last_clock = Some(clock);
+    }
+
+    /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
+    ///
+    /// # Errors
+    /// The output cannot be written.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.out.write_all(self.text.end())?;
+        self.out.flush()?;
+        Ok(self.out)
+    }
+}
+
+impl Text {
+    fn rows(&mut self, rows: &Rows, mut range: Range<usize>, out: &mut dyn Write) -> io::Result<()> {
         if range.is_empty() {
             return Ok(());
         }
@@ -194,16 +220,11 @@ impl<W: Write> VcdBody<W> {
                     self.last_clock = Some(clock);
                 }
                 self.row(rows, row, row - start);
-                self.spill()?;
+                self.spill(out)?;
             }
         }
         self.last_clock = Some(last);
         Ok(())
-    }
-
-    /// Samples up to this clock, after the last row, are as that row.
-    pub fn rest(&mut self, clock: u64) {
-        self.last_clock = Some(clock);
     }
 
     /// Sets the stamps to a clock, where they are not there yet; true before the first sample.
@@ -284,25 +305,20 @@ impl<W: Write> VcdBody<W> {
 
     /// Writes the buffer if it is full.
     #[inline]
-    fn spill(&mut self) -> io::Result<()> {
+    fn spill(&mut self, out: &mut dyn Write) -> io::Result<()> {
         if self.filled >= BUFFER {
-            self.out.write_all(&self.buffer[..self.filled])?;
+            out.write_all(&self.buffer[..self.filled])?;
             self.filled = 0;
         }
         Ok(())
     }
 
-    /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    pub fn finish(mut self) -> io::Result<W> {
+    /// What waits to be written, with a time at the end that makes the last cycle visible.
+    fn end(&mut self) -> &[u8] {
         let end = self.last_clock.map_or(0, |clock| clock + 1);
         self.rise.set(end * self.ticks);
         self.filled += self.rise.put(Tail::new("\n"), &mut self.buffer[self.filled..]);
-        self.out.write_all(&self.buffer[..self.filled])?;
-        self.out.flush()?;
-        Ok(self.out)
+        &self.buffer[..self.filled]
     }
 }
 

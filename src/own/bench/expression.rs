@@ -16,7 +16,8 @@ pub(super) enum Expression {
     /// Index into the names that were known.
     Variable(usize),
     Unary(Unary, Box<Expression>),
-    Binary(Binary, Box<Expression>, Box<Expression>),
+    /// A number, and operators of one precedence with what follows them, from left to right.
+    Chain(Box<Expression>, Vec<(Binary, Expression)>),
     /// Condition, and what there is if it is not 0, or else.
     Choice(Box<[Expression; 3]>),
     Call(Function, Vec<Expression>),
@@ -135,11 +136,12 @@ impl<'a> Parser<'a> {
 
     fn binary(&mut self, level: usize) -> Result<Expression, String> {
         let Some(operators) = LEVELS.get(level) else { return self.unary() };
-        let mut left = self.binary(level + 1)?;
+        let first = self.binary(level + 1)?;
+        let mut others = Vec::new();
         while let Some(operator) = self.operator(operators) {
-            left = Expression::Binary(operator, Box::new(left), Box::new(self.binary(level + 1)?));
+            others.push((operator, self.binary(level + 1)?));
         }
-        Ok(left)
+        Ok(if others.is_empty() { first } else { Expression::Chain(Box::new(first), others) })
     }
 
     fn unary(&mut self) -> Result<Expression, String> {
@@ -238,7 +240,9 @@ impl Expression {
                     Unary::Not => i128::from(value == 0),
                 }
             }
-            Expression::Binary(operator, left, right) => binary(*operator, left, right, values)?,
+            Expression::Chain(first, others) => others
+                .iter()
+                .try_fold(first.value(values)?, |left, (operator, right)| binary(*operator, left, right, values))?,
             Expression::Choice(parts) => {
                 let [condition, yes, no] = &**parts;
                 if condition.value(values)? != 0 { yes.value(values)? } else { no.value(values)? }
@@ -256,7 +260,9 @@ impl Expression {
             Expression::Number(_) => false,
             Expression::Variable(own) => *own == index,
             Expression::Unary(_, operand) => operand.reads(index),
-            Expression::Binary(_, left, right) => left.reads(index) || right.reads(index),
+            Expression::Chain(first, others) => {
+                first.reads(index) || others.iter().any(|(_, operand)| operand.reads(index))
+            }
             Expression::Choice(parts) => parts.iter().any(|part| part.reads(index)),
             Expression::Call(_, operands) => operands.iter().any(|operand| operand.reads(index)),
         }
@@ -278,8 +284,7 @@ fn call(function: Function, numbers: &[i128]) -> Result<i128, String> {
     })
 }
 
-fn binary(operator: Binary, left: &Expression, right: &Expression, values: &[i128]) -> Result<i128, String> {
-    let a = left.value(values)?;
+fn binary(operator: Binary, a: i128, right: &Expression, values: &[i128]) -> Result<i128, String> {
     // What C does not compute, and what need not be possible.
     match operator {
         Binary::LogicalOr if a != 0 => return Ok(1),

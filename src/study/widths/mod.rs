@@ -293,7 +293,7 @@ pub(super) fn least_seen(model: &'static Model, set: &Geometries) -> Result<Vec<
 /// are enough.
 fn mark_proved(model: &'static Model, claims: &Claims, choices: &Options, k: u32, registers: &mut [RegisterWidth]) {
     use super::proof::{Block, CountMethod, blocks};
-    debug_assert_eq!(model.claims.map(|own| own.geometries), Some(claims.geometries));
+    assert_eq!(model.claims.map(|own| own.geometries), Some(claims.geometries));
     let less = |register: &RegisterWidth| register.given.saturating_sub(register.needed);
     let narrower: Narrower =
         registers.iter().filter(|register| less(register) > 0).map(|r| (r.name.clone(), less(r))).collect();

@@ -164,6 +164,7 @@ fn cell() -> impl Strategy<Value = CellRecipe> {
 }
 
 /// The same with many multiplexers and gates, so that what most cells come to is not needed in every clock.
+#[allow(dead_code, reason = "the example that writes random netlists takes them as they come")]
 pub(crate) fn choosing(mut recipe: Recipe) -> Recipe {
     for cell in &mut recipe.cells {
         cell.operator = match cell.parameter % 5 {

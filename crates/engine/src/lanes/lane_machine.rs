@@ -42,41 +42,66 @@ impl<T: Lane> LaneMachine<T> {
         self.rows[slot].set(lane, word);
     }
 
-    /// The operations, in the first `groups` groups.
-    pub(super) fn settle(&mut self, operations: &[Operation], groups: usize, memories: View<'_, T>) {
-        dispatch!(self.level, _simd => settle(&mut self.rows, &mut self.spare, operations, groups, memories));
-    }
-
     /// Every register takes its next value.
     #[inline(always)]
     pub(super) fn edge(&mut self, code: &Code) {
         edge(&mut self.rows, code);
     }
+}
+
+/// The loops over the lanes of a machine. They belong to a word, so that they are compiled once and with this crate,
+/// and not with each that calls `LaneProgram::run`.
+pub(super) trait Loops: Lane {
+    /// The operations, in the first `groups` groups.
+    fn settle(machine: &mut LaneMachine<Self>, operations: &[Operation], groups: usize, memories: View<'_, Self>);
 
     /// Settles sample after sample, with an edge between them, until one of the first `lanes` lanes is not 0 in the row
     /// `stop`, or `samples` of them are settled. Gives their number, at least 1.
-    pub(super) fn run(
-        &mut self,
+    fn run(
+        machine: &mut LaneMachine<Self>,
         code: &Code,
         lanes: usize,
         stop: Slot,
         samples: u64,
-        memories: &mut LaneMemories<T>,
-    ) -> u64 {
-        let groups = lanes.div_ceil(GROUP);
-        dispatch!(self.level, _simd => {
-            let mut done = 1;
-            settle(&mut self.rows, &mut self.spare, &code.operations, groups, memories.all());
-            while done < samples && !any(&self.rows[stop], lanes) {
-                memories.edge(code, &self.rows, lanes, None);
-                edge(&mut self.rows, code);
-                settle(&mut self.rows, &mut self.spare, &code.operations, groups, memories.all());
-                done += 1;
-            }
-            done
-        })
-    }
+        memories: &mut LaneMemories<Self>,
+    ) -> u64;
 }
+
+macro_rules! loops {
+    ($word:ty) => {
+        impl Loops for $word {
+            fn settle(on: &mut LaneMachine<Self>, operations: &[Operation], groups: usize, memories: View<'_, Self>) {
+                dispatch!(on.level, _simd => settle(&mut on.rows, &mut on.spare, operations, groups, memories));
+            }
+
+            fn run(
+                on: &mut LaneMachine<Self>,
+                code: &Code,
+                lanes: usize,
+                stop: Slot,
+                samples: u64,
+                memories: &mut LaneMemories<Self>,
+            ) -> u64 {
+                let groups = lanes.div_ceil(GROUP);
+                dispatch!(on.level, _simd => {
+                    let mut done = 0;
+                    loop {
+                        settle(&mut on.rows, &mut on.spare, &code.operations, groups, memories.all());
+                        done += 1;
+                        if done >= samples || any(&on.rows[stop], lanes) {
+                            break done;
+                        }
+                        memories.edge(code, &on.rows, lanes, None);
+                        edge(&mut on.rows, code);
+                    }
+                })
+            }
+        }
+    };
+}
+
+loops!(u32);
+loops!(u64);
 
 #[inline(always)]
 fn edge<T: Lane>(rows: &mut [Box<LaneRow<T>>], code: &Code) {

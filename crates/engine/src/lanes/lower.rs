@@ -209,7 +209,7 @@ impl<'n> Lowering<'n> {
                 let high_part = if single(high) { 1 << 63 } else { u64::MAX };
                 let (right, low_part) =
                     if single(low) { (0, 1 << (63 - high_width.get())) } else { (high_width.get(), u64::MAX) };
-                debug_assert_eq!(high_width.get() + low_width.get(), width.get());
+                assert_eq!(high_width.get() + low_width.get(), width.get());
                 LaneOp::Concat(v(high), v(low), right, high_part, low_part)
             }
             Op::ZeroExtend(a) | Op::SignExtend(a) if of(a) == width => return v(a),

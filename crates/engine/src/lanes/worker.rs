@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use super::LaneProgram;
 use super::code::{Code, RegisterRow, Slot};
 use super::feed::Feed;
-use super::lane::{GROUP, LANES, Lane};
-use super::lane_machine::LaneMachine;
+use super::lane::{GROUP, LANES};
+use super::lane_machine::{LaneMachine, Loops};
 use super::lane_memory::LaneMemories;
 use super::watch::{Job, LaneEnd, LaneStop, Observe};
 use stepwave_netlist::bits::Width;
@@ -50,7 +50,7 @@ pub(super) struct Worker<'p, T> {
     ends: Vec<(u64, LaneEnd)>,
 }
 
-impl<'p, T: Lane> Worker<'p, T> {
+impl<'p, T: Loops> Worker<'p, T> {
     pub(super) fn new(program: &'p LaneProgram, most: usize) -> Worker<'p, T> {
         Worker {
             program,
@@ -127,7 +127,8 @@ impl<'p, T: Lane> Worker<'p, T> {
     fn run(&mut self) {
         let stop = self.program.running.outputs[0];
         let most = self.next_due.saturating_sub(self.tick).max(1);
-        self.tick += self.lanes.run(&self.program.running, self.busy.len(), stop, most, &mut self.memories);
+        let (running, lanes) = (&self.program.running, self.busy.len());
+        self.tick += T::run(&mut self.lanes, running, lanes, stop, most, &mut self.memories);
         let stops = self.lanes.row(stop);
         let seen = |lane: usize, busy: &Busy| stops.get(lane) != T::default() || busy.due <= self.tick;
         let seen: Vec<usize> =
@@ -164,7 +165,7 @@ impl<'p, T: Lane> Worker<'p, T> {
             self.set_inputs(place, lane);
         }
         let copies = self.memories.copies(lanes);
-        self.loader.settle(&whole.operations[..whole.observers], 1, self.memories.of(&copies));
+        T::settle(&mut self.loader, &whole.operations[..whole.observers], 1, self.memories.of(&copies));
         let verdicts: Vec<Verdict> = lanes.iter().enumerate().map(|(place, &lane)| self.verdict(place, lane)).collect();
         for (place, (&lane, verdict)) in lanes.iter().zip(verdicts).enumerate() {
             match verdict {
@@ -271,7 +272,7 @@ impl<'p, T: Lane> Worker<'p, T> {
             self.set_inputs(place, lane);
         }
         let copies = self.memories.copies(lanes);
-        self.loader.settle(&whole.operations, 1, self.memories.of(&copies));
+        T::settle(&mut self.loader, &whole.operations, 1, self.memories.of(&copies));
         self.memories.edge(whole, self.loader.rows(), lanes.len(), Some(&copies));
         self.loader.edge(whole);
         for (place, &lane) in lanes.iter().enumerate() {

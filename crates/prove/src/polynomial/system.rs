@@ -264,7 +264,7 @@ fn registers(
 
 /// Least and greatest number in a register.
 pub(super) fn range(family: &Family, register: Net) -> (Poly, Poly) {
-    debug_assert!(matches!(family.netlist().cell(register).op, Op::Register { .. }));
+    assert!(matches!(family.netlist().cell(register).op, Op::Register { .. }));
     let width = family.width(register);
     if is_signed(family, register) {
         let half = family.power(Bits { fixed: width.fixed - 1, ..width });

@@ -114,7 +114,7 @@ impl Case {
         let ticks = time.ticks();
         let header = FstHeader { probes: &probes, time, clk: self.clk };
         let mut body = header.write(Cursor::new(Vec::new())).expect("memory");
-        body.limit = self.section;
+        body.sections.limit = self.section;
         let columns = self.signals.iter().map(|&(width, _)| Case::parts(width)).sum();
         let mut values: Vec<Vec<u64>> = self.signals.iter().map(|&(width, _)| vec![0; Case::parts(width)]).collect();
         let mut noise = Noise(self.seed);

@@ -94,7 +94,7 @@ impl Changes {
 
     /// The kind is another one after all; nothing may be stored yet.
     pub(super) fn becomes(&mut self, kind: ValueKind) {
-        debug_assert!(self.times.is_empty());
+        assert!(self.times.is_empty());
         *self = Self::new(kind, self.kind().1);
     }
 

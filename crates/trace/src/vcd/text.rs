@@ -47,7 +47,7 @@ pub(super) struct Tail {
 impl Tail {
     /// A text of at most 8 bytes; the rest would be lost.
     pub(super) fn new(text: &str) -> Tail {
-        debug_assert!(text.len() <= 8, "{text}");
+        assert!(text.len() <= 8, "{text}");
         let mut bytes = [0; 8];
         for (byte, &of) in bytes.iter_mut().zip(text.as_bytes()) {
             *byte = of;

@@ -97,7 +97,7 @@ impl Testbench {
     }
 
     /// As [`driven_by_any`](Self::driven_by_any), and returns where the nets of the machine went.
-    pub(crate) fn driven_open(&self, registers: &[String]) -> Result<(Driven, Vec<Net>), ModelError> {
+    pub fn driven_open(&self, registers: &[String]) -> Result<(Driven, Vec<Net>), ModelError> {
         let port = |register: &String| match self.machine.inputs.get(register) {
             Some(port) => Ok(port.net),
             None => Err(ModelError::MissingPort(format!("{register}_in"))),

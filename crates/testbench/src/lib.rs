@@ -36,23 +36,23 @@ pub use coarse::{CoarseError, CoarseWatch};
 pub use columns::Columns;
 pub use feeder::{Feeder, Next};
 pub use lanes::{LaneOutcome, Lanes};
-pub(crate) use load::CUT_CLOCKS;
+pub use load::CUT_CLOCKS;
 pub use measure::Measured;
-pub(crate) use names::net_named;
+pub use names::{SignalError, net_named};
 pub use overflow::{OverflowEvent, OverflowTally, OverflowWatch};
 pub use path::{PathWatch, WorstError};
 pub use ranges::{RangeWatch, RegisterRange, StuckBits};
 pub use recording::{Recording, Trace};
 pub use ripple::Ripple;
 use run::Run;
-pub(crate) use running::Running;
+pub use running::Running;
 pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
 pub use steps::Step;
 use steps::StepColumns;
 pub use wave::{Taken, Trigger, WaveBody, WaveWriter, Window};
 
 /// Samples held between engine and observers.
-pub(crate) const CHUNK: usize = 256;
+pub const CHUNK: usize = 256;
 
 /// Trouble while running: what an observer could not do.
 pub type ObserverError = Box<dyn std::error::Error + Send + Sync>;
@@ -190,17 +190,17 @@ impl Outcome {
 }
 
 /// A run from a point to another one ended there. A closed curve without a pulse was not run at all.
-pub(crate) fn is_ended(from: &[i64], to: &[i64], reached: &[i64], pulses: &[u64]) -> bool {
+pub fn is_ended(from: &[i64], to: &[i64], reached: &[i64], pulses: &[u64]) -> bool {
     reached == to && (from != to || pulses.iter().any(|&count| count > 0))
 }
 
 /// A place in BLU: `(8, 6)`.
-pub(crate) fn point(place: &[i64]) -> String {
+pub fn point(place: &[i64]) -> String {
     format!("({})", place.iter().map(i64::to_string).collect::<Vec<_>>().join(", "))
 }
 
 /// The sentence about a run that did not end where it should.
-pub(crate) fn missed(wanted: &[i64], reached: &[i64]) -> String {
+pub fn missed(wanted: &[i64], reached: &[i64]) -> String {
     if reached == wanted {
         return format!("the closed curve from {} was not run: the machine gave no pulse", point(wanted));
     }
@@ -256,18 +256,18 @@ impl Testbench {
 
     /// The same machine for waves of its programs that leave out, if nobody names it, what changes at every clock: the
     /// clock itself, and what runs with the phase of the pulse source. Of hardware without a buffer nothing is left out.
-    pub(crate) fn leaving_out_phase(self) -> Testbench {
+    pub fn leaving_out_phase(self) -> Testbench {
         Testbench { running: Running::of(&self.machine, &self.columns), ..self }
     }
 
     /// What waves of its programs leave out.
-    pub(crate) fn running(&self) -> Option<&Running> {
+    pub fn running(&self) -> Option<&Running> {
         self.running.as_ref()
     }
 
     /// The same machine, whose idle samples are passed over: waves that [leave out](Self::leaving_out_phase) what
     /// changes in these are the same, and much faster.
-    pub(crate) fn passing_over(self) -> Testbench {
+    pub fn passing_over(self) -> Testbench {
         Testbench { every_sample: self.running.is_none(), ..self }
     }
 

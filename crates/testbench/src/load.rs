@@ -7,7 +7,7 @@ use super::Testbench;
 
 /// Clocks after which a run with a load word that was cut, or of hardware of which nothing is known, is aborted: such a block
 /// need not end.
-pub(crate) const CUT_CLOCKS: u64 = 1 << 27;
+pub const CUT_CLOCKS: u64 = 1 << 27;
 
 impl Testbench {
     /// Plans the hardware, builds the machine and encodes the load words, each of which must fit in its register.

@@ -74,7 +74,7 @@ pub struct BlockReport {
     /// What the method, the rounding to pulses and chords promise of that together, in BLU.
     pub contour_bound: Option<f64>,
     /// The method promises nothing of one of its blocks.
-    pub(crate) free: bool,
+    pub free: bool,
     /// Greatest distance of the tool's edge from the programmed contour, in BLU.
     pub off_programmed: Option<f64>,
     /// How evenly it went.
@@ -84,7 +84,7 @@ pub struct BlockReport {
 impl BlockReport {
     /// Before its first step.
     #[must_use]
-    pub(crate) fn new(of: ToolMove, begun: u64, from: [i64; 3]) -> BlockReport {
+    pub fn new(of: ToolMove, begun: u64, from: [i64; 3]) -> BlockReport {
         BlockReport {
             of,
             begun,

@@ -13,16 +13,16 @@ use super::{CHUNK, Observer, Testbench};
 
 /// Indices of the trains of a digest that count steps and pulses.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct StepTrains {
+pub(super) struct StepTrains {
     /// Of each axis.
-    pub(crate) pulses: Vec<usize>,
+    pub(super) pulses: Vec<usize>,
     /// Completed steps.
-    pub(crate) stepped: usize,
+    pub(super) stepped: usize,
 }
 
 impl StepTrains {
     /// Those of a machine.
-    pub(crate) fn want(bench: &Testbench, wanted: &mut Wanted) -> StepTrains {
+    pub(super) fn want(bench: &Testbench, wanted: &mut Wanted) -> StepTrains {
         let machine = bench.machine();
         StepTrains {
             pulses: machine.pulses.iter().map(|port| wanted.train(port.net)).collect(),
@@ -32,7 +32,7 @@ impl StepTrains {
 }
 
 /// How many samples of a train have their bit.
-pub(crate) fn count(train: &[u64]) -> u64 {
+pub(super) fn count(train: &[u64]) -> u64 {
     train.iter().map(|word| u64::from(word.count_ones())).sum()
 }
 

@@ -8,9 +8,9 @@ use super::Columns;
 
 /// What runs with the phase of a pulse source, in the columns of a wave.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Running {
+pub struct Running {
     /// Columns that may take another value at any clock: the phase, and sums of it.
-    pub(crate) nets: Vec<Net>,
+    pub nets: Vec<Net>,
     /// Columns of 1 bit that do: pulses of the source. All other columns depend on the phase through these alone.
     flags: Vec<Net>,
 }

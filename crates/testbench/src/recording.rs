@@ -1,11 +1,10 @@
 //! The samples of a run by name, for questions about a short run: in a test, in a notebook.
 
-use crate::Error;
-use crate::engine::Rows;
-use crate::netlist::cells::NamedNet;
-use crate::netlist::{Net, Netlist};
+use stepwave_engine::Rows;
+use stepwave_netlist::cells::NamedNet;
+use stepwave_netlist::{Net, Netlist};
 
-use super::{Observer, ObserverError, Testbench, net_named};
+use super::{Observer, ObserverError, SignalError, Testbench, net_named};
 
 /// Most values that are kept: 128 MB.
 const MOST: usize = 1 << 24;
@@ -57,9 +56,15 @@ impl Observer for Recording {
 /// The samples of a run, by signal. Sample k is the settled value of every net after clock edge k.
 ///
 /// ```
-/// # use stepwave::{Simulation, models::find, nc::{Curve, Line}};
+/// # use stepwave_engine::EngineKind;
+/// # use stepwave_models::{find, options::Options};
+/// # use stepwave_nc::{Curve, Line};
+/// # use stepwave_testbench::{Recording, Testbench};
 /// let line = Curve::Line(Line::new(vec![0, 0], vec![4, 2])?);
-/// let (_, trace) = Simulation::new(find("dda-line")?, line).run_traced()?;
+/// let bench = Testbench::of(find("dda-line")?, &Options::default(), &line)?;
+/// let mut recording = Recording::new(&bench);
+/// bench.run(EngineKind::Word, &mut [&mut recording])?;
+/// let trace = recording.into_trace();
 /// assert_eq!(trace.row("dx")?, "0001_0101_01"); // the pulses along X, a digit a clock
 /// assert_eq!(trace.i64("x")?, [0, 0, 0, 1, 1, 2, 2, 3, 3, 4]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -88,7 +93,7 @@ impl Trace {
     ///
     /// # Errors
     /// No signal or several have this name.
-    pub fn bits(&self, signal: &str) -> Result<&[u64], Error> {
+    pub fn bits(&self, signal: &str) -> Result<&[u64], SignalError> {
         Ok(self.find(signal)?.1)
     }
 
@@ -97,12 +102,12 @@ impl Trace {
     ///
     /// # Errors
     /// No signal or several have this name, or a value exceeds 64 bits.
-    pub fn i64(&self, signal: &str) -> Result<Vec<i64>, Error> {
+    pub fn i64(&self, signal: &str) -> Result<Vec<i64>, SignalError> {
         let (named, column) = self.find(signal)?;
         let (width, reading) = (self.netlist.width(named.net), named.format.reading());
         let read = |&value: &u64| {
             let number = reading.number(width, value);
-            i64::try_from(number).map_err(|_| Error::Invalid(format!("{signal} is {number}, which exceeds 64 bits")))
+            i64::try_from(number).map_err(|_| SignalError(format!("{signal} is {number}, which exceeds 64 bits")))
         };
         column.iter().map(read).collect()
     }
@@ -111,7 +116,7 @@ impl Trace {
     ///
     /// # Errors
     /// No signal or several have this name, or one of its values is another.
-    pub fn row(&self, signal: &str) -> Result<String, Error> {
+    pub fn row(&self, signal: &str) -> Result<String, SignalError> {
         let mut row = String::new();
         for (clock, value) in self.i64(signal)?.into_iter().enumerate() {
             if clock > 0 && clock % 4 == 0 {
@@ -122,7 +127,7 @@ impl Trace {
                 1 => '1',
                 -1 => '-',
                 other => {
-                    return Err(Error::Invalid(format!(
+                    return Err(SignalError(format!(
                         "{signal} is {other} at clock {clock}; a row shows 0, 1 and -1: ask for its numbers"
                     )));
                 }
@@ -131,13 +136,13 @@ impl Trace {
         Ok(row)
     }
 
-    fn find(&self, signal: &str) -> Result<(&NamedNet, &[u64]), Error> {
-        let named = net_named(&self.netlist, signal).map_err(Error::Invalid)?;
+    fn find(&self, signal: &str) -> Result<(&NamedNet, &[u64]), SignalError> {
+        let named = net_named(&self.netlist, signal)?;
         if named.is_wide() {
             let bits = self.netlist.bits(named.nets());
-            return Err(Error::Invalid(format!("{signal} has {bits} bits, which exceeds 64 bits: see it in a wave")));
+            return Err(SignalError(format!("{signal} has {bits} bits, which exceeds 64 bits: see it in a wave")));
         }
-        let unseen = || Error::Invalid(format!("{signal} is not recorded"));
+        let unseen = || SignalError(format!("{signal} is not recorded"));
         let column = self.nets.iter().position(|seen| *seen == named.net).ok_or_else(unseen)?;
         Ok((named, &self.values[column]))
     }
