@@ -164,7 +164,7 @@ pub enum Interpolates {
     Helices(Method<Helix>),
     /// The moves of a program, or one of them alone.
     Moves(Paced),
-    /// What data describe, wiring included: [`Model::hardware`] is not called.
+    /// What data describe, wiring included: [`Model::hardware`](crate::Model::hardware) is not called.
     Described(&'static dyn Described),
 }
 

@@ -61,9 +61,9 @@ impl Observer for Recording {
 /// # use stepwave_nc::{Curve, Line};
 /// # use stepwave_testbench::{Recording, Testbench};
 /// let line = Curve::Line(Line::new(vec![0, 0], vec![4, 2])?);
-/// let bench = Testbench::of(find("dda-line")?, &Options::default(), &line)?;
+/// let bench = Testbench::new(find("dda-line")?, &line, &Options::default())?;
 /// let mut recording = Recording::new(&bench);
-/// bench.run(EngineKind::Word, &mut [&mut recording])?;
+/// bench.run(EngineKind::Word, &mut [&mut recording]).expect("a recording has room");
 /// let trace = recording.into_trace();
 /// assert_eq!(trace.row("dx")?, "0001_0101_01"); // the pulses along X, a digit a clock
 /// assert_eq!(trace.i64("x")?, [0, 0, 0, 1, 1, 2, 2, 3, 3, 4]);

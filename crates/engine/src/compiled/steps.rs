@@ -273,7 +273,7 @@ impl<'a> Planner<'a> {
         }
         let muxes: Vec<Net> = members.iter().map(|&item| level.nets[item as usize]).collect();
         let Some(branches) = muxes.first().and_then(|&mux| self.regions.branches_of(mux)) else { return };
-        debug_assert!(muxes.iter().all(|&mux| self.regions.of(mux) == region));
+        assert!(muxes.iter().all(|&mux| self.regions.of(mux) == region));
         let mut flat = 0;
         let arms = [0, 1].map(|arm| {
             let values = muxes.iter().map(|&mux| match self.regions.op(mux) {
