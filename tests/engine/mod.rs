@@ -3,6 +3,7 @@
 
 #![cfg(test)]
 
+mod branches;
 mod digest;
 mod lanes;
 mod memories;

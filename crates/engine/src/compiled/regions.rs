@@ -322,8 +322,9 @@ impl<'a> Regions<'a> {
         self.of[net.index()] != NOWHERE
     }
 
-    /// The branches of a multiplexer, if it is one that is branched on.
+    /// The branches of a multiplexer, or of a gate that has become one, if it is branched on.
     pub(super) fn branches_of(&self, net: Net) -> Option<[u32; 2]> {
+        let Op::Mux { .. } = self.op(net) else { return None };
         let [select, ..] = self.choice(net)?;
         self.forks.get(&(self.of(net), select)).copied()
     }

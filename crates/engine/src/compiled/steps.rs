@@ -54,9 +54,10 @@ struct Level {
     waits: Vec<u32>,
     users: Vec<Vec<u32>>,
     ready: BinaryHeap<Reverse<u32>>,
-    /// Multiplexers that could be branched on now, by what is looked at, and how many there will be.
-    members: BTreeMap<Net, Vec<u32>>,
-    remaining: HashMap<Net, usize>,
+    /// Multiplexers that could be branched on now, by their branches, and how many there will be. Selects that differ may
+    /// come to the same net here, and have branches of their own all the same.
+    members: BTreeMap<[u32; 2], Vec<u32>>,
+    remaining: HashMap<[u32; 2], usize>,
     /// What waits for a cell of this level.
     by_value: HashMap<u32, Vec<Sink>>,
     /// What waits until a register is not read any more.
@@ -123,8 +124,8 @@ impl<'a> Planner<'a> {
             if let Some(Reverse(item)) = level.ready.pop() {
                 level.steps.push(Step::Cell(level.nets[item as usize]));
                 self.finish(&mut level, item);
-            } else if let Some(select) = best(&level) {
-                self.branch(&mut level, region, select);
+            } else if let Some(branches) = best(&level) {
+                self.branch(&mut level, branches);
             } else {
                 break;
             }
@@ -161,8 +162,8 @@ impl<'a> Planner<'a> {
             for need in needs {
                 level.users[self.place[need.index()] as usize].push(u32::try_from(item).unwrap_or(u32::MAX));
             }
-            if self.regions.branches_of(net).is_some() {
-                *level.remaining.entry(self.select(net)).or_default() += 1;
+            if let Some(branches) = self.regions.branches_of(net) {
+                *level.remaining.entry(branches).or_default() += 1;
             }
             if level.waits[item] == 0 {
                 self.wake(&mut level, u32::try_from(item).unwrap_or(u32::MAX));
@@ -191,19 +192,11 @@ impl<'a> Planner<'a> {
         found
     }
 
-    /// What a multiplexer looks at.
-    fn select(&self, mux: Net) -> Net {
-        match self.regions.op(mux) {
-            Op::Mux { select, .. } => select,
-            _ => mux,
-        }
-    }
-
     /// All that a cell waits for is done.
     fn wake(&self, level: &mut Level, item: u32) {
         let net = level.nets[item as usize];
-        if self.regions.branches_of(net).is_some() {
-            level.members.entry(self.select(net)).or_default().push(item);
+        if let Some(branches) = self.regions.branches_of(net) {
+            level.members.entry(branches).or_default().push(item);
         } else {
             level.ready.push(Reverse(item));
         }
@@ -265,15 +258,15 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// All multiplexers of a select that could be branched on.
-    fn branch(&mut self, level: &mut Level, region: u32, select: Net) {
-        let members = level.members.remove(&select).unwrap_or_default();
-        if let Some(remaining) = level.remaining.get_mut(&select) {
+    /// All multiplexers of these branches that are there.
+    fn branch(&mut self, level: &mut Level, branches: [u32; 2]) {
+        let members = level.members.remove(&branches).unwrap_or_default();
+        if let Some(remaining) = level.remaining.get_mut(&branches) {
             *remaining -= members.len();
         }
         let muxes: Vec<Net> = members.iter().map(|&item| level.nets[item as usize]).collect();
-        let Some(branches) = muxes.first().and_then(|&mux| self.regions.branches_of(mux)) else { return };
-        assert!(muxes.iter().all(|&mux| self.regions.of(mux) == region));
+        let select = muxes.first().map(|&mux| self.regions.op(mux));
+        let Some(Op::Mux { select, .. }) = select else { return };
         let mut flat = 0;
         let arms = [0, 1].map(|arm| {
             let values = muxes.iter().map(|&mux| match self.regions.op(mux) {
@@ -368,11 +361,11 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// The select to branch on: one whose multiplexers are all there, or else that of most.
-fn best(level: &Level) -> Option<Net> {
-    let whole = |select: &Net, members: &Vec<u32>| level.remaining.get(select) == Some(&members.len());
-    let best = level.members.iter().max_by_key(|(select, members)| (whole(select, members), members.len()));
-    best.map(|(&select, _)| select)
+/// The branches to take next: some whose multiplexers are all there, or else those of most.
+fn best(level: &Level) -> Option<[u32; 2]> {
+    let whole = |branches: &[u32; 2], members: &Vec<u32>| level.remaining.get(branches) == Some(&members.len());
+    let best = level.members.iter().max_by_key(|(branches, members)| (whole(branches, members), members.len()));
+    best.map(|(&branches, _)| branches)
 }
 
 /// Puts each cell right before the first step that uses it, or changes what it reads.
