@@ -14,7 +14,7 @@ test:
 
 # Exhaustive and 10,000-case tests too
 exhaustive:
-    cargo test -- --include-ignored
+    cargo test --release --test main -- --include-ignored
 
 # All that must hold before a change lands
 ci:

@@ -364,7 +364,7 @@ impl Description {
     /// ```
     ///
     /// # Errors
-    /// There is no such curve.
+    /// No curve has these ends, sizes and centre.
     pub fn curve(&self) -> Result<Curve, GeometryError> {
         let plane = |point: &[i64]| [0, 1].map(|axis| point.get(axis).copied().unwrap_or(0));
         let space = |point: &[i64]| [0, 1, 2].map(|axis| point.get(axis).copied().unwrap_or(0));

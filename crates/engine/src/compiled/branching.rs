@@ -175,6 +175,7 @@ impl Branching<'_, '_> {
             netlist: self.netlist,
             regions: self.regions,
             of: HashMap::new(),
+            chosen: HashSet::new(),
             open: vec![true],
             far: HashSet::new(),
             late: HashSet::new(),
@@ -330,7 +331,7 @@ impl Branching<'_, '_> {
 }
 
 fn found(values: &[(Net, Value)], net: Net) -> Value {
-    values.iter().find(|(other, _)| *other == net).map_or(values[0].1, |(_, value)| *value)
+    values.iter().find(|(other, _)| *other == net).expect("all operands have values").1
 }
 
 /// Finds the nets that are used outside of the branch that they are evaluated in.
@@ -339,6 +340,8 @@ struct Scopes<'a> {
     regions: &'a Regions<'a>,
     /// Where a net is evaluated.
     of: HashMap<Net, usize>,
+    /// Multiplexers that have their value from an arm.
+    chosen: HashSet<Net>,
     open: Vec<bool>,
     far: HashSet<Net>,
     late: HashSet<usize>,
@@ -366,10 +369,11 @@ impl Scopes<'_> {
                 }
                 Step::Arm { mux, value } => {
                     self.used(value);
-                    if self.regions.branches_of(value).is_some() && self.far.contains(&value) {
+                    if self.regions.fork_of(value).is_some() && self.far.contains(&value) {
                         self.passed.insert(value, mux);
                     }
                     self.far.insert(mux);
+                    self.chosen.insert(mux);
                 }
                 Step::Commit { index, value, late, .. } => {
                     self.used(value);
@@ -385,8 +389,13 @@ impl Scopes<'_> {
 
     fn used(&mut self, net: Net) {
         *self.uses.entry(net).or_default() += 1;
-        let is_open = self.of.get(&net).is_some_and(|&scope| self.open[scope]);
-        if !is_open && !is_leaf(self.netlist.cell(net).op) {
+        if is_leaf(self.netlist.cell(net).op) {
+            return;
+        }
+        let of = self.of.get(&net);
+        // A word that nothing has stored would be a false answer.
+        assert!(of.is_some() || self.chosen.contains(&net), "{net:?} is used before it is evaluated");
+        if !of.is_some_and(|&scope| self.open[scope]) {
             self.far.insert(net);
         }
     }

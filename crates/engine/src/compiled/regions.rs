@@ -48,7 +48,7 @@ pub(super) struct Next {
 }
 
 /// The two branches of a select in a region.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub(super) struct Fork {
     /// What is looked at, in the region around.
     pub(super) condition: Net,
@@ -322,11 +322,11 @@ impl<'a> Regions<'a> {
         self.of[net.index()] != NOWHERE
     }
 
-    /// The branches of a multiplexer, or of a gate that has become one, if it is branched on.
-    pub(super) fn branches_of(&self, net: Net) -> Option<[u32; 2]> {
-        let Op::Mux { .. } = self.op(net) else { return None };
+    /// The fork of a multiplexer, or of a gate that has become one, if it is branched on.
+    pub(super) fn fork_of(&self, net: Net) -> Option<Fork> {
+        let Op::Mux { select: condition, .. } = self.op(net) else { return None };
         let [select, ..] = self.choice(net)?;
-        self.forks.get(&(self.of(net), select)).copied()
+        self.forks.get(&(self.of(net), select)).map(|&branches| Fork { condition, branches })
     }
 
     pub(super) fn sinks(&self, region: u32) -> &[Sink] {

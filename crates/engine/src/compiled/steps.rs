@@ -54,10 +54,10 @@ struct Level {
     waits: Vec<u32>,
     users: Vec<Vec<u32>>,
     ready: BinaryHeap<Reverse<u32>>,
-    /// Multiplexers that could be branched on now, by their branches, and how many there will be. Selects that differ may
-    /// come to the same net here, and have branches of their own all the same.
-    members: BTreeMap<[u32; 2], Vec<u32>>,
-    remaining: HashMap<[u32; 2], usize>,
+    /// Multiplexers that could be branched on now, by their fork, and how many there will be. Selects that differ may come
+    /// to the same net here, and have branches of their own all the same.
+    members: BTreeMap<Fork, Vec<u32>>,
+    remaining: HashMap<Fork, usize>,
     /// What waits for a cell of this level.
     by_value: HashMap<u32, Vec<Sink>>,
     /// What waits until a register is not read any more.
@@ -124,8 +124,8 @@ impl<'a> Planner<'a> {
             if let Some(Reverse(item)) = level.ready.pop() {
                 level.steps.push(Step::Cell(level.nets[item as usize]));
                 self.finish(&mut level, item);
-            } else if let Some(branches) = best(&level) {
-                self.branch(&mut level, branches);
+            } else if let Some(fork) = best(&level) {
+                self.branch(&mut level, fork);
             } else {
                 break;
             }
@@ -162,8 +162,8 @@ impl<'a> Planner<'a> {
             for need in needs {
                 level.users[self.place[need.index()] as usize].push(u32::try_from(item).unwrap_or(u32::MAX));
             }
-            if let Some(branches) = self.regions.branches_of(net) {
-                *level.remaining.entry(branches).or_default() += 1;
+            if let Some(fork) = self.regions.fork_of(net) {
+                *level.remaining.entry(fork).or_default() += 1;
             }
             if level.waits[item] == 0 {
                 self.wake(&mut level, u32::try_from(item).unwrap_or(u32::MAX));
@@ -195,8 +195,8 @@ impl<'a> Planner<'a> {
     /// All that a cell waits for is done.
     fn wake(&self, level: &mut Level, item: u32) {
         let net = level.nets[item as usize];
-        if let Some(branches) = self.regions.branches_of(net) {
-            level.members.entry(branches).or_default().push(item);
+        if let Some(fork) = self.regions.fork_of(net) {
+            level.members.entry(fork).or_default().push(item);
         } else {
             level.ready.push(Reverse(item));
         }
@@ -258,15 +258,13 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// All multiplexers of these branches that are there.
-    fn branch(&mut self, level: &mut Level, branches: [u32; 2]) {
-        let members = level.members.remove(&branches).unwrap_or_default();
-        if let Some(remaining) = level.remaining.get_mut(&branches) {
+    /// All multiplexers of a fork that are there.
+    fn branch(&mut self, level: &mut Level, fork: Fork) {
+        let members = level.members.remove(&fork).unwrap_or_default();
+        if let Some(remaining) = level.remaining.get_mut(&fork) {
             *remaining -= members.len();
         }
         let muxes: Vec<Net> = members.iter().map(|&item| level.nets[item as usize]).collect();
-        let select = muxes.first().map(|&mux| self.regions.op(mux));
-        let Some(Op::Mux { select, .. }) = select else { return };
         let mut flat = 0;
         let arms = [0, 1].map(|arm| {
             let values = muxes.iter().map(|&mux| match self.regions.op(mux) {
@@ -274,7 +272,7 @@ impl<'a> Planner<'a> {
                 _ => mux,
             });
             let values: Vec<Net> = values.collect();
-            let mut steps = self.plan(branches[arm], &values, false);
+            let mut steps = self.plan(fork.branches[arm], &values, false);
             let only_cells = steps.iter().all(|step| matches!(step, Step::Cell(_)));
             flat += if only_cells { steps.len() } else { usize::MAX / 2 };
             steps.extend(muxes.iter().zip(values).map(|(&mux, value)| Step::Arm { mux, value }));
@@ -285,7 +283,7 @@ impl<'a> Planner<'a> {
             level.steps.extend(arms.into_iter().flatten().filter(|step| matches!(step, Step::Cell(_))));
             level.steps.extend(muxes.into_iter().map(Step::Cell));
         } else {
-            level.steps.push(Step::If(select, arms));
+            level.steps.push(Step::If(fork.condition, arms));
         }
         members.into_iter().for_each(|item| self.finish(level, item));
     }
@@ -361,11 +359,11 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// The branches to take next: some whose multiplexers are all there, or else those of most.
-fn best(level: &Level) -> Option<[u32; 2]> {
-    let whole = |branches: &[u32; 2], members: &Vec<u32>| level.remaining.get(branches) == Some(&members.len());
-    let best = level.members.iter().max_by_key(|(branches, members)| (whole(branches, members), members.len()));
-    best.map(|(&branches, _)| branches)
+/// The fork to take next: one whose multiplexers are all there, or else that of most.
+fn best(level: &Level) -> Option<Fork> {
+    let whole = |fork: &Fork, members: &Vec<u32>| level.remaining.get(fork) == Some(&members.len());
+    let best = level.members.iter().max_by_key(|(fork, members)| (whole(fork, members), members.len()));
+    best.map(|(&fork, _)| fork)
 }
 
 /// Puts each cell right before the first step that uses it, or changes what it reads.
