@@ -33,6 +33,9 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
     if args.opens.is_some() && !drawn.is_open() {
         return invalid(format!("{what} does not open: leave --opens out"));
     }
+    if (args.cw || args.ccw) && !drawn.turns() {
+        return invalid(format!("{what} has no direction but from its start to its end: leave --cw or --ccw out"));
+    }
     let direction = match (args.cw, args.ccw) {
         (true, _) => Direction::Clockwise,
         (false, false) if drawn.turns() => {

@@ -100,6 +100,19 @@ fn a_line_has_neither_centre_nor_direction() {
 }
 
 #[test]
+fn a_parabola_and_a_hyperbola_have_no_direction() {
+    for (noun, sizes) in
+        [("parabola", "--parabola 4 --from 0,0 --to 4,4"), ("hyperbola", "--hyperbola 3,2 --from 3,0 --to 5,3")]
+    {
+        for turn in ["--cw", "--ccw"] {
+            let hints = [noun, "no direction", "leave --cw or --ccw out"];
+            run_refused(&format!("dda-conic {sizes} {turn}"), &hints);
+            refused(&format!("compare dda-conic {sizes} {turn}"), &hints);
+        }
+    }
+}
+
+#[test]
 fn an_arc_lies_in_the_plane() {
     run_refused("ppc-arc --from 5,0,0 --to 0,5 --ccw", &["--from of an arc has 3 coordinates", "give X,Y"]);
     run_refused("dda-arc --from 5,0 --to 0,5,1 --ccw", &["--to of an arc has 3 coordinates"]);
