@@ -1,4 +1,4 @@
-//! `ppc-line`: point-by-point comparison (逐点比较法), line.
+//! `ppc-line`: point-by-point comparison (逐点比较法), line of 2 to 6 axes.
 //!
 //! ```text
 //!            xe ──┐                       ┌── sx, sy: directions
@@ -14,10 +14,22 @@
 //!
 //! Four beats a step: judge, feed, compute, compare; or all at one edge (`--beats 1`). Range of F: [-b, a-1].
 //!
+//! **In space.** Each axis has a deviation of its own from the longest one, of displacement L: the first axis whose f < 0
+//! steps, and its f += L; where there is none the longest steps, and every f -= S. Range of f: [-S, L-1]. The steps of
+//! the longest axis and one other are those of the line (L, S) in the plane, so each axis is less than 1 BLU from its place, and the
+//! path, of k axes, less than sqrt(k-1) BLU from the line. Textbooks that compare with X whatever its length go far off
+//! where X is short. This is the project's own definition, magnitudes with a counter of all pulses.
+//!
 //! The line (6, 4), from the golden file `waves/ppc-line-6-4.csv`; the wave is next to it:
 //!
 //! ```text
 #![doc = include_str!("../waves/ppc-line-6-4.csv")]
+//! ```
+//!
+//! The line (5, 3, 2) in space, from `waves/ppc-line-space.csv`:
+//!
+//! ```text
+#![doc = include_str!("../waves/ppc-line-space.csv")]
 //! ```
 
 use stepwave_nc::Line;
@@ -31,21 +43,33 @@ use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{BEATS, END_POINT, EndPoint, FORM, Form, ON_OVERFLOW, WIDTH};
-use crate::parts::{BeatRing, Block, DeviationAccumulator, E, END, F, LONGEST, POSITION, SIGN, axis_scope};
+use crate::parts::{
+    BeatRing, Block, DEVIATION, DeviationAccumulator, E, END, F, IN_PLANE, IN_SPACE, LONG, LONGEST, POSITION, SIGN,
+    SpaceLine, TRAVEL, axis_scope, negated, space_words,
+};
 use crate::plan::Plan;
-use crate::registers::{N, Reg};
+use crate::registers::{N, PerAxis, Reg};
 use crate::sizes;
 
-const XE: Reg = Reg::new("xe", N, "|dx| of the line (signed form: dx in n+1 bits)");
-const YE: Reg = Reg::new("ye", N, "|dy| of the line (signed form: dy in n+1 bits)");
+const ENDS: PerAxis = TRAVEL.about("|dx|, … of the line (signed form: dx, … in n+1 bits)");
+const XE: Reg = ENDS.of(0);
+const YE: Reg = ENDS.of(1);
 
-/// Point-by-point comparison, line.
+/// Point-by-point comparison, line of 2 to 6 axes.
 pub static MODEL: Model = Model {
     name: "ppc-line",
-    title: "Point-by-point comparison, line",
+    title: "Point-by-point comparison, line of 2 to 6 axes",
     method: "point-by-point comparison",
     source: "逐点比较法, the linear interpolator of early NC systems, as in Chinese NC textbooks",
-    registers: &[&XE, &YE, &F.width(N.plus(1)), &E, &END, &POSITION],
+    registers: &[
+        &ENDS,
+        &LONG.when(&IN_SPACE),
+        &F.width(N.plus(1)).when(&IN_PLANE),
+        &DEVIATION,
+        &E.about("end-point down-counter (of k axes n + log2(k), rounded up, bits)"),
+        &END,
+        &POSITION,
+    ],
     options: &[
         &WIDTH.about("N or REGISTER=N,… (default: the least that holds the line)"),
         &FORM,
@@ -62,7 +86,7 @@ pub static MODEL: Model = Model {
         rank,
         ..Claims::of(Region::Lines)
     }),
-    interpolates: Interpolates::Lines(2, Method { plan, load }),
+    interpolates: Interpolates::Lines(6, Method { plan, load }),
     hardware,
 };
 
@@ -84,12 +108,34 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
         plan.set(XE, bits).set(YE, bits);
     }
     plan.positions(sizes::end_positions(line));
-    plan.error_bound = Some(1.0);
+    if plan.axes() > 2 {
+        magnitudes_and_total(plan)?;
+        plan.set(E, plan.n + plan.axes().next_power_of_two().trailing_zeros());
+    }
+    plan.error_bound = Some(sizes::across(plan.axes()));
     plan.pace = Pace::Total;
     Ok(())
 }
 
+/// Refuses what a line in space has not.
+fn magnitudes_and_total(plan: &Plan) -> Result<(), ModelError> {
+    let refused = |option: &'static str, value: String, usual: &str| {
+        let reason = format!("a line of {} axes has {usual} only: leave --{option} out", plan.axes());
+        Err(ModelError::Value { model: plan.model(), option, value, reason })
+    };
+    match (plan.get(&FORM), plan.get(&END_POINT)) {
+        (Form::Magnitude, EndPoint::Total) => Ok(()),
+        (Form::Magnitude, end) => {
+            refused(END_POINT.name, END_POINT.value(end).text().to_owned(), "a counter of all pulses")
+        }
+        (form, _) => refused(FORM.name, FORM.value(form).text().to_owned(), "magnitudes"),
+    }
+}
+
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
+    if hardware.axes > 2 {
+        return in_space(m, hardware);
+    }
     let signed = hardware.get(&FORM) == Form::Signed;
     let block = Block::new(m);
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
@@ -138,6 +184,39 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     beat.close(block, last);
 }
 
+/// The wiring of 3 axes and more.
+fn in_space(m: Scope<'_>, hardware: &Hardware) {
+    let block = Block::new(m);
+    let line = SpaceLine::new(m, &block, hardware);
+    let e = hardware.counter(m, &block, E);
+
+    // Judge: the first axis of a negative deviation, or the longest one.
+    let mut none = m.lit(1, 1);
+    let mut judged = Vec::new();
+    for axis in line.axes() {
+        judged.push(none & !axis.not_negative);
+        none = none & axis.not_negative;
+    }
+    for (judged, axis) in judged.iter_mut().zip(line.axes()) {
+        *judged = *judged | (none & axis.is_longest);
+    }
+    let taken = line.decided(&judged);
+    let of_longest = taken.iter().zip(line.axes()).map(|(taken, axis)| *taken & axis.is_longest);
+    let longest = m.name("take_longest", of_longest.reduce(|a, b| a | b).unwrap_or(none));
+
+    // Feed, compute: a step of the axis adds L, one of the longest takes S off.
+    line.close(&block, hardware, &taken, |axis, taken| {
+        let wide = axis.travels[0].bits().max(axis.travels[1].bits()) + 1;
+        let [long, travel] = axis.travels.map(|travel| travel.extend(wide));
+        let zero = m.lit(wide, 0);
+        longest.mux(negated(m, travel), taken.mux(long, zero)).as_signed()
+    });
+
+    // Compare.
+    let last = e.count(line.beat.compare);
+    line.beat.close(block, last);
+}
+
 /// F stays between what a step of the first axis, which F >= 0 takes, at 0 and one of the second at -1 leave. `ways`
 /// are those of both axes; or one of `unless` is 0 or more.
 fn between_steps(m: Scope<'_>, what: &str, [first, second]: [Formula; 2], unless: &[Formula]) {
@@ -162,6 +241,10 @@ fn signs_between_steps(m: Scope<'_>) {
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {
+    if hardware.axes > 2 {
+        let pulses: i128 = line.delta().iter().map(|delta| i128::from(*delta).abs()).sum();
+        return vec![space_words(line, sizes::first_longest(line), |_, _| 0).set(E, pulses)];
+    }
     let [dx, dy] = [0, 1].map(|axis| i128::from(line.delta()[axis]));
     let (a, b) = (dx.abs(), dy.abs());
     let words = match hardware.get(&FORM) {

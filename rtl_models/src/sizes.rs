@@ -61,6 +61,24 @@ pub(crate) fn longest_of(delta: &[i64]) -> u64 {
     delta.iter().map(|d| d.unsigned_abs()).max().unwrap_or(0)
 }
 
+/// The longest axis of a line, of equal ones the first.
+pub(crate) fn first_longest(line: &Line) -> usize {
+    let longest = longest(line);
+    line.delta().iter().position(|d| d.unsigned_abs() == longest).unwrap_or(0)
+}
+
+/// The longest axis of a line, of equal ones the last.
+pub(crate) fn last_longest(line: &Line) -> usize {
+    let longest = longest(line);
+    line.delta().iter().rposition(|d| d.unsigned_abs() == longest).unwrap_or(0)
+}
+
+/// How far a path of this many axes is from its line at most, in BLU, where each but the longest axis is at most 1 BLU from
+/// its place.
+pub(crate) fn across(axes: usize) -> f64 {
+    (axes.saturating_sub(1) as f64).sqrt()
+}
+
 /// Positions of each axis at the ends of a line.
 pub(crate) fn end_positions(line: &Line) -> impl Iterator<Item = [i64; 2]> {
     line.from().iter().zip(line.to()).map(|(&from, &to)| [from, to])

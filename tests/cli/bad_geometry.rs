@@ -48,7 +48,7 @@ fn a_number_beyond_every_limit_is_named() {
 
 #[test]
 fn a_missing_end_point_is_asked_for_in_the_models_own_terms() {
-    run_refused("ppc-line", &["end point is missing", "ppc-line takes lines of 2 axes", "--to X,Y"]);
+    run_refused("ppc-line", &["end point is missing", "ppc-line takes lines of 2 to 6 axes", "--to X,Y"]);
     run_refused("dda-line --from 1,2", &["end point is missing", "lines of 2 to 6 axes"]);
     run_refused("ppc-arc --from 5,0 --ccw", &["end point is missing", "ppc-arc takes arcs", "--cw|--ccw"]);
     refused("run ppc-line --to", &["a value is required for '--to <X,Y[,Z]>'"]);
@@ -58,7 +58,7 @@ fn a_missing_end_point_is_asked_for_in_the_models_own_terms() {
 fn too_few_or_too_many_axes_are_counted() {
     run_refused("ppc-line --to 5", &["2 to 6 axes, not 1"]);
     run_refused("dda-line --to 1,2,3,4,5,6,7", &["2 to 6 axes, not 7"]);
-    run_refused("ppc-line --to 1,2,3", &["ppc-line interpolates lines of 2 axes", "a line of 3 axes was given"]);
+    run_refused("vector-line --to 1,2,3", &["vector-line interpolates lines of 2 axes", "a line of 3 axes was given"]);
 }
 
 #[test]

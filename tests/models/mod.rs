@@ -17,6 +17,7 @@ mod ppc;
 mod promises;
 mod registers;
 mod sampled;
+mod space_lines;
 mod spacing;
 mod stepgen_bresenham;
 mod widths;

@@ -16,6 +16,8 @@
 //!   and the sign of `f` says whether the other does.
 //! - [`mindev_line`], [`mindev_arc`], [`vector_line`], [`vector_arc`]: eight-direction methods, a
 //!   step is X, Y or both.
+//! - [`ppc_space_line`], [`cim_space_line`], [`mindev_space_line`]: the same for lines of 3 axes and more, each axis against
+//!   the longest one.
 //! - [`sampled_line`], [`sampled_arc`]: data sampling, the points of the coarse stage in real numbers.
 //! - [`stepgen`], [`stepgen_clocks`], [`bresenham`]: what motion cards and firmware of today do.
 //!
@@ -36,6 +38,7 @@ mod eight_lines;
 mod ppc;
 mod ppc_conic;
 mod sampled;
+mod space_lines;
 mod stepgen;
 #[cfg(test)]
 mod tests;
@@ -53,6 +56,7 @@ pub(crate) use eight_lines::{mindev_line, vector_line};
 pub(crate) use ppc::{ppc_arc, ppc_line};
 pub(crate) use ppc_conic::ppc_conic;
 pub(crate) use sampled::{System, sampled_arc, sampled_line, step_factor_points};
+pub(crate) use space_lines::{cim_space_line, mindev_space_line, ppc_space_line};
 pub(crate) use stepgen::{StepOutput, Timing, stepgen, stepgen_clocks};
 
 /// The names of up to six axes, in the order of the columns.

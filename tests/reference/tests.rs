@@ -8,6 +8,7 @@ mod eight;
 mod modern;
 mod ppc;
 mod rates;
+mod space;
 
 use super::{EndPoint, Table};
 

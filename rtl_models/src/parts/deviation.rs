@@ -3,6 +3,7 @@
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::Block;
+use crate::hardware::Hardware;
 use crate::registers::{N, Reg};
 
 /// The deviation F.
@@ -12,13 +13,20 @@ pub const F: Reg = Reg::new("f", N.plus(2), "deviation F, two's complement, from
 #[derive(Clone, Copy, Debug)]
 pub struct DeviationAccumulator<'m> {
     f: Register<'m>,
+    name: &'static str,
 }
 
 impl<'m> DeviationAccumulator<'m> {
     /// The register, `bits` bits wide.
     #[must_use]
     pub fn new(m: Scope<'m>, bits: u32) -> DeviationAccumulator<'m> {
-        DeviationAccumulator { f: m.reg_signed(F.name(), bits) }
+        DeviationAccumulator { f: m.reg_signed(F.name(), bits), name: F.name() }
+    }
+
+    /// The same for another register than `f`, as wide as the hardware has it.
+    #[must_use]
+    pub fn of(m: Scope<'m>, register: Reg, hardware: &Hardware) -> DeviationAccumulator<'m> {
+        DeviationAccumulator { f: hardware.reg(m, register), name: register.name() }
     }
 
     /// 1 bit: F >= 0, the tool is outside the curve or on it.
@@ -37,7 +45,7 @@ impl<'m> DeviationAccumulator<'m> {
     /// the exact result must fit where it does not. The operand may have any width and either reading.
     pub fn close_adding(self, block: &Block<'m>, compute: Signal<'m>, operand: Signal<'m>) {
         let sum = self.f.q.strict_add(operand, compute & !block.load);
-        let word = block.word_signed(F.name(), self.f.q.bits());
+        let word = block.word_signed(self.name, self.f.q.bits());
         self.f.when(block.load, word).when(compute, sum).else_hold();
     }
 
@@ -49,7 +57,7 @@ impl<'m> DeviationAccumulator<'m> {
         let (plus, minus) = (compute & !subtract, compute & subtract);
         let counts = !block.load;
         let (sum, difference) = (f.q.strict_add(operand, plus & counts), f.q.strict_sub(operand, minus & counts));
-        let word = block.word_signed(F.name(), f.q.bits());
+        let word = block.word_signed(self.name, f.q.bits());
         f.when(block.load, word).when(plus, sum).when(minus, difference).else_hold();
     }
 }

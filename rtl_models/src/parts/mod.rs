@@ -31,6 +31,7 @@ mod serial_divider;
 mod serial_multiplier;
 mod serial_root;
 mod sign;
+mod space_line;
 mod step_output;
 
 use arc_frame::square_gain;
@@ -66,6 +67,8 @@ pub use serial_divider::SerialDivider;
 pub use serial_multiplier::SerialMultiplier;
 pub use serial_root::SerialRoot;
 pub use sign::{magnitude, magnitude_of_difference, negated, with_sign};
+pub(crate) use space_line::space_words;
+pub use space_line::{DEVIATION, IN_PLANE, IN_SPACE, LONG, SpaceAxis, SpaceLine, TRAVEL};
 pub use step_output::{StepOutput, Timer};
 
 #[cfg(test)]
