@@ -44,7 +44,9 @@ pub(crate) struct Cli {
     pub(crate) command: Command,
 }
 
+// The options of a command are built where it is on the line: all of them take longer than a short run.
 #[derive(Debug, Subcommand)]
+#[command(defer = true)]
 pub(crate) enum Command {
     /// Every model: name, method, curves, registers with default widths, options
     List(ListArgs),

@@ -1,10 +1,10 @@
 //! What is measured: the words of the command line, and the tools that it needs, all looked at before the first run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::contender::first_line;
-use crate::sections::{FULL, QUICK, SECTIONS, Section, Sizes};
+use crate::sections::{FULL, MOST_CELLS, QUICK, SECTIONS, Section, Sizes};
 use crate::unit::MODELS;
 use crate::{Fallible, cores};
 
@@ -19,10 +19,11 @@ pub(crate) struct Choice {
 impl Choice {
     /// Reads the words after `--`; those that are no section, model or flag are refused.
     pub(crate) fn of(words: &[String]) -> Fallible<Choice> {
+        let (words, svg) = without_svg(words)?;
         let mut sizes = if words.iter().any(|word| word == "--quick") { QUICK } else { FULL };
         let is = |name: &str| words.iter().any(|word| word == name);
         let unknown = |word: &&String| {
-            *word != "--quick"
+            !["--quick", "--large"].contains(&word.as_str())
                 && SECTIONS.iter().all(|section| section.name != word.as_str())
                 && !MODELS.contains(&word.as_str())
         };
@@ -46,6 +47,13 @@ impl Choice {
         if !models.is_empty() {
             sizes.models = models.into();
         }
+        if svg.is_some() && sections.iter().all(|section| section.name != "growth") {
+            return Err("--svg draws what the section growth measures".into());
+        }
+        if is("--large") {
+            sizes.cells = MOST_CELLS;
+        }
+        sizes.svg = svg;
         Ok(Choice { sections, sizes, notes })
     }
 
@@ -73,6 +81,18 @@ impl Choice {
         }
         Err(format!("{}\n.ci/bench-tools installs all peers on Debian", missing.join("\n")).into())
     }
+}
+
+/// The words without `--svg FILE`, and that file.
+fn without_svg(words: &[String]) -> Fallible<(Vec<String>, Option<PathBuf>)> {
+    let mut words = words.to_vec();
+    let Some(at) = words.iter().position(|word| word == "--svg") else { return Ok((words, None)) };
+    if at + 1 == words.len() {
+        return Err("--svg needs the name of a file".into());
+    }
+    // A bench is started in the folder of its package, wherever its caller is.
+    let file = words.drain(at..at + 2).next_back().unwrap_or_default();
+    Ok((words, Some(PathBuf::from(file))))
 }
 
 /// What a peer needs.
@@ -109,7 +129,7 @@ impl Tool {
 
 /// What there is.
 pub(crate) fn help() -> String {
-    let mut text = "cargo bench --bench peers [-- [--quick] [SECTION…] [MODEL…]]\n\n\
+    let mut text = "cargo bench --bench peers [-- [--quick] [--large] [--svg FILE] [SECTION…] [MODEL…]]\n\n\
                     Sections, all of them without a name (with models alone: those marked *):\n"
         .to_owned();
     for section in &SECTIONS {
@@ -117,7 +137,9 @@ pub(crate) fn help() -> String {
         text += &format!("{mark} {:<11} {}\n", section.name, section.about);
     }
     text + &format!(
-        "\nModels, all of them without a name: {}\n\n--quick  a smoke test: short runs of {}, one round\n",
+        "\nModels, all of them without a name: {}\n\n--quick     a smoke test: short runs of {}, one round\n\
+         --large     `growth` up to 100,000 cells, which Verilator builds for minutes\n\
+         --svg FILE  draws the curves of `growth`\n",
         MODELS.join(", "),
         QUICK.models.join(" and ")
     )

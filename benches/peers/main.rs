@@ -30,6 +30,8 @@ mod measure;
 #[cfg(target_os = "linux")]
 mod own;
 #[cfg(target_os = "linux")]
+mod plot;
+#[cfg(target_os = "linux")]
 mod rtl;
 #[cfg(target_os = "linux")]
 mod sections;

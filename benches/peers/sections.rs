@@ -1,6 +1,7 @@
 //! What is measured, section by section.
 
 use std::borrow::Cow;
+use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -17,35 +18,48 @@ use crate::{Fallible, cores, cxxrtl, growth, icarus, lean, own, verilator};
 pub(crate) struct Sizes {
     pub(crate) models: Cow<'static, [&'static str]>,
     pub(crate) rounds: usize,
-    /// A run without a wave, one with, one of many lanes.
+    /// A run without a wave, one with, one of Icarus, which is slow, one of many lanes.
     pub(crate) run: u32,
     pub(crate) wave: u32,
+    pub(crate) icarus: u32,
     pub(crate) lane: u32,
     pub(crate) geometries: usize,
-    /// The longest run, and the largest netlist.
+    /// The longest run, the longest with a wave, and the largest netlist.
     pub(crate) longest: u32,
+    pub(crate) longest_wave: u32,
     pub(crate) cells: usize,
+    /// Where the section `growth` draws its curves.
+    pub(crate) svg: Option<PathBuf>,
 }
+
+/// The largest netlist with `--large`: Verilator builds it for minutes.
+pub(crate) const MOST_CELLS: usize = 100_000;
 
 pub(crate) const FULL: Sizes = Sizes {
     models: Cow::Borrowed(&MODELS),
     rounds: 3,
     run: 26,
     wave: 20,
+    icarus: 16,
     lane: 16,
     geometries: 4096,
     longest: 26,
+    longest_wave: 22,
     cells: 10_000,
+    svg: None,
 };
 pub(crate) const QUICK: Sizes = Sizes {
     models: Cow::Borrowed(&["dda-line", "ppc-arc"]),
     rounds: 1,
     run: 24,
     wave: 18,
+    icarus: 14,
     lane: 12,
     geometries: 1024,
     longest: 20,
+    longest_wave: 20,
     cells: 100,
+    svg: None,
 };
 
 /// What is measured together.
@@ -231,7 +245,7 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         ];
         let mut runs = race(sizes.rounds, &jobs)?;
         // Icarus is so slow that a shorter block must do.
-        let case = Case::new(model, sizes.wave)?;
+        let case = Case::new(model, sizes.icarus)?;
         let bench = case.bench()?;
         let icarus = icarus::run(&Unit::of(&bench), &bench, &dir.join("icarus"), Wave::None)?;
         runs.extend(race(1, &[icarus, own::engine(&case, &dir)?])?.into_iter().take(1));
@@ -259,18 +273,18 @@ fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let unit = Unit::of(&bench);
         let blocks = unit.line(&block(&bench));
         let own = |wave, name: &str| own::program(&case, &dir, wave).wave(name);
-        // Icarus is slow: one round is enough for a ratio of a hundred.
         let jobs = [
             own(Wave::Vcd, "own.vcd"),
             verilator::run(&unit.rtl(), &dir.join("vcd"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
             cxxrtl::run(&unit.rtl(), &dir.join("cxxrtl"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
-            icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Vcd)?.wave("wave.vcd").rounds(1),
             own(Wave::Fst, "own.fst"),
             verilator::run(&unit.rtl(), &dir.join("fst"), Wave::Fst, &blocks)?.wave("wave.vcd"),
-            icarus::run(&unit, &bench, &dir.join("icarus"), Wave::Fst)?.wave("wave.vcd").rounds(1),
         ];
         fs::create_dir_all(&dir)?;
-        let runs = race(sizes.rounds, &jobs)?;
+        let mut runs = race(sizes.rounds, &jobs)?;
+        let [to_vcd, to_fst] = icarus_waves(model, sizes, &dir)?;
+        runs.insert(3, to_vcd);
+        runs.push(to_fst);
         let free: Vec<Job> = jobs.into_iter().take(3).map(|job| job.cores(None)).collect();
         let free = race(sizes.rounds, &free)?;
         let row = |rates: &[f64]| {
@@ -287,6 +301,17 @@ fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         memory.row(model, runs.iter().map(|runs| peak(runs)));
     }
     Ok([vcd, cores, fst, bytes, memory].map(Table::text).concat())
+}
+
+/// A shorter block in Icarus, to VCD and to FST, one round each: enough for a ratio of a hundred.
+fn icarus_waves(model: &str, sizes: &Sizes, dir: &Path) -> Fallible<[Vec<Measurement>; 2]> {
+    let case = Case::new(model, sizes.icarus)?;
+    let bench = case.bench()?;
+    let (unit, folder) = (Unit::of(&bench), dir.join("icarus"));
+    let run = |wave| Ok::<_, Box<dyn Error + Send + Sync>>(icarus::run(&unit, &bench, &folder, wave)?.wave("wave.vcd"));
+    let jobs = [run(Wave::Vcd)?, run(Wave::Fst)?, own::program(&case, dir, Wave::None)];
+    let [to_vcd, to_fst, _] = <[Vec<Measurement>; 3]>::try_from(race(1, &jobs)?).map_err(|_| "three jobs")?;
+    Ok([to_vcd, to_fst])
 }
 
 fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {

@@ -45,6 +45,14 @@ pub(crate) fn run(rtl: &Rtl, dir: &Path, wave: Wave, blocks: &str) -> Fallible<J
     Ok(Job::new("Verilator", dir, &["obj/Vmodel", "blocks", "wave.vcd"]))
 }
 
+/// The same without a wave, or an error where it cannot be built within this time.
+pub(crate) fn run_within(rtl: &Rtl, dir: &Path, blocks: &str, seconds: u64) -> Fallible<Job> {
+    write(rtl, dir, blocks)?;
+    fs::write(dir.join("build.sh"), commands(rtl, Wave::None, FAST))?;
+    shell(dir, &format!("timeout {seconds} sh build.sh"))?;
+    Ok(Job::new("Verilator", dir, &["obj/Vmodel", "blocks", "wave.vcd"]))
+}
+
 /// A job from the source to the wave.
 pub(crate) fn first_wave(rtl: &Rtl, dir: &Path, blocks: &str) -> Fallible<Job> {
     write(rtl, dir, blocks)?;

@@ -157,8 +157,10 @@ fn stays_in(dir: &Path, file: &Path) -> Result<(), String> {
 
 /// The first argument that names a file.
 fn file_option(case: &Listed) -> Option<&str> {
-    let program = Cli::command();
-    let command = program.find_subcommand(if case.program.is_some() { "program" } else { "run" })?;
+    let mut program = Cli::command();
+    let command = program.find_subcommand_mut(if case.program.is_some() { "program" } else { "run" })?;
+    // Its options are built only now.
+    command.build();
     let files = command.get_arguments().filter(|argument| {
         argument
             .get_value_names()

@@ -107,6 +107,12 @@ pub trait Engine: Send {
     /// `rows` holds already must be the samples right before.
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
 
+    /// Says that at least as many clocks will be run, if nothing goes wrong: what pays only in long runs need not wait until this
+    /// one has proved long. Samples do not depend on it.
+    fn expect(&mut self, clocks: u64) {
+        let _ = clocks;
+    }
+
     /// What the next samples come to, at most as many as `clocks`, if the engine was
     /// [built to tell](EngineKind::build_digesting). The engine stays in the present sample.
     fn look_ahead(&mut self, clocks: u64, digest: &mut Digest) -> Ahead {

@@ -3,6 +3,8 @@
 //! Column by column, because a search for a change, a least value or a flag reads one net over many clocks. Rows may
 //! be sparse: then each has its own clock, and of the samples between them only extremes are kept.
 
+use std::ops::Range;
+
 use fearless_simd::{Level, dispatch};
 
 /// What the values of a column came to.
@@ -43,6 +45,8 @@ pub struct Rows {
     first_clock: u64,
     /// Column `c` begins at `c * stride`. After the last one come the clocks of sparse rows.
     values: Vec<u64>,
+    /// Columns whose whole room holds one value, and that value; empty where there is none.
+    still: Vec<Option<u64>>,
     sparse: bool,
     /// What columns came to in samples that were passed over.
     passed: Vec<(usize, Extremes)>,
@@ -57,7 +61,8 @@ impl Rows {
         let stride = capacity + 8;
         let values = vec![0; columns * stride];
         let level = Level::new();
-        Rows { columns, capacity, stride, len: 0, first_clock: 0, values, sparse: false, passed: Vec::new(), level }
+        let (still, passed) = (Vec::new(), Vec::new());
+        Rows { columns, capacity, stride, len: 0, first_clock: 0, values, still, sparse: false, passed, level }
     }
 
     /// As [`new`](Self::new), for an engine that passes over idle samples.
@@ -135,6 +140,9 @@ impl Rows {
     /// If there is no such column.
     #[must_use]
     pub fn any(&self, column: usize) -> bool {
+        if let Some(value) = self.still(column) {
+            return value != 0 && !self.is_empty();
+        }
         self.column(column).iter().fold(0, |seen, value| seen | value) != 0
     }
 
@@ -158,14 +166,31 @@ impl Rows {
     /// If there is no such column.
     #[must_use]
     pub fn extremes(&self, column: usize, turned: u64) -> Option<Extremes> {
-        let values = self.column(column);
-        let recorded = values.first().map(|first| {
-            let first = first ^ turned;
-            let (least, greatest, toggled) = dispatch!(self.level, _simd => extremes(values, turned, first));
-            Extremes { least, greatest, first, toggled }
-        });
+        let recorded = self.extremes_within(column, 0..self.len, turned);
         let passed = self.passed.iter().filter(|(passed, _)| *passed == column).map(|(_, extremes)| *extremes);
         passed.chain(recorded).reduce(Extremes::and)
+    }
+
+    /// The same of some rows alone, without what was skipped.
+    ///
+    /// # Panics
+    /// If there is no such column, or not all of these rows.
+    #[must_use]
+    pub fn extremes_within(&self, column: usize, rows: Range<usize>, turned: u64) -> Option<Extremes> {
+        let values = &self.column(column)[rows];
+        let first = values.first()? ^ turned;
+        if self.still(column).is_some() {
+            return Some(Extremes { least: first, greatest: first, first, toggled: 0 });
+        }
+        let (least, greatest, toggled) = dispatch!(self.level, _simd => extremes(values, turned, first));
+        Some(Extremes { least, greatest, first, toggled })
+    }
+
+    /// The value of a column in every row, where it is known to be one: a search for changes can be spared.
+    #[inline]
+    #[must_use]
+    pub fn still(&self, column: usize) -> Option<u64> {
+        self.still.get(column).copied().flatten()
     }
 
     /// The value of a column in a row.
@@ -223,16 +248,31 @@ impl Rows {
         (self.capacity - self.len) as u64
     }
 
-    /// All values, and the index of the next row, to be filled by native code.
-    pub fn spare(&mut self) -> (&mut [u64], usize) {
+    /// All values, and the index of the next row, to be filled by native code but for the `resting` columns, in rising
+    /// order, which it leaves as they are.
+    pub fn spare(&mut self, resting: &[usize]) -> (&mut [u64], usize) {
+        let mut resting = resting.iter().peekable();
+        for (column, still) in self.still.iter_mut().enumerate() {
+            if resting.next_if(|&&rests| rests == column).is_none() {
+                *still = None;
+            }
+        }
         (&mut self.values, self.len)
     }
 
     /// Gives a column the same value in the next `rows` rows, which fit.
     pub fn fill(&mut self, column: usize, rows: u64, value: u64) {
+        if self.still(column) == Some(value) {
+            return;
+        }
         // No more than `room`, which is a usize.
         let rows = usize::try_from(rows).unwrap_or(0);
         self.values[column * self.stride + self.len..][..rows].fill(value);
+        let whole = self.len == 0 && rows == self.capacity;
+        if whole || !self.still.is_empty() {
+            self.still.resize(self.columns, None);
+            self.still[column] = whole.then_some(value);
+        }
     }
 
     /// Counts `rows` more as held, which native code has filled; the first is the sample of `clock`.
@@ -258,6 +298,9 @@ impl Rows {
             self.first_clock = clock;
         }
         debug_assert!(self.sparse || self.first_clock + self.len as u64 == clock, "a row of another time");
+        if !self.still.is_empty() {
+            self.still.clear();
+        }
         if self.sparse {
             self.values[self.columns * self.stride + self.len] = clock;
         }
@@ -322,6 +365,37 @@ mod tests {
         assert_eq!(all.and(later), Extremes { least: 3, greatest: 14, first: 6, toggled: 0b1111 });
         let same = Extremes { least: 4, greatest: 4, first: 4, toggled: 0 };
         assert_eq!(all.and(same).toggled, 0b1011);
+    }
+
+    #[test]
+    fn a_column_that_rests_keeps_its_value_until_something_else_is_recorded() {
+        let mut rows = Rows::new(3, 4);
+        let call = |rows: &mut Rows, resting: &[usize], value: u64, count: u64| {
+            let (values, first) = rows.spare(resting);
+            // What native code does: the last column changes.
+            values[2 * 12 + first..][..4 - first].fill(100);
+            resting.iter().for_each(|&column| rows.fill(column, count, value + column as u64));
+            rows.grow(7, count);
+            let seen = [0, 1, 2].map(|column| rows.extremes(column, 0).map(|seen| (seen.least, seen.greatest)));
+            let any = rows.any(0);
+            (seen, [0, 1, 2].map(|column| rows.still(column)), any)
+        };
+        let whole = |value: u64| [Some((value, value)), Some((value + 1, value + 1)), Some((100, 100))];
+        assert_eq!(call(&mut rows, &[0, 1], 5, 4), (whole(5), [Some(5), Some(6), None], true));
+        rows.clear();
+        // Fewer rows of the same value, then others of another one.
+        assert_eq!(call(&mut rows, &[0, 1], 5, 3), (whole(5), [Some(5), Some(6), None], true));
+        rows.clear();
+        assert_eq!(call(&mut rows, &[0, 1], 0, 3), (whole(0), [None, None, None], false));
+        rows.clear();
+        assert_eq!(call(&mut rows, &[0, 1], 0, 4), (whole(0), [Some(0), Some(1), None], false));
+        rows.clear();
+        // A loop that writes column 1 too.
+        assert_eq!(call(&mut rows, &[0], 0, 4).1, [Some(0), None, None]);
+        rows.clear();
+        rows.push(9, |_| 3);
+        assert_eq!([0, 1, 2].map(|column| rows.still(column)), [None; 3]);
+        assert_eq!(rows.extremes(0, 0).map(|seen| (seen.least, seen.greatest)), Some((3, 3)));
     }
 
     #[test]

@@ -226,6 +226,8 @@ pub struct Testbench {
     running: Option<Running>,
     /// Clocks after which a run is given up.
     limit: u64,
+    /// Clocks that its geometry takes at least; 0 without one.
+    least_clocks: u64,
 }
 
 impl Testbench {
@@ -243,8 +245,8 @@ impl Testbench {
     pub fn of_machine(hardware: Hardware, machine: Machine) -> Testbench {
         let columns = Columns::of(&machine);
         let (blocks, cut, start) = (Vec::new(), Vec::new(), vec![0; hardware.axes]);
-        let (cuts, every_sample, running, limit) = (false, true, None, u64::MAX);
-        Testbench { hardware, machine, blocks, start, cuts, cut, columns, every_sample, running, limit }
+        let (cuts, every_sample, running, limit, least_clocks) = (false, true, None, u64::MAX, 0);
+        Testbench { hardware, machine, blocks, start, cuts, cut, columns, every_sample, running, limit, least_clocks }
     }
 
     /// The same machine where nobody writes a wave of its programs: much faster, but columns are those of

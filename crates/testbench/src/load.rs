@@ -9,6 +9,12 @@ use super::Testbench;
 /// need not end.
 pub const CUT_CLOCKS: u64 = 1 << 27;
 
+/// Clocks that a curve takes at least: an axis moves by one BLU a clock at most. Nothing depends on the last digits.
+#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn least_clocks(curve: &Curve) -> u64 {
+    (curve.length() / (curve.from().len() as f64).sqrt()) as u64
+}
+
 impl Testbench {
     /// Plans the hardware, builds the machine and encodes the load words, each of which must fit in its register.
     ///
@@ -41,7 +47,8 @@ impl Testbench {
     /// A value does not fit in its register.
     pub fn of(&self, model: &Model, curve: &Curve) -> Result<Testbench, ModelError> {
         let loaded = self.load(&model.words(&self.hardware, curve)?)?;
-        Ok(Testbench { blocks: loaded.blocks, cut: loaded.cut, start: curve.from().to_vec(), ..self.clone() })
+        let (start, least_clocks) = (curve.from().to_vec(), least_clocks(curve));
+        Ok(Testbench { blocks: loaded.blocks, cut: loaded.cut, start, least_clocks, ..self.clone() })
     }
 
     /// What the inputs are set to for these words.

@@ -71,7 +71,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let columns = watch.columns.len();
         let mut steps = StepReader::new(bench);
         let (lookout, wanted) = Lookout::of(bench, &mut steps, observers).unzip();
-        let (engine, rows) = match machine.buffer.filter(|_| !bench.every_sample) {
+        let (mut engine, rows) = match machine.buffer.filter(|_| !bench.every_sample) {
             None => (kind.build_digesting(bench.design(), &watch, wanted.as_ref()), Rows::new(columns, CHUNK)),
             Some(ports) => {
                 let idle = Idle { running: vec![ports.phase], flags };
@@ -79,6 +79,7 @@ impl<'a, 'o> Run<'a, 'o> {
                 (kind.build_passing(bench.design(), &watch, &idle), Rows::sparse(columns, CHUNK))
             }
         };
+        engine.expect(bench.least_clocks.min(bench.limit));
         Run {
             bench,
             engine,

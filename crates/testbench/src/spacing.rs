@@ -143,14 +143,14 @@ impl Train {
     /// How far the axis is off right before one of these pulses, at least and at most, beyond what it was off before them.
     #[inline(always)]
     fn ends(&self, pulses: u64, stepped: u64, (all, travel): (i64, i64)) -> [i64; 2] {
-        if let (u64::MAX, Some(octets)) = (stepped, self.octets.first_chunk::<256>()) {
-            let (mut least, mut greatest, mut off) = (i64::MAX, i64::MIN, 0);
-            for pulses in pulses.to_le_bytes() {
-                let octet = octets[usize::from(pulses)];
-                (least, greatest) = (least.min(off + octet.least), greatest.max(off + octet.greatest));
-                off += octet.all;
+        if let Some(octets) = self.octets.first_chunk::<256>() {
+            if stepped == u64::MAX {
+                return through(octets, &pulses.to_le_bytes(), 0);
             }
-            return [least, greatest];
+            if let Some((rounds, stepped_before)) = rounds(pulses, stepped) {
+                let off = if stepped_before { -travel } else { 0 };
+                return through(octets, &rounds.to_le_bytes(), off);
+            }
         }
         let done = |index: u32| u64::from((stepped & !(u64::MAX << index)).count_ones());
         // Both are far below 2^63: all of a line, at most 2^56, in each of 64 samples.
@@ -230,6 +230,36 @@ impl SpacingWatch {
         self.trains.iter_mut().for_each(|train| train.compare_at(train.pulses, steps));
         self.trains.iter().map(|train| train.finish(steps, clocks)).collect()
     }
+}
+
+/// The ends of octets one after another, from so far off on.
+#[inline(always)]
+fn through(octets: &[Octet; 256], pulses: &[u8], mut off: i64) -> [i64; 2] {
+    let (mut least, mut greatest) = (i64::MAX, i64::MIN);
+    for &pulses in pulses {
+        let octet = octets[usize::from(pulses)];
+        (least, greatest) = (least.min(off + octet.least), greatest.max(off + octet.greatest));
+        off += octet.all;
+    }
+    [least, greatest]
+}
+
+/// Where one sample in four completes a step, and there are pulses in one of four only: a bit for each of these 16, and
+/// whether the step of the same round is complete before it.
+#[inline(always)]
+fn rounds(pulses: u64, stepped: u64) -> Option<(u16, bool)> {
+    const FIRST: u64 = 0x1111_1111_1111_1111;
+    let (step, pulse) = (stepped.trailing_zeros() % 4, pulses.trailing_zeros() % 4);
+    if stepped != FIRST << step || pulses & !(FIRST << pulse) != 0 {
+        return None;
+    }
+    // Four bits into each 16, and these side by side.
+    let mut bits = pulses >> pulse;
+    bits = (bits | bits >> 3) & 0x0303_0303_0303_0303;
+    bits = (bits | bits >> 6) & 0x000f_000f_000f_000f;
+    bits = (bits | bits >> 12) & 0x0000_00ff_0000_00ff;
+    bits = (bits | bits >> 24) & 0xffff;
+    Some((u16::try_from(bits).ok()?, step < pulse))
 }
 
 /// The bits at most so far above one that is set, but not those themselves.
@@ -323,5 +353,42 @@ impl Observer for SpacingWatch {
             self.count(stepped, clock);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn octets_say_what_a_look_at_each_pulse_says() {
+        let (all, travel) = (1_000_003, 618_034);
+        let train = |octets: Vec<Octet>| Train {
+            rate: Some((all, travel)),
+            pulses: 0,
+            last: None,
+            spacing: [u64::MAX, 0],
+            worst: (0, 0),
+            greatest: 0,
+            octets,
+        };
+        let (fast, plain) = (train(octets(Some((all, travel)))), train(Vec::new()));
+        let mut random = 1_u64;
+        for index in 0..4000 {
+            random = random.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(1);
+            let bits = random ^ random >> 33;
+            let [pulse, step] = [index % 4, index / 4 % 4];
+            let one_in_four = |phase: u64| 0x1111_1111_1111_1111 << phase;
+            // A step a sample; one in four, with pulses of one phase or of several; anything.
+            for (pulses, stepped) in [
+                (bits, u64::MAX),
+                (bits & one_in_four(pulse), one_in_four(step)),
+                (bits, one_in_four(step)),
+                (bits & one_in_four(pulse), bits.rotate_left(17)),
+            ] {
+                let ends = |train: &Train| train.ends(pulses, stepped, (all, travel));
+                assert!(pulses == 0 || ends(&fast) == ends(&plain), "{pulses:x} {stepped:x}");
+            }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The step table, read out of samples: row 0 is the state after load, row k that after step k.
 
+use fearless_simd::{Level, dispatch};
 use stepwave_engine::{Digest, Rows};
 use stepwave_netlist::bits::to_signed;
 
@@ -64,6 +65,32 @@ impl StepColumns {
     }
 }
 
+/// What the pulses of an axis in a block come to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Pulses {
+    /// In either direction.
+    pulses: u64,
+    /// Forward less backward.
+    moved: i64,
+    /// Samples up to the last pulse.
+    last: u64,
+}
+
+#[inline(always)]
+fn count_pulses(values: &[u64]) -> Pulses {
+    let mut counted = Pulses::default();
+    let (mut samples, mut last) = (0_i64, 0);
+    // Blocks are short: nothing wraps, and without checks and branches several samples are taken at once.
+    for &pulse in values {
+        samples = samples.wrapping_add(1);
+        counted.pulses = counted.pulses.wrapping_add(pulse & 1);
+        counted.moved = counted.moved.wrapping_add(signed(pulse));
+        last = last.max(if pulse == 0 { 0 } else { samples });
+    }
+    counted.last = last.cast_unsigned();
+    counted
+}
+
 /// What is written down: rows, pulses, clock of the last, where they led, and what the counters show.
 type Gathered = (u64, Vec<u64>, u64, Vec<i64>, Vec<i64>);
 
@@ -87,6 +114,7 @@ pub(super) struct StepReader<'a> {
     before: Vec<u64>,
     pulses: Vec<u64>,
     pub(super) last_pulse: u64,
+    level: Level,
     /// Where the pulses led, and what the counters show.
     position: Vec<i64>,
     counters: Vec<i64>,
@@ -118,6 +146,7 @@ impl<'a> StepReader<'a> {
             before: vec![0; machine.table.len()],
             pulses: vec![0; axes],
             last_pulse: 0,
+            level: Level::new(),
             position: bench.start.clone(),
             counters: vec![0; axes],
         }
@@ -128,10 +157,11 @@ impl<'a> StepReader<'a> {
         let axes = self.pulses.iter_mut().zip(&mut self.position);
         for ((pulses, place), &column) in axes.zip(&self.columns.pulses) {
             let values = rows.column(column);
-            *pulses += values.iter().map(|&pulse| pulse & 1).sum::<u64>();
-            *place = place.saturating_add(values.iter().map(|&pulse| signed(pulse)).sum());
-            if let Some(last) = values.iter().rposition(|&pulse| pulse != 0) {
-                self.last_pulse = self.last_pulse.max(rows.first_clock() + last as u64);
+            let counted = dispatch!(self.level, _simd => count_pulses(values));
+            *pulses += counted.pulses;
+            *place = place.saturating_add(counted.moved);
+            if counted.last > 0 {
+                self.last_pulse = self.last_pulse.max(rows.first_clock() + counted.last - 1);
             }
         }
         let mut from = 0;

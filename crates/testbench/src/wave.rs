@@ -117,16 +117,19 @@ impl Taken {
         Taken { column, width, reset: None, first: None, range: None }
     }
 
-    fn take(&mut self, rows: &Rows, range: Range<usize>) {
-        let mut values = rows.column(self.column)[range.clone()].iter().map(|&value| to_signed(self.width, value));
+    fn take(&mut self, rows: &Rows, mut range: Range<usize>) {
         if rows.clock(range.start) == 0 {
-            self.reset = values.next();
+            self.reset = Some(to_signed(self.width, rows.value(self.column, range.start)));
+            range.start += 1;
         }
-        for value in values {
-            self.first.get_or_insert(value);
-            let [least, greatest] = self.range.get_or_insert([value; 2]);
-            (*least, *greatest) = ((*least).min(value), (*greatest).max(value));
-        }
+        // With the sign bit inverted, two's complement sorts as unsigned numbers do.
+        let turned = self.width.sign_bit();
+        let Some(seen) = rows.extremes_within(self.column, range, turned) else { return };
+        let [first, least, greatest] =
+            [seen.first, seen.least, seen.greatest].map(|value| to_signed(self.width, value ^ turned));
+        self.first.get_or_insert(first);
+        let range = self.range.get_or_insert([least, greatest]);
+        *range = [range[0].min(least), range[1].max(greatest)];
     }
 }
 

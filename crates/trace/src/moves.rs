@@ -5,9 +5,10 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, u64x4};
 
-use stepwave_netlist::{Rows, packed};
+use stepwave_netlist::Rows;
 
 /// Samples looked at together.
 pub(super) const SPAN: usize = 64;
@@ -40,13 +41,13 @@ impl Moves {
     /// Takes the next samples, at most [`SPAN`], to be asked for [bits](Self::bits).
     pub(super) fn scan(&mut self, rows: &Rows, range: Range<usize>) {
         self.scan_nets(rows, range);
-        dispatch!(self.level, _simd => self.groups.iter_mut().for_each(turn_over));
+        dispatch!(self.level, _simd => turn_over_all(&mut self.groups));
     }
 
     /// Takes the next samples, at most [`SPAN`], to be asked for changes [net by net](Self::net).
     pub(super) fn scan_nets(&mut self, rows: &Rows, range: Range<usize>) {
-        let nets = self.columns.iter().map(|&column| &rows.column(column)[range.clone()]).zip(&mut self.last);
-        dispatch!(self.level, _simd => scan(&mut self.groups, nets));
+        let Moves { level, columns, last, groups } = self;
+        dispatch!(*level, simd => scan(simd, groups, columns.iter().zip(last), rows, range));
     }
 
     /// The samples in which a net changes: a bit each, the first the lowest.
@@ -73,46 +74,81 @@ impl Moves {
     }
 }
 
-/// Takes the samples of every net, in order, equally many of each; `before` gives and takes the value of a net before
-/// them.
+/// Takes some samples of every net, by its column; with it is the value in the sample before, and then in the last.
 #[inline(always)]
-fn scan<'r>(groups: &mut [[u64; SPAN]], nets: impl Iterator<Item = (&'r [u64], &'r mut u64)>) {
+fn scan<'n, S: Simd>(
+    simd: S,
+    groups: &mut [[u64; SPAN]],
+    nets: impl Iterator<Item = (&'n usize, &'n mut u64)>,
+    rows: &Rows,
+    range: Range<usize>,
+) {
     groups.as_flattened_mut().fill(0);
-    for (index, (values, before)) in nets.enumerate() {
-        groups[index / SPAN][index % SPAN] = changes(values, *before);
+    for (bits, (&column, before)) in groups.as_flattened_mut().iter_mut().zip(nets) {
+        if let Some(value) = rows.still(column) {
+            *bits = u64::from(value != *before);
+            *before = value;
+            continue;
+        }
+        let values = &rows.column(column)[range.clone()];
+        *bits = match values.first_chunk() {
+            Some(values) => changes(simd, values, *before),
+            None => few_changes(values, *before),
+        };
         *before = values.last().copied().unwrap_or(*before);
     }
 }
 
 /// A bit for each value that is not the one before it, the first the lowest.
 #[inline(always)]
-fn changes(values: &[u64], before: u64) -> u64 {
-    // Most nets rest most of the time.
-    if values.iter().fold(0, |seen, value| seen | (value ^ before)) == 0 {
-        return 0;
+fn changes<S: Simd>(simd: S, values: &[u64; SPAN], before: u64) -> u64 {
+    let rests = |now: &[u64], earlier: &[u64]| {
+        u64x4::from_slice(simd, now).simd_eq(u64x4::from_slice(simd, earlier)).to_bitmask()
+    };
+    let mut resting = rests(&values[..4], &[before, values[0], values[1], values[2]]);
+    for first in (4..SPAN).step_by(4) {
+        resting |= rests(&values[first..first + 4], &values[first - 1..first + 3]) << first;
     }
-    let mut flags = [0_u8; SPAN];
-    flags[0] = u8::from(values[0] != before);
-    for ((flag, before), value) in flags[1..].iter_mut().zip(values).zip(&values[1..]) {
-        *flag = u8::from(value != before);
+    !resting
+}
+
+/// The same of fewer values.
+fn few_changes(values: &[u64], before: u64) -> u64 {
+    let earlier = [before].into_iter().chain(values.iter().copied());
+    let changed = values.iter().zip(earlier).map(|(&now, earlier)| u64::from(now != earlier));
+    changed.enumerate().fold(0, |bits, (index, changed)| bits | changed << index)
+}
+
+#[inline(always)]
+fn turn_over_all(groups: &mut [[u64; SPAN]]) {
+    for words in groups {
+        turn_over(words);
     }
-    packed(&flags)
 }
 
 /// Turns rows into columns: bit `b` of word `w` becomes bit `w` of word `b`.
 #[inline(always)]
 fn turn_over(words: &mut [u64; SPAN]) {
-    let mut half = SPAN / 2;
-    // The low half of every group of 2 * half bits.
-    let mut mask = u64::MAX >> half;
-    while half > 0 {
-        for low in (0..SPAN).filter(|word| word & half == 0) {
-            let swapped = (words[low] >> half ^ words[low + half]) & mask;
-            words[low] ^= swapped << half;
-            words[low + half] ^= swapped;
+    swap_halves::<32>(words);
+    swap_halves::<16>(words);
+    swap_halves::<8>(words);
+    swap_halves::<4>(words);
+    swap_halves::<2>(words);
+    swap_halves::<1>(words);
+}
+
+/// In squares of `2 * HALF` words and bits: the high bits of the first words change places with the low bits of the others.
+#[inline(always)]
+fn swap_halves<const HALF: usize>(words: &mut [u64; SPAN]) {
+    // The low half of every group of 2 * HALF bits.
+    let mask = u64::MAX / ((1 << HALF) + 1);
+    for square in words.chunks_exact_mut(2 * HALF) {
+        let (first, others) = square.split_at_mut(HALF);
+        for (low, high) in first.iter_mut().zip(others) {
+            let swapped = (*low >> HALF ^ *high) & mask;
+            *low ^= swapped << HALF;
+            *high ^= swapped;
         }
-        half /= 2;
-        mask ^= mask << half;
     }
 }
 
@@ -133,8 +169,9 @@ mod tests {
     #[test]
     fn every_change_of_every_net_is_found_in_its_sample() {
         for nets in [1, 2, 63, 64, 65, 200] {
-            let mut moves = Moves::new(vec![0; nets]);
+            let mut moves = Moves::new((0..nets).collect());
             let mut before: Vec<u64> = (0..nets).map(|net| net as u64 % 3).collect();
+            moves.last.clone_from(&before);
             for len in [64, 1, 17, 64, 63] {
                 let columns: Vec<Vec<u64>> = (0..nets).map(|net| values(net + len, len)).collect();
                 let expected: Vec<Vec<usize>> = (0..len)
@@ -143,10 +180,16 @@ mod tests {
                         (0..nets).filter(|&net| columns[net][sample] != earlier(net)).collect()
                     })
                     .collect();
-                scan(&mut moves.groups, columns.iter().map(Vec::as_slice).zip(&mut before));
+                // Not the first rows of their block.
+                let mut rows = Rows::new(nets, 3 + len);
+                (0..3).for_each(|clock| rows.push(clock, |_| 9));
+                (0..len).for_each(|sample| rows.push(3 + sample as u64, |net| columns[net][sample]));
+                moves.scan_nets(&rows, 3..3 + len);
                 let by_net = moves.groups.clone();
-                moves.groups.iter_mut().for_each(turn_over);
+                turn_over_all(&mut moves.groups);
                 let changes = |sample, &net: &usize| moves.bits(net / SPAN, sample) >> (net % SPAN) & 1 == 1;
+                let missing = |sample| moves.bits(nets / SPAN, sample) >> (nets % SPAN);
+                assert!(nets % SPAN == 0 || (0..SPAN).all(|sample| missing(sample) == 0), "a net that is none");
                 let found: Vec<Vec<usize>> =
                     (0..len).map(|sample| (0..nets).filter(|net| changes(sample, net)).collect()).collect();
                 assert_eq!(found, expected, "{nets} nets, {len} samples");
@@ -154,8 +197,24 @@ mod tests {
                 let found: Vec<Vec<usize>> =
                     (0..len).map(|sample| (0..nets).filter(|net| changes(sample, net)).collect()).collect();
                 assert_eq!(found, expected, "{nets} nets, {len} samples, net by net");
-                assert!((0..nets).all(|net| before[net] == columns[net][len - 1]));
+                assert!((0..nets).all(|net| moves.last(net) == columns[net][len - 1]));
+                before = moves.last.clone();
             }
+        }
+    }
+
+    #[test]
+    fn a_column_that_rests_changes_in_its_first_sample_or_in_none() {
+        let mut moves = Moves::new(vec![0]);
+        let mut rows = Rows::new(1, SPAN);
+        for (value, expected) in [(0, 0), (5, 1), (5, 0), (0, 1)] {
+            rows.clear();
+            _ = rows.spare(&[0]);
+            rows.fill(0, SPAN as u64, value);
+            rows.grow(0, SPAN as u64);
+            assert_eq!(rows.still(0), Some(value));
+            moves.scan_nets(&rows, 0..SPAN);
+            assert_eq!((moves.net(0), moves.last(0)), (expected, value));
         }
     }
 

@@ -11,6 +11,9 @@ mod text;
 use std::io::{self, Write};
 use std::ops::Range;
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch};
+
 use ::vcd::{IdCode, ReferenceIndex, VarType, Writer};
 
 use super::moves::{Moves, SPAN};
@@ -64,6 +67,7 @@ struct Text {
     buffer: Vec<u8>,
     filled: usize,
     changes: Vec<Change>,
+    level: Level,
     moves: Moves,
     wide: Wide<Tail>,
     /// Value lines of the clock, high and low, if it is dumped.
@@ -112,6 +116,7 @@ impl VcdHeader<'_> {
             // Two stamps and `$dumpvars` fit into a window too.
             buffer: vec![0; BUFFER + longest + 3 * WINDOW],
             filled: 0,
+            level: Level::new(),
             moves: Moves::new(changes.iter().map(|change| change.column).collect()),
             changes,
             wide,
@@ -213,17 +218,24 @@ impl Text {
             let end = range.end.min(start + SPAN);
             self.moves.scan(rows, start..end);
             self.wide.scan(rows, start..end);
-            for row in start..end {
-                if rows.is_sparse() {
-                    let clock = rows.clock(row);
-                    self.seek(clock);
-                    self.last_clock = Some(clock);
-                }
-                self.row(rows, row, row - start);
-                self.spill(out)?;
-            }
+            dispatch!(self.level, simd => self.scanned(simd, rows, start..end, out))?;
         }
         self.last_clock = Some(last);
+        Ok(())
+    }
+
+    /// Writes the rows scanned last.
+    #[inline(always)]
+    fn scanned<S: Simd>(&mut self, simd: S, rows: &Rows, range: Range<usize>, out: &mut dyn Write) -> io::Result<()> {
+        for row in range.clone() {
+            if rows.is_sparse() {
+                let clock = rows.clock(row);
+                self.seek(clock);
+                self.last_clock = Some(clock);
+            }
+            self.row(simd, rows, row, row - range.start);
+            self.spill(out)?;
+        }
         Ok(())
     }
 
@@ -248,9 +260,11 @@ impl Text {
             self.filled += line.put(&mut self.buffer[self.filled..]);
         }
         self.moves.start(rows, row);
+        let (level, buffer, filled) = (self.level, &mut self.buffer, &mut self.filled);
         for change in &self.changes {
-            change.line.put(rows.value(change.column, row), window(&mut self.buffer, self.filled));
-            self.filled += change.line.len();
+            let value = rows.value(change.column, row);
+            dispatch!(level, simd => change.line.put(simd, value, window(buffer, *filled)));
+            *filled += change.line.len();
         }
         self.wide.start(rows, row);
         for word in 0..self.wide.words().len() {
@@ -266,8 +280,8 @@ impl Text {
     }
 
     /// Writes a row, the `sample`th of those scanned last.
-    #[inline]
-    fn row(&mut self, rows: &Rows, row: usize, sample: usize) {
+    #[inline(always)]
+    fn row<S: Simd>(&mut self, simd: S, rows: &Rows, row: usize, sample: usize) {
         let start = self.filled;
         let buffer = &mut self.buffer[..];
         let stamp = self.clk.map_or_else(|| Tail::new("\n"), |[high, _]| high);
@@ -278,7 +292,7 @@ impl Text {
             while bits != 0 {
                 let change = &changes[bits.trailing_zeros() as usize];
                 bits &= bits - 1;
-                change.line.put(rows.value(change.column, row), window(buffer, at));
+                change.line.put(simd, rows.value(change.column, row), window(buffer, at));
                 at += change.line.len();
             }
         }

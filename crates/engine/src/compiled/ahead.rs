@@ -173,7 +173,7 @@ impl Compiled {
     /// The variant that can make a digest from the present sample on, and the phase of that sample.
     fn digesting_variant(&self) -> Option<(usize, usize)> {
         let mut usable = self.variants.iter().enumerate().filter(|(_, variant)| {
-            variant.clocks >= self.warm_up && !variant.is_poor(self.warm_up) && self.holds(&variant.inputs)
+            variant.clocks >= self.warm_up && !variant.is_poor(self.patience) && self.holds(&variant.inputs)
         });
         usable.find_map(|(index, variant)| {
             let digests = variant.digests.as_ref().filter(|digests| !digests.unavailable)?;

@@ -171,7 +171,7 @@ impl Compiled {
         let before = self.state[..count].to_vec();
         let Some(large) = &mut self.large else { return None };
         let room = room.min(large.left);
-        let (values, first) = rows.spare();
+        let (values, first) = rows.spare(self.variants[variant].native.resting());
         let memories = self.word.memories().words_mut();
         let mut done = 0;
         while done < room && self.state[flag + 1] == 0 {

@@ -41,6 +41,8 @@ use stepwave_netlist::cells::{Net, Op};
 const WARM_UP: u64 = 16 * 1024;
 /// Clocks looked back on when a loop is compiled.
 const LOOK_BACK: u64 = 1024;
+/// A run that is said to take as many clocks is compiled as soon as there is enough to look back on.
+const LONG: u64 = 2 * WARM_UP;
 /// Clocks that inputs must have stayed before a loop is compiled for them that assumes nothing else.
 const STEADY: u64 = 16;
 /// Loops compiled with assumptions on registers before one without is used.
@@ -66,8 +68,8 @@ struct Variant {
 
 impl Variant {
     /// It leaves through its guards too often to pay.
-    fn is_poor(&self, warm_up: u64) -> bool {
-        self.guards >= 4 && self.clocks / self.guards < warm_up
+    fn is_poor(&self, patience: u64) -> bool {
+        self.guards >= 4 && self.clocks / self.guards < patience
     }
 }
 
@@ -84,6 +86,8 @@ pub(super) struct Compiled {
     registers: Vec<(Net, Net)>,
     history: History,
     warm_up: u64,
+    /// Clocks between two guards from which on a loop pays.
+    patience: u64,
     /// Clocks since an input changed or a guard failed.
     quiet: u64,
     /// Inputs have changed since a loop was left, and there is one for them.
@@ -123,6 +127,7 @@ impl Compiled {
             ahead: None,
             history: if is_large { History::none() } else { History::new(netlist, &registers, LOOK_BACK.min(warm_up)) },
             warm_up,
+            patience: warm_up,
             registers,
             quiet: 0,
             known: false,
@@ -166,7 +171,7 @@ impl Compiled {
         let stop = self.word.run(1, rows);
         if changes {
             self.known =
-                self.variants.iter().any(|variant| !variant.is_poor(self.warm_up) && self.holds(&variant.inputs));
+                self.variants.iter().any(|variant| !variant.is_poor(self.patience) && self.holds(&variant.inputs));
         }
         self.quiet += 1;
         if self.quiet + self.history.window() > self.warm_up {
@@ -185,7 +190,7 @@ impl Compiled {
         let fits = |variant: &Variant| {
             variant.native.stride() == stride && self.holds(&variant.inputs) && self.holds(&variant.last_phase)
         };
-        self.variants.iter().position(|variant| !variant.is_poor(self.warm_up) && fits(variant))
+        self.variants.iter().position(|variant| !variant.is_poor(self.patience) && fits(variant))
     }
 
     /// The registers that have cycled in the recent clocks, unless it was of no use to assume that.
@@ -251,7 +256,7 @@ impl Compiled {
         if self.idle.is_some() {
             return self.run_passing(variant, clocks, rows);
         }
-        let (values, first) = rows.spare();
+        let (values, first) = rows.spare(self.variants[variant].native.resting());
         let memories = self.word.memories().words_mut();
         let recorded = self.variants[variant].native.call(&mut self.state, values, first, clocks, memories);
         for &column in self.variants[variant].native.resting() {
@@ -278,7 +283,7 @@ impl Compiled {
         let base = count + self.design.inputs().len();
         let clock = self.word.clock();
         (self.state[base + passing::ROOM], self.state[base + passing::CLOCK]) = (rows.room(), clock);
-        let (values, first) = rows.spare();
+        let (values, first) = rows.spare(self.variants[variant].native.resting());
         let memories = self.word.memories().words_mut();
         let done = self.variants[variant].native.call(&mut self.state, values, first, clocks, memories);
         let recorded = self.state[base + passing::ROOM];
@@ -364,6 +369,13 @@ impl Engine for Compiled {
         Stop::Clocks
     }
 
+    fn expect(&mut self, clocks: u64) {
+        // Large machines are compiled earlier still, and loops that pass over samples by other rules.
+        if clocks >= LONG && self.large.is_none() && self.idle.is_none() {
+            self.warm_up = self.warm_up.min(LOOK_BACK);
+        }
+    }
+
     fn look_ahead(&mut self, clocks: u64, digest: &mut Digest) -> Ahead {
         self.digest(clocks, digest)
     }
@@ -390,6 +402,27 @@ mod tests {
     use super::*;
     use stepwave_netlist::dsl::Module;
     use stepwave_netlist::elaborate;
+
+    #[test]
+    fn a_run_that_will_be_long_is_compiled_early() {
+        let module = Module::new("counter");
+        let m = module.top();
+        let count = m.reg("count", 16);
+        count.set(count.q.wrapping_add(m.lit(16, 1)));
+        let count = count.q.net();
+        let design = elaborate(module.finish().unwrap()).unwrap();
+        let native = |expected: u64| {
+            let mut engine = Compiled::new(&design, &Watch { columns: vec![count], stops: Vec::new() });
+            engine.expect(expected);
+            let mut rows = Rows::new(1, 4096);
+            engine.reset(&mut rows);
+            engine.run(4000, &mut rows);
+            assert!(rows.column(0).iter().copied().eq(0..=4000));
+            engine.variants.iter().map(|variant| variant.clocks).sum::<u64>()
+        };
+        assert_eq!([0, LONG - 1].map(native), [0, 0]);
+        assert!(native(LONG) > 2_000, "{}", native(LONG));
+    }
 
     /// Every other test would pass too if nothing were ever compiled.
     #[test]

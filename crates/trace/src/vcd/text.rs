@@ -3,6 +3,9 @@
 //! Everything is stored in whole words over a window of fixed size, of which only the first bytes count: the next text
 //! is written over the rest. So there is one check of bounds a line, and none a character.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{u8x32, u64x4};
+
 /// Bytes that a line may touch: `b`, 64 digits, and a tail of 8 bytes, after any start.
 pub(super) const WINDOW: usize = 144;
 
@@ -87,29 +90,55 @@ impl Line {
     }
 
     /// Writes the line for `value` at the start of `out`.
-    #[inline]
-    pub(super) fn put(&self, value: u64, out: &mut [u8; WINDOW]) {
-        let octets = (value << self.shift).to_be_bytes();
+    #[inline(always)]
+    pub(super) fn put<S: Simd>(&self, simd: S, value: u64, out: &mut [u8; WINDOW]) {
+        let value = value << self.shift;
         let digits = self.digits & 1;
         out[0] = b'b';
-        let digit = |index: usize| OCTETS[usize::from(octets[index])];
-        out[digits..digits + 8].copy_from_slice(&digit(0));
-        if self.shift < 56 {
-            for index in 1..4 {
-                let at = digits + 8 * index;
-                out[at..at + 8].copy_from_slice(&digit(index));
-            }
-        }
+        spread(simd, value, &HIGH_OCTETS).store_slice(&mut out[digits..digits + 32]);
         if self.shift < 32 {
-            for index in 4..8 {
-                let at = digits + 8 * index;
-                out[at..at + 8].copy_from_slice(&digit(index));
-            }
+            spread(simd, value, &LOW_OCTETS).store_slice(&mut out[digits + 32..digits + 64]);
         }
         // At most 65; the mask shows it to the compiler.
         let at = self.tail_at & 127;
         out[at..at + 8].copy_from_slice(&self.tail.bytes);
     }
+}
+
+/// For each of 32 digits, the first the highest, the byte of a word that it is in: the high half of the word, or the low
+/// one.
+static HIGH_OCTETS: [u8; 32] = octets_of_digits(7);
+static LOW_OCTETS: [u8; 32] = octets_of_digits(3);
+/// The bit of that byte.
+static BITS: [u8; 32] = bits_of_digits();
+
+const fn octets_of_digits(highest: u8) -> [u8; 32] {
+    let mut octets = [highest; 32];
+    let mut digit = 8;
+    while digit < 32 {
+        octets[digit] = octets[digit - 8] - 1;
+        digit += 1;
+    }
+    octets
+}
+
+const fn bits_of_digits() -> [u8; 32] {
+    let mut bits = [0; 32];
+    let mut digit = 0;
+    while digit < 32 {
+        bits[digit] = 0x80 >> (digit % 8);
+        digit += 1;
+    }
+    bits
+}
+
+/// 32 digits of a value.
+#[inline(always)]
+fn spread<S: Simd>(simd: S, value: u64, octets: &[u8; 32]) -> u8x32<S> {
+    let bytes: u8x32<S> = u64x4::splat(simd, value).bitcast();
+    let bits = u8x32::from_slice(simd, &BITS);
+    let set = (bytes.swizzle_dyn_within_blocks(u8x32::from_slice(simd, octets)) & bits).simd_eq(bits);
+    set.select(u8x32::splat(simd, b'1'), u8x32::splat(simd, b'0'))
 }
 
 /// A time as decimal digits, one a byte, eight a word, the lowest word first; it is counted up, never divided.
@@ -207,6 +236,8 @@ impl Stamps {
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::{Level, dispatch};
+
     use super::*;
 
     fn text(len: usize, out: &[u8]) -> &str {
@@ -216,18 +247,20 @@ mod tests {
     #[test]
     fn a_line_holds_the_digits_of_every_width_and_the_id() {
         let mut out = [0; WINDOW];
+        let mut put = |line: &Line, value| {
+            dispatch!(Level::new(), simd => line.put(simd, value, &mut out));
+            text(line.len(), &out).to_owned()
+        };
         for width in 1..=64 {
             for value in [0, 1, u64::MAX, 0xA5C3_0F96_1234_8001, 0x8000_0000_0000_0000, 1 << (width - 1)] {
                 let value = value & (u64::MAX >> (64 - width));
                 let line = Line::new(width, false, "!a");
-                line.put(value, &mut out);
-                assert_eq!(text(line.len(), &out), format!("b{value:0width$b} !a\n", width = width as usize));
+                assert_eq!(put(&line, value), format!("b{value:0width$b} !a\n", width = width as usize));
             }
         }
         let scalar = Line::new(1, true, "~");
         for value in [0, 1] {
-            scalar.put(value, &mut out);
-            assert_eq!(text(scalar.len(), &out), format!("{value}~\n"));
+            assert_eq!(put(&scalar, value), format!("{value}~\n"));
         }
     }
 
