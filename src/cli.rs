@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::models::Millionths;
-use crate::nc::{Drawn, Opens};
+use crate::nc::{Drawn, Opens, SplineForm};
 use clap::{Args, Parser, Subcommand};
 
 use crate::commands::diff::DiffArgs;
@@ -31,7 +31,7 @@ pub(crate) use program::{Method, ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use usage::usage;
-pub(crate) use values::{ClockArgs, Point, SimulationArgs};
+pub(crate) use values::{ClockArgs, Point, SimulationArgs, parse_point};
 pub(crate) use widths::WidthsArgs;
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware
@@ -268,14 +268,26 @@ pub(crate) struct GeometryArgs {
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = values::parse_point)]
     pub(crate) center: Option<Point>,
     /// Ellipse with these semi-axes along x and y
-    #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = values::parse_pair, group = "conic")]
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = values::parse_pair, group = "drawn")]
     pub(crate) ellipse: Option<[i64; 2]>,
     /// Parabola y² = Cx about --center, or one that opens elsewhere
-    #[arg(long, value_name = "C", allow_hyphen_values = true, group = "conic")]
+    #[arg(long, value_name = "C", allow_hyphen_values = true, group = "drawn")]
     pub(crate) parabola: Option<i64>,
     /// Branch of the hyperbola x²/A² - y²/B² = 1, or of one that opens elsewhere
-    #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = values::parse_pair, group = "conic")]
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true, value_parser = values::parse_pair, group = "drawn")]
     pub(crate) hyperbola: Option<[i64; 2]>,
+    /// Bezier curve with these three or four control points
+    #[arg(long, value_name = "X0,Y0,X1,Y1,X2,Y2[,X3,Y3]", allow_hyphen_values = true, value_parser = values::parse_point, group = "drawn")]
+    pub(crate) bezier: Option<Point>,
+    /// Cubic segment from a point with a tangent to a point with a tangent
+    #[arg(long, value_name = "X0,Y0,TX0,TY0,X1,Y1,TX1,TY1", allow_hyphen_values = true, value_parser = values::parse_point, group = "drawn")]
+    pub(crate) hermite: Option<Point>,
+    /// Catmull-Rom spline through the points in a CSV file of x,y, or given as X,Y,X,Y,…
+    #[arg(long, value_name = "POINTS", allow_hyphen_values = true, group = "drawn")]
+    pub(crate) points: Option<String>,
+    /// Uniform cubic B-spline along --points instead
+    #[arg(long, requires = "points")]
+    pub(crate) b_spline: bool,
     /// Where a parabola or the branch of a hyperbola opens to [default: where both ends lie on it]
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true, value_parser = values::opens())]
     pub(crate) opens: Option<Opens>,
@@ -288,13 +300,17 @@ pub(crate) struct GeometryArgs {
 }
 
 impl GeometryArgs {
-    /// What is drawn, and its sizes, where these are given.
-    pub(crate) fn sized(&self) -> Option<(Drawn, Vec<i64>)> {
-        let conics = [
-            self.ellipse.map(|semi_axes| (Drawn::Ellipse, semi_axes.to_vec())),
-            self.parabola.map(|c| (Drawn::Parabola(self.opens), vec![c])),
-            self.hyperbola.map(|semi_axes| (Drawn::Hyperbola(self.opens), semi_axes.to_vec())),
+    /// What is drawn, where an option says it.
+    pub(crate) fn drawn(&self) -> Option<Drawn> {
+        let through = if self.b_spline { SplineForm::BSpline } else { SplineForm::CatmullRom };
+        let given = [
+            self.ellipse.map(|_| Drawn::Ellipse),
+            self.parabola.map(|_| Drawn::Parabola(self.opens)),
+            self.hyperbola.map(|_| Drawn::Hyperbola(self.opens)),
+            self.bezier.as_ref().map(|_| Drawn::Spline(SplineForm::Bezier)),
+            self.hermite.as_ref().map(|_| Drawn::Spline(SplineForm::Hermite)),
+            self.points.as_ref().map(|_| Drawn::Spline(through)),
         ];
-        conics.into_iter().flatten().next()
+        given.into_iter().flatten().next()
     }
 }

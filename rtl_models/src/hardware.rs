@@ -53,6 +53,10 @@ pub struct Hardware {
     pub rate_bound: Option<f64>,
     /// Registers that share one scale and are widened together.
     pub scale: Vec<&'static str>,
+    /// Numbers that the plan fixes besides widths and options, such as the modulus of remainders.
+    pub constants: Vec<(&'static str, i128)>,
+    /// What to do where a component overflows that no width helps, by its name: `give a greater --divisions`.
+    pub remedies: Vec<(&'static str, String)>,
 }
 
 impl Hardware {
@@ -69,6 +73,12 @@ impl Hardware {
     #[must_use]
     pub fn bits_of(&self, register: &str) -> u32 {
         self.widths.get(register).map_or(0, |width| width.get())
+    }
+
+    /// A number that the plan fixed; 0 for one that it did not.
+    #[must_use]
+    pub fn constant(&self, name: &str) -> i128 {
+        self.constants.iter().find(|(known, _)| *known == name).map_or(0, |(_, value)| *value)
     }
 
     /// A register in this scope, by its declaration.
@@ -153,6 +163,12 @@ impl Hardware {
             (Preset::Value(value), None) => i128::from(value),
             (_, value) => i128::try_from(value.unwrap_or(0)).unwrap_or(0),
         }
+    }
+
+    /// What to do where this component overflows and no width helps.
+    #[must_use]
+    pub fn remedy(&self, component: &str) -> Option<&str> {
+        self.remedies.iter().find(|(known, _)| *known == component).map(|(_, remedy)| remedy.as_str())
     }
 
     /// The register is widened together with others.

@@ -1,6 +1,6 @@
 //! What models interpolate: the kinds of curves, and how a model plans its hardware for a curve and loads it.
 
-use stepwave_nc::{Arc, Conic, Curve, CurveType, Direction, Drawn, GeometryError, Helix, Line};
+use stepwave_nc::{Arc, Conic, Curve, CurveType, Direction, Drawn, GeometryError, Helix, Line, Spline, SplineForm};
 
 use crate::described::Described;
 use crate::error::ModelError;
@@ -23,9 +23,16 @@ pub enum CurveKind {
     Conic,
     /// Circular arcs in the plane with a displacement in z.
     Helix,
+    /// Free curves in the plane.
+    Spline,
     /// What a program is made of: lines of 2 or 3 axes, circular arcs in the plane, and helices.
     Move,
 }
+
+static SPLINES: [Drawn; 4] = {
+    let [bezier, hermite, through, along] = SplineForm::ALL;
+    [Drawn::Spline(bezier), Drawn::Spline(hermite), Drawn::Spline(through), Drawn::Spline(along)]
+};
 
 /// What is said of one kind.
 struct Traits {
@@ -38,8 +45,14 @@ struct Traits {
 
 impl CurveKind {
     /// All kinds, of lines those of most axes.
-    pub const ALL: [CurveKind; 5] =
-        [CurveKind::Line { max_axes: 6 }, CurveKind::Arc, CurveKind::Conic, CurveKind::Helix, CurveKind::Move];
+    pub const ALL: [CurveKind; 6] = [
+        CurveKind::Line { max_axes: 6 },
+        CurveKind::Arc,
+        CurveKind::Conic,
+        CurveKind::Helix,
+        CurveKind::Spline,
+        CurveKind::Move,
+    ];
 
     fn traits(self) -> Traits {
         match self {
@@ -74,6 +87,13 @@ impl CurveKind {
                 in_box: "helices about the origin",
                 max_axes: 3,
                 drawn: &[Drawn::Helix],
+            },
+            CurveKind::Spline => Traits {
+                name: "spline",
+                takes: "free curves (--bezier X,Y,…, --hermite X,Y,TX,TY,X,Y,TX,TY, or --points FILE [--b-spline])",
+                in_box: "free curves",
+                max_axes: 2,
+                drawn: &SPLINES,
             },
             CurveKind::Move => Traits {
                 name: "move",
@@ -135,6 +155,7 @@ impl CurveKind {
             CurveKind::Arc | CurveKind::Move => Arc::new([5, 0], [0, 5], [0, 0], turn)?.into(),
             CurveKind::Conic => Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], turn)?.into(),
             CurveKind::Helix => Helix::new([5, 0, 0], [0, 5, 3], [0, 0], turn)?.into(),
+            CurveKind::Spline => Spline::new(SplineForm::Bezier, &[[0, 0], [4, 0], [8, 4], [8, 8]])?.into(),
         })
     }
 }
@@ -162,6 +183,8 @@ pub enum Interpolates {
     Conics(Method<Conic>),
     /// Circular arcs in the plane with a displacement in z.
     Helices(Method<Helix>),
+    /// Free curves in the plane.
+    Splines(Method<Spline>),
     /// The moves of a program, or one of them alone.
     Moves(Paced),
     /// What data describe, wiring included: [`Model::hardware`](crate::Model::hardware) is not called.
@@ -194,6 +217,7 @@ impl Interpolates {
             Interpolates::Arcs(method) => (CurveKind::Arc, Some(method)),
             Interpolates::Conics(method) => (CurveKind::Conic, Some(method)),
             Interpolates::Helices(method) => (CurveKind::Helix, Some(method)),
+            Interpolates::Splines(method) => (CurveKind::Spline, Some(method)),
             Interpolates::Moves(moves) if moves.arcs.is_some() => (CurveKind::Move, None),
             Interpolates::Moves(_) => (CurveKind::Line { max_axes: 3 }, None),
             Interpolates::Described(described) => (described.curve(), None),

@@ -37,6 +37,7 @@ pub mod program;
 pub mod registers;
 pub mod sampled_arc;
 pub mod sampled_line;
+pub mod spline_dda;
 pub mod stepgen;
 pub mod vector_arc;
 pub mod vector_line;
@@ -60,6 +61,7 @@ static MODELS: &[&Model] = &[
     &vector_arc::MODEL,
     &sampled_line::MODEL,
     &sampled_arc::MODEL,
+    &spline_dda::MODEL,
     &stepgen::MODEL,
     &bresenham::MODEL,
     &program::ppc::MODEL,

@@ -33,6 +33,10 @@ pub struct Plan {
     pub rate_bound: Option<f64>,
     /// No pulse for this many clocks while a block runs means that none will come; `u64::MAX` where that is not known.
     pub stall_clocks: u64,
+    /// Numbers that the hardware is built with besides widths and options.
+    pub constants: Vec<(&'static str, i128)>,
+    /// What to do where a component overflows that no width helps, by its name.
+    pub remedies: Vec<(&'static str, String)>,
     pub(crate) sampling: Option<Sampling>,
 }
 
@@ -50,6 +54,8 @@ impl Plan {
             pace: Pace::default(),
             rate_bound: None,
             stall_clocks: 16,
+            constants: Vec::new(),
+            remedies: Vec::new(),
             sampling: None,
         }
     }
@@ -299,6 +305,8 @@ impl Plan {
             pace: self.pace,
             rate_bound: self.rate_bound,
             scale,
+            constants: self.constants,
+            remedies: self.remedies,
         })
     }
 

@@ -37,6 +37,7 @@ pub struct Sampling {
 const USUAL_STEP: u64 = 8;
 /// Least bits of a fraction.
 const LEAST_FRACTION: u32 = 8;
+const USUAL_FRACTION: u32 = 10;
 /// Most bits of a magnitude: the square root takes its square.
 const MOST: u32 = 31;
 
@@ -59,10 +60,10 @@ impl Sampling {
 
     /// Fixes the coarse stage for a curve of this length, and of this radius if it is an arc. Magnitudes are up to
     /// `greatest` BLU and what an arc needs beyond its radius.
-    pub(crate) fn plan(plan: &Plan, greatest: f64, radius: Option<f64>) -> Result<Sampling, ModelError> {
+    pub(crate) fn plan(plan: &mut Plan, greatest: f64, radius: Option<f64>) -> Result<Sampling, ModelError> {
         let model = plan.model();
         let refused = |option, value: String, reason: String| Err(ModelError::Value { model, option, value, reason });
-        let fraction = plan.get(&FRACTION);
+        let fraction = plan.decide(&FRACTION, Some(USUAL_FRACTION)).unwrap_or(USUAL_FRACTION);
         if !(LEAST_FRACTION..=MOST - 1).contains(&fraction) {
             let reason = format!("a coarse point has {LEAST_FRACTION} to {} bits of fraction", MOST - 1);
             return refused(FRACTION.name, fraction.to_string(), reason);

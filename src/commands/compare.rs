@@ -17,7 +17,7 @@ use crate::own::is_netlist;
 /// Prints one row for each model that takes the curve, by default and in its other common forms.
 pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     let geometry = &args.geometry;
-    let sized = geometry.sized().and_then(|(drawn, _)| CurveKind::ALL.into_iter().find(|kind| kind.has(drawn)));
+    let sized = geometry.drawn().and_then(|drawn| CurveKind::ALL.into_iter().find(|kind| kind.has(drawn)));
     let kind = if let Some(kind) = sized {
         kind
     } else if geometry.cw || geometry.ccw {

@@ -2,10 +2,10 @@
 
 use crate::models::options::TOLERANCE;
 use crate::models::{CurveKind, Model, Options};
-use crate::nc::{Curve, Description, Direction, Drawn};
+use crate::nc::{Curve, Description, Direction, Drawn, Spline, SplineForm};
 
 use crate::Error;
-use crate::cli::{GeometryArgs, HardwareArgs, Point};
+use crate::cli::{GeometryArgs, HardwareArgs, Point, parse_point};
 
 /// The curve of this kind that the options give, for a model or a command; the radii of an arc may differ by this many
 /// BLU beyond what rounding makes.
@@ -14,6 +14,12 @@ use crate::cli::{GeometryArgs, HardwareArgs, Point};
 /// Something is missing, or the model does not interpolate such a curve.
 pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64) -> Result<Curve, Error> {
     let kind = if kind == CurveKind::Move { move_kind(args) } else { kind };
+    if let Some(Drawn::Spline(form)) = args.drawn().filter(|drawn| kind.has(*drawn)) {
+        return spline(who, kind, form, args);
+    }
+    if kind == CurveKind::Spline {
+        return invalid(format!("the curve is missing: {who} takes {}", kind.describe()));
+    }
     let Some(to) = &args.to else {
         return invalid(format!("the end point is missing: {} takes {}", who, kind.describe()));
     };
@@ -23,10 +29,9 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
             return invalid(format!("{} interpolates {takes}, which have no {option}: leave it out", who));
         }
     }
-    let sized = args.sized();
-    let (drawn, sizes) = match (kind.drawn(), sized) {
+    let (drawn, sizes) = match (kind.drawn(), args.drawn()) {
         ([one], None) if one.sizes() == 0 => (*one, Vec::new()),
-        (_, Some(sized)) => sized,
+        (_, Some(drawn)) => (drawn, sizes(args)),
         (_, None) => return invalid(format!("the curve is missing: {who} takes {}", kind.describe())),
     };
     let what = drawn.noun();
@@ -53,6 +58,52 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
     Ok(Description { drawn, sizes, from, to, center, direction, radii }.curve()?)
 }
 
+/// The sizes of a conic.
+fn sizes(args: &GeometryArgs) -> Vec<i64> {
+    let semi_axes = args.ellipse.or(args.hyperbola).map(|semi_axes| semi_axes.to_vec());
+    semi_axes.or(args.parabola.map(|c| vec![c])).unwrap_or_default()
+}
+
+/// The free curve that the options give.
+fn spline(who: &str, kind: CurveKind, form: SplineForm, args: &GeometryArgs) -> Result<Curve, Error> {
+    let mut superfluous = superfluous(kind, args);
+    let along = args.b_spline && form != SplineForm::BSpline;
+    superfluous.extend([(args.from.is_some(), "--from"), (args.to.is_some(), "--to"), (along, "--b-spline")]);
+    if let Some((_, option)) = superfluous.into_iter().find(|(given, _)| *given) {
+        return invalid(format!("{who} takes a free curve by its points alone: leave {option} out"));
+    }
+    let option = Drawn::Spline(form).option();
+    let read = |text: &String| points(text);
+    let given = [&args.bezier, &args.hermite].into_iter().flatten().map(|Point(numbers)| Ok(numbers.clone()));
+    let numbers = given.chain(args.points.iter().map(read)).next().unwrap_or_else(|| Ok(Vec::new()))?;
+    let (points, rest) = numbers.as_chunks();
+    if !rest.is_empty() {
+        return invalid(format!("{option} has {} numbers: give X,Y of each point", numbers.len()));
+    }
+    Ok(Spline::new(form, points)?.into())
+}
+
+/// The points X,Y,… themselves, or those of a CSV file of this name: x,y in each line, below a heading if there is one.
+fn points(given: &str) -> Result<Vec<i64>, Error> {
+    if let Ok(Point(numbers)) = parse_point(given) {
+        return Ok(numbers);
+    }
+    let text = std::fs::read_to_string(given)
+        .map_err(|error| Error::Invalid(format!("--points {given} cannot be read: {error}; give a CSV file of x,y")))?;
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let mut numbers = Vec::new();
+    for (index, line) in lines {
+        match parse_point(line.trim()) {
+            Ok(Point(point)) if point.len() == 2 => numbers.extend(point),
+            // A heading.
+            _ if numbers.is_empty() && line.trim().replace(' ', "").eq_ignore_ascii_case("x,y") => {}
+            Ok(_) => return invalid(format!("{given}, line {}: '{line}' is not one point: give x,y", index + 1)),
+            Err(what) => return invalid(format!("{given}, line {}: {what}", index + 1)),
+        }
+    }
+    Ok(numbers)
+}
+
 /// The kind of move that the options give: an arc or a helix where there is a centre or a direction, else a line.
 pub(super) fn move_kind(args: &GeometryArgs) -> CurveKind {
     let axes = args.to.as_ref().map_or(2, |to| to.0.len());
@@ -70,8 +121,9 @@ fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)
         (args.center.is_some() && none(Drawn::is_centered), "--center"),
         ((args.cw || args.ccw) && none(Drawn::turns), "--cw or --ccw"),
         (args.opens.is_some() && none(Drawn::is_open), "--opens"),
+        (args.b_spline && none(Drawn::is_spline), "--b-spline"),
     ];
-    if let Some((drawn, _)) = args.sized() {
+    if let Some(drawn) = args.drawn() {
         options.push((!kind.has(drawn), drawn.option()));
     }
     options

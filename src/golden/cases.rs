@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::{Case, names_fit};
 use crate::Error;
-use crate::cli::{Cli, Command, usage};
+use crate::cli::{Cli, Command, parse_point, usage};
 use crate::commands::{program, run};
 use crate::engine::EngineKind;
 use crate::output::Outputs;
@@ -47,8 +47,13 @@ impl Listed {
             Some(name) => words.extend(["program".into(), folder.join(name).into_os_string()]),
             None => words.push("run".into()),
         }
-        // A netlist of one's own is in the folder, as a program is.
-        let names_file = |option: &str, word: &str| option == "--bench" || option == "--method" && is_netlist(word);
+        // A netlist of one's own and points are in the folder, as a program is.
+        let names_file = |option: &str, word: &str| match option {
+            "--bench" => true,
+            "--method" => is_netlist(word),
+            "--points" => parse_point(word).is_err(),
+            _ => false,
+        };
         let of_folder = |index: usize, word: &str| match index.checked_sub(1) {
             None => self.program.is_none() && is_netlist(word),
             Some(before) => names_file(&self.args[before], word),

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use stepwave_models::{Hardware, Model, Options, Takes};
-use stepwave_nc::{Curve, Description, Direction};
+use stepwave_nc::{Curve, Description, Direction, Drawn, SplineForm};
 
 use crate::testbench::point;
 
@@ -10,6 +10,9 @@ use crate::testbench::point;
 #[must_use]
 pub fn geometry(curve: &Curve) -> String {
     let Description { drawn, sizes, center, direction, .. } = curve.description();
+    if drawn.is_spline() {
+        return spline(drawn, sizes.as_chunks().0);
+    }
     let full = matches!(curve, Curve::Arc(arc) if arc.is_full_circle());
     let mut words = vec![if full { "full circle" } else { drawn.name() }.to_owned()];
     match sizes[..] {
@@ -25,6 +28,18 @@ pub fn geometry(curve: &Curve) -> String {
     words.join(" ")
 }
 
+/// A free curve by its points, or where they are many by its ends.
+fn spline(drawn: Drawn, points: &[[i64; 2]]) -> String {
+    const FEW: usize = 6;
+    let all: Vec<_> = points.iter().map(|at| point(at)).collect();
+    match &all[..] {
+        [first, .., last] if all.len() > FEW => {
+            format!("{} of {} points, {first} to {last}", drawn.name(), all.len())
+        }
+        _ => format!("{} {}", drawn.name(), all.join(", ")),
+    }
+}
+
 /// The geometry in the JSON report.
 pub(super) fn json(curve: &Curve) -> Value {
     let Description { drawn, sizes, center, direction, .. } = curve.description();
@@ -36,7 +51,9 @@ pub(super) fn json(curve: &Curve) -> Value {
     if let Some(arc) = curve.arc() {
         fields["radius"] = json!(arc.radius());
     }
-    if !sizes.is_empty() {
+    if drawn.is_spline() {
+        fields["points"] = json!(sizes.as_chunks::<2>().0);
+    } else if !sizes.is_empty() {
         fields["sizes"] = json!(sizes);
         fields["opens"] = json!(drawn.opens().map(|opens| opens.to_string()));
     }
@@ -49,19 +66,23 @@ pub fn geometry_options(curve: &Curve) -> Vec<String> {
     let list = |numbers: &[i64]| numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
     let Description { drawn, sizes, center, direction, .. } = curve.description();
     let mut words = Vec::new();
-    let mut option = |name: &str, value: String| words.extend([format!("--{name}"), value]);
+    let mut option = |name: &str, value: String| words.extend([name.to_owned(), value]);
     if !sizes.is_empty() {
-        option(drawn.name(), list(&sizes));
+        option(drawn.option(), list(&sizes));
+    }
+    if drawn.is_spline() {
+        words.extend((drawn == Drawn::Spline(SplineForm::BSpline)).then(|| "--b-spline".to_owned()));
+        return words;
     }
     if let Some(opens) = drawn.opens() {
-        option("opens", opens.to_string());
+        option("--opens", opens.to_string());
     }
     if curve.from().iter().any(|coordinate| *coordinate != 0) {
-        option("from", list(curve.from()));
+        option("--from", list(curve.from()));
     }
-    option("to", list(curve.to()));
+    option("--to", list(curve.to()));
     if center != [0, 0] {
-        option("center", list(&center));
+        option("--center", list(&center));
     }
     let turn = if direction == Direction::Clockwise { "--cw" } else { "--ccw" };
     words.extend(drawn.turns().then(|| turn.to_owned()));

@@ -341,6 +341,9 @@ impl Report {
 
 fn remedy(event: &OverflowEvent, hardware: &Hardware) -> String {
     let leaf = event.component().rsplit('.').next().unwrap_or_default();
+    if let Some(remedy) = hardware.remedy(leaf) {
+        return format!(": {remedy}, or go on with --on-overflow wrap");
+    }
     match (event, event.exact()) {
         (OverflowEvent::Overflow { signed, .. }, Some((exact, needed))) if *signed || exact >= 0 => {
             let width = hardware.widening(leaf, needed, needed);

@@ -42,9 +42,9 @@ fn models_complete_where_a_model_is_wanted() {
 
 #[test]
 fn registers_of_the_very_model_complete() {
-    assert_eq!(offered(&["stepwave", "run", "ppc-line", "--width", ""]), set("xe= ye= f= e= ex= ey= x= y="));
+    assert_eq!(offered(&["stepwave", "run", "vector-line", "--width", ""]), set("xe= ye= f= e= x= y="));
     assert_eq!(offered(&["stepwave", "run", "ppc-arc", "--to", "0,5", "--width", "x"]), set("xi= x="));
-    assert_eq!(offered(&["stepwave", "prove", "cim-line", "--narrower", "e"]), set("ex= ey="));
+    assert_eq!(offered(&["stepwave", "prove", "cim-line", "--narrower", "e"]), set("ex= ey= ez= ea= eb= ec="));
     assert_eq!(offered(&["stepwave", "run", "dda-line", "--trace", "jr"]), set("jrx jry jrz jra jrb jrc"));
     // Without a model, those of all.
     assert!(offered(&["stepwave", "run", "--width", ""]).is_superset(&set("accx= alpha= f= cnty=")));

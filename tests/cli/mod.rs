@@ -19,6 +19,7 @@ mod parts;
 mod progress;
 mod ranges;
 mod sampled;
+mod splines;
 mod stages;
 mod stepgen_bresenham;
 mod stops;

@@ -98,7 +98,7 @@ fn the_list_names_every_model_with_its_registers_and_options() {
         assert!(model["title"].is_string() && model["method"].is_string() && model["source"].is_string(), "{name}");
     }
     let most_axes = |name| models[names.iter().position(|known| *known == name).unwrap()]["curve"]["max_axes"].as_u64();
-    assert_eq!((most_axes("dda-line"), most_axes("ppc-line"), most_axes("dda-arc")), (Some(6), Some(2), Some(2)));
+    assert_eq!((most_axes("dda-line"), most_axes("vector-line"), most_axes("dda-arc")), (Some(6), Some(2), Some(2)));
 }
 
 #[test]
@@ -182,6 +182,7 @@ fn the_list_says_which_choices_a_model_takes() {
             "line" => "--to 6,4",
             "arc" | "move" => "--from 5,0 --to 0,5 --ccw",
             "conic" => "--ellipse 5,3 --from 5,0 --to 0,3 --ccw",
+            "spline" => "--bezier 0,0,1,0,2,1",
             "helix" => "--from 5,0,0 --to 0,5,4 --ccw",
             kind => panic!("{name}: {kind}"),
         };

@@ -110,6 +110,8 @@ fn rows_of_every_model_are_what_single_runs_report() {
                 "--from-grid 2..17x-9..9 --to-grid -15..19x-19..19 --center 1,-1 --cw --ccw --samples 12"
             }
             CurveKind::Conic => "--ellipse 3..9,2..9 --to-grid -9..9x-9..9 --cw --ccw --samples 12",
+            // A sweep has none.
+            CurveKind::Spline => continue,
             CurveKind::Helix => "--radius 3..9 --height -20..20/5 --cw --ccw --samples 12",
         };
         let all = rows(&good(&format!("sweep {name} {geometries} --csv -")));
@@ -341,7 +343,7 @@ fn bad_words_are_refused_and_leave_no_file() {
         ("sweep dda-line --csv s.csv", &["the end points are missing", "--to-grid"][..]),
         ("sweep dda-line --to-grid 9..0x0..9 --csv s.csv", &["9..0 begins after its end", "0..9"]),
         ("sweep dda-line --to-grid 0..9 --csv s.csv", &["1 coordinates"]),
-        ("sweep ppc-line --to-grid 0..9x0..9x0..9 --csv s.csv", &["3 coordinates", "lines of 2 axes"]),
+        ("sweep vector-line --to-grid 0..9x0..9x0..9 --csv s.csv", &["3 coordinates", "lines of 2 axes"]),
         ("sweep dda-line --to-grid 0..9x0..9/0 --csv s.csv", &["a step of 0"]),
         ("sweep dda-line --to-grid 0..1000000x0..1000000 --csv s.csv", &["are more than 4294967296 runs", "coarser"]),
         ("sweep ppc-arc --to-grid 1..9x1..9 --csv s.csv --ccw", &["the start points are missing", "--radius"]),

@@ -12,7 +12,7 @@ use stepwave::study::{Dimension, Variants};
 use stepwave_models::options::AnyOption;
 use stepwave_models::program::Size;
 use stepwave_models::{CurveKind, Model, catalogue};
-use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line};
+use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line, Spline, SplineForm};
 use stepwave_netlist::text;
 
 /// Values of each option, of which at least one is refused where there can be one.
@@ -34,6 +34,7 @@ fn values(option: &dyn AnyOption) -> &'static [&'static str] {
         "timing" => &[],
         "system" => &["7m", "7360"],
         "fraction" => &["8", "12", "3"],
+        "divisions" => &["2", "9"],
         "step" => &["2.5", "80"],
         "tolerance" => &[],
         "on-overflow" => &["trap", "saturate", "wrap"],
@@ -57,6 +58,10 @@ pub(super) fn curves(model: &Model) -> [Curve; 2] {
             Curve::Arc(arc([5, 0], [0, 5], [0, 0], ccw)),
             // Off its circle, through all quadrants, about a centre of its own.
             Curve::Arc(arc([17, -4], [-14, 10], [1, 2], cw)),
+        ],
+        CurveKind::Spline => [
+            Curve::Spline(Spline::new(SplineForm::Bezier, &[[0, 0], [4, 0], [8, 4], [8, 8]]).unwrap()),
+            Curve::Spline(Spline::new(SplineForm::BSpline, &[[0, 5], [40, -9], [3, 4], [18, 40], [8, 8]]).unwrap()),
         ],
         CurveKind::Helix => [
             Curve::Helix(Helix::new([5, 0, 0], [0, 5, 3], [0, 0], ccw).unwrap()),

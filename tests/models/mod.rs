@@ -19,6 +19,7 @@ mod registers;
 mod sampled;
 mod space_lines;
 mod spacing;
+mod spline;
 mod stepgen_bresenham;
 mod widths;
 

@@ -17,7 +17,7 @@ const SYSTEMS: [(System, reference::System); 2] =
 /// A step in thousandths of a BLU.
 fn choices(system: System, fraction: u32, step: u64) -> Options {
     let step = Some(Millionths(step * 1000));
-    Options::default().with(&SYSTEM, system).with(&FRACTION, fraction).with(&STEP, step)
+    Options::default().with(&SYSTEM, system).with(&FRACTION, Some(fraction)).with(&STEP, step)
 }
 
 fn column(ran: &Ran, name: &str) -> Vec<i64> {
@@ -76,7 +76,7 @@ fn assert_sampled(what: &str, curve: &Curve, ran: &Ran, wanted: &[[f64; 2]], fra
 fn check_line(from: [i64; 2], d: [i64; 2], choices: &Options, engine: EngineKind) {
     let curve = line(&from, &[from[0] + d[0], from[1] + d[1]]);
     let system = SYSTEMS.iter().find(|(system, _)| Some(*system) == choices.get(&SYSTEM).copied()).unwrap().1;
-    let (fraction, step) = (choices.get(&FRACTION).copied().unwrap(), choices.value(&STEP).unwrap().units());
+    let (fraction, step) = (choices.value(&FRACTION).unwrap(), choices.value(&STEP).unwrap().units());
     let what = format!("{curve:?} {choices:?} on {}", engine.name());
     let ran = run("sampled-line", &curve, choices, engine);
     assert_sampled(&what, &curve, &ran, &sampled_line(d, step, system), fraction, 2.0);
@@ -85,7 +85,7 @@ fn check_line(from: [i64; 2], d: [i64; 2], choices: &Options, engine: EngineKind
 fn check_arc(start: [i64; 2], end: [i64; 2], clockwise: bool, choices: &Options, engine: EngineKind) {
     let curve = arc([start[0] + 3, start[1] - 5], [end[0] + 3, end[1] - 5], [3, -5], clockwise);
     let system = SYSTEMS.iter().find(|(system, _)| Some(*system) == choices.get(&SYSTEM).copied()).unwrap().1;
-    let (fraction, step) = (choices.get(&FRACTION).copied().unwrap(), choices.value(&STEP).unwrap().units());
+    let (fraction, step) = (choices.value(&FRACTION).unwrap(), choices.value(&STEP).unwrap().units());
     let what = format!("{curve:?} {choices:?} on {}", engine.name());
     let ran = run("sampled-arc", &curve, choices, engine);
     assert_sampled(&what, &curve, &ran, &sampled_arc(start, end, clockwise, step, system), fraction, 4.0);

@@ -73,7 +73,7 @@ fn step_generators() -> Vec<Options> {
 /// The choices that data sampling alone has.
 fn coarse_stages() -> [Options; 1] {
     let (system, step) = (Some(System::StepFactor), Some(Millionths(500_000)));
-    [Options::default().with(&SYSTEM, system).with(&FRACTION, 24).with(&STEP, step)]
+    [Options::default().with(&SYSTEM, system).with(&FRACTION, Some(24)).with(&STEP, step)]
 }
 
 /// One unit, two of three bits, two decades, each with a feed override and without.

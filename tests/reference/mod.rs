@@ -19,6 +19,7 @@
 //! - [`ppc_space_line`], [`cim_space_line`], [`mindev_space_line`]: the same for lines of 3 axes and more, each axis against
 //!   the longest one.
 //! - [`sampled_line`], [`sampled_arc`]: data sampling, the points of the coarse stage in real numbers.
+//! - [`spline_dda`], [`spline_dda_fraction`]: free curves in whole numbers, and by rounded forward differences.
 //! - [`stepgen`], [`stepgen_clocks`], [`bresenham`]: what motion cards and firmware of today do.
 //!
 //! A call outside a method's domain (a register too narrow, an end point that the arc cannot reach)
@@ -39,6 +40,7 @@ mod ppc;
 mod ppc_conic;
 mod sampled;
 mod space_lines;
+mod spline;
 mod stepgen;
 #[cfg(test)]
 mod tests;
@@ -57,6 +59,7 @@ pub(crate) use ppc::{ppc_arc, ppc_line};
 pub(crate) use ppc_conic::ppc_conic;
 pub(crate) use sampled::{System, sampled_arc, sampled_line, step_factor_points};
 pub(crate) use space_lines::{cim_space_line, mindev_space_line, ppc_space_line};
+pub(crate) use spline::{Basis, Segment, spline_dda, spline_dda_fraction, spline_owes};
 pub(crate) use stepgen::{StepOutput, Timing, stepgen, stepgen_clocks};
 
 /// The names of up to six axes, in the order of the columns.

@@ -9,6 +9,7 @@ mod modern;
 mod ppc;
 mod rates;
 mod space;
+mod spline;
 
 use super::{EndPoint, Table};
 

@@ -1,6 +1,6 @@
 //! The ideal curve of a block, of any kind, and what gives one.
 
-use crate::{Arc, Conic, Direction, GeometryError, Helix, Line, Opens, Shape};
+use crate::{Arc, Conic, Direction, GeometryError, Helix, Line, Opens, Shape, Spline, SplineForm};
 
 /// The greatest number of points of an outline, so that no request exhausts the memory.
 pub const OUTLINE_LIMIT: usize = 1 << 16;
@@ -30,6 +30,8 @@ pub enum Curve {
     Conic(Conic),
     /// An arc in x and y with a travel in z.
     Helix(Helix),
+    /// A free curve in x and y.
+    Spline(Spline),
 }
 
 impl Curve {
@@ -41,6 +43,7 @@ impl Curve {
             Curve::Arc(arc) => arc.ends().0,
             Curve::Conic(conic) => conic.ends().0,
             Curve::Helix(helix) => helix.ends().0,
+            Curve::Spline(spline) => &spline.both_ends()[0],
         }
     }
 
@@ -52,6 +55,7 @@ impl Curve {
             Curve::Arc(arc) => arc.ends().1,
             Curve::Conic(conic) => conic.ends().1,
             Curve::Helix(helix) => helix.ends().1,
+            Curve::Spline(spline) => &spline.both_ends()[1],
         }
     }
 
@@ -69,6 +73,7 @@ impl Curve {
             Curve::Arc(arc) => arc.length(),
             Curve::Conic(conic) => conic.length(),
             Curve::Helix(helix) => helix.length(),
+            Curve::Spline(spline) => spline.length(),
         }
     }
 
@@ -84,6 +89,7 @@ impl Curve {
             Curve::Arc(arc) => arc.deviation(position),
             Curve::Conic(conic) => conic.deviation(position),
             Curve::Helix(helix) => helix.deviation(position),
+            Curve::Spline(spline) => spline.deviation(position),
         }
     }
 
@@ -98,6 +104,7 @@ impl Curve {
             Curve::Arc(arc) => arc.signed_deviation(position),
             Curve::Conic(conic) => conic.signed_deviation(position),
             Curve::Helix(helix) => helix.signed_deviation(position),
+            Curve::Spline(spline) => spline.signed_deviation(position),
         }
     }
 
@@ -130,6 +137,7 @@ impl Curve {
             Curve::Arc(arc) => arc.outline(max_points),
             Curve::Conic(conic) => conic.outline(max_points),
             Curve::Helix(helix) => helix.outline(max_points),
+            Curve::Spline(spline) => spline.outline(max_points),
         }
     }
 
@@ -152,6 +160,7 @@ impl Curve {
             Curve::Arc(_) => "positive outside the circle",
             Curve::Conic(_) => "positive where the implicit function is",
             Curve::Helix(_) => "positive outside the cylinder",
+            Curve::Spline(_) => "positive left of the curve",
         }
     }
 
@@ -170,6 +179,7 @@ impl Curve {
                 };
                 (drawn, sizes, conic.center(), conic.direction())
             }
+            Curve::Spline(spline) => (Drawn::Spline(spline.form()), spline.points().concat(), [0, 0], None),
         };
         let direction = direction.unwrap_or(Direction::CounterClockwise);
         let (from, to) = (self.from().to_vec(), self.to().to_vec());
@@ -201,7 +211,7 @@ macro_rules! curve_types {
     };
 }
 
-curve_types!(Line, Arc, Conic, Helix);
+curve_types!(Line, Arc, Conic, Helix, Spline);
 
 /// What is drawn through given points.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -218,6 +228,8 @@ pub enum Drawn {
     Parabola(Option<Opens>),
     /// Branches of hyperbolas of two semi-axes.
     Hyperbola(Option<Opens>),
+    /// Free curves of as many points as they have.
+    Spline(SplineForm),
 }
 
 /// What is said of one kind of curve.
@@ -243,6 +255,10 @@ impl Drawn {
             Drawn::Ellipse => ("an ellipse", "--ellipse", 2, 2, true),
             Drawn::Parabola(_) => ("a parabola", "--parabola", 2, 1, false),
             Drawn::Hyperbola(_) => ("a hyperbola", "--hyperbola", 2, 2, false),
+            Drawn::Spline(SplineForm::Bezier) => ("a Bezier curve", "--bezier", 2, 0, false),
+            Drawn::Spline(SplineForm::Hermite) => ("a Hermite segment", "--hermite", 2, 0, false),
+            Drawn::Spline(SplineForm::CatmullRom) => ("a Catmull-Rom spline", "--points", 2, 0, false),
+            Drawn::Spline(SplineForm::BSpline) => ("a uniform B-spline", "--points", 2, 0, false),
         };
         Traits { noun, option, axes, sizes, turns }
     }
@@ -271,16 +287,23 @@ impl Drawn {
         self.traits().axes
     }
 
-    /// How many numbers besides its points give it: c of a parabola, the semi-axes of another conic.
+    /// How many numbers besides its ends give it: c of a parabola, the semi-axes of another conic. A free curve has its
+    /// points instead, as many as there are.
     #[must_use]
     pub fn sizes(self) -> usize {
         self.traits().sizes
     }
 
+    /// A free curve, which its points give.
+    #[must_use]
+    pub fn is_spline(self) -> bool {
+        matches!(self, Drawn::Spline(_))
+    }
+
     /// It is about a centre or vertex.
     #[must_use]
     pub fn is_centered(self) -> bool {
-        self != Drawn::Line
+        !matches!(self, Drawn::Line | Drawn::Spline(_))
     }
 
     /// It runs clockwise or counter-clockwise; others lead from their start to their end.
@@ -338,7 +361,7 @@ impl Drawn {
 pub struct Description {
     /// What is drawn.
     pub drawn: Drawn,
-    /// Semi-axes or parameter of a conic.
+    /// Semi-axes or parameter of a conic; x and y of each point of a free curve, whose ends follow from them.
     pub sizes: Vec<i64>,
     /// Start point.
     pub from: Vec<i64>,
@@ -377,6 +400,7 @@ impl Description {
             Drawn::Ellipse => Conic::ellipse(sizes, from, to, center, direction)?.into(),
             Drawn::Parabola(opens) => Conic::parabola(sizes[0], opens, from, to, center)?.into(),
             Drawn::Hyperbola(opens) => Conic::hyperbola(sizes, opens, from, to, center)?.into(),
+            Drawn::Spline(form) => Spline::new(form, self.sizes.as_chunks().0)?.into(),
         })
     }
 }
@@ -404,17 +428,22 @@ mod tests {
     #[test]
     fn every_kind_of_curve_is_built_again_from_its_description() -> Result<(), GeometryError> {
         let clockwise = Direction::Clockwise;
-        let curves: [(Curve, &str); 6] = [
+        let curves: [(Curve, &str); 7] = [
             (Line::new(vec![1, 2, 3, 4], vec![-1, 2, 8, 0])?.into(), "a line"),
             (Arc::new([8, 2], [3, 7], [3, 2], clockwise)?.into(), "an arc"),
             (Helix::new([5, 0, 1], [0, 5, -3], [0, 0], clockwise)?.into(), "a helix"),
             (Conic::ellipse([6, 4], [7, 0], [1, 4], [1, 0], clockwise)?.into(), "an ellipse"),
             (Conic::parabola(4, Some(Opens::MinusY), [0, 0], [4, -4], [0, 0])?.into(), "a parabola"),
             (Conic::hyperbola([4, 3], Some(Opens::MinusX), [-4, 0], [-5, 2], [0, 0])?.into(), "a hyperbola"),
+            (
+                Spline::new(SplineForm::BSpline, &[[0, 0], [9, 1], [4, -7], [2, 2], [0, 5]])?.into(),
+                "a uniform B-spline",
+            ),
         ];
         for (curve, noun) in curves {
             let description = curve.description();
-            assert_eq!((description.drawn.noun(), description.sizes.len()), (noun, description.drawn.sizes()));
+            let sizes = if let Curve::Spline(_) = curve { 10 } else { description.drawn.sizes() };
+            assert_eq!((description.drawn.noun(), description.sizes.len()), (noun, sizes));
             assert_eq!(description.curve()?, curve);
         }
         Ok(())

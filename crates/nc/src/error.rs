@@ -2,7 +2,15 @@
 
 use std::fmt;
 
-use crate::{AXES_MAX, AXES_MIN, CONIC_LIMIT, COORDINATE_LIMIT, Shape};
+use crate::{AXES_MAX, AXES_MIN, CONIC_LIMIT, COORDINATE_LIMIT, Drawn, SPLINE_POINTS, Shape, SplineForm};
+
+/// The limit of a chain of segments, in words.
+fn most(form: SplineForm) -> String {
+    match form {
+        SplineForm::Bezier | SplineForm::Hermite => String::new(),
+        SplineForm::CatmullRom | SplineForm::BSpline => format!(", {SPLINE_POINTS} at most"),
+    }
+}
 
 /// Why a geometry cannot be built; every message names the value, the limit and the remedy.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -41,6 +49,25 @@ pub enum GeometryError {
          drop the block"
     )]
     ZeroLength,
+    /// A free curve has too few points, or too many.
+    #[error(
+        "{} has {}{}, but {given} were given: give as many", Drawn::Spline(*.form).noun(), .form.takes(), most(*.form)
+    )]
+    SplinePoints {
+        /// What the points mean.
+        form: SplineForm,
+        /// How many points were given.
+        given: usize,
+    },
+    /// All points of a free curve are one.
+    #[error(
+        "the curve is the single point ({}, {}) and has length 0, but at least 1 BLU is needed: drop the block",
+        .point[0], .point[1]
+    )]
+    SplineIsPoint {
+        /// The first point given, in BLU.
+        point: [i64; 2],
+    },
     /// The start point of an arc is its centre.
     #[error(
         "the arc starts at its centre ({}, {}) and has radius 0, but at least 1 BLU is needed: \

@@ -1,8 +1,8 @@
 //! The geometry of numerical control, in integers: blocks and their ideal curves.
 //!
 //! Every length is in BLU (basic length units, the pulse equivalent δ): one pulse moves an axis by one BLU, and a
-//! programmed point has integer coordinates. This crate holds what a block *is* (a [`Line`], an [`Arc`], a [`Conic`] or
-//! a [`Helix`], all a [`Curve`]), into which quadrants it falls ([`Arc::sectors`], [`Conic::sectors`],
+//! programmed point has integer coordinates. This crate holds what a block *is* (a [`Line`], an [`Arc`], a [`Conic`], a
+//! [`Helix`] or a [`Spline`], all a [`Curve`]), into which quadrants it falls ([`Arc::sectors`], [`Conic::sectors`],
 //! [`Helix::sectors`]), and how far a point that hardware has reached lies off the ideal curve ([`Curve::deviation`]).
 //! It knows no register, no clock and no interpolation method.
 //!
@@ -36,6 +36,7 @@ mod program;
 mod pulses;
 mod quadrant;
 mod sector;
+mod spline;
 mod turn;
 
 pub use arc::Arc;
@@ -55,3 +56,4 @@ pub use program::{
 pub use pulses::{PulseBlock, ROUNDING_LIMIT, Rounder, swept};
 pub use quadrant::{Direction, Quadrant};
 pub use sector::{Crossing, Sector};
+pub use spline::{SPLINE_POINTS, Spline, SplineForm, SplineSegment};

@@ -22,9 +22,9 @@ use std::sync::Arc;
 
 pub use given::{Options, Value};
 pub use table::{
-    ADDER, ALL, Adder, BEATS, Beats, CASCADE, COMPARE, Compare, END_POINT, EndPoint, FORM, FRACTION, Form, NORMALIZE,
-    ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, Radix, STEP, STRICT, SYSTEM, System, TIMING, TOLERANCE, WEIGHTS,
-    WIDTH, WRAPS, Weights,
+    ADDER, ALL, Adder, BEATS, Beats, CASCADE, COMPARE, Compare, DIVISIONS, END_POINT, EndPoint, FORM, FRACTION, Form,
+    NORMALIZE, ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, Radix, STEP, STRICT, SYSTEM, System, TIMING, TOLERANCE,
+    WEIGHTS, WIDTH, WRAPS, Weights,
 };
 pub use taken::{Taken, Takes};
 pub(crate) use taken::{chosen, taken};

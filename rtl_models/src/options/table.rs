@@ -367,17 +367,31 @@ options! {
         default: System::Direction,
     };
     /// Bits of the fraction of coarse points.
-    FRACTION: u32 = OptionDef {
+    FRACTION: Option<u32> = OptionDef {
         name: "fraction",
-        help: "Bits of the fraction of coarse points",
+        help: "Bits of the fraction of coarse points, and of all registers of a free curve",
         value_name: "BITS",
         values: Values::Parsed {
             shape: Shape::Numbers { least: 1, most: 63, none: false, values: "bits such as 8..12" },
-            parse: |text| whole(text, 0, u32::MAX.into(), "a number of bits").map(|bits| u32::try_from(bits).unwrap_or(u32::MAX)),
-            text: u32::to_string,
+            parse: |text| whole(text, 0, u32::MAX.into(), "a number of bits")
+                .map(|bits| Some(u32::try_from(bits).unwrap_or(u32::MAX))),
+            text: |bits| text_or_none(bits.as_ref()),
         },
         about: "bits of the fraction of coarse points, 8 or more (default: 10)",
-        default: 10,
+        default: None,
+    };
+    /// Steps of a segment of a free curve, as a power of two.
+    DIVISIONS: Option<u64> = OptionDef {
+        name: "divisions",
+        help: "A segment of a free curve is 2^S steps [default: the least with one pulse of an axis a step at most]",
+        value_name: "S",
+        values: Values::Parsed {
+            shape: Shape::Numbers { least: 1, most: 20, none: false, values: "numbers from 1 to 20" },
+            parse: |text| whole(text, 1, 20, "a number of divisions").map(Some),
+            text: |divisions| text_or_none(divisions.as_ref()),
+        },
+        about: "S: a segment is 2^S steps (default: the least with one pulse of an axis a step at most)",
+        default: None,
     };
     /// Displacement of a period of data sampling.
     STEP: Option<Millionths> = OptionDef {

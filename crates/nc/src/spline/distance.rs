@@ -1,0 +1,142 @@
+//! How far a position is from a free curve.
+
+use super::{Spline, SplineSegment};
+
+/// Halvings of a segment that place a minimum as exactly as an `f64` can.
+const HALVINGS: u32 = 52;
+
+/// The place of a curve that is nearest to a position.
+struct Foot {
+    distance: f64,
+    /// Positive where the position is on the left.
+    side: f64,
+}
+
+impl SplineSegment {
+    /// Its four Bézier points along an axis, in BLU.
+    fn control(&self, axis: usize) -> [f64; 4] {
+        let c = self.coefficients[axis].map(|c| c as f64 / self.divisor());
+        [c[0], c[0] + c[1] / 3.0, c[0] + (2.0 * c[1] + c[2]) / 3.0, c[0] + c[1] + c[2] + c[3]]
+    }
+
+    /// A distance that no place of the segment is nearer than: that of the box of its Bézier points.
+    fn least(&self, position: [f64; 2]) -> f64 {
+        let beyond = [0, 1].map(|axis| {
+            let points = self.control(axis);
+            let (least, greatest) = points
+                .into_iter()
+                .fold((f64::MAX, f64::MIN), |(least, most), point| (least.min(point), most.max(point)));
+            (least - position[axis]).max(position[axis] - greatest).max(0.0)
+        });
+        beyond[0].hypot(beyond[1])
+    }
+
+    fn foot_at(&self, u: f64, [x, y]: [f64; 2]) -> Foot {
+        let ([at_x, at_y], [dx, dy]) = (self.at(u), self.tangent(u));
+        Foot { distance: (x - at_x).hypot(y - at_y), side: dx * (y - at_y) - dy * (x - at_x) }
+    }
+
+    /// How fast the square of the distance grows along the segment, halved: a polynomial of the fifth degree, by its
+    /// Bézier coefficients.
+    fn growth(&self, position: [f64; 2]) -> [f64; 6] {
+        const CHOICES: [[f64; 4]; 2] = [[1.0, 3.0, 3.0, 1.0], [1.0, 2.0, 1.0, 0.0]];
+        let mut growth = [0.0; 6];
+        for (axis, place) in position.into_iter().enumerate() {
+            let points = self.control(axis).map(|point| point - place);
+            for (i, point) in points.into_iter().enumerate() {
+                for (j, pair) in points.windows(2).enumerate() {
+                    growth[i + j] += CHOICES[0][i] * CHOICES[1][j] * point * (pair[1] - pair[0]);
+                }
+            }
+        }
+        let of_five = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+        std::array::from_fn(|k| growth[k] / of_five[k])
+    }
+
+    /// The place of the segment that is nearest.
+    fn foot(&self, position: [f64; 2]) -> Foot {
+        let mut nearest = self.foot_at(0.0, position);
+        let mut take = |u: f64| {
+            let foot = self.foot_at(u, position);
+            if foot.distance < nearest.distance {
+                nearest = foot;
+            }
+        };
+        take(1.0);
+        minima(self.growth(position), 0.0, 1.0, HALVINGS, &mut take);
+        nearest
+    }
+}
+
+/// Visits every place from `low` to `low + length` at which a polynomial of these Bézier coefficients may turn from
+/// negative to positive.
+fn minima(growth: [f64; 6], low: f64, length: f64, halvings: u32, visit: &mut impl FnMut(f64)) {
+    // A polynomial has no more roots than its coefficients have changes of sign.
+    let mut signs = growth.into_iter().filter(|c| *c != 0.0).map(|c| c > 0.0);
+    let Some(first) = signs.next() else { return };
+    let (mut sign, mut changes) = (first, 0);
+    for next in signs {
+        changes += u32::from(next != sign);
+        sign = next;
+    }
+    if changes == 0 || changes == 1 && first {
+        return;
+    }
+    if halvings == 0 {
+        visit(low + length / 2.0);
+        return;
+    }
+    let [left, right] = halves(growth);
+    if right[0] == 0.0 {
+        visit(low + length / 2.0);
+    }
+    minima(left, low, length / 2.0, halvings - 1, visit);
+    minima(right, low + length / 2.0, length / 2.0, halvings - 1, visit);
+}
+
+/// The Bézier coefficients of both halves, by de Casteljau.
+fn halves(mut right: [f64; 6]) -> [[f64; 6]; 2] {
+    let mut left = right;
+    for (round, left) in left.iter_mut().enumerate() {
+        if round > 0 {
+            for place in 0..6 - round {
+                right[place] = f64::midpoint(right[place], right[place + 1]);
+            }
+        }
+        *left = right[0];
+    }
+    [left, right]
+}
+
+impl Spline {
+    fn foot(&self, position: [f64; 2]) -> Foot {
+        let mut nearest = Foot { distance: f64::INFINITY, side: 0.0 };
+        for segment in &self.segments {
+            if segment.least(position) < nearest.distance {
+                let foot = segment.foot(position);
+                if foot.distance < nearest.distance {
+                    nearest = foot;
+                }
+            }
+        }
+        nearest
+    }
+
+    /// The distance of a position from the curve, in BLU; further coordinates are ignored, and with too few there is no
+    /// distance (NaN).
+    ///
+    /// Every minimum of the distance is found by halving, as exactly as `f64` rounds.
+    #[must_use]
+    pub fn deviation(&self, position: &[i64]) -> f64 {
+        let [x, y, ..] = *position else { return f64::NAN };
+        self.foot([x as f64, y as f64]).distance
+    }
+
+    /// The distance with its side: positive on the left of the curve.
+    #[must_use]
+    pub fn signed_deviation(&self, position: &[i64]) -> f64 {
+        let [x, y, ..] = *position else { return f64::NAN };
+        let foot = self.foot([x as f64, y as f64]);
+        if foot.side < 0.0 { -foot.distance } else { foot.distance }
+    }
+}

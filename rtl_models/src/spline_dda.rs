@@ -1,0 +1,311 @@
+//! `spline-dda`: cascaded integrators, free curves of cubic and quadratic segments.
+//!
+//! ```text
+//!   for each axis:   r ──► + ──► q ──┬──► + ──► p ──┬──► + ──► jr ──┐      2^s steps
+//!                          ▲─────────┤    ▲─────────┤    ▲──────────┤      e ──► done
+//!                                    └────┘         └────┘          │
+//!                                                     mod M: over M or below 0
+//!                                                                   └──► d ──► position
+//! ```
+//!
+//! A segment X(u) = (c0 + c1·u + c2·u² + c3·u³)/D is walked in N = 2^s steps of u. Its forward differences are whole
+//! numbers of 1/M BLU, M = D·2^(3s): the third, r = 6·c3, is constant, and in every step {pulse, jr} := jr + p, p += q,
+//! q += r, all with the old values. jr starts at half of M beyond the start, so x = floor(X + 1/2) after *every* step: each
+//! axis stays within half a BLU of its place, and the path within sqrt(1/2) BLU of the curve. No rounding adds up, nor
+//! from one segment to the next, because each is loaded from its own coefficients.
+//!
+//! | curve | D | c0 to c3 |
+//! |---|---|---|
+//! | Bézier, cubic | 1 | P0, 3(P1-P0), 3(P0-2P1+P2), P3-3P2+3P1-P0 |
+//! | Bézier, quadratic | 1 | P0, 2(P1-P0), P0-2P1+P2, 0 |
+//! | Hermite | 1 | P0, T0, 3(P1-P0)-2T0-T1, 2(P0-P1)+T0+T1 |
+//! | Catmull-Rom, P1 to P2 | 2 | 2P1, P2-P0, 2P0-5P1+4P2-P3, 3P1-P0-3P2+P3 |
+//! | uniform B-spline | 6 | P0+4P1+P2, 3(P2-P0), 3(P0-2P1+P2), P3-3P2+3P1-P0 |
+//!
+//! **Steps.** An axis makes one pulse a step at most, abs(p) <= M: without `--divisions` s is the least from 1 on with which that is so
+//! on both axes in all segments. 2^s of three times the longest distance of two neighbouring Bézier points is always
+//! enough; below that a greater s may fail where a smaller one fits. Where abs(p) > M, `one_pulse` - abs(p) is below 0, and
+//! the run traps.
+//!
+//! **Fraction.** `--fraction B` keeps the start, p, q and r to B bits after the point, rounded half upwards, M = 2^B. After n steps an axis
+//! is then off by at most (g + n + n(n-1)/2 + n(n-1)(n-2)/6)·2^-(B+1) BLU beyond the half, g = 1 where the start is not whole.
+//! Ends at whole points are exact for certain from B = 3s-2 on; with less the end may be missed.
+//!
+//! The recurrence is the project's own form of forward differencing as computer graphics has it, in whole numbers.
+//! The Bézier curve (0, 0), (4, 0), (8, 4), (8, 8), from the golden file `waves/spline-dda-bezier.csv`; the wave is
+//! next to it:
+//!
+//! ```text
+#![doc = include_str!("../waves/spline-dda-bezier.csv")]
+//! ```
+
+use std::f64::consts::SQRT_2;
+
+use stepwave_nc::{Spline, SplineSegment};
+use stepwave_netlist::Width;
+use stepwave_netlist::dsl::{Scope, Signal};
+
+use crate::error::ModelError;
+use crate::hardware::Hardware;
+use crate::interpolates::{Interpolates, Method};
+use crate::machine::Words;
+use crate::model::Model;
+use crate::options::{DIVISIONS, FRACTION, ON_OVERFLOW, WIDTH};
+use crate::parts::{Block, E, JR, POSITION, axis_scope, magnitude};
+use crate::per_axis;
+use crate::plan::Plan;
+use crate::registers::{N, PerAxis, Reg, Rule};
+
+const NAME: &str = "spline-dda";
+
+/// Remainders.
+const REMAINDER: PerAxis = Reg::each(
+    JR_NAMES,
+    Rule::Planned("3s + log2(D), or the fraction"),
+    "remainder of each axis, from half a BLU beyond the start",
+)
+.follows(|_| true);
+const JR_NAMES: [&str; 6] = per_axis!("jr");
+/// First differences.
+const P: PerAxis = Reg::each(per_axis!("p"), N, "first difference of each axis in 1/M BLU").signed();
+/// Second differences.
+const Q: PerAxis =
+    Reg::each(per_axis!("q"), Rule::Planned("as the curve needs"), "second difference of each axis").signed();
+/// Third differences.
+const R: PerAxis =
+    Reg::each(per_axis!("r"), Rule::Planned("as the curve needs"), "third difference of each axis, constant").signed();
+
+/// M, of which a BLU is made.
+const MODULUS: &str = "m";
+/// The net that is M, from which abs(p) is taken.
+const ONE_PULSE: &str = "one_pulse";
+
+/// Most steps of a segment, as a power of two: p has 3s+2 bits.
+const MOST_DIVISIONS: u32 = 20;
+
+/// Cascaded integrators, free curves.
+pub static MODEL: Model = Model {
+    name: NAME,
+    title: "Cascaded integrators, Bézier curves and splines",
+    method: "digital differential analyser",
+    source: "forward differences of polynomials, as in computer graphics, in the integrators of 数字积分法",
+    registers: &[&REMAINDER, &P, &Q, &R, &E.width(Rule::Planned("s+1")).about("steps left of the segment"), &POSITION],
+    options: &[
+        &WIDTH.about("N of p, or REGISTER=N,… (default: the least that holds the curve)"),
+        &DIVISIONS,
+        &FRACTION.about("bits of the fraction (default: exact)"),
+        &ON_OVERFLOW,
+    ],
+    claims: None,
+    interpolates: Interpolates::Splines(Method { plan, load }),
+    hardware,
+};
+
+/// The differences of one axis at the start of a segment, in 1/M BLU.
+#[derive(Clone, Copy)]
+struct Differences {
+    /// M times the start point.
+    start: i128,
+    p: i128,
+    q: i128,
+    r: i128,
+}
+
+impl Differences {
+    /// Of an axis of a segment of 2^s steps, where M is D·2^(3s).
+    fn exact([c0, c1, c2, c3]: [i64; 4], s: u32) -> Differences {
+        let [c0, c1, c2, c3] = [c0, c1, c2, c3].map(i128::from);
+        Differences {
+            start: c0 << (3 * s),
+            p: (c1 << (2 * s)) + (c2 << s) + c3,
+            q: ((2 * c2) << s) + 6 * c3,
+            r: 6 * c3,
+        }
+    }
+
+    /// The same in units of another M, rounded half upwards.
+    fn rounded(self, of: i128, modulus: i128) -> Differences {
+        // Above 2^63 only where a register would not fit, which is found out below.
+        let round = |value: i128| (2 * value.saturating_mul(modulus) + of).div_euclid(2 * of);
+        Differences { start: round(self.start), p: round(self.p), q: round(self.q), r: round(self.r) }
+    }
+
+    /// p after i steps.
+    fn p_at(&self, i: i128) -> i128 {
+        self.p + i * self.q + i * (i - 1) / 2 * self.r
+    }
+
+    /// The greatest abs(p) from row 0 to this one, and the extremes of p themselves.
+    fn p_extremes(&self, last: i128) -> [i128; 2] {
+        // A parabola in i, with its vertex at 1/2 - q/r.
+        let vertex = if self.r == 0 { 0 } else { (self.r - 2 * self.q).div_euclid(2 * self.r) };
+        let rows = [0, vertex, vertex + 1, last].map(|row| self.p_at(row.clamp(0, last)));
+        rows.into_iter().fold([rows[0]; 2], |[least, most], p| [least.min(p), most.max(p)])
+    }
+}
+
+/// Bits of the numbers between these two in two's complement.
+fn bits([least, most]: [i128; 2]) -> u32 {
+    Width::needed_signed(least).max(Width::needed_signed(most))
+}
+
+/// D·2^(3s): all segments of a curve have one D.
+fn exact_modulus(spline: &Spline, s: u32) -> i128 {
+    i128::from(spline.segments().first().map_or(1, |segment| segment.divisor)) << (3 * s)
+}
+
+/// The differences of every axis of every segment in 2^s steps, in units of 1/`modulus` BLU.
+fn differences(spline: &Spline, s: u32, modulus: i128) -> impl Iterator<Item = [Differences; 2]> {
+    let exact = exact_modulus(spline, s);
+    let of = move |segment: &SplineSegment| {
+        segment.coefficients.map(|c| {
+            let differences = Differences::exact(c, s);
+            if modulus == exact { differences } else { differences.rounded(exact, modulus) }
+        })
+    };
+    spline.segments().iter().map(of)
+}
+
+/// The least s from 1 on with one pulse of an axis a step at most.
+fn least_divisions(spline: &Spline) -> Option<u32> {
+    (1..=MOST_DIVISIONS).find(|&s| {
+        let modulus = exact_modulus(spline, s);
+        let fits = |axis: &Differences| axis.p_extremes((1 << s) - 1).into_iter().all(|p| p.abs() <= modulus);
+        differences(spline, s, modulus).all(|axes| axes.iter().all(fits))
+    })
+}
+
+fn plan(spline: &Spline, plan: &mut Plan) -> Result<(), ModelError> {
+    let given = plan.get(&DIVISIONS).and_then(|s| u32::try_from(s).ok());
+    let Some(s) = given.or_else(|| least_divisions(spline)) else {
+        return Err(ModelError::Widths(format!(
+            "{NAME}: the curve would need more than 2^{MOST_DIVISIONS} steps a segment, for which no register is wide \
+             enough: divide it into more segments, or choose a larger BLU"
+        )));
+    };
+    plan.fix(&DIVISIONS, Some(s.into()));
+    let fraction = plan.get(&FRACTION);
+    if let Some(bits) = fraction.filter(|bits| !(1..=3 * MOST_DIVISIONS).contains(bits)) {
+        let reason = format!("a remainder has 1 to {} bits of fraction", 3 * MOST_DIVISIONS);
+        return Err(ModelError::Value { model: NAME, option: FRACTION.name, value: bits.to_string(), reason });
+    }
+    let modulus = fraction.map_or_else(|| exact_modulus(spline, s), |bits| 1 << bits);
+    plan.constants.push((MODULUS, modulus));
+    plan.remedies
+        .push((ONE_PULSE, format!("an axis owes more than a pulse a step: give --divisions greater than {s}")));
+
+    // Of every row: the last one too, though no step uses it.
+    let (mut p, mut q, mut r) = (1, 1, 1);
+    let steps = 1_i128 << s;
+    for axis in differences(spline, s, modulus).flatten() {
+        p = p.max(bits(axis.p_extremes(steps)));
+        q = q.max(bits([axis.q, axis.q + steps * axis.r]));
+        r = r.max(bits([axis.r; 2]));
+    }
+    plan.n = plan.bits_or(p);
+    plan.set_each(Q, q).set_each(R, r).set(E, s + 1);
+    plan.positions([0, 1].map(|axis| reach(spline, axis)));
+    let off = fraction.map_or(0.0, |bits| rounding(spline, s, bits));
+    plan.error_bound = Some((0.5 + off) * SQRT_2);
+    // A segment may be a single point.
+    plan.stall_clocks = (spline.segments().len() as u64).saturating_mul(1 << s).saturating_add(16);
+    Ok(())
+}
+
+/// Positions of an axis between which the curve lies: those of its Bézier points, outwards.
+fn reach(spline: &Spline, axis: usize) -> impl Iterator<Item = i64> {
+    spline.segments().iter().flat_map(move |segment| {
+        let ([c0, c1, c2, c3], d) = (segment.coefficients[axis], segment.divisor);
+        let points = [3 * c0, 3 * c0 + c1, 3 * c0 + 2 * c1 + c2, 3 * (c0 + c1 + c2 + c3)];
+        points.into_iter().flat_map(move |point| [point.div_euclid(3 * d), -(-point).div_euclid(3 * d)])
+    })
+}
+
+/// How far an axis may be off beyond half a BLU where its registers have this many bits of fraction.
+fn rounding(spline: &Spline, s: u32, bits: u32) -> f64 {
+    let n = f64::from(1_u32 << s);
+    let whole = |segment: &SplineSegment| segment.coefficients.iter().all(|c| c[0] % segment.divisor == 0);
+    let start = if spline.segments().iter().all(whole) { 0.0 } else { 1.0 };
+    let all = start + n + n * (n - 1.0) / 2.0 + n * (n - 1.0) * (n - 2.0) / 6.0;
+    all * (-f64::from(bits) - 1.0).exp2()
+}
+
+/// A constant of two's complement; M and the numbers below it have 63 bits at most.
+fn constant<'m>(m: Scope<'m>, bits: u32, value: i128) -> Signal<'m> {
+    m.lit_signed(bits, i64::try_from(value).unwrap_or(i64::MAX))
+}
+
+fn hardware(m: Scope<'_>, hardware: &Hardware) {
+    let block = Block::new(m);
+    let e = hardware.counter(m, &block, E);
+    for axis in 0..hardware.axes {
+        let m = axis_scope(m, axis);
+        let step = block.busy & !block.load;
+        let r = hardware.held(m, &block, R.of(axis));
+        let q = accumulator(m, &block, hardware, Q.of(axis), r, step);
+        let p = accumulator(m, &block, hardware, P.of(axis), q, step);
+        let (pulse, negative) = remainder(m, &block, hardware, axis, p, step);
+        hardware.axis(m, &block, axis, pulse, negative);
+    }
+    let last = e.count(block.busy);
+    block.close(block.load, block.busy, last);
+}
+
+/// A difference, which the one after it in the cascade is added to in every step.
+fn accumulator<'m>(
+    m: Scope<'m>,
+    block: &Block<'m>,
+    hardware: &Hardware,
+    register: Reg,
+    next: Signal<'m>,
+    step: Signal<'m>,
+) -> Signal<'m> {
+    let accumulator = hardware.reg(m, register);
+    let sum = accumulator.q.strict_add(next, step);
+    accumulator.when(block.load, hardware.word(block, register)).when(step, sum).else_hold();
+    accumulator.q
+}
+
+/// The remainder: the first difference is added, modulo M. Returns the pulse, and whether it is negative, 1 bit each.
+fn remainder<'m>(
+    m: Scope<'m>,
+    block: &Block<'m>,
+    hardware: &Hardware,
+    axis: usize,
+    p: Signal<'m>,
+    step: Signal<'m>,
+) -> (Signal<'m>, Signal<'m>) {
+    let (name, modulus) = (JR.of(axis).name(), hardware.constant(MODULUS));
+    let bits = remainder_bits(modulus);
+    let jr = m.reg(name, bits);
+    // A step owes one pulse at most.
+    let one_pulse = m.name(ONE_PULSE, constant(m, bits + 2, modulus).slice(0, bits + 1));
+    let _ = one_pulse.strict_sub(magnitude(m, p), step);
+
+    let wide = bits.max(p.bits()) + 2;
+    let sum = m.name("sum", jr.q.extend(wide).as_signed().wrapping_add(p.extend(wide)));
+    let (below, over) = (sum.msb(), !sum.less_than(constant(m, wide, modulus)));
+    let taken = over.mux(constant(m, wide, -modulus), below.mux(constant(m, wide, modulus), constant(m, wide, 0)));
+    let rest = sum.wrapping_add(taken).slice(0, bits);
+    jr.when(block.load, block.word(name, bits)).when(step, rest).else_hold();
+    (m.name("pulse", step & (below | over)), below)
+}
+
+/// Bits of the numbers below M.
+fn remainder_bits(modulus: i128) -> u32 {
+    Width::needed_unsigned((modulus - 1).unsigned_abs())
+}
+
+fn load(spline: &Spline, hardware: &Hardware) -> Vec<Words> {
+    let modulus = hardware.constant(MODULUS);
+    let s = hardware.get(&DIVISIONS).and_then(|s| u32::try_from(s).ok()).unwrap_or(1);
+    let block = |axes: [Differences; 2]| {
+        axes.into_iter().enumerate().fold(Words::new().set(E, 1_i128 << s), |words, (axis, at)| {
+            // Half a BLU ahead, so that the floor of the sum is the nearest whole number.
+            let ahead = at.start + modulus / 2;
+            let words = words.set(P.of(axis), at.p).set(Q.of(axis), at.q).set(R.of(axis), at.r);
+            words.set(JR.of(axis), ahead.rem_euclid(modulus)).set(POSITION.of(axis), ahead.div_euclid(modulus))
+        })
+    };
+    differences(spline, s, modulus).map(block).collect()
+}

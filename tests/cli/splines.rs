@@ -1,0 +1,83 @@
+//! Free curves: how they are given, and what is refused.
+
+use super::{Folder, good, refused, run_refused};
+
+#[test]
+fn a_bezier_curve_gives_the_worked_step_table() {
+    let table = good("run spline-dda --bezier 0,0,4,0,8,4,8,8 --steps -");
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines[0], "step,clock,jrx,jry,px,py,qx,qy,rx,ry,e,dx,dy,x,y");
+    assert_eq!(lines[2], "1,2,1020,2236,3044,548,-48,336,-24,-24,15,1,0,1,0");
+    assert_eq!(lines[17], "16,17,2048,2048,-196,3068,-408,-24,-24,-24,0,0,1,8,8");
+}
+
+#[test]
+fn points_come_from_a_file_with_or_without_a_heading_or_from_the_command() {
+    let folder = Folder::new();
+    folder.write("a.csv", "x,y\n0,0\n30, 50\n\n60,-20\n90,30\n");
+    folder.write("b.csv", "0,0\n30,50\n60,-20\n90,30");
+    for form in ["", " --b-spline"] {
+        let ran = |points: &str| folder.run(&format!("run spline-dda --points {points}{form} --steps -"));
+        let inline = ran("0,0,30,50,60,-20,90,30");
+        assert!(inline.code == 0 && inline.out.lines().count() > 60, "{inline:?}");
+        assert_eq!((ran("a.csv"), ran("b.csv")), (inline.clone(), inline));
+    }
+}
+
+#[test]
+fn the_report_has_the_points_and_the_command_that_repeats_it() {
+    let report: serde_json::Value =
+        serde_json::from_str(&good("run spline-dda --points 0,0,30,50,60,-20,90,30 --b-spline --json -")).unwrap();
+    assert_eq!(report["geometry"]["points"], serde_json::json!([[0, 0], [30, 50], [60, -20], [90, 30]]));
+    assert_eq!(report["geometry"]["curve"], "uniform B-spline");
+}
+
+#[test]
+fn a_step_that_owes_more_than_a_pulse_says_what_to_give() {
+    let ran = Folder::new().run("run spline-dda --bezier 0,0,4,0,8,4,8,8 --divisions 3");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    for hint in ["one_pulse", "512 - 764 = -252", "give --divisions greater than 3"] {
+        assert!(ran.err.contains(hint), "{hint}: {ran:?}");
+    }
+}
+
+#[test]
+fn what_is_not_a_free_curve_is_refused() {
+    run_refused("spline-dda", &["the curve is missing", "--bezier", "--hermite", "--points"]);
+    run_refused("spline-dda --to 5,3", &["the curve is missing", "--bezier"]);
+    run_refused("spline-dda --bezier 0,0,4,0,8", &["5 numbers", "X,Y of each point"]);
+    run_refused("spline-dda --bezier 0,0,4,0", &["3 or 4 points", "2 were given"]);
+    run_refused("spline-dda --hermite 0,0,4,0,4,4", &["tangent", "3 were given"]);
+    run_refused("spline-dda --points 0,0,4,0,4,4 --b-spline", &["4 points or more", "3 were given"]);
+    run_refused("spline-dda --bezier 1,1,1,1,1,1", &["single point (1, 1)", "length 0"]);
+    run_refused("spline-dda --points no.csv", &["no.csv", "cannot be read"]);
+    for option in ["--to 8,4", "--from 1,1", "--cw", "--ccw", "--center 1,1", "--opens +x", "--b-spline"] {
+        let name = option.split(' ').next().unwrap();
+        run_refused(&format!("spline-dda --bezier 0,0,4,0,8,4 {option}"), &[name, "out"]);
+    }
+    run_refused("spline-dda --bezier 0,0,4,0,8,4 --hermite 0,0,1,1,2,2,3,3", &["--hermite"]);
+    run_refused("dda-line --to 5,3 --bezier 0,0,4,0,8,4", &["dda-line", "--bezier", "leave it out"]);
+    run_refused("dda-conic --ellipse 5,4 --from 5,0 --to 0,4 --ccw --b-spline", &["--b-spline"]);
+    run_refused("spline-dda --bezier 0,0,4,0,8,4 --divisions 21", &["21", "1 to 20"]);
+    run_refused("spline-dda --bezier 0,0,4,0,8,4 --fraction 0", &["--fraction 0", "1 to 60"]);
+    run_refused("spline-dda --bezier 0,0,4000000,0,8,4", &["2^20 steps", "more segments"]);
+    refused("sweep spline-dda --to 1,1", &["free curves", "stepwave run"]);
+    refused("widths spline-dda --box 4", &["no boxes", "free curves"]);
+}
+
+#[test]
+fn a_mistake_in_a_file_of_points_is_reported_with_its_line() {
+    for (text, hints) in [
+        ("x,y\n0,0\n1,2,3\n", ["line 3", "one point"]),
+        ("0,0\n1;2\n", ["line 2", "1;2"]),
+        ("x,y\n0,0\nx,y\n", ["line 3", "x"]),
+        ("0,0\n1.5,2\n", ["line 2", "1.5"]),
+        ("", ["0 were given", "2 points or more"]),
+    ] {
+        let folder = Folder::new();
+        folder.write("p.csv", text);
+        let ran = folder.run("run spline-dda --points p.csv --vcd w.vcd");
+        assert!(ran.code == 2 && hints.iter().all(|hint| ran.err.contains(hint)), "{text:?}: {ran:?}");
+        assert_eq!(folder.files(), ["p.csv"]);
+    }
+}
