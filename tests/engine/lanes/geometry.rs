@@ -257,3 +257,24 @@ fn arcs_that_come_to_rest_are_given_up_as_alone() {
     let given_up = outcomes.iter().filter(early).count();
     assert!(given_up > 0 && given_up < outcomes.len(), "{given_up} of {}", outcomes.len());
 }
+
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn long_runs_of_every_model_of_lines_and_arcs_go_over_to_native_code() {
+    for (model, curve) in [
+        ("dda-line", line([1023, 700])),
+        ("ppc-line", line([1023, 700])),
+        ("dda-arc", Curve::Arc(Arc::new([600, 0], [0, 600], [0, 0], Direction::CounterClockwise).unwrap())),
+        ("ppc-arc", Curve::Arc(Arc::new([600, 0], [0, 600], [0, 0], Direction::CounterClockwise).unwrap())),
+    ] {
+        let bench = Testbench::new(find(model).unwrap(), &curve, &widths(12, 16)).unwrap();
+        let lanes = bench.lanes(LIMIT).unwrap();
+        let run = |count: usize| lanes.run(vec![&curve; count].into_iter(), |outcome| assert!(outcome.is_ok()));
+        run(1);
+        run(99);
+        assert_eq!(lanes.program().is_native(), std::is_x86_feature_detected!("avx2"), "{model}");
+        let measuring = bench.measuring_lanes(LIMIT).unwrap().unwrap();
+        measuring.measure(vec![&curve; 99].into_iter(), |measured| assert!(measured.is_ok()));
+        assert_eq!(measuring.program().is_native(), std::is_x86_feature_detected!("avx2"), "{model}, measured");
+    }
+}

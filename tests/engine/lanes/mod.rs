@@ -185,9 +185,19 @@ trait ByKey: Sized {
 
 impl ByKey for u64 {}
 
-/// Runs all jobs in lanes and each alone, and wants the same of both.
+/// Runs all jobs in lanes and each alone, and wants the same of both; and of lanes in native code from the first sample on,
+/// and from some later one on.
 fn assert_each_as_alone(design: &Design, watch: &LaneWatch, jobs: &[Job], kind: EngineKind) -> Vec<LaneEnd> {
-    let together = LaneProgram::new(design, watch).run_all(jobs.to_vec());
+    let program = LaneProgram::new(design, watch);
+    let together = program.run_all(jobs.to_vec());
+    for after in [0, 100] {
+        let program = program.clone().compiled_after(after);
+        let native = program.run_all(jobs.to_vec());
+        for (index, (got, wanted)) in native.iter().zip(&together).enumerate() {
+            assert_eq!(got, wanted, "native, job {index}, {:?}, {watch:?}\n{}", jobs[index], design.netlist());
+        }
+        assert_eq!(native.len(), together.len());
+    }
     assert_eq!(together.len(), jobs.len());
     for (index, (job, end)) in jobs.iter().zip(&together).enumerate() {
         let alone = Alone::new(design, watch, kind).run(job);

@@ -32,6 +32,8 @@ use super::word::WordEngine;
 use super::{Ahead, Digest, Engine, Extremes, Idle, Rows, Stop, Wanted, Watch};
 use ahead::{Digests, LookedAt};
 use large::Large;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use native::LaneLoop;
 use native::Native;
 use specialise::{History, Periodic, Specialised};
 use stepwave_netlist::Design;

@@ -5,6 +5,9 @@
 //! after it and writes nothing.
 #![allow(unsafe_code)]
 
+#[cfg(target_arch = "x86_64")]
+use std::sync::Mutex;
+
 use cranelift_codegen::ir::{AbiParam, Block, types};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
@@ -16,6 +19,8 @@ use super::digesting;
 use super::layout::Layout;
 use super::passing;
 use crate::digest::Wanted;
+#[cfg(target_arch = "x86_64")]
+use crate::lanes::{Compiled, Lane};
 
 /// Values that an offset of 31 bits reaches.
 const FARTHEST: usize = 1 << 28;
@@ -281,5 +286,59 @@ impl Digester {
     /// The words of trains of the last call.
     pub(super) fn words(&self) -> &[u64] {
         &self.words
+    }
+}
+
+/// The loop of lanes: frame, samples → samples done.
+#[cfg(target_arch = "x86_64")]
+type LaneFunction = unsafe extern "sysv64" fn(*mut u8, u64) -> u64;
+
+/// Machine code of lanes, made without a compiler.
+#[cfg(target_arch = "x86_64")]
+pub(crate) struct LaneLoop {
+    _memory: Mutex<Code>,
+    code: LaneFunction,
+    /// Bytes of the frame.
+    frame: usize,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl LaneLoop {
+    /// Puts code in memory; `None` where that is not possible, or this processor has no such instructions.
+    pub(crate) fn of(compiled: &Compiled) -> Option<LaneLoop> {
+        if !std::is_x86_feature_detected!("avx2") {
+            return None;
+        }
+        let mut module = JITModule::new(JITBuilder::new(default_libcall_names()).ok()?);
+        let signature = module.make_signature();
+        let id = module.declare_function("lanes", Linkage::Export, &signature).ok()?;
+        module.define_function_bytes(id, 32, compiled.code(), &[]).ok()?;
+        module.finalize_definitions().ok()?;
+        let address = module.get_finalized_function(id);
+        // SAFETY: `address` is the start of a function just put there, which is a `LaneFunction`: only `lanes/avx` makes a
+        // `Compiled`.
+        let code = unsafe { std::mem::transmute::<*const u8, LaneFunction>(address) };
+        Some(LaneLoop { _memory: Mutex::new(Code(Some(module))), code, frame: compiled.frame() })
+    }
+
+    /// Runs up to `samples` samples on a frame; gives their number.
+    ///
+    /// # Panics
+    /// If the frame is too short.
+    pub(crate) fn call<T: Lane>(&self, frame: &mut [T], samples: u64) -> u64 {
+        assert!(size_of_val(frame) >= self.frame, "frame of {} bytes", size_of_val(frame));
+        if samples == 0 {
+            return 0;
+        }
+        // SAFETY: the code touches the first `self.frame` bytes of the frame, which are borrowed here, calls nothing and
+        // keeps no pointer. Lanes are words without invalid patterns. The module that holds the code lives.
+        unsafe { (self.code)(frame.as_mut_ptr().cast::<u8>(), samples) }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl std::fmt::Debug for LaneLoop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "LaneLoop with a frame of {} bytes", self.frame)
     }
 }

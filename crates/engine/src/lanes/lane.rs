@@ -14,7 +14,7 @@ pub(super) const GROUPS: usize = 8;
 pub(super) const LANES: usize = GROUP * GROUPS;
 
 /// A word of a lane: `u32` where every width is at most 32, else `u64`.
-pub(super) trait Lane: Copy + Default + PartialEq + PartialOrd + Send + Sync + 'static {
+pub(crate) trait Lane: Copy + Default + PartialEq + PartialOrd + Send + Sync + 'static {
     /// Bits of the word.
     const BITS: u32;
     /// All bits.

@@ -30,8 +30,8 @@ impl<T: Lane> LaneMachine<T> {
         &self.rows
     }
 
-    pub(super) fn row(&self, slot: Slot) -> &LaneRow<T> {
-        &self.rows[slot]
+    pub(super) fn rows_mut(&mut self) -> &mut [Box<LaneRow<T>>] {
+        &mut self.rows
     }
 
     pub(super) fn get(&self, slot: Slot, lane: usize) -> T {

@@ -13,9 +13,13 @@
 //! A lane has a copy of each memory that is written, with its first words again for every job; a memory that nothing
 //! writes is there once. Where the copies of all lanes would take more than half a gigabyte, fewer lanes run at once.
 //!
+//! Long runs go over to native code where the processor has AVX2 (`native`, `avx`): a loop for one vector of lanes, each of
+//! which runs until one of its own lanes is to be looked at.
+//!
 //! What is loaded only while the inputs do not rest is folded away from the code that runs the lanes (`lower`,
 //! `fuse`, `build`); a second code for the whole design loads blocks and reads the last sample (`worker`).
 
+mod avx;
 mod build;
 mod code;
 mod feed;
@@ -24,6 +28,7 @@ mod lane;
 mod lane_machine;
 mod lane_memory;
 mod lower;
+mod native;
 mod watch;
 mod worker;
 
@@ -33,6 +38,7 @@ use build::LaneRequest;
 use code::Code;
 use feed::Feed;
 use lane_memory::{fitting, own_words};
+use native::Native;
 use stepwave_netlist::Design;
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Memory, Net, Op};
@@ -40,6 +46,8 @@ use stepwave_netlist::passes::simplify;
 use watch::Reduce;
 pub use watch::{Job, LaneEnd, LaneStop, LaneWatch, Observe, Quiet, ROOT_GAP_UNIT, root_gap};
 use worker::Worker;
+#[cfg(all(feature = "jit", target_arch = "x86_64"))]
+pub(crate) use {avx::Compiled, lane::Lane};
 
 /// Code that runs one design in many lanes.
 #[derive(Clone, Debug)]
@@ -58,6 +66,8 @@ pub struct LaneProgram {
     whole: Code,
     /// A net is wider than 32 bits, or a count may be.
     wide: bool,
+    /// Native code of `running`, once it is worth it.
+    native: Native,
 }
 
 impl LaneProgram {
@@ -107,7 +117,23 @@ impl LaneProgram {
             watch: watch.clone(),
             running,
             whole,
+            native: Native::after(native::WARM_UP),
         }
+    }
+
+    /// The same, with native code once this many samples of lanes have run without it; for tests. Usually that is after as
+    /// many as take about as long as compiling does.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn compiled_after(self, samples: u64) -> LaneProgram {
+        LaneProgram { native: Native::after(samples), ..self }
+    }
+
+    /// Native code runs the lanes now.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn is_native(&self) -> bool {
+        self.native.is_compiled()
     }
 
     /// Runs jobs on all threads of the present `rayon` pool. `prepare` makes a job of an item, in parallel; `sink` gets

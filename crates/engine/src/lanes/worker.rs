@@ -1,4 +1,4 @@
-//! A worker: a block of lanes that takes jobs, loads them, runs all lanes together, and gives ends.
+//! A worker: a block of lanes that takes jobs, loads them, runs its lanes, and gives ends.
 
 use std::collections::VecDeque;
 
@@ -8,6 +8,7 @@ use super::feed::Feed;
 use super::lane::{GROUP, LANES};
 use super::lane_machine::{LaneMachine, Loops};
 use super::lane_memory::LaneMemories;
+use super::native::Frame;
 use super::watch::{Job, LaneEnd, LaneStop, Observe};
 use stepwave_netlist::bits::Width;
 
@@ -19,9 +20,9 @@ struct Busy {
     loaded: usize,
     /// Present values of all inputs.
     inputs: Vec<u64>,
-    /// The tick at which its clock was 0, modulo 2^64.
-    start: u64,
-    /// The tick at which it is examined, regardless of its nets.
+    /// Clock of the last sample.
+    clock: u64,
+    /// The clock at which it is examined, regardless of its nets.
     due: u64,
 }
 
@@ -39,13 +40,11 @@ pub(super) struct Worker<'p, T> {
     /// A few lanes, loading or being read.
     loader: LaneMachine<T>,
     memories: LaneMemories<T>,
+    /// Where native code works.
+    frame: Option<Frame<T>>,
     /// Lanes that run at once.
     most: usize,
     busy: Vec<Busy>,
-    /// Samples settled.
-    tick: u64,
-    /// No lane is due before this tick.
-    next_due: u64,
     queue: VecDeque<(u64, Job)>,
     ends: Vec<(u64, LaneEnd)>,
 }
@@ -57,10 +56,9 @@ impl<'p, T: Loops> Worker<'p, T> {
             lanes: LaneMachine::new(&program.running),
             loader: LaneMachine::new(&program.whole),
             memories: LaneMemories::new(program.memories.iter().map(Option::as_ref), most),
+            frame: None,
             most,
             busy: Vec::with_capacity(LANES),
-            tick: 0,
-            next_due: u64::MAX,
             queue: VecDeque::new(),
             ends: Vec::new(),
         }
@@ -120,19 +118,20 @@ impl<'p, T: Loops> Worker<'p, T> {
     }
 
     fn fresh(&self, (number, job): (u64, Job)) -> Busy {
-        Busy { number, job, loaded: 0, inputs: vec![0; self.program.inputs.len()], start: 0, due: 0 }
+        Busy { number, job, loaded: 0, inputs: vec![0; self.program.inputs.len()], clock: 0, due: 0 }
     }
 
-    /// Runs all lanes until one of them is to be looked at, and looks.
+    /// Runs lanes until some of them are to be looked at, and looks.
     fn run(&mut self) {
-        let stop = self.program.running.outputs[0];
-        let most = self.next_due.saturating_sub(self.tick).max(1);
-        let (running, lanes) = (&self.program.running, self.busy.len());
-        self.tick += T::run(&mut self.lanes, running, lanes, stop, most, &mut self.memories);
-        let stops = self.lanes.row(stop);
-        let seen = |lane: usize, busy: &Busy| stops.get(lane) != T::default() || busy.due <= self.tick;
-        let seen: Vec<usize> =
-            self.busy.iter().enumerate().filter(|(lane, busy)| seen(*lane, busy)).map(|(lane, _)| lane).collect();
+        self.settle();
+        let mut seen = Vec::new();
+        for lane in 0..self.busy.len() {
+            if self.may_end(lane) {
+                seen.push(lane);
+            } else if self.busy[lane].due <= self.busy[lane].clock {
+                self.set_due(lane);
+            }
+        }
         self.lanes.edge(&self.program.running);
         let (mut free, mut loading) = (Vec::new(), Vec::new());
         for lanes in seen.chunks(GROUP) {
@@ -148,9 +147,27 @@ impl<'p, T: Loops> Worker<'p, T> {
             self.move_lane(self.busy.len(), lane);
             self.memories.swap(self.busy.len(), lane);
         }
-        if self.next_due <= self.tick {
-            self.next_due = self.busy.iter().map(|busy| busy.due).min().unwrap_or(u64::MAX);
-        }
+    }
+
+    /// Settles sample after sample, until one of the lanes is to be looked at; with native code each vector of lanes until
+    /// one of its own is.
+    fn settle(&mut self) {
+        let program = self.program;
+        let (running, lanes) = (&program.running, self.busy.len());
+        let most = match program.native.code::<T>(running) {
+            Some(code) => {
+                let frame = self.frame.get_or_insert_with(|| Frame::new(code));
+                for (index, busy) in self.busy.chunks_mut(code.lanes()).enumerate() {
+                    let done = frame.run(code, self.lanes.rows_mut(), index, busy.len(), samples(busy) - 1);
+                    busy.iter_mut().for_each(|busy| busy.clock += done);
+                }
+                1
+            }
+            None => samples(&self.busy).min(program.native.most(lanes)),
+        };
+        let done = T::run(&mut self.lanes, running, lanes, running.outputs[0], most, &mut self.memories);
+        program.native.interpreted(lanes, done);
+        self.busy.iter_mut().for_each(|busy| busy.clock += done);
     }
 
     /// Reads the sample before the last edge in up to a group of lanes: they end, are to load, or continue.
@@ -188,7 +205,7 @@ impl<'p, T: Loops> Worker<'p, T> {
 
     fn verdict(&self, place: usize, lane: usize) -> Verdict {
         let (watch, busy) = (&self.program.watch, &self.busy[lane]);
-        let clock = self.tick.wrapping_sub(busy.start);
+        let clock = busy.clock;
         let ends = &self.program.whole.outputs[..=watch.traps.len()];
         match ends.iter().position(|&row| self.loader.get(row, place) != T::default()) {
             Some(0) if busy.loaded >= busy.job.blocks.len() => return Verdict::Ends(LaneStop::Done),
@@ -219,6 +236,14 @@ impl<'p, T: Loops> Worker<'p, T> {
         kept && running.registers.iter().all(|register| register.next.is_none_or(|old| row(old) == row(register.row)))
     }
 
+    /// The last sample may be the end of a block: only a look at all nets shows which.
+    fn may_end(&self, lane: usize) -> bool {
+        let (clock, watch) = (self.busy[lane].clock, &self.program.watch);
+        let quiet = || watch.quiet.as_ref().is_some_and(|quiet| self.idle(lane) >= quiet.every.min(quiet.clocks));
+        self.lanes.get(self.program.running.outputs[0], lane) != T::default()
+            || self.busy[lane].due <= clock && (clock >= watch.limit || quiet())
+    }
+
     /// Clocks since one of the quiet nets was not 0.
     fn idle(&self, lane: usize) -> u64 {
         self.program.running.accumulators.last().map_or(0, |&row| self.lanes.get(row, lane).get())
@@ -243,7 +268,7 @@ impl<'p, T: Loops> Worker<'p, T> {
             Observe::Min { .. } | Observe::Max { .. } => word(accumulators.next(), &self.lanes, lane).decode(*width),
         };
         let values = program.watch.observe.iter().zip(&program.widths).map(value).collect();
-        LaneEnd { stop, clock: self.tick.wrapping_sub(self.busy[lane].start), values }
+        LaneEnd { stop, clock: self.busy[lane].clock, values }
     }
 
     /// Loads the next block of up to a group of lanes, after the last edge: one sample and the next edge.
@@ -290,7 +315,7 @@ impl<'p, T: Loops> Worker<'p, T> {
     /// The inputs of the next block, and the clock after its load.
     fn next_block(&mut self, lane: usize) {
         let busy = &mut self.busy[lane];
-        busy.start = if busy.loaded == 0 { self.tick } else { busy.start.wrapping_sub(1) };
+        busy.clock = if busy.loaded == 0 { 0 } else { busy.clock + 1 };
         if let Some(block) = busy.job.blocks.get(busy.loaded) {
             set(&self.program.inputs, &mut busy.inputs, block);
         }
@@ -318,9 +343,8 @@ impl<'p, T: Loops> Worker<'p, T> {
     /// When a lane is to be looked at next: at the limit, or where it may have been quiet for too long.
     fn set_due(&mut self, lane: usize) {
         let watch = &self.program.watch;
-        let start = self.busy[lane].start;
         // Clock of the next sample of this lane.
-        let next = (self.tick + 1).wrapping_sub(start);
+        let next = self.busy[lane].clock + 1;
         let mut clock = watch.limit;
         if let Some(quiet) = &watch.quiet {
             let since = (next - 1).saturating_sub(self.idle(lane));
@@ -328,9 +352,7 @@ impl<'p, T: Loops> Worker<'p, T> {
             let least = since.saturating_add(borne).saturating_add(1).max(next);
             clock = clock.min(least.saturating_add(1).div_ceil(quiet.every).saturating_mul(quiet.every) - 1);
         }
-        let due = (self.tick + 1).saturating_add(clock.max(next) - next);
-        self.busy[lane].due = due;
-        self.next_due = self.next_due.min(due);
+        self.busy[lane].due = clock.max(next);
     }
 
     /// Another lane's state, into a lane that has ended.
@@ -342,6 +364,11 @@ impl<'p, T: Loops> Worker<'p, T> {
             self.lanes.set(row, to, word);
         }
     }
+}
+
+/// Samples until the first of these lanes is to be examined; at least 1.
+fn samples(busy: &[Busy]) -> u64 {
+    busy.iter().map(|busy| busy.due.saturating_sub(busy.clock)).min().unwrap_or(1).max(1)
 }
 
 /// Sets inputs, cut to their widths.
