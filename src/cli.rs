@@ -10,6 +10,7 @@ use crate::commands::diff::DiffArgs;
 
 mod endings;
 mod hardware;
+mod machine;
 mod names;
 mod own;
 mod program;
@@ -23,6 +24,7 @@ use crate::simulation::FileOptions;
 use crate::waves::WaveOptions;
 pub(crate) use endings::{Format, file_of};
 pub(crate) use hardware::HardwareArgs;
+pub(crate) use machine::{MachineArgs, Travel};
 use names::model_name;
 pub(crate) use names::{Registers, all_registers, known_register, listed, registers};
 pub(crate) use own::{BenchArgs, CheckArgs, ImportArgs, SimArgs};
@@ -60,6 +62,8 @@ pub(crate) enum Command {
     Compare(Box<CompareArgs>),
     /// The least width of every register over a box of geometries, how it is known, and what happens one bit below
     Widths(Box<WidthsArgs>),
+    /// What a machine of a given size takes by each method: widths, clock, feed, path error
+    Machine(Box<MachineArgs>),
     /// Prove, for all geometries and widths: no register overflows, the end point is reached exactly
     Prove(Box<ProveArgs>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)

@@ -1,5 +1,6 @@
 //! Values on the command line, each with the sentence that says what is wrong with a bad one.
 
+use super::Travel;
 use stepwave_import::Unknown;
 
 use crate::engine::EngineKind;
@@ -37,7 +38,7 @@ pub(crate) fn opens() -> impl TypedValueParser<Value = Opens> {
 }
 
 /// The clock frequency in Hz.
-fn parse_clock(text: &str) -> Result<f64, String> {
+pub(super) fn parse_clock(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| format!("invalid frequency '{text}': give Hz, such as 1000000 or 1e6"))
 }
 
@@ -93,6 +94,31 @@ pub(super) fn parse_millionths(text: &str) -> Result<Millionths, String> {
 pub(super) fn parse_feed(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
     number.ok_or_else(|| format!("invalid feed '{text}': give mm/min, such as 600"))
+}
+
+/// A speed in mm/min, with its unit or without one.
+pub(super) fn parse_speed(text: &str) -> Result<f64, String> {
+    const UNITS: [(&str, f64); 4] = [("mm/min", 1.0), ("mm/s", 60.0), ("in/min", 25.4), ("m/min", 1000.0)];
+    let unit = UNITS.iter().find(|(unit, _)| text.ends_with(unit));
+    let (number, scale) = unit.map_or((text, 1.0), |(unit, scale)| (text.trim_end_matches(unit).trim(), *scale));
+    parse_feed(number)
+        .map(|speed| speed * scale)
+        .map_err(|_| format!("invalid feed '{text}': give a speed such as 2400mm/min, 40mm/s or 95in/min"))
+}
+
+/// The travel of two or three axes in mm, with units or without.
+pub(super) fn parse_travel(text: &str) -> Result<Travel, String> {
+    let length = |word: &str| {
+        let word = word.trim();
+        let mm = word.parse().ok().filter(|mm: &f64| mm.is_finite() && *mm > 0.0);
+        mm.map_or_else(|| parse_blu(word), Ok)
+            .map_err(|_| format!("invalid travel '{word}': give lengths such as 300mm,200mm"))
+    };
+    let axes: Vec<f64> = text.split(',').map(length).collect::<Result<_, _>>()?;
+    match axes.len() {
+        2..=3 => Ok(Travel(axes)),
+        count => Err(format!("a machine of {count} axes: give the travel of two or three, such as 300mm,200mm")),
+    }
 }
 
 /// The clock frequency, for commands that write waves.

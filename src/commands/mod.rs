@@ -6,6 +6,7 @@ mod export;
 mod geometry;
 mod golden;
 mod list;
+mod machine;
 mod own;
 mod pages;
 pub(crate) mod program;
@@ -39,6 +40,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Error> {
         Command::Sweep(args) => sweep::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Widths(args) => widths::run(args),
+        Command::Machine(args) => machine::run(args),
         Command::Prove(args) => prove::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Export(args) => export::run(args),
@@ -68,7 +70,9 @@ fn only_prints(command: &Command) -> bool {
         Command::Sim(args) => traced(&args.trace).into_iter().chain([args.json.clone()]).collect(),
         Command::Prove(args) => vec![args.certificate.clone(), args.vcd.clone()],
         Command::Diff(args) => vec![args.merged.clone()],
-        Command::Compare(_) | Command::Widths(_) | Command::Golden(GoldenCommand::Check(_)) => Vec::new(),
+        Command::Compare(_) | Command::Widths(_) | Command::Machine(_) | Command::Golden(GoldenCommand::Check(_)) => {
+            Vec::new()
+        }
         _ => return false,
     };
     files.iter().flatten().all(|file| file == Path::new("-"))

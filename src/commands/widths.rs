@@ -44,7 +44,8 @@ fn too_narrow(model: &Model, register: &RegisterWidth) -> String {
     }
 }
 
-fn known(register: &RegisterWidth) -> &'static str {
+/// How a width is known, in a word.
+pub(super) fn evidence(register: &RegisterWidth) -> &'static str {
     match register.known {
         Known::Proved => "proved",
         Known::ProvedHere => "proved at k",
@@ -59,7 +60,8 @@ fn command(model: &Model, witness: &Witness) -> String {
     run_command(model, &witness.curve, &witness.choices)
 }
 
-fn below(model: &Model, register: &RegisterWidth) -> String {
+/// What happens one bit below, by the command that shows it.
+pub(super) fn one_bit_below(model: &Model, register: &RegisterWidth) -> String {
     let shown = register.shown;
     match &register.witness {
         Some(witness) if register.shown < register.needed => {
@@ -96,8 +98,8 @@ fn table(model: &Model, found: &Widths) -> String {
             register.given,
             register.needed,
             relative(register.needed, found.k),
-            known(register),
-            below(model, register),
+            evidence(register),
+            one_bit_below(model, register),
         );
     }
     if found.faults > 0 {
@@ -122,8 +124,9 @@ fn number(value: i128) -> Value {
     i64::try_from(value).map(Value::from).or_else(|_| u64::try_from(value).map(Value::from)).unwrap_or(Value::Null)
 }
 
-fn as_json(model: &Model, found: &Widths) -> String {
-    let registers = found.registers.iter().map(|register| {
+/// Registers with their widths and what is known of them.
+pub(super) fn registers_json(model: &Model, registers: &[RegisterWidth]) -> Vec<Value> {
+    let one = |register: &RegisterWidth| {
         json!({
             "name": register.name,
             "given": register.given,
@@ -131,11 +134,15 @@ fn as_json(model: &Model, found: &Widths) -> String {
             "shown": register.shown,
             "least": number(register.range.0),
             "greatest": number(register.range.1),
-            "known": known(register),
+            "known": evidence(register),
             "one_bit_below": register.witness.as_ref().map(|witness| command(model, witness)),
             "fault": register.fault.as_ref().map(|fault| command(model, fault)),
         })
-    });
+    };
+    registers.iter().map(one).collect()
+}
+
+fn as_json(model: &Model, found: &Widths) -> String {
     let all = json!({
         "model": model.name,
         "box": found.extent.to_string(),
@@ -144,7 +151,7 @@ fn as_json(model: &Model, found: &Widths) -> String {
         "all": found.all,
         "faults": found.faults,
         "followed_in_part": found.cut,
-        "registers": registers.collect::<Vec<_>>(),
+        "registers": registers_json(model, &found.registers),
     });
     format!("{all:#}\n")
 }

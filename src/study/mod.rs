@@ -36,6 +36,7 @@ mod error;
 pub mod exhausted;
 mod hardware_cache;
 mod kform;
+pub mod machine;
 mod merge;
 #[cfg(feature = "parquet")]
 mod parquet;

@@ -10,6 +10,7 @@ mod endings;
 mod files;
 mod golden;
 mod inputs;
+mod machine;
 mod models;
 mod nearest;
 mod outputs;

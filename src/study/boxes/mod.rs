@@ -181,6 +181,17 @@ impl Geometries {
         Ok(Geometries { curves, all, k, hardware: model.plan(&largest, &choices)?, choices })
     }
 
+    /// These geometries, by hardware that holds all of them.
+    ///
+    /// # Errors
+    /// There are none, or the hardware cannot be built.
+    pub fn these(model: &'static Model, choices: &Options, curves: Vec<Curve>) -> Result<Geometries, ProofError> {
+        let coordinates = curves.iter().flat_map(|curve| curve.from().iter().chain(curve.to()));
+        let greatest = coordinates.map(|coordinate| coordinate.unsigned_abs()).max().unwrap_or(0);
+        let (k, hardware) = (Width::needed_unsigned(greatest.into()), widest(model, choices, &curves)?);
+        Ok(Geometries { curves, all: false, k, hardware, choices: choices.clone() })
+    }
+
     /// Conics and helices.
     fn in_space(
         model: &'static Model,

@@ -1,0 +1,102 @@
+//! `stepwave machine`: what it says of every method is what single runs come to.
+
+use serde_json::Value;
+
+use super::{Folder, good, refused};
+
+const SMALL: &str = "machine --travel 0.02mm,0.015mm --blu 1um --feed 30mm/min";
+
+fn json(words: &str) -> Value {
+    serde_json::from_str(&good(words)).unwrap()
+}
+
+/// A run by the words of a command that the report names.
+fn repeated(command: &Value) -> Value {
+    json(&format!("{} --json -", command.as_str().unwrap().strip_prefix("stepwave ").unwrap()))
+}
+
+#[test]
+fn corners_and_clocks_are_those_of_single_runs() {
+    let all = json(&format!("{SMALL} --json"));
+    assert_eq!((all["travel"].clone(), all["left_out"].clone()), (serde_json::json!([20, 15]), serde_json::json!([])));
+    let machines = all["machines"].as_array().unwrap();
+    assert!(machines.len() >= 15, "{}", machines.len());
+    for machine in machines {
+        let name = machine["model"].as_str().unwrap();
+        let (mut slowest, mut worst): (f64, f64) = (f64::MAX, 0.0);
+        for corner in machine["corners"].as_array().unwrap() {
+            let ran = repeated(&corner["run"]);
+
+            let (clocks, error) = (ran["clocks"].as_u64().unwrap() - 1, &ran["path_error"]["greatest"]);
+            assert_eq!((&corner["clocks"], &corner["path_error"]), (&Value::from(clocks), error), "{name} {corner}");
+            assert_eq!(corner["done"], true, "{name} {corner}");
+            slowest = slowest.min(corner["length"].as_f64().unwrap() / clocks as f64);
+            worst = worst.max(error.as_f64().unwrap());
+        }
+        assert_eq!(machine["path_error"]["greatest"].as_f64(), Some(worst), "{name}");
+        // 30 mm/min are 500 BLU/s.
+        let clock = machine["clock_hz"].as_f64().unwrap();
+        if name.starts_with("sampled") {
+            assert_eq!(clock, 1e6, "{name}");
+        } else {
+            assert!((clock * slowest - 500.0).abs() < 1e-6, "{name}: {clock} Hz, {slowest} BLU a clock");
+            assert!((machine["feed"]["least"].as_f64().unwrap() - 30.0).abs() < 1e-6, "{name}");
+        }
+    }
+}
+
+#[test]
+fn one_bit_below_fails_as_it_says() {
+    let all = json(&format!("{SMALL} --json"));
+    let mut failed = 0;
+    for machine in all["machines"].as_array().unwrap() {
+        for register in machine["registers"].as_array().unwrap() {
+            let Some(command) = register["one_bit_below"].as_str() else { continue };
+            let ran = Folder::new().run(command.strip_prefix("stepwave ").unwrap());
+            assert!(ran.code > 0, "{command}: {ran:?}");
+            failed += 1;
+        }
+    }
+    assert!(failed > 80, "{failed}");
+}
+
+#[test]
+fn a_machine_of_three_axes_has_the_methods_of_lines_in_space() {
+    let all = json("machine ppc-line dda-line bresenham --travel 20um,15um,9um --blu 0.001mm --feed 10mm/s --json");
+    for machine in all["machines"].as_array().unwrap() {
+        let name = machine["model"].as_str().unwrap();
+        for corner in machine["corners"].as_array().unwrap() {
+            let ran = repeated(&corner["run"]);
+            assert_eq!(ran["clocks"].as_u64().unwrap() - 1, corner["clocks"].as_u64().unwrap(), "{name}");
+        }
+        assert!(machine["registers"].as_array().unwrap().iter().all(|own| own["known"] == "sampled"), "{name}");
+    }
+    assert_eq!(all["feed"], 600.0);
+}
+
+#[test]
+fn tables_name_every_method_and_register() {
+    let text = good(&format!("{SMALL} ppc-line mindev-arc"));
+    assert!(text.starts_with("travel ±20, ±15 BLU of 0.001 mm, feed 30 mm/min\n"), "{text}");
+    assert!(text.contains("\nppc-line\n") && text.contains("--width 5,f=5"), "{text}");
+    let markdown = good(&format!("{SMALL} ppc-line mindev-arc --markdown"));
+    assert!(
+        markdown.contains("| method | registers, bits | clock |") && markdown.contains("### mindev-arc"),
+        "{markdown}"
+    );
+}
+
+#[test]
+fn what_is_no_machine_is_refused() {
+    let with = |more: &str| format!("machine --feed 600 --travel {more}");
+    refused(&with("300mm"), &["1 axes", "two or three", "300mm,200mm"]);
+    refused(&with("1mm,1mm,1mm,1mm"), &["4 axes", "two or three"]);
+    refused(&with("0mm,200mm"), &["0mm", "300mm,200mm"]);
+    refused(&with("-3,200"), &["-3"]);
+    refused(&with("3parsec,200mm"), &["3parsec"]);
+    refused(&with("1mm,1mm --blu 1e-30mm"), &["BLU", "2^52", "--blu"]);
+    refused(&with("1mm,1mm dda-conic"), &["dda-conic", "leave it out"]);
+    refused(&with("1mm,1mm ppc-machine"), &["ppc-machine", "leave it out"]);
+    refused("machine --travel 1mm,1mm --feed fast", &["fast", "2400mm/min"]);
+    refused("machine --travel 1mm,1mm", &["--feed"]);
+}
