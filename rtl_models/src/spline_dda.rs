@@ -137,9 +137,9 @@ impl Differences {
 
     /// The greatest abs(p) from row 0 to this one, and the extremes of p themselves.
     fn p_extremes(&self, last: i128) -> [i128; 2] {
-        // A parabola in i, with its vertex at 1/2 - q/r.
-        let vertex = if self.r == 0 { 0 } else { (self.r - 2 * self.q).div_euclid(2 * self.r) };
-        let rows = [0, vertex, vertex + 1, last].map(|row| self.p_at(row.clamp(0, last)));
+        // A parabola in i, with its vertex at 1/2 - q/r, less than a row from the quotient.
+        let vertex = if self.r == 0 { 0 } else { (self.r - 2 * self.q) / (2 * self.r) };
+        let rows = [0, vertex - 1, vertex, vertex + 1, last].map(|row| self.p_at(row.clamp(0, last)));
         rows.into_iter().fold([rows[0]; 2], |[least, most], p| [least.min(p), most.max(p)])
     }
 }
@@ -204,20 +204,26 @@ fn plan(spline: &Spline, plan: &mut Plan) -> Result<(), ModelError> {
     }
     plan.n = plan.bits_or(p);
     plan.set_each(Q, q).set_each(R, r).set(E, s + 1);
-    plan.positions([0, 1].map(|axis| reach(spline, axis)));
     let off = fraction.map_or(0.0, |bits| rounding(spline, s, bits));
+    // A path that errs by what was rounded goes no farther than its steps.
+    let astray = off.ceil().min((spline.segments().len() as f64) * f64::from(1_u32 << s));
+    #[allow(clippy::cast_possible_truncation)]
+    plan.positions([0, 1].map(|axis| reach(spline, axis, astray as i64)));
     plan.error_bound = Some((0.5 + off) * SQRT_2);
     // A segment may be a single point.
     plan.stall_clocks = (spline.segments().len() as u64).saturating_mul(1 << s).saturating_add(16);
     Ok(())
 }
 
-/// Positions of an axis between which the curve lies: those of its Bézier points, outwards.
-fn reach(spline: &Spline, axis: usize) -> impl Iterator<Item = i64> {
+/// Positions of an axis between which the path lies: those of the Bézier points of the curve, outwards, and as far off
+/// as rounding may lead.
+fn reach(spline: &Spline, axis: usize, astray: i64) -> impl Iterator<Item = i64> {
     spline.segments().iter().flat_map(move |segment| {
         let ([c0, c1, c2, c3], d) = (segment.coefficients[axis], segment.divisor);
         let points = [3 * c0, 3 * c0 + c1, 3 * c0 + 2 * c1 + c2, 3 * (c0 + c1 + c2 + c3)];
-        points.into_iter().flat_map(move |point| [point.div_euclid(3 * d), -(-point).div_euclid(3 * d)])
+        points
+            .into_iter()
+            .flat_map(move |point| [point.div_euclid(3 * d) - astray, -(-point).div_euclid(3 * d) + astray])
     })
 }
 

@@ -90,7 +90,7 @@ fn points(given: &str) -> Result<Vec<i64>, Error> {
     }
     let text = std::fs::read_to_string(given)
         .map_err(|error| Error::Invalid(format!("--points {given} cannot be read: {error}; give a CSV file of x,y")))?;
-    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let lines = text.trim_start_matches('\u{feff}').lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let mut numbers = Vec::new();
     for (index, line) in lines {
         match parse_point(line.trim()) {

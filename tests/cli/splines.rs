@@ -15,12 +15,13 @@ fn a_bezier_curve_gives_the_worked_step_table() {
 fn points_come_from_a_file_with_or_without_a_heading_or_from_the_command() {
     let folder = Folder::new();
     folder.write("a.csv", "x,y\n0,0\n30, 50\n\n60,-20\n90,30\n");
+    folder.write("c.csv", "\u{feff}X,Y\r\n0,0\r\n30,50\r\n60,-20\r\n90,30\r\n");
     folder.write("b.csv", "0,0\n30,50\n60,-20\n90,30");
     for form in ["", " --b-spline"] {
         let ran = |points: &str| folder.run(&format!("run spline-dda --points {points}{form} --steps -"));
         let inline = ran("0,0,30,50,60,-20,90,30");
         assert!(inline.code == 0 && inline.out.lines().count() > 60, "{inline:?}");
-        assert_eq!((ran("a.csv"), ran("b.csv")), (inline.clone(), inline));
+        assert_eq!([ran("a.csv"), ran("b.csv"), ran("c.csv")], [inline.clone(), inline.clone(), inline]);
     }
 }
 

@@ -7,6 +7,7 @@ use stepwave_engine::EngineKind;
 use stepwave_models::options::{DIVISIONS, FRACTION};
 use stepwave_models::{Options, find};
 use stepwave_nc::{Conic, Curve, Spline, SplineForm};
+use stepwave_netlist::Width;
 
 use super::{assert_equal, bench, check, run, widths};
 use crate::reference::{Basis, Segment, Table, spline_dda, spline_dda_fraction, spline_owes};
@@ -160,6 +161,21 @@ fn a_quadratic_curve_ends_where_the_parabola_of_the_conic_does_and_lies_on_it() 
     assert!(by_spline.1 <= 0.5f64.sqrt() && by_conic.1 < 1.5, "{by_spline:?} {by_conic:?}");
 }
 
+/// Where p is least or greatest next to a row, not in it; the second in several segments.
+#[test]
+fn the_steepest_row_is_found_where_the_vertex_lies_between_two() {
+    check_spline(SplineForm::Hermite, &[[-4, -2], [0, -1], [1, -2], [-3, -4]], EngineKind::Word);
+    check_spline(SplineForm::CatmullRom, &[[-1, -1], [-1, 0], [2, -2], [-1, -1], [-2, 2]], EngineKind::Word);
+}
+
+#[test]
+fn a_closed_curve_of_less_than_a_blu_needs_no_pulse() {
+    let curve = spline(SplineForm::Hermite, &[[1, -2], [1, -1], [1, -2], [-2, -2]]);
+    let ran = run(NAME, &curve, &Options::default(), EngineKind::Word);
+    assert!(ran.outcome.ending == Ending::Done && ran.outcome.ends(&curve), "{:?}", ran.outcome);
+    assert_eq!(ran.outcome.pulses, [0, 0]);
+}
+
 #[test]
 fn one_bit_less_traps_in_the_register_that_lacks_it() {
     let curve = spline(SplineForm::Bezier, &[[0, 0], [50, 3], [-20, 8], [9, 31]]);
@@ -173,6 +189,28 @@ fn one_bit_less_traps_in_the_register_that_lacks_it() {
                 assert_eq!(outcome.ending, Ending::Trapped, "{register}");
             }
             Err(error) => assert!(error.to_string().starts_with(&format!("{register} = ")), "{error}"),
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4000))]
+
+    #[test]
+    fn divisions_and_widths_are_those_of_every_row(
+        points in prop::collection::vec(prop::array::uniform2(-6i64..7), 4..7), form in 0usize..4
+    ) {
+        let form = SplineForm::ALL[form];
+        let few = if matches!(form, SplineForm::Bezier | SplineForm::Hermite) { 4 } else { points.len() };
+        let Ok(curve) = Spline::new(form, &points[..few]) else { return Ok(()) };
+        let segments = segments(form, &points[..few]);
+        let (s, hardware) = (least(&segments), find(NAME).unwrap().plan(&curve.into(), &Options::default()).unwrap());
+        prop_assert_eq!(hardware.get(&DIVISIONS), Some(u64::from(s)), "{:?} {:?}", form, points);
+        let table = spline_dda(&segments, s);
+        for kind in ["p", "q", "r"] {
+            let values = ["x", "y"].map(|axis| table.column(&format!("{kind}{axis}"))).concat();
+            let needed = values.iter().map(|value| Width::needed_signed((*value).into())).max().unwrap();
+            prop_assert!(hardware.bits_of(&format!("{kind}x")) >= needed, "{:?} {:?} {}", form, points, kind);
         }
     }
 }
