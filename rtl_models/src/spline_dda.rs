@@ -12,7 +12,7 @@
 //! numbers of 1/M BLU, M = D·2^(3s): the third, r = 6·c3, is constant, and in every step {pulse, jr} := jr + p, p += q,
 //! q += r, all with the old values. jr starts at half of M beyond the start, so x = floor(X + 1/2) after *every* step: each
 //! axis stays within half a BLU of its place, and the path within sqrt(1/2) BLU of the curve. No rounding adds up, nor
-//! from one segment to the next, because each is loaded from its own coefficients.
+//! from one segment to the next, because each is loaded from its own coefficients; with a fraction it does.
 //!
 //! | curve | D | c0 to c3 |
 //! |---|---|---|
@@ -29,7 +29,8 @@
 //!
 //! **Fraction.** `--fraction B` keeps the start, p, q and r to B bits after the point, rounded half upwards, M = 2^B. After n steps an axis
 //! is then off by at most (g + n + n(n-1)/2 + n(n-1)(n-2)/6)·2^-(B+1) BLU beyond the half, g = 1 where the start is not whole.
-//! Ends at whole points are exact for certain from B = 3s-2 on; with less the end may be missed.
+//! Ends at whole points are exact for certain from B = 3s-2 on; with less the end may be missed. In a chain what each
+//! segment errs by adds up, and a BLU each of rounding.
 //!
 //! The recurrence is the project's own form of forward differencing as computer graphics has it, in whole numbers.
 //! The Bézier curve (0, 0), (4, 0), (8, 4), (8, 8), from the golden file `waves/spline-dda-bezier.csv`; the wave is
@@ -80,6 +81,8 @@ const MODULUS: &str = "m";
 /// The net that is M, from which abs(p) is taken.
 const ONE_PULSE: &str = "one_pulse";
 
+/// Most bits of p.
+const MOST_BITS: u32 = 62;
 /// Most steps of a segment, as a power of two: p has 3s+2 bits.
 const MOST_DIVISIONS: u32 = 20;
 
@@ -204,6 +207,12 @@ fn plan(spline: &Spline, plan: &mut Plan) -> Result<(), ModelError> {
     }
     plan.n = plan.bits_or(p);
     plan.set_each(Q, q).set_each(R, r).set(E, s + 1);
+    if plan.n > MOST_BITS {
+        return Err(ModelError::Widths(format!(
+            "{NAME}: p of {} bits is too wide, as a sum with the remainder takes 2 more: give --width {MOST_BITS} or less",
+            plan.n
+        )));
+    }
     let off = fraction.map_or(0.0, |bits| rounding(spline, s, bits));
     // A path that errs by what was rounded goes no farther than its steps.
     let astray = off.ceil().min((spline.segments().len() as f64) * f64::from(1_u32 << s));
@@ -227,13 +236,15 @@ fn reach(spline: &Spline, axis: usize, astray: i64) -> impl Iterator<Item = i64>
     })
 }
 
-/// How far an axis may be off beyond half a BLU where its registers have this many bits of fraction.
+/// How far an axis may be off beyond half a BLU where its registers have this many bits of fraction. A segment begins
+/// where the one before it ended, so that what they err by adds up, and a BLU each of rounding to whole positions.
 fn rounding(spline: &Spline, s: u32, bits: u32) -> f64 {
     let n = f64::from(1_u32 << s);
     let whole = |segment: &SplineSegment| segment.coefficients.iter().all(|c| c[0] % segment.divisor == 0);
     let start = if spline.segments().iter().all(whole) { 0.0 } else { 1.0 };
     let all = start + n + n * (n - 1.0) / 2.0 + n * (n - 1.0) * (n - 2.0) / 6.0;
-    all * (-f64::from(bits) - 1.0).exp2()
+    let off = all * (-f64::from(bits) - 1.0).exp2();
+    off + (spline.segments().len() - 1) as f64 * (off + 1.0)
 }
 
 /// A constant of two's complement; M and the numbers below it have 63 bits at most.

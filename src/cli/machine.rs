@@ -13,7 +13,8 @@ pub(crate) struct Travel(pub(crate) Vec<f64>);
 #[command(
     after_help = "A row for each method: the bits of every register, the clock with which the slowest corner of the travel\n\
     reaches --feed, the feeds reached at that clock, and the greatest path error of the runs at the corners. Corners are\n\
-    the lines from the origin to the ends of the travel and along each axis, and quarters of the greatest circle.\n\
+    the lines from the origin to the ends of the travel, along each axis and with two axes equally long, and quarters of the\n\
+    greatest circle; shorter lines may be slower, such as those of integrators. The travel is rounded up to whole BLU.\n\
     Below the table every register, how its width is known, and the run that one bit less does not hold.\n\n\
     Widths are known as `stepwave widths` knows them over the box of the travel; where neither a proof nor all of its\n\
     geometries are to be had, they are those that the corners need: sampled.\n\n\

@@ -112,11 +112,12 @@ pub(super) fn parse_travel(text: &str) -> Result<Travel, String> {
         let word = word.trim();
         let mm = word.parse().ok().filter(|mm: &f64| mm.is_finite() && *mm > 0.0);
         mm.map_or_else(|| parse_blu(word), Ok)
-            .map_err(|_| format!("invalid travel '{word}': give lengths such as 300mm,200mm"))
+            .map_err(|_| format!("invalid travel '{word}': give lengths in mm, um or in, such as 300mm,200mm"))
     };
     let axes: Vec<f64> = text.split(',').map(length).collect::<Result<_, _>>()?;
     match axes.len() {
         2..=3 => Ok(Travel(axes)),
+        1 => Err("a machine of one axis: give the travel of two or three, such as 300mm,200mm".to_owned()),
         count => Err(format!("a machine of {count} axes: give the travel of two or three, such as 300mm,200mm")),
     }
 }

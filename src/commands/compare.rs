@@ -31,6 +31,10 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     let models = models.into_iter().filter(|model| model.curve().fits(&curve));
     let runs: Vec<_> =
         models.flat_map(|model| forms(model, &curve).into_iter().map(move |form| (model, form))).collect();
+    if runs.is_empty() {
+        let curve = curve.description().drawn.noun();
+        return Err(Error::Invalid(format!("none of these models takes {curve}: name others, or none for all")));
+    }
     let progress = Progress::of(runs.len() as u64, "machines");
     let mut left_out = Vec::new();
     for (model, (form, choices)) in runs {

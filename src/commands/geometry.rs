@@ -20,15 +20,15 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
     if kind == CurveKind::Spline {
         return invalid(format!("the curve is missing: {who} takes {}", kind.describe()));
     }
-    let Some(to) = &args.to else {
-        return invalid(format!("the end point is missing: {} takes {}", who, kind.describe()));
-    };
     for (given, option) in superfluous(kind, args) {
         if given {
             let takes = kind.describe();
             return invalid(format!("{} interpolates {takes}, which have no {option}: leave it out", who));
         }
     }
+    let Some(to) = &args.to else {
+        return invalid(format!("the end point is missing: {} takes {}", who, kind.describe()));
+    };
     let (drawn, sizes) = match (kind.drawn(), args.drawn()) {
         ([one], None) if one.sizes() == 0 => (*one, Vec::new()),
         (_, Some(drawn)) => (drawn, sizes(args)),

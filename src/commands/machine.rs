@@ -1,5 +1,6 @@
 //! `stepwave machine`: what a machine of a given size takes by each method, side by side.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use rayon::prelude::*;
@@ -50,6 +51,9 @@ pub(crate) fn run(args: &MachineArgs) -> Result<(), Error> {
         }
     }
     progress.finish();
+    if let (true, Some((_, reason))) = (rows.is_empty(), left_out.first()) {
+        return Err(Error::Invalid(format!("no method can be had for such a machine; the first: {reason}")));
+    }
     if args.json {
         return output::print_data(&as_json(&size, &rows, &left_out));
     }
@@ -58,9 +62,9 @@ pub(crate) fn run(args: &MachineArgs) -> Result<(), Error> {
         text += "\n";
         text += &registers(found, args.markdown);
     }
-    for (model, reason) in left_out {
+    for (_, reason) in left_out {
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "\nleft out: {model}: {reason}");
+        let _ = writeln!(text, "\nleft out: {reason}");
     }
     output::print(&text)
 }
@@ -77,6 +81,13 @@ fn size(args: &MachineArgs) -> Result<Size, Error> {
         }
         Ok(units as i64)
     };
+    let clock = args.clock_hz;
+    if !(1e-3..=1e15).contains(&clock) {
+        return Err(Error::Invalid(format!("--clock-hz {clock} is not a clock: give 0.001 to 1e15 Hz, such as 1e6")));
+    }
+    if !(1e-6..=1e9).contains(&args.feed) {
+        return Err(Error::Invalid(format!("a feed of {} mm/min is out of range: give 1e-6 to 1e9 mm/min", args.feed)));
+    }
     let travel: Vec<i64> = args.travel.0.iter().map(blu).collect::<Result<_, _>>()?;
     Ok(Size { travel, feed: args.feed / 60.0 / args.blu, blu_mm: args.blu })
 }
@@ -87,10 +98,12 @@ fn models(args: &MachineArgs, travel: &[i64]) -> Result<Vec<&'static Model>, Err
         return Ok(installed().iter().filter(|model| takes(model, travel)).collect());
     }
     let bench = BenchArgs::default();
-    let named = args.models.iter().map(|word| bench.model(word)).collect::<Result<Vec<_>, _>>()?;
+    let mut named = args.models.iter().map(|word| bench.model(word)).collect::<Result<Vec<_>, _>>()?;
+    let mut seen = BTreeSet::new();
+    named.retain(|model| seen.insert(model.name));
     match named.iter().find(|model| !takes(model, travel)) {
         Some(model) => Err(Error::Invalid(format!(
-            "{} runs neither lines of {} axes nor arcs by itself: leave it out",
+            "{} is not a method of lines of {} axes or of arcs alone: leave it out",
             model.name,
             travel.len()
         ))),

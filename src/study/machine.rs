@@ -15,7 +15,7 @@ use super::{Grid, Range};
 use crate::testbench::{Ending, PathWatch, Testbench};
 
 /// Clocks after which a run at a corner is given up.
-const LIMIT: u64 = 1 << 28;
+const LIMIT: u64 = 1 << 26;
 
 /// A run at a corner of the travel.
 #[derive(Clone, Debug)]
@@ -84,7 +84,8 @@ pub fn takes(model: &Model, travel: &[i64]) -> bool {
     !model.is_buffered() && (line || kind == CurveKind::Arc)
 }
 
-/// The geometries at the corners: from the origin to them and next to them, and quarters of the greatest circle.
+/// The geometries at the corners: from the origin to them and next to them, those with two axes equally long, and quarters
+/// of the greatest circle.
 fn corners(model: &Model, travel: &[i64]) -> Vec<Curve> {
     if model.curve() == CurveKind::Arc {
         let r = travel[0].min(travel[1]);
@@ -103,6 +104,13 @@ fn corners(model: &Model, travel: &[i64]) -> Vec<Curve> {
         let mut mirrored = travel.to_vec();
         mirrored[axis] = -mirrored[axis];
         ends.extend([alone(0), alone(1), mirrored]);
+        // Two axes equally long: the slowest direction of a method with a pulse a step.
+        for other in 0..axis {
+            let equal = travel[axis].min(travel[other]);
+            let pair = (0..travel.len()).map(|own| if own == axis || own == other { equal } else { 1 }).collect();
+            let level: Vec<i64> = (0..travel.len()).map(|own| travel[own].min(equal)).collect();
+            ends.extend([level.iter().map(|side| -side).collect(), level, pair]);
+        }
     }
     ends.into_iter().filter_map(|to| Line::new(vec![0; to.len()], to).ok().map(Curve::Line)).collect()
 }
@@ -175,7 +183,8 @@ fn in_box(
     tick: Tick<'_>,
 ) -> Option<Result<Vec<RegisterWidth>, ProofError>> {
     let plane = if model.curve() == CurveKind::Arc { &travel[..2] } else { travel };
-    if plane.len() != 2 {
+    // A period of data sampling takes thousands of clocks.
+    if plane.len() != 2 || model.takes(&STEP) {
         return None;
     }
     match extent(plane).and_then(|extent| widths(model, choices, &extent, tick)) {

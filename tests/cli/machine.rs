@@ -75,6 +75,20 @@ fn a_machine_of_three_axes_has_the_methods_of_lines_in_space() {
 }
 
 #[test]
+fn a_machine_holds_every_line_of_its_travel() {
+    let all = json("machine mindev-line ppc-line cim-line --travel 2mm,3mm,1mm --blu 1mm --feed 1 --json");
+    for machine in all["machines"].as_array().unwrap() {
+        let registers = machine["registers"].as_array().unwrap();
+        let width = |own: &Value| format!("{}={}", own["name"].as_str().unwrap(), own["needed"]);
+        let widths = registers.iter().map(width).collect::<Vec<_>>().join(",");
+        let name = machine["model"].as_str().unwrap();
+        let swept = good(&format!("sweep {name} --to-grid -2..2x-3..3x-1..1 --width {widths} --csv -"));
+        let bad = swept.lines().skip(1).filter(|row| !row.contains("done")).count();
+        assert_eq!((swept.lines().count(), bad), (5 * 7 * 3 + 1, 1), "{name}: {swept}");
+    }
+}
+
+#[test]
 fn tables_name_every_method_and_register() {
     let text = good(&format!("{SMALL} ppc-line mindev-arc"));
     assert!(text.starts_with("travel ±20, ±15 BLU of 0.001 mm, feed 30 mm/min\n"), "{text}");
@@ -89,7 +103,7 @@ fn tables_name_every_method_and_register() {
 #[test]
 fn what_is_no_machine_is_refused() {
     let with = |more: &str| format!("machine --feed 600 --travel {more}");
-    refused(&with("300mm"), &["1 axes", "two or three", "300mm,200mm"]);
+    refused(&with("300mm"), &["one axis", "two or three", "300mm,200mm"]);
     refused(&with("1mm,1mm,1mm,1mm"), &["4 axes", "two or three"]);
     refused(&with("0mm,200mm"), &["0mm", "300mm,200mm"]);
     refused(&with("-3,200"), &["-3"]);
@@ -99,4 +113,7 @@ fn what_is_no_machine_is_refused() {
     refused(&with("1mm,1mm ppc-machine"), &["ppc-machine", "leave it out"]);
     refused("machine --travel 1mm,1mm --feed fast", &["fast", "2400mm/min"]);
     refused("machine --travel 1mm,1mm", &["--feed"]);
+    refused("machine --travel 1mm,1mm --feed 1e300", &["1e-6 to 1e9"]);
+    refused(&with("1mm,1mm --clock-hz 0"), &["--clock-hz 0", "1e6"]);
+    refused("machine sampled-arc --travel 0.1mm,0.1mm --feed 2400", &["no method", "sampled-arc", "radius 100.000"]);
 }

@@ -147,6 +147,21 @@ fn with_a_fraction_the_registers_are_those_of_the_rounded_recurrence() {
 }
 
 #[test]
+fn what_segments_err_by_with_a_fraction_adds_up_within_the_promise() {
+    for (points, bits) in [
+        (&[[2, 1], [-2, -1], [1, 0], [-3, 1], [-1, 1], [3, -1]][..], 6),
+        (&[[3, -10], [7, -2], [-9, -8], [6, -2], [-6, 1], [5, -10]], 8),
+    ] {
+        let curve = spline(SplineForm::CatmullRom, points);
+        let bench = bench(NAME, &curve, &Options::default().with(&FRACTION, Some(bits)));
+        let mut path = PathWatch::new(&bench, &curve);
+        bench.run(EngineKind::Word, &mut [&mut path]).unwrap();
+        let (error, bound) = (path.worst.unwrap().error, bench.hardware().error_bound.unwrap());
+        assert!(error > 2.0 && error <= bound, "{error} {bound}");
+    }
+}
+
+#[test]
 fn a_quadratic_curve_ends_where_the_parabola_of_the_conic_does_and_lies_on_it() {
     // y² = 4x from (0, 0) to (9, 6): the control point is where the tangents of both ends meet.
     let curve = spline(SplineForm::Bezier, &[[0, 0], [0, 3], [9, 6]]);

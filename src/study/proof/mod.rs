@@ -41,7 +41,7 @@ pub use verdict::{Attempt, Claim, Evidence, Scope, Shown, Verdict, names, proved
 pub enum ProofError {
     /// The model claims nothing.
     #[error(
-        "{model} has no box of geometries over which something is claimed: `stepwave sweep` studies it by simulation"
+        "{model} has no box of geometries over which something is claimed: `stepwave run` and `stepwave sweep` study it by simulation"
     )]
     NoClaims {
         /// The model.
