@@ -143,7 +143,7 @@ fn the_table_names_a_run_that_one_bit_less_does_not_hold() {
         ("widths ppc-line --box 20 --form bare", "at most 16 bits"),
         ("widths ppc-line --box 9..0x0..9", "give 0..9"),
         ("widths ppc-line --box 0..9", "0..255x0..255"),
-        ("widths ppc-line --box 0..9x0..9x0..9", "give --box 0..9x0..9\n"),
+        ("widths vector-line --box 0..9x0..9x0..9", "give --box 0..9x0..9\n"),
         ("widths ppc-arc --box 0..9x0..9x0..9", "give --box 0..9x0..9"),
         ("widths ppc-arc --box 1..2x5..6", "the box holds nothing"),
         ("widths ppc-arc --box 1..3000x5000000000..5000002000", "6003000 points are too many to look at all"),
