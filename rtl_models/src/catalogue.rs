@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
+use stepwave_nc::Curve;
+
 use crate::MODELS;
 use crate::described::known;
 use crate::error::ModelError;
@@ -119,17 +121,35 @@ fn tried(model: &'static Model) -> Result<Vec<Options>, ModelError> {
 /// Plans, wires and loads a small curve with every word of every option; a register that the model lists must be there
 /// with one of them, as wide as it is planned.
 fn check(model: &'static Model) -> Result<(), ModelError> {
-    let Ok(curve) = model.curve().sample() else { return Ok(()) };
+    let Ok(curves) = model.curve().samples() else { return Ok(()) };
+    let axes = curves.iter().map(Curve::axes).max().unwrap_or(0);
     let mut missing = BTreeSet::new();
-    for name in model.rows().flat_map(|row| row.names(curve.axes())) {
+    for name in model.rows().flat_map(|row| row.names(axes)) {
         if !missing.insert(*name) {
             return Err(ModelError::defect(model.name, format!("it lists the register {name} twice")));
         }
     }
+    for curve in &curves {
+        missing = without_those_of(model, curve, missing)?;
+    }
+    // Of many, such as the units of a cascade, a small curve has only the first.
+    let first = model.rows().filter_map(|row| row.names.first());
+    match first.into_iter().find(|name| missing.contains(*name)) {
+        Some(name) => Err(ModelError::defect(model.name, format!("it has no register {name} with any option"))),
+        None => Ok(()),
+    }
+}
+
+/// Plans, wires and loads this curve with every word of every option; gives the registers that are still missing.
+fn without_those_of(
+    model: &'static Model,
+    curve: &Curve,
+    mut missing: BTreeSet<&'static str>,
+) -> Result<BTreeSet<&'static str>, ModelError> {
     for options in tried(model)? {
         let words = options.words().join(" ");
         let defect = |error: ModelError| ModelError::defect(model.name, format!("with '{words}': {error}"));
-        let hardware = match model.plan(&curve, &options) {
+        let hardware = match model.plan(curve, &options) {
             Ok(hardware) => hardware,
             // What a model refuses by a rule of its own is not a defect.
             Err(ModelError::Value { .. } | ModelError::Widths(_)) if !options.given().is_empty() => continue,
@@ -148,16 +168,11 @@ fn check(model: &'static Model) -> Result<(), ModelError> {
                 return Err(ModelError::defect(model.name, what));
             }
         }
-        let blocks = model.words(&hardware, &curve).map_err(defect)?;
+        let blocks = model.words(&hardware, curve).map_err(defect)?;
         if blocks.is_empty() {
             return Err(ModelError::defect(model.name, format!("with '{words}': it loads no block")));
         }
         machine.load(&hardware, &blocks).map_err(defect)?;
     }
-    // Of many, such as the units of a cascade, a small curve has only the first.
-    let first = model.rows().filter_map(|row| row.names.first());
-    match first.into_iter().find(|name| missing.contains(*name)) {
-        Some(name) => Err(ModelError::defect(model.name, format!("it has no register {name} with any option"))),
-        None => Ok(()),
-    }
+    Ok(missing)
 }

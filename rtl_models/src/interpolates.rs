@@ -147,16 +147,21 @@ impl CurveKind {
         self.has(curve.description().drawn) && curve.axes() <= self.max_axes()
     }
 
-    /// A small curve of this kind.
-    pub(crate) fn sample(self) -> Result<Curve, GeometryError> {
+    /// Small curves of this kind: of lines also one in space, where the kind has any.
+    pub(crate) fn samples(self) -> Result<Vec<Curve>, GeometryError> {
         let turn = Direction::CounterClockwise;
-        Ok(match self {
-            CurveKind::Line { .. } => Line::new(vec![0, 0], vec![8, 6])?.into(),
+        let one: Curve = match self {
+            CurveKind::Line { max_axes: 2 } => Line::new(vec![0, 0], vec![8, 6])?.into(),
+            CurveKind::Line { .. } => {
+                let space = Line::new(vec![0; 3], vec![8, 6, 3])?.into();
+                return Ok(vec![Line::new(vec![0, 0], vec![8, 6])?.into(), space]);
+            }
             CurveKind::Arc | CurveKind::Move => Arc::new([5, 0], [0, 5], [0, 0], turn)?.into(),
             CurveKind::Conic => Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], turn)?.into(),
             CurveKind::Helix => Helix::new([5, 0, 0], [0, 5, 3], [0, 0], turn)?.into(),
             CurveKind::Spline => Spline::new(SplineForm::Bezier, &[[0, 0], [4, 0], [8, 4], [8, 8]])?.into(),
-        })
+        };
+        Ok(vec![one])
     }
 }
 

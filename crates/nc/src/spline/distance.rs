@@ -5,6 +5,51 @@ use super::{Spline, SplineSegment};
 /// Halvings of a segment that place a minimum as exactly as an `f64` can.
 const HALVINGS: u32 = 52;
 
+/// Segments that have a box together.
+pub(super) const GROUP: usize = 32;
+
+/// Least and greatest x and y of some segments, in whole BLU, outwards.
+pub(super) type Bounds = [[i64; 2]; 2];
+
+/// The boxes of all groups.
+pub(super) fn boxes(segments: &[SplineSegment]) -> Vec<Bounds> {
+    let joined = |group: &[SplineSegment]| {
+        [0, 1].map(|axis| {
+            let bounds = group.iter().map(|segment| segment.bounds()[axis]);
+            let [least, most] =
+                bounds.fold([f64::MAX, f64::MIN], |[least, most], [low, high]| [least.min(low), most.max(high)]);
+            // Coordinates are far below 2^63, and a float more than exact.
+            #[allow(clippy::cast_possible_truncation)]
+            [least.floor() as i64 - 1, most.ceil() as i64 + 1]
+        })
+    };
+    segments.chunks(GROUP).map(joined).collect()
+}
+
+/// A distance that no place in a box is nearer than.
+fn beyond(bounds: [[f64; 2]; 2], position: [f64; 2]) -> f64 {
+    let [x, y] = [0, 1].map(|axis: usize| {
+        let ([least, most], at) = (bounds[axis], position[axis]);
+        (least - at).max(at - most).max(0.0)
+    });
+    x.hypot(y)
+}
+
+/// Visits what may be nearer than the nearest so far by its bound, that of the least bound first.
+fn nearest_first(
+    nearest: &mut Foot,
+    count: usize,
+    bound: impl Fn(usize) -> f64,
+    mut visit: impl FnMut(usize, &mut Foot),
+) {
+    let Some(first) = (0..count).min_by(|a, b| bound(*a).total_cmp(&bound(*b))) else { return };
+    for index in std::iter::once(first).chain((0..count).filter(|index| *index != first)) {
+        if bound(index) < nearest.distance {
+            visit(index, nearest);
+        }
+    }
+}
+
 /// The place of a curve that is nearest to a position.
 struct Foot {
     distance: f64,
@@ -19,16 +64,12 @@ impl SplineSegment {
         [c[0], c[0] + c[1] / 3.0, c[0] + (2.0 * c[1] + c[2]) / 3.0, c[0] + c[1] + c[2] + c[3]]
     }
 
-    /// A distance that no place of the segment is nearer than: that of the box of its Bézier points.
-    fn least(&self, position: [f64; 2]) -> f64 {
-        let beyond = [0, 1].map(|axis| {
+    /// The box of its Bézier points, in which it lies.
+    fn bounds(&self) -> [[f64; 2]; 2] {
+        [0, 1].map(|axis| {
             let points = self.control(axis);
-            let (least, greatest) = points
-                .into_iter()
-                .fold((f64::MAX, f64::MIN), |(least, most), point| (least.min(point), most.max(point)));
-            (least - position[axis]).max(position[axis] - greatest).max(0.0)
-        });
-        beyond[0].hypot(beyond[1])
+            points.into_iter().fold([f64::MAX, f64::MIN], |[least, most], at| [least.min(at), most.max(at)])
+        })
     }
 
     fn foot_at(&self, u: f64, [x, y]: [f64; 2]) -> Foot {
@@ -111,14 +152,18 @@ fn halves(mut right: [f64; 6]) -> [[f64; 6]; 2] {
 impl Spline {
     fn foot(&self, position: [f64; 2]) -> Foot {
         let mut nearest = Foot { distance: f64::INFINITY, side: 0.0 };
-        for segment in &self.segments {
-            if segment.least(position) < nearest.distance {
-                let foot = segment.foot(position);
+        let of_group = |group: usize| beyond(self.boxes[group].map(|ends| ends.map(|end| end as f64)), position);
+        nearest_first(&mut nearest, self.boxes.len(), of_group, |group, nearest| {
+            let first = group * GROUP;
+            let segments = &self.segments[first..(first + GROUP).min(self.segments.len())];
+            let of_segment = |index: usize| beyond(segments[index].bounds(), position);
+            nearest_first(nearest, segments.len(), of_segment, |index, nearest| {
+                let foot = segments[index].foot(position);
                 if foot.distance < nearest.distance {
-                    nearest = foot;
+                    *nearest = foot;
                 }
-            }
-        }
+            });
+        });
         nearest
     }
 

@@ -44,10 +44,12 @@ fn distances_are_those_of_a_fine_search() -> Tested {
         Spline::new(SplineForm::Bezier, &[[0, 0], [120, 90], [-40, 90], [80, 0]])?,
         Spline::new(SplineForm::Bezier, &[[0, 0], [90, 90], [0, 90], [90, 0]])?,
         Spline::new(SplineForm::CatmullRom, &[[0, 0], [30, 50], [60, -20], [90, 30], [90, 60]])?,
+        // More segments than one box has.
+        Spline::new(SplineForm::CatmullRom, &(0..90).map(|at| [at * 37 % 101, at * 23 % 89]).collect::<Vec<_>>())?,
     ];
     for curve in &curves {
-        for position in (-20..=120).step_by(7).flat_map(|x| (-30..=120).step_by(7).map(move |y| [x, y])) {
-            let parts = 20_000;
+        for position in (-20..=120).step_by(9).flat_map(|x| (-30..=120).step_by(11).map(move |y| [x, y])) {
+            let parts = if curve.segments().len() > 9 { 2_000 } else { 20_000 };
             let places = |segment: &SplineSegment| {
                 let segment = *segment;
                 (0..=parts).map(move |part| segment.at(f64::from(part) / f64::from(parts)))
