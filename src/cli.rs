@@ -303,7 +303,17 @@ pub(crate) struct GeometryArgs {
     pub(crate) ccw: bool,
 }
 
+/// What --points is given is the name of a file, not points.
+pub(crate) fn names_points(given: &str) -> bool {
+    parse_point(given).is_err()
+}
+
 impl GeometryArgs {
+    /// The file of points, if one is read.
+    pub(crate) fn file(&self) -> Option<PathBuf> {
+        self.points.as_ref().filter(|given| names_points(given)).map(PathBuf::from)
+    }
+
     /// What is drawn, where an option says it.
     pub(crate) fn drawn(&self) -> Option<Drawn> {
         let through = if self.b_spline { SplineForm::BSpline } else { SplineForm::CatmullRom };

@@ -45,7 +45,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     let options = Options { comment: &comment, outputs: &outputs };
     let own = [args.bench.files(&args.model), args.bench.files_of(args.method.as_ref())].concat();
     let sources = source_files(bench.design());
-    let mut files = Outputs::reading(args.program.iter().chain(&own).chain(&sources));
+    let mut files = Outputs::reading(args.program.iter().chain(&args.geometry.file()).chain(&own).chain(&sources));
     if let Some(path) = &args.netlist {
         files.write(path, &bench.design().netlist().to_string())?;
     }

@@ -17,7 +17,7 @@ const TEXTBOOK_MODELS: [&str; 3] = ["dda-arc", "dda-conic", "dda-helix"];
 /// Runs a model and writes what was asked for.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Error> {
     // States that exist are read; else they are an output.
-    let own = args.bench.files([&args.model]);
+    let own: Vec<_> = args.bench.files([&args.model]).into_iter().chain(args.geometry.file()).collect();
     let mut outputs = Outputs::reading(args.checkpoints.iter().filter(|path| path.exists()).chain(&own));
     simulate(args, &mut outputs)?.print(outputs)
 }

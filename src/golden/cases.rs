@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::{Case, names_fit};
 use crate::Error;
-use crate::cli::{Cli, Command, parse_point, usage};
+use crate::cli::{Cli, Command, names_points, usage};
 use crate::commands::{program, run};
 use crate::engine::EngineKind;
 use crate::output::Outputs;
@@ -51,7 +51,7 @@ impl Listed {
         let names_file = |option: &str, word: &str| match option {
             "--bench" => true,
             "--method" => is_netlist(word),
-            "--points" => parse_point(word).is_err(),
+            "--points" => names_points(word),
             _ => false,
         };
         let of_folder = |index: usize, word: &str| match index.checked_sub(1) {
@@ -82,10 +82,22 @@ impl Listed {
     }
 
     /// The same as a value.
+    /// The file of points, if one is read.
+    fn points(&self) -> Option<&Path> {
+        let mut words = self.args.iter().enumerate();
+        let given = words.find_map(|(index, word)| match word.strip_prefix("--points") {
+            Some("") => self.args.get(index + 1).map(String::as_str),
+            Some(rest) => rest.strip_prefix('='),
+            None => None,
+        });
+        given.filter(|given| names_points(given)).map(Path::new)
+    }
+
     fn case(self, dir: &Path) -> Case {
         let (name, exit, folder) = (self.name.clone(), self.exit, dir.to_owned());
         let program = self.program.as_ref().map(|program| dir.join(program));
-        let inputs = program.into_iter().chain([list_of(dir)]).collect();
+        let points = self.points().map(|points| dir.join(points));
+        let inputs = program.into_iter().chain(points).chain([list_of(dir)]).collect();
         Case { name, exit, inputs, run: Box::new(move |engine, files| self.run(&folder, engine, files)) }
     }
 }
@@ -116,8 +128,9 @@ pub(crate) fn read(dir: &Path) -> Result<Vec<Case>, Error> {
                 "case {name}: {option} names a file; a wave and a step table are recorded; {rest}"
             ));
         }
-        if let Some(program) = &case.program {
-            stays_in(dir, program).map_err(|what| Error::Invalid(format!("case {name}: {what}")))?;
+        let program = case.program.as_deref().map(|program| ("program", program));
+        for (what, file) in program.into_iter().chain(case.points().map(|points| ("file of points", points))) {
+            stays_in(dir, what, file).map_err(|what| Error::Invalid(format!("case {name}: {what}")))?;
         }
     }
     let cases: Vec<Case> = cases.case.into_iter().map(|case| case.case(dir)).collect();
@@ -145,15 +158,15 @@ pub(crate) fn chosen<'c>(cases: &'c [Case], names: &[&String], dir: &Path) -> Re
 }
 
 /// A file below the folder, to which no link leads from elsewhere.
-fn stays_in(dir: &Path, file: &Path) -> Result<(), String> {
+fn stays_in(dir: &Path, what: &str, file: &Path) -> Result<(), String> {
     let name = file.display();
     if !file.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
-        return Err(format!("the program {name} is not in the folder {}: copy it there", dir.display()));
+        return Err(format!("the {what} {name} is not in the folder {}: copy it there", dir.display()));
     }
     let path = dir.join(file);
     match (dir.canonicalize(), path.canonicalize()) {
         (Ok(folder), Ok(path)) if !path.starts_with(&folder) => {
-            Err(format!("the program {name} is a link out of the folder {}: copy the file there", dir.display()))
+            Err(format!("the {what} {name} is a link out of the folder {}: copy the file there", dir.display()))
         }
         (Err(error), _) | (_, Err(error)) => Err(format!("cannot read {}: {error}", path.display())),
         _ => Ok(()),

@@ -67,6 +67,37 @@ fn what_is_not_a_free_curve_is_refused() {
 }
 
 #[test]
+fn the_file_of_points_is_never_written_over() {
+    const POINTS: &str = "0,0\n30,50\n60,-20\n90,30\n";
+    for (command, option) in [("run", "--steps p.csv"), ("run", "--steps ./p.csv"), ("export", "--verilog p.csv")] {
+        let folder = Folder::new();
+        folder.write("p.csv", POINTS);
+        let ran = folder.run(&format!("{command} spline-dda --points p.csv {option}"));
+        assert_eq!((ran.code, folder.read("p.csv").as_str()), (2, POINTS), "{command} {option}: {ran:?}");
+        let refused = command == "export" || ran.err.contains("which this command reads and would destroy");
+        assert!(refused && folder.files() == ["p.csv"], "{command} {option}: {ran:?}");
+    }
+}
+
+#[test]
+fn a_recorded_case_keeps_its_points_and_takes_them_from_its_folder_alone() {
+    for (name, points, hint) in [
+        ("curve", "curve.csv", "which this command reads and would destroy"),
+        ("line", "../curve.csv", "the file of points ../curve.csv is not in the folder w"),
+    ] {
+        let folder = Folder::new();
+        folder.make("w");
+        let args = format!("args = [\"spline-dda\", \"--points\", \"{points}\"]");
+        folder.write("w/cases.toml", &format!("[[case]]\nname = \"{name}\"\n{args}\n"));
+        folder.write("w/curve.csv", "0,0\n30,50\n60,-20\n");
+        folder.write("curve.csv", "0,0\n30,50\n60,-20\n");
+        let ran = folder.run("golden record w");
+        assert!(ran.code == 2 && ran.err.contains(hint), "{name}: {ran:?}");
+        assert_eq!(folder.read("w/curve.csv"), "0,0\n30,50\n60,-20\n");
+    }
+}
+
+#[test]
 fn a_mistake_in_a_file_of_points_is_reported_with_its_line() {
     for (text, hints) in [
         ("x,y\n0,0\n1,2,3\n", ["line 3", "one point"]),

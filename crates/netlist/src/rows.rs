@@ -174,7 +174,7 @@ impl Rows {
     /// The same of some rows alone, without what was skipped.
     ///
     /// # Panics
-    /// If there is no such column, or not all of these rows.
+    /// If the column or one of these rows does not exist.
     #[must_use]
     pub fn extremes_within(&self, column: usize, rows: Range<usize>, turned: u64) -> Option<Extremes> {
         let values = &self.column(column)[rows];

@@ -142,7 +142,7 @@ impl<T: Lane> Frame<T> {
     }
 }
 
-/// There is no native code for this processor.
+/// This processor has no native code.
 #[cfg(not(all(feature = "jit", target_arch = "x86_64")))]
 #[derive(Debug)]
 enum LaneLoop {}

@@ -167,8 +167,8 @@ impl Spline {
         nearest
     }
 
-    /// The distance of a position from the curve, in BLU; further coordinates are ignored, and with too few there is no
-    /// distance (NaN).
+    /// The distance of a position from the curve, in BLU; further coordinates are ignored; NaN with too few of
+    /// them.
     ///
     /// Every minimum of the distance is found by halving, as exactly as `f64` rounds.
     #[must_use]
