@@ -7,6 +7,7 @@ use crate::models::{CurveKind, Millionths, Model, ModelError, Options, Preset, i
 use crate::nc::Curve;
 use crate::testbench::{Ending, Observer, ObserverError, PathWatch, Step, Testbench};
 
+use super::columns::{aligned, markdown};
 use super::geometry;
 use super::progress::Progress;
 use crate::Error;
@@ -46,11 +47,13 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     }
     progress.finish();
     let note = geometry::moved_center(&curve, geometry).unwrap_or_default();
-    let table = if args.markdown { markdown(&rows) } else { aligned(&rows) };
+    let table = if args.markdown { markdown(&rows, &NUMBERS) } else { aligned(&rows, &NUMBERS) };
     output::print(&(note + &table + &left_out.concat()))
 }
 
 const HEADING: [&str; 6] = ["model", "steps", "clocks", "greatest error (BLU)", "widest register", "end point"];
+/// Its columns of numbers.
+const NUMBERS: [usize; 3] = [1, 2, 3];
 
 /// The models to compare: those that are named; all, and netlists of one's own, where no model of the catalogue is.
 fn models(args: &CompareArgs) -> Result<Vec<&'static Model>, Error> {
@@ -143,23 +146,4 @@ impl Observer for Deadline {
         self.clocks = rows.first_clock() + (rows.len() as u64).saturating_sub(1);
         if self.begun.elapsed().as_secs() >= self.seconds { Err(OutOfTime.into()) } else { Ok(()) }
     }
-}
-
-fn markdown(rows: &[[String; 6]]) -> String {
-    let line = |row: &[String; 6]| format!("| `{}` | {} |\n", row[0], row[1..].join(" | "));
-    let rule = "|---|---:|---:|---:|---|---|\n";
-    let heading = line(&rows[0]).replace('`', "");
-    heading + rule + &rows[1..].iter().map(line).collect::<String>()
-}
-
-fn aligned(rows: &[[String; 6]]) -> String {
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let line = |row: &[String; 6]| {
-        let cells = row.iter().enumerate().map(|(column, cell)| match column {
-            1..=3 => format!("{cell:>width$}", width = width(column)),
-            _ => format!("{cell:<width$}", width = width(column)),
-        });
-        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
-    };
-    rows.iter().map(line).collect()
 }

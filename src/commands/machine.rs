@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde_json::json;
 
+use super::columns::{aligned, markdown};
 use super::progress::Progress;
 use super::widths::{evidence, one_bit_below, registers_json};
 use crate::Error;
@@ -130,10 +131,14 @@ fn rounded(number: f64) -> String {
     }
 }
 
+/// What is not known, as a run did not come to its end.
+fn unknown() -> String {
+    "-".to_owned()
+}
+
 /// A clock with its unit.
 fn frequency(hz: f64) -> String {
     match hz {
-        _ if !hz.is_finite() => "-".to_owned(),
         hz if hz >= 1e6 => format!("{:.3} MHz", hz / 1e6),
         hz if hz >= 1e3 => format!("{:.3} kHz", hz / 1e3),
         hz => format!("{hz:.3} Hz"),
@@ -145,40 +150,32 @@ fn unfinished(found: &Dimensions) -> usize {
     found.corners.iter().filter(|corner| corner.ending != Ending::Done).count()
 }
 
-const HEADING: [&str; 5] = ["method", "registers, bits", "clock", "feed at that clock, mm/min", "greatest error"];
+const HEADING: [&str; 5] =
+    ["method", "registers, bits", "clock", "feed at that clock, mm/min", "greatest error at the corners"];
 
 fn table(size: &Size, rows: &[Dimensions], is_markdown: bool) -> String {
     let row = |found: &Dimensions| {
         let bits: Vec<String> = found.registers.iter().map(|own| format!("{} {}", own.name, own.needed)).collect();
-        let (clock, [least, greatest]) = (found.clock_hz(size.feed), found.speeds());
-        let feeds = [least, greatest].map(|speed| rounded(size.feed_of(speed * clock)));
-        let feeds = if feeds[0] == feeds[1] { feeds[0].clone() } else { feeds.join(" to ") };
+        let clock = found.clock_hz(size.feed);
+        let feeds = found.speeds().zip(clock).map_or_else(unknown, |(speeds, clock)| {
+            let feeds = speeds.map(|speed| rounded(size.feed_of(speed * clock)));
+            if feeds[0] == feeds[1] { feeds[0].clone() } else { feeds.join(" to ") }
+        });
         let error = found.worst().map_or(0.0, |worst| worst.error);
         let error = format!("{error:.3} BLU, {} µm", rounded(error * size.blu_mm * 1000.0));
         [
             format!("{}{}", found.model.name, "*".repeat(unfinished(found).min(1))),
             bits.join(", "),
-            frequency(clock),
+            clock.map_or_else(unknown, frequency),
             feeds,
             error,
         ]
     };
     let mut all = vec![HEADING.map(str::to_owned)];
     all.extend(rows.iter().map(row));
-    let mut text = if is_markdown {
-        let line = |row: &[String; 5]| format!("| {} |\n", row.join(" | "));
-        let lines: String = all[1..].iter().map(line).collect();
-        line(&all[0]) + "|---|---|---:|---:|---:|\n" + &lines
-    } else {
-        let width = |column: usize| all.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-        let line = |row: &[String; 5]| {
-            let cells = row.iter().enumerate().map(|(column, cell)| format!("{cell:<width$}", width = width(column)));
-            cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
-        };
-        all.iter().map(line).collect()
-    };
+    let mut text = if is_markdown { markdown(&all, &[2, 3, 4]) } else { aligned(&all, &[2, 3, 4]) };
     if rows.iter().any(|found| unfinished(found) > 0) {
-        text += "\n* not all runs at the corners came to their end\n";
+        text += "\n* not all runs at the corners came to their end: clock and feed are not known\n";
     }
     text
 }
@@ -202,16 +199,17 @@ fn registers(found: &Dimensions, is_markdown: bool) -> String {
 }
 
 fn as_json(size: &Size, rows: &[Dimensions], left_out: &[(&str, String)]) -> String {
-    let finite = |number: f64| if number.is_finite() { json!(number) } else { Value::Null };
     let row = |found: &Dimensions| {
-        let (clock, [least, greatest]) = (found.clock_hz(size.feed), found.speeds());
+        let clock = found.clock_hz(size.feed);
+        let feed = |speed: f64| clock.map(|clock| size.feed_of(speed * clock));
+        let [least, greatest] = [0, 1].map(|end| found.speeds().and_then(|speeds| feed(speeds[end])));
         let corners = found.corners.iter().map(|corner| {
             json!({
                 "run": run_command(found.model, &corner.curve, &found.choices),
                 "done": corner.ending == Ending::Done,
                 "clocks": corner.clocks,
                 "length": corner.curve.length(),
-                "feed": finite(size.feed_of(corner.speed() * clock)),
+                "feed": feed(corner.speed()),
                 "path_error": corner.error,
             })
         });
@@ -219,8 +217,8 @@ fn as_json(size: &Size, rows: &[Dimensions], left_out: &[(&str, String)]) -> Str
             "model": found.model.name,
             "method": found.model.method,
             "registers": registers_json(found.model, &found.registers),
-            "clock_hz": finite(clock),
-            "feed": { "least": finite(size.feed_of(least * clock)), "greatest": finite(size.feed_of(greatest * clock)) },
+            "clock_hz": clock,
+            "feed": { "least": least, "greatest": greatest },
             "path_error": {
                 "greatest": found.worst().map(|worst| worst.error),
                 "um": found.worst().map(|worst| worst.error * size.blu_mm * 1000.0),

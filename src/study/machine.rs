@@ -57,16 +57,21 @@ pub struct Dimensions {
 
 impl Dimensions {
     /// The least clock in Hz with which the slowest corner is as fast as this, in BLU/s; that of the period for data sampling.
+    /// `None` where a run did not come to its end.
     #[must_use]
-    pub fn clock_hz(&self, feed: f64) -> f64 {
-        self.sampled_at.unwrap_or_else(|| feed / self.speeds()[0])
+    pub fn clock_hz(&self, feed: f64) -> Option<f64> {
+        let [least, _] = self.speeds()?;
+        Some(self.sampled_at.unwrap_or(feed / least))
     }
 
-    /// Least and greatest speed at the corners, in BLU a clock.
+    /// Least and greatest speed at the corners, in BLU a clock; `None` where a run did not come to its end.
     #[must_use]
-    pub fn speeds(&self) -> [f64; 2] {
+    pub fn speeds(&self) -> Option<[f64; 2]> {
+        if self.corners.is_empty() || self.corners.iter().any(|corner| corner.ending != Ending::Done) {
+            return None;
+        }
         let speeds = self.corners.iter().map(Corner::speed);
-        speeds.fold([f64::INFINITY, 0.0], |[least, greatest], speed| [least.min(speed), greatest.max(speed)])
+        Some(speeds.fold([f64::INFINITY, 0.0], |[least, greatest], speed| [least.min(speed), greatest.max(speed)]))
     }
 
     /// The corner with the greatest path error.

@@ -88,6 +88,17 @@ fn a_machine_holds_every_line_of_its_travel() {
     }
 }
 
+/// 2^27 iterations, of which runs are given up after half.
+#[test]
+fn a_machine_whose_runs_are_given_up_claims_neither_clock_nor_feed() {
+    let all = json("machine dda-line --travel 100000mm,1mm --blu 1um --feed 600 --json");
+    let machine = &all["machines"][0];
+    assert!(machine["corners"].as_array().unwrap().iter().any(|corner| corner["done"] == false), "{machine}");
+    for field in ["clock_hz", "feed"] {
+        assert!(machine[field].is_null() || machine[field]["least"].is_null(), "{}", machine[field]);
+    }
+}
+
 #[test]
 fn tables_name_every_method_and_register() {
     let text = good(&format!("{SMALL} ppc-line mindev-arc"));
