@@ -12,6 +12,7 @@ use self::watches::Watches;
 #[cfg(feature = "cli")]
 use crate::cli::{Format, file_of};
 use crate::engine::EngineKind;
+use crate::models::events::Timed;
 use crate::models::{Model, Options};
 use crate::nc::Curve;
 use crate::output::{self, Outputs};
@@ -66,6 +67,7 @@ pub struct Simulation {
     waves: WaveOptions,
     files: FileOptions,
     checkpoints: Option<PathBuf>,
+    events: Vec<Timed>,
 }
 
 /// Files of a run besides its waves; on the command line, options of its outputs.
@@ -133,6 +135,7 @@ impl Simulation {
             waves: WaveOptions::default(),
             files: FileOptions::default(),
             checkpoints: None,
+            events: Vec::new(),
         }
     }
 
@@ -166,6 +169,11 @@ impl Simulation {
     /// Ended after this many clocks.
     pub fn max_clocks(self, clocks: impl Into<Option<u64>>) -> Simulation {
         Simulation { max_clocks: clocks.into(), ..self }
+    }
+
+    /// With what the operator does, and when.
+    pub fn events(self, events: impl Into<Vec<Timed>>) -> Simulation {
+        Simulation { events: events.into(), ..self }
     }
 
     /// With a clock of this frequency in Hz: the time axis of waves, and the feed.

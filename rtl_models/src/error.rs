@@ -34,6 +34,17 @@ pub enum ModelError {
         /// Options that it takes.
         takes: String,
     },
+    /// An event for which the hardware has no input.
+    #[error(
+        "{model} has no input for the event '{event}': hold, resume and override act on ramps, of `ramp` or of a \
+             program with --accel, and single and start on programs with --accel"
+    )]
+    NoEvents {
+        /// The model.
+        model: &'static str,
+        /// The event.
+        event: String,
+    },
     /// A value of an option that the model does not have.
     #[error("{model} does not take --{option} {value}: {reason}")]
     Value {

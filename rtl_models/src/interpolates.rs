@@ -12,6 +12,8 @@ use crate::program::Paced;
 /// What a model interpolates.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum CurveKind {
+    /// Displacements of one axis.
+    Axis,
     /// Lines of 2 up to this many axes.
     Line {
         /// Most axes.
@@ -39,13 +41,14 @@ struct Traits {
     name: &'static str,
     takes: &'static str,
     in_box: &'static str,
-    max_axes: usize,
+    axes: [usize; 2],
     drawn: &'static [Drawn],
 }
 
 impl CurveKind {
     /// All kinds, of lines those of most axes.
-    pub const ALL: [CurveKind; 6] = [
+    pub const ALL: [CurveKind; 7] = [
+        CurveKind::Axis,
         CurveKind::Line { max_axes: 6 },
         CurveKind::Arc,
         CurveKind::Conic,
@@ -56,6 +59,13 @@ impl CurveKind {
 
     fn traits(self) -> Traits {
         match self {
+            CurveKind::Axis => Traits {
+                name: "axis",
+                takes: "displacements of one axis (--from X --to X)",
+                in_box: "displacements of one axis",
+                axes: [1, 1],
+                drawn: &[Drawn::Line],
+            },
             CurveKind::Line { max_axes } => Traits {
                 name: "line",
                 takes: match max_axes {
@@ -64,42 +74,42 @@ impl CurveKind {
                     _ => "lines of 2 to 6 axes (--from X,Y,… --to X,Y,…)",
                 },
                 in_box: "lines from the origin",
-                max_axes,
+                axes: [2, max_axes],
                 drawn: &[Drawn::Line],
             },
             CurveKind::Arc => Traits {
                 name: "arc",
                 takes: "arcs (--from X,Y --to X,Y --center X,Y --cw|--ccw)",
                 in_box: "arcs about the origin inside a quadrant, with both ends on the circle",
-                max_axes: 2,
+                axes: [2, 2],
                 drawn: &[Drawn::Arc],
             },
             CurveKind::Conic => Traits {
                 name: "conic",
                 takes: "conics (--ellipse A,B --cw|--ccw, --parabola C or --hyperbola A,B; --from X,Y --to X,Y --center X,Y)",
                 in_box: "conics about the origin",
-                max_axes: 2,
+                axes: [2, 2],
                 drawn: &[Drawn::Ellipse, Drawn::Parabola(None), Drawn::Hyperbola(None)],
             },
             CurveKind::Helix => Traits {
                 name: "helix",
                 takes: "helices (--from X,Y,Z --to X,Y,Z --center X,Y --cw|--ccw)",
                 in_box: "helices about the origin",
-                max_axes: 3,
+                axes: [2, 3],
                 drawn: &[Drawn::Helix],
             },
             CurveKind::Spline => Traits {
                 name: "spline",
                 takes: "free curves (--bezier X,Y,…, --hermite X,Y,TX,TY,X,Y,TX,TY, or --points FILE [--b-spline])",
                 in_box: "free curves",
-                max_axes: 2,
+                axes: [2, 2],
                 drawn: &SPLINES,
             },
             CurveKind::Move => Traits {
                 name: "move",
                 takes: "lines of 2 or 3 axes, arcs and helices (--from X,Y[,Z] --to X,Y[,Z], of arcs --center X,Y --cw|--ccw)",
                 in_box: "lines from the origin, and arcs about it inside a quadrant with both ends on the circle",
-                max_axes: 3,
+                axes: [2, 3],
                 drawn: &[Drawn::Line, Drawn::Arc, Drawn::Helix],
             },
         }
@@ -126,7 +136,7 @@ impl CurveKind {
     /// Most axes of such a curve.
     #[must_use]
     pub fn max_axes(self) -> usize {
-        self.traits().max_axes
+        self.traits().axes[1]
     }
 
     /// What may be drawn.
@@ -144,13 +154,15 @@ impl CurveKind {
     /// The curve is of this kind.
     #[must_use]
     pub fn fits(self, curve: &Curve) -> bool {
-        self.has(curve.description().drawn) && curve.axes() <= self.max_axes()
+        let Traits { axes: [least, most], .. } = self.traits();
+        self.has(curve.description().drawn) && (least..=most).contains(&curve.axes())
     }
 
     /// Small curves of this kind: of lines also one in space, where the kind has any.
     pub(crate) fn samples(self) -> Result<Vec<Curve>, GeometryError> {
         let turn = Direction::CounterClockwise;
         let one: Curve = match self {
+            CurveKind::Axis => Line::new(vec![0], vec![8])?.into(),
             CurveKind::Line { max_axes: 2 } => Line::new(vec![0, 0], vec![8, 6])?.into(),
             CurveKind::Line { .. } => {
                 let space = Line::new(vec![0; 3], vec![8, 6, 3])?.into();
@@ -180,6 +192,8 @@ pub struct Method<C: 'static> {
 /// What a model interpolates, and how it plans and loads it.
 #[derive(Debug)]
 pub enum Interpolates {
+    /// Displacements of one axis.
+    Axis(Method<Line>),
     /// Lines of 2 up to this many axes.
     Lines(usize, Method<Line>),
     /// Circular arcs in the plane.
@@ -218,6 +232,7 @@ impl Interpolates {
     /// The curves, and the method for each of them if they are all of one type.
     pub(crate) fn of(&self) -> (CurveKind, Option<&dyn AnyMethod>) {
         match self {
+            Interpolates::Axis(method) => (CurveKind::Axis, Some(method)),
             Interpolates::Lines(max_axes, method) => (CurveKind::Line { max_axes: *max_axes }, Some(method)),
             Interpolates::Arcs(method) => (CurveKind::Arc, Some(method)),
             Interpolates::Conics(method) => (CurveKind::Conic, Some(method)),

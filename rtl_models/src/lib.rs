@@ -26,6 +26,7 @@ pub mod dda_conic;
 pub mod dda_helix;
 pub mod dda_line;
 pub mod dpm_line;
+pub mod events;
 pub mod mindev_arc;
 pub mod mindev_line;
 pub mod options;
@@ -34,6 +35,8 @@ pub mod ppc_arc;
 pub mod ppc_conic;
 pub mod ppc_line;
 pub mod program;
+pub mod ramp;
+pub mod ramping;
 pub mod registers;
 pub mod sampled_arc;
 pub mod sampled_line;
@@ -62,6 +65,7 @@ static MODELS: &[&Model] = &[
     &sampled_line::MODEL,
     &sampled_arc::MODEL,
     &spline_dda::MODEL,
+    &ramp::MODEL,
     &stepgen::MODEL,
     &bresenham::MODEL,
     &program::ppc::MODEL,

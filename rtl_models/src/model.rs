@@ -78,6 +78,7 @@ impl Model {
         };
         let other = || {
             let given = match curve {
+                Curve::Line(line) if line.axes() == 1 => "a displacement of one axis".to_owned(),
                 Curve::Line(line) => format!("a line of {} axes", line.axes()),
                 other => other.description().drawn.noun().to_owned(),
             };

@@ -127,7 +127,7 @@ impl HardwareArgs {
 
     /// The options given, for a clock of this frequency in Hz.
     pub(crate) fn choices_at(&self, clock_hz: f64) -> Options {
-        self.choices().at_clock(clock_hz)
+        self.choices().at_clock(clock_hz).in_blu(self.blu)
     }
 
     /// How far the two radii of an arc may differ beyond what rounding makes, in BLU.

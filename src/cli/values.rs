@@ -5,6 +5,7 @@ use stepwave_import::Unknown;
 
 use crate::engine::EngineKind;
 use crate::models::Millionths;
+use crate::models::events::Timed;
 use crate::nc::Opens;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -143,6 +144,10 @@ pub(crate) struct SimulationArgs {
     /// A run that is not done after so many clocks is given up; one that comes back to an earlier state always is
     #[arg(long, value_name = "CLOCKS", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_clocks: Option<u64>,
+    /// What the operator does right after a clock: CLOCK:hold, resume, override=PERCENT, single, start or continuous (may be
+    /// repeated; of hardware with acceleration)
+    #[arg(long, value_name = "CLOCK:EVENT", value_parser = Timed::parse)]
+    pub(crate) event: Vec<Timed>,
 }
 
 /// A name and a value with `=` between them.

@@ -65,7 +65,8 @@ fn waves(args: &ProgramArgs) -> WaveOptions {
 pub(super) fn asked(args: &ProgramArgs) -> Result<Simulation, Error> {
     let ProgramArgs { file, method, bench, text, hardware, clock, simulation: how, outputs, .. } = args;
     let simulation = simulation(file, bench.machine(method)?, text, hardware, clock.clock_hz)?;
-    let simulation = simulation.engine(how.engine).max_clocks(how.max_clocks).waves(waves(args));
+    let simulation = simulation.engine(how.engine).max_clocks(how.max_clocks).events(how.event.clone());
+    let simulation = simulation.waves(waves(args));
     Ok(simulation.files(outputs.clone(), None))
 }
 

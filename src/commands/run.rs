@@ -75,6 +75,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         .options(options)
         .engine(args.simulation.engine)
         .max_clocks(args.simulation.max_clocks)
+        .events(args.simulation.event.clone())
         .clock_hz(args.clock.clock_hz)
         .blu_mm(args.hardware.blu)
         .waves(args.trace.clone())

@@ -61,8 +61,9 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
 
 /// All geometries that the options tell.
 fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Error> {
-    if model.curve() == CurveKind::Spline {
-        return invalid(format!("a sweep has no free curves: give {} one at a time to `stepwave run`", model.name));
+    if let kind @ (CurveKind::Spline | CurveKind::Axis) = model.curve() {
+        let (name, what) = (model.name, kind.in_box());
+        return invalid(format!("a sweep has no {what}: give {name} one at a time to `stepwave run`"));
     }
     if let Some(file) = &args.file {
         return Ok(study::read_points(file, model, radii)?);

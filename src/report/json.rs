@@ -146,7 +146,10 @@ impl Report {
             taken.map(|takes| (takes.name().replace('-', "_"), self.json_choice(*takes))).collect();
         let widths: Map<String, Value> =
             self.hardware.widths.iter().map(|(name, width)| ((*name).to_owned(), json!(width.get()))).collect();
-        let head = json!({ "schema": SCHEMA, "choices": choices, "widths": widths, "engine": self.engine.name() });
+        let mut head = json!({ "schema": SCHEMA, "choices": choices, "widths": widths, "engine": self.engine.name() });
+        if !self.events.is_empty() {
+            head["events"] = self.events.iter().map(ToString::to_string).collect();
+        }
         joined(head, own)
     }
 

@@ -14,6 +14,7 @@ mod table;
 mod workpiece;
 
 use stepwave_engine::EngineKind;
+use stepwave_models::events::Timed;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_models::{CutWord, Hardware, Model, Preset};
 use stepwave_netlist::OnOverflow;
@@ -64,6 +65,8 @@ pub struct Report {
     pub clock_hz: f64,
     /// One BLU in millimetres.
     pub blu_mm: f64,
+    /// What the operator did.
+    pub events: Vec<Timed>,
 }
 
 /// What a run is of.
@@ -95,6 +98,7 @@ impl Report {
             traps: traps.map(|property| property.name.clone()).collect(),
             clock_hz: 0.0,
             blu_mm: 0.0,
+            events: Vec::new(),
         }
     }
 
@@ -119,10 +123,12 @@ impl Report {
     /// One line for the wave's header: what was run, and the choices made.
     #[must_use]
     pub fn title(&self) -> String {
-        match &self.subject {
+        let title = match &self.subject {
             Subject::Curve(of) => title(self.model, &self.hardware, &of.curve),
             Subject::Program(of) => of.title(self),
-        }
+        };
+        let events = self.events.iter().map(|event| format!("; event {event}"));
+        title + &events.collect::<String>()
     }
 
     /// What was run and by which method, for people.

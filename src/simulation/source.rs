@@ -115,12 +115,13 @@ impl Simulation {
                 let survey = Survey::of(program.open()?, self.model.moves()?, &program.prepared(self));
                 let survey = survey.map_err(|error| program.named(&error))?;
                 // How far the radii of an arc may differ is not the machine's concern.
-                let hardware = self.model.plan_program(&survey.size, &self.options.clone().without(&TOLERANCE))?;
+                let options = self.options.clone().without(&TOLERANCE).at_clock(self.clock_hz).in_blu(self.blu_mm);
+                let hardware = self.model.plan_program(&survey.size, &options)?;
                 let machine = self.model.machine(&hardware)?;
                 (Testbench::of_machine(hardware, machine).as_hardware_loads(), survey.moves)
             }
         };
-        Ok(Prepared { bench: bench.limited_to(self.max_clocks), moves })
+        Ok(Prepared { bench: bench.limited_to(self.max_clocks).with_events(&self.events)?, moves })
     }
 
     /// The same bench where nobody looks at its samples but a report and waves: a program runs much faster where these do
@@ -179,6 +180,7 @@ impl Simulation {
         };
         let Simulation { model, engine, clock_hz, blu_mm, .. } = *self;
         let cut = CutWords::of_curve(bench.cut_words());
-        Report { engine, cut, clock_hz, blu_mm, ..Report::new(model, subject, bench) }
+        let events = self.events.clone();
+        Report { engine, cut, clock_hz, blu_mm, events, ..Report::new(model, subject, bench) }
     }
 }

@@ -18,6 +18,7 @@ mod overflow;
 mod pages;
 mod parts;
 mod progress;
+mod ramps;
 mod ranges;
 mod sampled;
 mod splines;

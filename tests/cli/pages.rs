@@ -179,6 +179,7 @@ fn the_list_says_which_choices_a_model_takes() {
     for model in &models {
         let name = model["name"].as_str().unwrap();
         let geometry = match model["curve"]["kind"].as_str().unwrap() {
+            "axis" => "--to 6",
             "line" => "--to 6,4",
             "arc" | "move" => "--from 5,0 --to 0,5 --ccw",
             "conic" => "--ellipse 5,3 --from 5,0 --to 0,3 --ccw",

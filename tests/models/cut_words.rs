@@ -18,6 +18,7 @@ fn with(mode: OnOverflow, choices: Options) -> Options {
 fn curve(kind: CurveKind) -> Curve {
     let ccw = Direction::CounterClockwise;
     match kind {
+        CurveKind::Axis => line(&[5], &[42]),
         CurveKind::Line { .. } => line(&[5, -2], &[42, 21]),
         CurveKind::Arc | CurveKind::Move => Arc::new([25, 0], [-7, 24], [0, 0], ccw).unwrap().into(),
         CurveKind::Conic => Conic::ellipse([12, 7], [12, 0], [-12, 0], [0, 0], ccw).unwrap().into(),

@@ -37,6 +37,10 @@ fn values(option: &dyn AnyOption) -> &'static [&'static str] {
         "divisions" => &["2", "9"],
         "step" => &["2.5", "80"],
         "tolerance" => &[],
+        "speed" => &["100", "vs=9,vc=200,ve=3", "300mm/min"],
+        "accel" => &["9", "40,7", "500mm/s2"],
+        "jerk" => &["none", "3"],
+        "brake" => &["square", "count"],
         "on-overflow" => &["trap", "saturate", "wrap"],
         option => panic!("values of {option} are missing here"),
     }
@@ -52,6 +56,7 @@ pub(super) fn curves(model: &Model) -> [Curve; 2] {
             Curve::Arc(arc([5, 0], [0, 5], [0, 0], ccw)),
             Curve::Helix(Helix::new([17, -4, 9], [-17, 4, -11], [0, 0], cw).unwrap()),
         ],
+        CurveKind::Axis => [line(&[0], &[12]), line(&[5], &[-95])],
         CurveKind::Line { max_axes: 2 } => [line(&[0, 0], &[8, 6]), line(&[5, -3], &[-95, 0])],
         CurveKind::Line { .. } => [line(&[0, 0], &[8, 6]), line(&[5, -3, 2], &[-95, -3, 77])],
         CurveKind::Arc => [

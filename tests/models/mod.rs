@@ -15,6 +15,7 @@ mod dpm;
 mod mindev_vector;
 mod ppc;
 mod promises;
+mod ramp;
 mod registers;
 mod sampled;
 mod space_lines;
@@ -110,7 +111,10 @@ fn bench(model: &str, curve: &Curve, choices: &Options) -> Testbench {
 }
 
 fn run(model: &str, curve: &Curve, choices: &Options, engine: EngineKind) -> Ran {
-    let bench = bench(model, curve, choices);
+    run_on(&bench(model, curve, choices), engine)
+}
+
+fn run_on(bench: &Testbench, engine: EngineKind) -> Ran {
     let mut keep = Keep(Vec::new());
     let outcome = bench.run(engine, &mut [&mut keep]).unwrap();
     let letters = bench.hardware().letters();

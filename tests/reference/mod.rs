@@ -20,6 +20,7 @@
 //!   the longest one.
 //! - [`sampled_line`], [`sampled_arc`]: data sampling, the points of the coarse stage in real numbers.
 //! - [`spline_dda`], [`spline_dda_fraction`]: free curves in whole numbers, and by rounded forward differences.
+//! - [`ramp`]: acceleration and deceleration of a pulse source.
 //! - [`stepgen`], [`stepgen_clocks`], [`bresenham`]: what motion cards and firmware of today do.
 //!
 //! A call outside a method's domain (a register too narrow, an end point that the arc cannot reach)
@@ -38,6 +39,7 @@ mod eight_arcs;
 mod eight_lines;
 mod ppc;
 mod ppc_conic;
+mod ramp;
 mod sampled;
 mod space_lines;
 mod spline;
@@ -57,6 +59,9 @@ pub(crate) use eight_arcs::{mindev_arc, vector_arc};
 pub(crate) use eight_lines::{mindev_line, vector_line};
 pub(crate) use ppc::{ppc_arc, ppc_line};
 pub(crate) use ppc_conic::ppc_conic;
+#[cfg(test)]
+use ramp::speeds_up as ramp_speeds_up;
+pub(crate) use ramp::{Braking, InForce, RampBlock, plan as ramp_plan, ramp};
 pub(crate) use sampled::{System, sampled_arc, sampled_line, step_factor_points};
 pub(crate) use space_lines::{cim_space_line, mindev_space_line, ppc_space_line};
 pub(crate) use spline::{Basis, Segment, spline_dda, spline_dda_fraction, spline_owes};

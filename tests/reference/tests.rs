@@ -7,6 +7,7 @@ mod dda;
 mod eight;
 mod modern;
 mod ppc;
+mod ramp;
 mod rates;
 mod space;
 mod spline;

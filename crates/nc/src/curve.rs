@@ -22,7 +22,7 @@ pub(crate) fn outline_points(max_points: usize) -> usize {
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Curve {
-    /// A straight line in two to six axes.
+    /// A straight line in one to six axes.
     Line(Line),
     /// A circular arc in x and y.
     Arc(Arc),
@@ -59,7 +59,7 @@ impl Curve {
         }
     }
 
-    /// The number of axes: 2 to 6 for a line, 2 for an arc or a conic, 3 for a helix.
+    /// The number of axes: 1 to 6 for a line, 2 for an arc or a conic, 3 for a helix.
     #[must_use]
     pub fn axes(&self) -> usize {
         self.from().len()

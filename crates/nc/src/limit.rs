@@ -18,7 +18,7 @@ pub const CONIC_LIMIT: i64 = 1 << 26;
 pub const PARABOLA_LIMIT: i64 = 1 << 40;
 
 /// The least number of axes of a line.
-pub const AXES_MIN: usize = 2;
+pub const AXES_MIN: usize = 1;
 
 /// The greatest number of axes of a line.
 pub const AXES_MAX: usize = 6;

@@ -1,10 +1,10 @@
-//! Straight lines in two to six axes.
+//! Straight lines in one to six axes.
 
 use crate::exact::cross;
 use crate::limit::check_coordinates;
 use crate::{AXES_MAX, AXES_MIN, GeometryError};
 
-/// A straight line from one point to another, in two to six axes.
+/// A straight line from one point to another, in one to six axes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Line {
     from: Vec<i64>,
@@ -15,7 +15,7 @@ impl Line {
     /// The line between two points, coordinates in BLU and in the order x, y, z, a, b, c.
     ///
     /// # Errors
-    /// If the points have different numbers of axes, fewer than two or more than six, if a coordinate is beyond
+    /// If the points have different numbers of axes, none or more than six, if a coordinate is beyond
     /// [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT), or if both points are the same.
     ///
     /// ```
@@ -23,7 +23,7 @@ impl Line {
     ///
     /// let line = Line::new(vec![-1, 1], vec![-4, 2])?;
     /// assert_eq!(line.delta(), [-3, 1]);
-    /// assert_eq!(Line::new(vec![5], vec![6]), Err(GeometryError::AxisCount { axes: 1 }));
+    /// assert_eq!(Line::new(vec![], vec![]), Err(GeometryError::AxisCount { axes: 0 }));
     /// # Ok::<(), GeometryError>(())
     /// ```
     pub fn new(from: Vec<i64>, to: Vec<i64>) -> Result<Line, GeometryError> {
@@ -59,7 +59,7 @@ impl Line {
         self.to.iter().zip(&self.from).map(|(to, from)| to - from).collect()
     }
 
-    /// The number of axes, 2 to 6.
+    /// The number of axes, 1 to 6.
     #[must_use]
     pub fn axes(&self) -> usize {
         self.from.len()
@@ -140,10 +140,10 @@ mod tests {
     type Outcome = Result<(), GeometryError>;
 
     #[test]
-    fn a_line_takes_two_to_six_axes_and_both_points_the_same() {
+    fn a_line_takes_one_to_six_axes_and_both_points_the_same() {
         for axes in 0..=8 {
             let line = Line::new(vec![0; axes], vec![1; axes]);
-            assert_eq!(line.map(|line| line.axes()).ok(), (2..=6).contains(&axes).then_some(axes));
+            assert_eq!(line.map(|line| line.axes()).ok(), (1..=6).contains(&axes).then_some(axes));
         }
         let unequal = Line::new(vec![0; 2], vec![1; 3]);
         assert_eq!(unequal, Err(GeometryError::AxisMismatch { from: 2, to: 3 }));

@@ -56,7 +56,7 @@ impl Lookout {
         observers: &mut [&mut dyn Observer],
     ) -> Option<(Lookout, Wanted)> {
         let machine = bench.machine();
-        if machine.buffer.is_some() || observers.is_empty() {
+        if machine.buffer.is_some() || observers.is_empty() || !bench.events.is_empty() {
             return None;
         }
         let mut wanted = Wanted::default();

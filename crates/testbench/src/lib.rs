@@ -7,6 +7,7 @@ mod checkpoint;
 mod coarse;
 mod columns;
 mod contour;
+mod event;
 mod feeder;
 mod instruments;
 mod lanes;
@@ -34,6 +35,7 @@ pub use block::{BlockReport, Part};
 pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints, Memory};
 pub use coarse::{CoarseError, CoarseWatch};
 pub use columns::Columns;
+pub use event::Event;
 pub use feeder::{Feeder, Next};
 pub use lanes::{LaneOutcome, Lanes};
 pub use load::CUT_CLOCKS;
@@ -230,6 +232,8 @@ pub struct Testbench {
     limit: u64,
     /// Clocks that its geometry takes at least; 0 without one.
     least_clocks: u64,
+    /// Inputs that change while it runs, by their clocks.
+    events: Vec<Event>,
 }
 
 impl Testbench {
@@ -248,7 +252,21 @@ impl Testbench {
         let columns = Columns::of(&machine);
         let (blocks, cut, start) = (Vec::new(), Vec::new(), vec![0; hardware.axes]);
         let (cuts, every_sample, running, limit, least_clocks) = (false, true, None, u64::MAX, 0);
-        Testbench { hardware, machine, blocks, start, cuts, cut, columns, every_sample, running, limit, least_clocks }
+        let events = Vec::new();
+        Testbench {
+            hardware,
+            machine,
+            blocks,
+            start,
+            cuts,
+            cut,
+            columns,
+            every_sample,
+            running,
+            limit,
+            least_clocks,
+            events,
+        }
     }
 
     /// The same machine where nobody writes a wave of its programs: much faster, but columns are those of

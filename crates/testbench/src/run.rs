@@ -47,6 +47,8 @@ pub(super) struct Run<'a, 'o> {
     limit: u64,
     /// Load words that were cut so far.
     cut: u64,
+    /// Events that have been, of those of the bench.
+    events: usize,
 }
 
 /// Index among the stop nets of that by which a machine takes a block: `call`, or `done` without a buffer.
@@ -97,6 +99,7 @@ impl<'a, 'o> Run<'a, 'o> {
             states: None,
             limit: bench.limit,
             cut: 0,
+            events: 0,
         }
     }
 
@@ -114,6 +117,7 @@ impl<'a, 'o> Run<'a, 'o> {
         }
         let anchor: Option<(u64, Vec<u64>)> = checkpoint::recalled(&state.memory, "anchor");
         self.anchor = anchor.map(|(clock, registers)| Anchor { clock, registers });
+        self.events = self.bench.events.partition_point(|event| event.clock <= state.clock);
         Run { loaded: state.block + 1, is_reset: true, ..self }
     }
 
@@ -166,7 +170,7 @@ impl<'a, 'o> Run<'a, 'o> {
                     }
                     self.wait()?;
                     for _ in 0..clocks {
-                        if self.left() == 0 {
+                        if self.is_over() {
                             return Ok(Ending::Limit);
                         }
                         self.clock()?;
@@ -218,6 +222,7 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// The first sample.
     fn reset(&mut self) {
+        self.act(0);
         self.engine.reset(&mut self.rows);
         self.is_reset = true;
     }
@@ -251,8 +256,19 @@ impl<'a, 'o> Run<'a, 'o> {
         self.bench.hardware().has_stall_clocks()
     }
 
+    /// Sets the inputs of the events that come up to the next sample, which is that of this clock.
+    fn act(&mut self, next: u64) {
+        while let Some(event) = self.bench.events.get(self.events).filter(|event| event.clock <= next) {
+            self.engine.set_input(event.input, event.value);
+            self.events += 1;
+            // From here it may differ from what followed the anchor.
+            self.anchor = None;
+        }
+    }
+
     /// One clock, regardless of the machine's outputs.
     fn clock(&mut self) -> Result<(), ObserverError> {
+        self.act(self.engine.clock() + 1);
         if self.rows.is_full() {
             self.drain()?;
         }
@@ -271,9 +287,10 @@ impl<'a, 'o> Run<'a, 'o> {
             return Ok(Some(Ending::Trapped));
         }
         loop {
-            if self.left() == 0 {
+            if self.is_over() {
                 return Ok(Some(Ending::Limit));
             }
+            self.act(self.engine.clock() + 1);
             if self.rows.is_empty() && self.look_ahead() {
                 self.keep_state();
                 continue;
@@ -287,7 +304,8 @@ impl<'a, 'o> Run<'a, 'o> {
                 Stop::Net(_) | Stop::RowsFull | Stop::Clocks => self.drain()?,
             }
             // A machine with a buffer waits for its pulse source in a program, or for a dwell to pass.
-            if let Some(ending) = if self.alone || !buffered { self.hangs() } else { None } {
+            let may_hang = self.alone || !buffered || !self.bench.events.is_empty();
+            if let Some(ending) = if may_hang { self.hangs() } else { None } {
                 return Ok(Some(ending));
             }
             self.keep_state();
@@ -296,14 +314,24 @@ impl<'a, 'o> Run<'a, 'o> {
 
     /// The ending of a machine of which nothing new will come.
     fn hangs(&mut self) -> Option<Ending> {
-        let quiet = self.engine.clock().saturating_sub(self.steps.last_pulse);
+        let last_event = self.last_event()?;
+        let quiet = self.engine.clock().saturating_sub(self.steps.last_pulse.max(last_event));
         let at_rest = || engine::at_rest(self.engine.as_ref(), self.bench.design());
+        if !self.alone {
+            return (quiet >= CHUNK as u64 && at_rest()).then_some(Ending::Stalled { clocks: quiet });
+        }
         if quiet > self.bench.hardware.stall_clocks || quiet >= CHUNK as u64 && at_rest() {
             return Some(Ending::Stalled { clocks: quiet });
         }
         let since = self.came_back()?;
         let pulsed = self.steps.last_pulse > since;
         Some(if pulsed { Ending::Endless { since } } else { Ending::Stalled { clocks: quiet } })
+    }
+
+    /// The clock of the last event; `None` while further ones are to come.
+    fn last_event(&self) -> Option<u64> {
+        let events = &self.bench.events;
+        (self.events == events.len()).then(|| events.last().map_or(0, |event| event.clock))
     }
 
     /// The clock of the anchor, if the machine is in the state that it had there: inputs stay, so it will do the same
@@ -344,9 +372,15 @@ impl<'a, 'o> Run<'a, 'o> {
         states.keep(Checkpoint::of(self.engine.as_ref(), self.bench, self.loaded.saturating_sub(1), memory));
     }
 
-    /// Clocks that the run may still take.
+    /// Clocks that the run may still take, at most up to the sample before the next event.
     pub(super) fn left(&self) -> u64 {
-        self.limit.saturating_sub(self.engine.clock())
+        let event = self.bench.events.get(self.events).map_or(u64::MAX, |event| event.clock - 1);
+        self.limit.min(event).saturating_sub(self.engine.clock())
+    }
+
+    /// The run has taken all clocks that it may.
+    fn is_over(&self) -> bool {
+        self.limit <= self.engine.clock()
     }
 
     /// A property is violated in the present sample, and that ends the run.

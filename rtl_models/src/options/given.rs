@@ -50,13 +50,15 @@ impl PartialEq for Value {
 impl Eq for Value {}
 
 /// Hardware options as a user gives them; what is not given is as the model has it by default.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, PartialEq, Debug, Default)]
 pub struct Options {
     /// In the order of [`ALL`]; options that are not in it come after those that are.
     given: Vec<Value>,
     /// Frequency of the clock in Hz, by which data sampling divides it; if none, the least with which it keeps its
     /// period.
     pub clock_hz: Option<Millionths>,
+    /// Length of one BLU in mm, by which speeds get their units; if none, 0.001.
+    pub blu_mm: Option<f64>,
 }
 
 /// Place in the order of the table.
@@ -75,6 +77,12 @@ impl Options {
     #[must_use]
     pub fn at_clock(self, hz: f64) -> Options {
         Options { clock_hz: Some(Millionths::saturating(hz)), ..self }
+    }
+
+    /// With a BLU of this many millimetres.
+    #[must_use]
+    pub fn in_blu(self, mm: f64) -> Options {
+        Options { blu_mm: Some(mm), ..self }
     }
 
     /// The options of a command line: `["--beats", "1", "--normalize"]`.

@@ -11,6 +11,7 @@
 //! # Ok::<(), String>(())
 //! ```
 
+mod choices;
 mod given;
 mod table;
 mod taken;
@@ -20,15 +21,16 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
+pub use choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, System, Weights};
 pub use given::{Options, Value};
 pub use table::{
-    ADDER, ALL, Adder, BEATS, Beats, CASCADE, COMPARE, Compare, DIVISIONS, END_POINT, EndPoint, FORM, FRACTION, Form,
-    NORMALIZE, ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, Radix, STEP, STRICT, SYSTEM, System, TIMING, TOLERANCE,
-    WEIGHTS, WIDTH, WRAPS, Weights,
+    ACCEL, ADDER, ALL, BEATS, BRAKE, CASCADE, COMPARE, DIVISIONS, END_POINT, FORM, FRACTION, JERK, NORMALIZE,
+    ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, SPEED, STEP, STRICT, SYSTEM, TIMING, TOLERANCE, WEIGHTS, WIDTH,
+    WRAPS,
 };
 pub use taken::{Taken, Takes};
 pub(crate) use taken::{chosen, taken};
-pub use values::{Millionths, Named, PerRegister, Preset, StepTiming};
+pub use values::{Gains, Millionths, Named, PerRegister, Preset, Quantity, StepTiming};
 
 /// One hardware option with values of the type T.
 pub struct OptionDef<T: 'static> {

@@ -1,182 +1,12 @@
-//! The table of hardware options: the types of their values, and one declaration of each.
+//! The table of hardware options: one declaration of each.
 //!
 //! An option that is added here is on every command line, in sweeps, titles, reports and the command that repeats a
 //! run.
 
-use stepwave_netlist::bits::Reading;
 use stepwave_netlist::{OnOverflow, Width};
 
-use super::{AnyOption, Millionths, Named, OptionDef, PerRegister, Preset, Shape, StepTiming, Values};
-
-/// What ends a block.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum EndPoint {
-    /// One down-counter of the steps of all axes.
-    Total,
-    /// A down-counter for each axis.
-    PerAxis,
-    /// A down-counter of the longest axis.
-    Longest,
-    /// A down-counter of iterations.
-    Iterations,
-}
-
-impl Named for EndPoint {
-    const ALL: &'static [(&'static str, EndPoint)] = &[
-        ("total", EndPoint::Total),
-        ("per-axis", EndPoint::PerAxis),
-        ("longest", EndPoint::Longest),
-        ("iterations", EndPoint::Iterations),
-    ];
-}
-
-/// How the deviation of a line is kept.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Form {
-    /// Registers hold |dx| and |dy|; all quadrants look like the first.
-    #[default]
-    Magnitude,
-    /// Registers hold dx and dy; F = dx·y - dy·x.
-    Signed,
-    /// As `Magnitude`, but F >= 0 steps X whatever the line, as textbooks print it: wrong where the line runs along y.
-    Bare,
-}
-
-impl Named for Form {
-    const ALL: &'static [(&'static str, Form)] =
-        &[("magnitude", Form::Magnitude), ("signed", Form::Signed), ("bare", Form::Bare)];
-}
-
-/// Clocks of a step that is judged.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Beats {
-    /// Judge, feed, compute and compare, one clock each.
-    #[default]
-    Four,
-    /// All at one edge.
-    One,
-}
-
-impl Named for Beats {
-    const ALL: &'static [(&'static str, Beats)] = &[("4", Beats::Four), ("1", Beats::One)];
-}
-
-/// Number system of the registers that are added.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Radix {
-    /// Binary.
-    #[default]
-    Binary,
-    /// Binary-coded decimal, 4 bits a digit.
-    Decimal,
-}
-
-impl Radix {
-    /// Bits of a digit.
-    #[must_use]
-    pub fn digit_bits(self) -> u32 {
-        match self {
-            Radix::Binary => 1,
-            Radix::Decimal => 4,
-        }
-    }
-}
-
-impl Named for Radix {
-    const ALL: &'static [(&'static str, Radix)] = &[("2", Radix::Binary), ("10", Radix::Decimal)];
-}
-
-impl Radix {
-    /// How registers of this radix are read.
-    #[must_use]
-    pub fn reading(self) -> Reading {
-        match self {
-            Radix::Binary => Reading::Unsigned,
-            Radix::Decimal => Reading::Decimal,
-        }
-    }
-}
-
-/// How an integrator adds.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Adder {
-    /// All bits in one clock.
-    #[default]
-    Parallel,
-    /// One bit a clock, the lowest first.
-    Serial,
-}
-
-impl Named for Adder {
-    const ALL: &'static [(&'static str, Adder)] = &[("parallel", Adder::Parallel), ("serial", Adder::Serial)];
-}
-
-/// The interval weight with which comparison-integral counts a pulse.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Weights {
-    /// The sum of the weights before and after the pulse: F is the exact implicit function.
-    #[default]
-    Mid,
-    /// The weight before the pulse.
-    Pre,
-    /// The weight after the pulse.
-    Post,
-}
-
-impl Named for Weights {
-    const ALL: &'static [(&'static str, Weights)] =
-        &[("mid", Weights::Mid), ("pre", Weights::Pre), ("post", Weights::Post)];
-}
-
-/// What a counter is compared with to give a pulse.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Compare {
-    /// At least the number of steps (`>=`).
-    #[default]
-    AtLeast,
-    /// More than the number of steps (`>`), as early firmware does.
-    Greater,
-}
-
-impl Named for Compare {
-    const ALL: &'static [(&'static str, Compare)] = &[("ge", Compare::AtLeast), ("gt", Compare::Greater)];
-}
-
-impl Named for OnOverflow {
-    const ALL: &'static [(&'static str, OnOverflow)] =
-        &[("trap", OnOverflow::Trap), ("saturate", OnOverflow::Saturate), ("wrap", OnOverflow::Wrap)];
-}
-
-/// How the coarse stage of data sampling calculates the travel of a period.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum System {
-    /// By the direction in the middle of the period: tangent, cosine, square root.
-    #[default]
-    Direction,
-    /// The extended DDA: by the step factor λ.
-    StepFactor,
-}
-
-impl Named for System {
-    const ALL: &'static [(&'static str, System)] = &[("7m", System::Direction), ("7360", System::StepFactor)];
-}
-
-impl System {
-    /// The period T in seconds.
-    #[must_use]
-    pub fn period(self) -> f64 {
-        let [seconds, of] = self.period_ratio();
-        seconds as f64 / of as f64
-    }
-
-    /// The period T as a ratio of whole numbers of seconds: 8 ms, or 10.24 ms.
-    pub(crate) fn period_ratio(self) -> [u64; 2] {
-        match self {
-            System::Direction => [1, 125],
-            System::StepFactor => [32, 3125],
-        }
-    }
-}
+use super::choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, System, Weights};
+use super::{AnyOption, Gains, Millionths, Named, OptionDef, PerRegister, Preset, Quantity, Shape, StepTiming, Values};
 
 /// Declares the options, and the list of them in the order of the command line.
 macro_rules! options {
@@ -419,6 +249,63 @@ options! {
         },
         about: "BLU",
         default: None,
+    };
+    /// Start, drive and stop speed of a ramp.
+    SPEED: PerRegister<Quantity> = OptionDef {
+        name: "speed",
+        help: "Drive speed of a ramp, or start, drive and stop speed by name, in units of its register or with a unit",
+        value_name: "SPEED|vs=…,vc=…,ve=…",
+        values: Values::Parsed {
+            shape: Shape::Commas,
+            parse: |text| {
+                let speeds = PerRegister::parse("speed", text, |word| Quantity::parse(word, 1))?;
+                match speeds.single.keys().find(|name| !["vs", "vc", "ve"].contains(&name.as_str())) {
+                    Some(name) => Err(format!("there is no speed '{name}': give vs=, vc= or ve=")),
+                    None if speeds.all.is_some() && speeds.single.contains_key("vc") => {
+                        Err("the drive speed is given two times: leave one of them out".to_owned())
+                    }
+                    None => Ok(speeds),
+                }
+            },
+            text: |speeds| speeds.text(Quantity::to_string),
+        },
+        about: "V or vs=V,vc=V,ve=V",
+        default: PerRegister::NONE,
+    };
+    /// Acceleration and deceleration of a ramp.
+    ACCEL: Option<Gains> = OptionDef {
+        name: "accel",
+        help: "Acceleration of a ramp, and its deceleration where that is another: 500mm/s2, or in units of its registers",
+        value_name: "A[,D]",
+        values: Values::Parsed {
+            shape: Shape::Commas,
+            parse: |text| or_none(text, Gains::parse),
+            text: |gains| text_or_none(gains.as_ref()),
+        },
+        about: "A or A,D",
+        default: None,
+    };
+    /// Jerk of a ramp.
+    JERK: Option<Quantity> = OptionDef {
+        name: "jerk",
+        help: "Jerk of a ramp, whose speed then goes along an S: 20000mm/s3, or in units of its registers",
+        value_name: "J",
+        values: Values::Parsed {
+            shape: Shape::Numbers { least: 1, most: 1 << 62, none: true, values: "none or jerks such as 4 or 20000mm/s3" },
+            parse: |text| or_none(text, |text| Quantity::parse(text, 3)),
+            text: |jerk| text_or_none(jerk.as_ref()),
+        },
+        about: "J: speed along an S (default: none, a trapezoid)",
+        default: None,
+    };
+    /// How a ramp finds where to brake.
+    BRAKE: Brake = OptionDef {
+        name: "brake",
+        help: "How a ramp finds where to brake: by the square of its speed, or by the pulses of its acceleration",
+        value_name: "BRAKE",
+        values: Values::Words(Brake::ALL),
+        about: "",
+        default: Brake::Square,
     };
     /// What a strict cell does on overflow.
     ON_OVERFLOW: OnOverflow = OptionDef {

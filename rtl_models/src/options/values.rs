@@ -172,6 +172,111 @@ impl fmt::Display for StepTiming {
     }
 }
 
+/// A speed, an acceleration or a jerk.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Quantity {
+    /// In the units of the registers: 2^-n pulses a tick, or that much more each tick.
+    Word(u64),
+    /// In a unit of length and of time.
+    Physical {
+        /// How many of the unit.
+        number: f64,
+        /// The unit as it is written.
+        unit: &'static str,
+        /// The unit in mm, and seconds to the power of the quantity.
+        mm: f64,
+    },
+}
+
+/// Units of a speed, an acceleration and a jerk, in mm and seconds.
+const UNITS: [&[(&str, f64)]; 3] = [
+    &[("mm/min", 1.0 / 60.0), ("in/min", 25.4 / 60.0), ("mm/s", 1.0), ("m/min", 1000.0 / 60.0)],
+    &[("mm/s2", 1.0), ("mm/s^2", 1.0), ("in/s2", 25.4), ("m/s2", 1000.0)],
+    &[("mm/s3", 1.0), ("mm/s^3", 1.0), ("in/s3", 25.4), ("m/s3", 1000.0)],
+];
+
+impl Quantity {
+    /// What a text says, of a quantity with this power of time: 1 a speed, 2 an acceleration, 3 a jerk.
+    ///
+    /// # Errors
+    /// A sentence that says what is wrong with it.
+    pub fn parse(text: &str, power: usize) -> Result<Quantity, String> {
+        let text = text.trim();
+        let units = UNITS[(power - 1).min(2)];
+        let example = ["144 or 2400mm/min", "16 or 500mm/s2", "4 or 20000mm/s3"][(power - 1).min(2)];
+        let wrong = || {
+            let units = units.iter().map(|(unit, _)| *unit).collect::<Vec<_>>().join(", ");
+            format!(
+                "'{text}' is not {}: give a whole number from 1 on of the register, or one with a unit ({units}), such as \
+                 {example}",
+                ["a speed", "an acceleration", "a jerk"][(power - 1).min(2)]
+            )
+        };
+        let Some((unit, mm)) = units.iter().find(|(unit, _)| text.ends_with(unit)) else {
+            return text.parse().ok().filter(|word| (1..=1 << 62).contains(word)).map(Quantity::Word).ok_or_else(wrong);
+        };
+        let number = text.strip_suffix(unit).and_then(|number| number.trim().parse().ok());
+        let number = number.filter(|number: &f64| number.is_finite() && *number > 0.0).ok_or_else(wrong)?;
+        Ok(Quantity::Physical { number, unit, mm: *mm })
+    }
+
+    /// In mm and seconds; `None` in units of registers.
+    #[must_use]
+    pub fn mm(self) -> Option<f64> {
+        match self {
+            Quantity::Word(_) => None,
+            Quantity::Physical { number, mm, .. } => Some(number * mm),
+        }
+    }
+}
+
+/// `500mm/s2`
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Quantity::Word(word) => write!(f, "{word}"),
+            Quantity::Physical { number, unit, .. } => write!(f, "{number}{unit}"),
+        }
+    }
+}
+
+/// Acceleration and deceleration.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Gains {
+    /// Acceleration.
+    pub up: Quantity,
+    /// Deceleration, where it is another one.
+    pub down: Option<Quantity>,
+}
+
+impl Gains {
+    /// `16`, `16,8`, `500mm/s2,300mm/s2`
+    pub(super) fn parse(text: &str) -> Result<Gains, String> {
+        let mut parts = text.split(',');
+        let up = Quantity::parse(parts.next().unwrap_or_default(), 2)?;
+        let down = parts.next().map(|down| Quantity::parse(down, 2)).transpose()?;
+        if parts.next().is_some() {
+            return Err(format!("'{text}' is more than an acceleration and a deceleration: give one or two"));
+        }
+        Ok(Gains { up, down })
+    }
+
+    /// Both.
+    #[must_use]
+    pub fn both(self) -> [Quantity; 2] {
+        [self.up, self.down.unwrap_or(self.up)]
+    }
+}
+
+impl fmt::Display for Gains {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.down {
+            None => write!(f, "{}", self.up),
+            Some(down) => write!(f, "{},{down}", self.up),
+        }
+    }
+}
+
 impl fmt::Display for Preset {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -28,6 +28,12 @@ impl<'m> DownCounter<'m> {
         self.register.q.is_nonzero()
     }
 
+    /// Steps that are left, unsigned.
+    #[must_use]
+    pub fn left(&self) -> Signal<'m> {
+        self.register.q
+    }
+
     /// Closes the counter: at an edge with `count` = 1 it goes down by one, which must not take it below 0. Returns 1
     /// bit: it is counted or held at this edge and is 0 after it.
     #[must_use]

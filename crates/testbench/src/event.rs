@@ -1,0 +1,45 @@
+//! Inputs that change while a machine runs.
+
+use stepwave_models::events::{Action, Timed};
+use stepwave_models::{ModelError, Port};
+use stepwave_netlist::Net;
+
+use super::Testbench;
+
+/// An input takes a value right after the edge of a clock, so that the next edge samples it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Event {
+    /// The clock, from 0.
+    pub clock: u64,
+    /// The input.
+    pub input: Net,
+    /// Its bits.
+    pub value: u64,
+}
+
+impl Testbench {
+    /// The same bench, where the operator acts at these clocks. Of several at one clock the last wins.
+    ///
+    /// # Errors
+    /// The hardware has no input for an action.
+    pub fn with_events(mut self, events: &[Timed]) -> Result<Testbench, ModelError> {
+        let mut all = Vec::new();
+        for Timed { clock, action } in events {
+            for (later, name, value) in action.inputs() {
+                let input = self.input(*action, name)?;
+                let value = input.reading.wrapped(input.width, value).value();
+                all.push(Event { clock: clock.saturating_add(later), input: input.net, value });
+            }
+        }
+        all.sort_by_key(|event| event.clock);
+        self.events = all;
+        Ok(self)
+    }
+
+    fn input(&self, action: Action, name: &str) -> Result<Port, ModelError> {
+        let missing = |_| ModelError::NoEvents { model: self.hardware.model, event: action.to_string() };
+        let port = Port::of(self.design().netlist(), name).map_err(missing)?;
+        let is_input = self.design().inputs().contains(&port.net);
+        if is_input { Ok(port) } else { Err(missing(ModelError::MissingPort(name.to_owned()))) }
+    }
+}

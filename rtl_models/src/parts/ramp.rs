@@ -1,0 +1,206 @@
+//! Acceleration and deceleration of a pulse source.
+
+use stepwave_netlist::dsl::{Register, Scope, Signal};
+
+use super::Block;
+use super::s_curve::SCurve;
+use super::wide::Wide;
+use crate::hardware::Hardware;
+use crate::options::{BRAKE, Brake, JERK};
+use crate::registers::{AS_NEEDED, N, Reg, With};
+
+/// Phase of the pulses.
+pub const PHASE: Reg = Reg::new("phase", N, "phase of the pulses, from --preset").preset();
+/// Speed.
+pub const V: Reg = Reg::new("v", N, "speed, in 2^-n pulses a tick");
+/// Start, drive and stop speed.
+pub const LIMITS: Reg<3> = Reg::each(["vs", "vc", "ve"], N, "start, drive and stop speed").hidden();
+/// Acceleration and deceleration.
+pub const GAINS: Reg<2> =
+    Reg::each(["a", "d"], AS_NEEDED, "acceleration and deceleration, in 2^-n pulses a tick each tick").hidden();
+/// Pulses of the acceleration.
+pub const RISEN: Reg = Reg::new("r", AS_NEEDED, "pulses of the acceleration").when(&BY_COUNT);
+
+static BY_COUNT: With<Brake> = With(&BRAKE, |brake| *brake == Brake::Count);
+
+/// Override of 100 %, in the units of its input.
+pub const WHOLE_OVERRIDE: u32 = 128;
+
+/// A pulse source that accelerates and brakes: a second-order DDA. At every tick {pulse, phase} := phase + v, while v goes
+/// towards its target by `a` or `d`, and to the stop speed in time for the end of the block.
+///
+/// - `phase`, n bits: continues from block to block.
+/// - `v`, up to n bits: loaded with `vs`.
+/// - `vs`, `vc`, `ve`, `a`, `d`: held for the whole block.
+/// - `hold`, an input of 1 bit: the target is 0. `trim`, an input of 9 bits in two's complement: the override in 128ths beyond
+///   100 %.
+///
+/// **Braking.** `square` brakes when the ramp down from the speed of the next tick would be longer than what remains:
+/// 2d·(e·2^n - phase) <= w² - ve² + 2d·(v + w), where w is the speed without braking. `count` has in `r` how many pulses
+/// the ramp up took, and brakes when one more than that remain: the middle one of an odd number.
+#[derive(Clone, Copy, Debug)]
+pub struct Ramp<'m> {
+    m: Scope<'m>,
+    block: Block<'m>,
+    phase: Register<'m>,
+    v: Register<'m>,
+    sum: Signal<'m>,
+    limits: [Signal<'m>; 3],
+    gains: [Signal<'m>; 2],
+    /// 1 bit: the target is 0 whatever else is wanted.
+    hold: Signal<'m>,
+    trim: Signal<'m>,
+}
+
+impl<'m> Ramp<'m> {
+    /// The registers and inputs.
+    #[must_use]
+    pub fn new(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>) -> Ramp<'m> {
+        let [phase, v] = [PHASE, V].map(|register| hardware.reg(m, register));
+        let n = phase.q.bits();
+        let sum = m.name("sum", phase.q.extend(n + 1).wrapping_add(v.q.extend(n + 1)));
+        Ramp {
+            m,
+            block: *block,
+            phase,
+            v,
+            sum,
+            limits: [0, 1, 2].map(|index| hardware.held(m, block, LIMITS.of(index))),
+            gains: [0, 1].map(|index| hardware.held(m, block, GAINS.of(index))),
+            hold: m.input("hold", 1),
+            trim: m.input_signed("trim", 9),
+        }
+    }
+
+    /// 1 bit: a pulse comes at this edge, where the phase counts: `runs` = 1 (1 bit).
+    #[must_use]
+    pub fn pulse(&self, runs: Signal<'m>) -> Signal<'m> {
+        self.m.name("pulse", runs & self.sum.msb())
+    }
+
+    /// Closes it. `preset` (1 bit) loads the phase with its word; `runs` (1 bit) counts; at an edge with `tick` = 1
+    /// (1 bit) the speed goes on, with `left` pulses of the block to come before that edge.
+    pub fn close(self, hardware: &Hardware, preset: Signal<'m>, runs: Signal<'m>, tick: Signal<'m>, left: Signal<'m>) {
+        let (m, block) = (self.m, &self.block);
+        let remaining = Remaining::new(&self, left);
+        let target = self.target();
+        let wanted = m.name("wanted", self.towards(target));
+        let brake = match hardware.get(&BRAKE) {
+            Brake::Square => self.brake_by_square(&remaining, wanted),
+            Brake::Count => self.brake_by_count(hardware, tick, left, wanted),
+        };
+        let braked = least(wanted, self.slower(self.limits[2]));
+        let trapezoid = m.name("brake", brake).mux(braked, wanted);
+        let next = match hardware.get(&JERK) {
+            None => trapezoid,
+            Some(_) => {
+                let event = self.hold | self.trim.is_nonzero();
+                let curve = SCurve::new(m.scope("s_curve"), hardware, block);
+                let speed = [self.v.q, self.limits[2]];
+                let down = remaining.is_within(&self, curve.length());
+                curve.close(tick, speed, down, event, trapezoid)
+            }
+        };
+        self.v.when(block.load, hardware.word(block, V)).when(tick, next).else_hold();
+        let n = self.phase.q.bits();
+        self.phase.when(preset, hardware.word(block, PHASE)).when(runs, self.sum.slice(0, n)).else_hold();
+    }
+
+    /// The speed to go to: vc times the override, at most what the register holds; 0 on hold.
+    fn target(&self) -> Signal<'m> {
+        let (m, bits) = (self.m, self.v.q.bits());
+        let wide = bits + 10;
+        let whole = m.lit_signed(10, i64::from(WHOLE_OVERRIDE));
+        let share = whole.wrapping_add(self.trim.extend(10)).as_unsigned().slice(0, 9);
+        let product = self.limits[1].extend(wide).wrapping_mul(share.extend(wide));
+        let scaled = product.slice(WHOLE_OVERRIDE.trailing_zeros(), bits + 1);
+        let most = scaled.msb().mux(m.lit(bits, u64::MAX >> (64 - bits)), scaled.slice(0, bits));
+        m.name("target", self.hold.mux(m.lit(bits, 0), most))
+    }
+
+    /// The speed of the next tick without braking.
+    fn towards(&self, target: Signal<'m>) -> Signal<'m> {
+        let (v, bits) = (self.v.q, self.v.q.bits());
+        let [a, _] = self.gains;
+        let wide = bits.max(a.bits()) + 1;
+        let faster = least(v.extend(wide).wrapping_add(a.extend(wide)), target.extend(wide)).slice(0, bits);
+        let rising = v.is_zero().mux(least(self.limits[0], target), faster);
+        // Below the stop speed there is nothing but to stand.
+        let stops = target.is_zero() & self.falls_below(self.limits[2]);
+        let falling = stops.mux(self.m.lit(bits, 0), self.slower(target));
+        v.less_than(target).mux(rising, target.less_than(v).mux(falling, v))
+    }
+
+    /// 1 bit: v - d is less than a speed.
+    fn falls_below(&self, speed: Signal<'m>) -> Signal<'m> {
+        let wide = self.v.q.bits().max(self.gains[1].bits()) + 1;
+        self.v.q.extend(wide).less_than(speed.extend(wide).wrapping_add(self.gains[1].extend(wide)))
+    }
+
+    /// v - d, but not less than a speed.
+    fn slower(&self, speed: Signal<'m>) -> Signal<'m> {
+        let (bits, d) = (self.v.q.bits(), self.gains[1]);
+        let wide = bits.max(d.bits());
+        let difference = self.v.q.extend(wide).wrapping_sub(d.extend(wide)).slice(0, bits);
+        self.falls_below(speed).mux(speed, difference)
+    }
+
+    fn brake_by_square(&self, remaining: &Remaining<'m>, wanted: Signal<'m>) -> Signal<'m> {
+        let wide = &remaining.wide;
+        let twice = self.gains[1].concat(self.m.lit(1, 0));
+        let square = |speed: Signal<'m>| wide.product(&wide.of(speed), speed);
+        let next = wide.product(&wide.sum(&wide.of(self.v.q), &wide.of(wanted)), twice);
+        let owed = wide.sum(&wide.product(&remaining.distance, twice), &square(self.limits[2]));
+        wide.at_most(&owed, &wide.sum(&square(wanted), &next))
+    }
+
+    fn brake_by_count(
+        &self,
+        hardware: &Hardware,
+        tick: Signal<'m>,
+        left: Signal<'m>,
+        wanted: Signal<'m>,
+    ) -> Signal<'m> {
+        let risen = hardware.reg(self.m, RISEN);
+        let bits = left.bits().max(risen.q.bits()) + 1;
+        let one = self.m.lit(bits, 1);
+        let brake = !risen.q.extend(bits).wrapping_add(one).less_than(left.extend(bits));
+        let next = brake.mux(least(wanted, self.slower(self.limits[2])), wanted);
+        let carry = self.sum.msb().extend(risen.q.bits());
+        let up = tick & self.v.q.less_than(next);
+        let down = tick & next.less_than(self.v.q);
+        let none = self.m.lit(risen.q.bits(), 0);
+        let rising = risen.q.strict_add(carry, up & !self.block.load);
+        risen.when(self.block.load, none).when(up, rising).when(down, risen.q.saturating_sub(carry)).else_hold();
+        brake
+    }
+}
+
+/// The lesser of two unsigned numbers.
+fn least<'m>(a: Signal<'m>, b: Signal<'m>) -> Signal<'m> {
+    a.less_than(b).mux(a, b)
+}
+
+/// What remains of a block, in 2^-n pulses.
+struct Remaining<'m> {
+    wide: Wide<'m>,
+    /// e·2^n - phase, or 0 after the last pulse.
+    distance: Vec<Signal<'m>>,
+}
+
+impl<'m> Remaining<'m> {
+    fn new(ramp: &Ramp<'m>, left: Signal<'m>) -> Remaining<'m> {
+        let (n, v, d) = (ramp.phase.q.bits(), ramp.v.q.bits(), ramp.gains[1].bits());
+        // Of 2d·(e·2^n - phase) + ve², and of w² + 2d·(v + w).
+        let wide = Wide::new(ramp.m, (n + left.bits() + d + 1).max(2 * v).max(v + d + 2) + 1);
+        let gone = left.is_zero().mux(ramp.m.lit(n, 0), ramp.phase.q);
+        let distance = wide.difference(&wide.shifted(left, n), &wide.of(gone));
+        Remaining { wide, distance }
+    }
+
+    /// 1 bit: it is less than v and the `length` (unsigned).
+    fn is_within(&self, ramp: &Ramp<'m>, length: Signal<'m>) -> Signal<'m> {
+        let wide = &self.wide;
+        !wide.at_most(&wide.sum(&wide.of(ramp.v.q), &wide.of(length)), &self.distance)
+    }
+}

@@ -1,0 +1,69 @@
+//! Ramps: how they are given, what an operator does, and what is refused.
+
+use super::{Folder, good, refused};
+
+#[test]
+fn twelve_pulses_are_the_worked_table() {
+    let table = good("run ramp --to 12 --steps -");
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines[0], "step,clock,phase,v,e,dx,x");
+    assert_eq!(lines[20], "19,20,192,128,3,0,9");
+    assert_eq!(lines[27], "26,27,32,64,0,1,12");
+    assert_eq!(lines.len(), 28);
+}
+
+#[test]
+fn units_become_words_of_the_least_width_with_which_an_acceleration_is_128() {
+    let run = "run ramp --to 3 --accel 500mm/s2 --speed 2400mm/min --clock-hz 1e6 --blu 1um --json -";
+    let report: serde_json::Value = serde_json::from_str(&good(run)).unwrap();
+    // 5e5·2^n/1e12 is 128 from n = 28 on; 4e4·2^28/1e6; the greatest start is below the square root of 134·2^28.
+    assert_eq!(report["widths"]["v"], 28, "{report}");
+    assert_eq!(report["choices"]["accel"], 134);
+    let start = (134.0 * 2f64.powi(28)).sqrt().floor();
+    assert_eq!(report["choices"]["speed"], format!("vc=10737418,ve={start},vs={start}"));
+    assert_eq!(report["end_point"]["exact"], true);
+}
+
+#[test]
+fn what_the_operator_does_is_in_force_at_the_next_edge() {
+    let held = good("run ramp --to 12 --event 9:hold --event 17:resume --steps -");
+    let v: Vec<&str> = held.lines().skip(1).map(|line| line.split(',').nth(3).unwrap()).collect();
+    assert_eq!(v[8..19], ["144", "128", "112", "96", "80", "64", "0", "0", "0", "64", "80"]);
+    assert_eq!(v.len(), 34);
+    let slow = good("run ramp --to 12 --event 0:override=50 --steps -");
+    assert!(slow.lines().skip(3).all(|line| line.split(',').nth(3) <= Some("72")), "{slow}");
+    let report: serde_json::Value =
+        serde_json::from_str(&good("run ramp --to 12 --event 9:hold --event 17:resume --json -")).unwrap();
+    assert_eq!(report["events"], serde_json::json!(["9:hold", "17:resume"]));
+}
+
+#[test]
+fn a_hold_without_an_end_stalls() {
+    let ran = Folder::new().run("run ramp --to 12 --event 9:hold");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert!(ran.out.contains("stalled at (6)"), "{ran:?}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_a_remedy() {
+    for (command, hints) in [
+        ("run ramp --to 12 --speed 300 --width 8", &["300", "255", "--width 9"][..]),
+        ("run ramp --to 12 --speed vs=200,vc=144", &["vs=200", "between 1 and vc, which is 144"]),
+        ("run ramp --to 12 --speed v=3", &["'v'", "vs=, vc= or ve="]),
+        ("run ramp --to 12 --accel 16,8 --brake count", &["16,8", "--brake count"]),
+        ("run ramp --to 12 --speed vs=3,ve=4 --brake count", &["vs=3,ve=4"]),
+        ("run ramp --to 12 --jerk 2 --brake count", &["count", "S curve"]),
+        ("run ramp --to 12 --accel 5mm", &["'5mm'", "mm/s2"]),
+        ("run ramp --to 12 --accel 1e-9mm/s2 --width 8", &["0 in registers of 8 bits"]),
+        ("run ramp --to 12 --width v=9,phase=8", &["v of 9 bits", "phase has 8"]),
+        ("run ramp --to 12,5", &["one axis", "a line of 2 axes"]),
+        ("run dda-line --to 12", &["2 to 6 axes", "a displacement of one axis"]),
+        ("run ramp --to 12 --event 9:stop", &["'9:stop'", "9", "hold"]),
+        ("run ramp --to 12 --event 9:override=300", &["300", "0 to 200"]),
+        ("run ramp --to 12 --event 9:single", &["single", "program"]),
+        ("run ppc-line --to 5,3 --event 9:hold", &["ppc-line", "hold"]),
+        ("sweep ramp --to 12 --csv -", &["displacements of one axis", "run"]),
+    ] {
+        refused(command, hints);
+    }
+}
