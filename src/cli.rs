@@ -33,7 +33,7 @@ pub(crate) use program::{Method, ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use usage::usage;
-pub(crate) use values::{ClockArgs, Point, SimulationArgs, parse_point};
+pub(crate) use values::{ClockArgs, Point, SimulationArgs, parse_decimals, parse_point};
 pub(crate) use widths::WidthsArgs;
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware
@@ -292,6 +292,15 @@ pub(crate) struct GeometryArgs {
     /// Uniform cubic B-spline along --points instead
     #[arg(long, requires = "points")]
     pub(crate) b_spline: bool,
+    /// NURBS with these control points and weights, or those in a CSV file of x,y,w
+    #[arg(long, value_name = "X,Y,W,…|FILE", allow_hyphen_values = true, group = "drawn")]
+    pub(crate) nurbs: Option<String>,
+    /// Degree of a NURBS [default: 3, or as many as the points allow]
+    #[arg(long, requires = "nurbs", value_name = "P")]
+    pub(crate) degree: Option<u32>,
+    /// Knots of a NURBS [default: uniform, those at the ends degree + 1 times]
+    #[arg(long, requires = "nurbs", value_name = "U,U,…", allow_hyphen_values = true)]
+    pub(crate) knots: Option<String>,
     /// Where a parabola or the branch of a hyperbola opens to [default: where both ends lie on it]
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true, value_parser = values::opens())]
     pub(crate) opens: Option<Opens>,
@@ -308,10 +317,16 @@ pub(crate) fn names_points(given: &str) -> bool {
     parse_point(given).is_err()
 }
 
+/// What --nurbs is given is the name of a file, not points with weights.
+pub(crate) fn names_nurbs(given: &str) -> bool {
+    parse_decimals(given).is_err()
+}
+
 impl GeometryArgs {
     /// The file of points, if one is read.
     pub(crate) fn file(&self) -> Option<PathBuf> {
-        self.points.as_ref().filter(|given| names_points(given)).map(PathBuf::from)
+        let points = self.points.as_ref().filter(|given| names_points(given));
+        points.or(self.nurbs.as_ref().filter(|given| names_nurbs(given))).map(PathBuf::from)
     }
 
     /// What is drawn, where an option says it.
@@ -324,6 +339,7 @@ impl GeometryArgs {
             self.bezier.as_ref().map(|_| Drawn::Spline(SplineForm::Bezier)),
             self.hermite.as_ref().map(|_| Drawn::Spline(SplineForm::Hermite)),
             self.points.as_ref().map(|_| Drawn::Spline(through)),
+            self.nurbs.as_ref().map(|_| Drawn::Nurbs),
         ];
         given.into_iter().flatten().next()
     }

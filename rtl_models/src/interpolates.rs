@@ -1,6 +1,8 @@
 //! What models interpolate: the kinds of curves, and how a model plans its hardware for a curve and loads it.
 
-use stepwave_nc::{Arc, Conic, Curve, CurveType, Direction, Drawn, GeometryError, Helix, Line, Spline, SplineForm};
+use stepwave_nc::{
+    Arc, Conic, Curve, CurveType, Direction, Drawn, GeometryError, Helix, Line, Nurbs, Spline, SplineForm,
+};
 
 use crate::described::Described;
 use crate::error::ModelError;
@@ -27,6 +29,8 @@ pub enum CurveKind {
     Helix,
     /// Free curves in the plane.
     Spline,
+    /// Rational B-splines in the plane.
+    Nurbs,
     /// What a program is made of: lines of 2 or 3 axes, circular arcs in the plane, and helices.
     Move,
 }
@@ -47,13 +51,14 @@ struct Traits {
 
 impl CurveKind {
     /// All kinds, of lines those of most axes.
-    pub const ALL: [CurveKind; 7] = [
+    pub const ALL: [CurveKind; 8] = [
         CurveKind::Axis,
         CurveKind::Line { max_axes: 6 },
         CurveKind::Arc,
         CurveKind::Conic,
         CurveKind::Helix,
         CurveKind::Spline,
+        CurveKind::Nurbs,
         CurveKind::Move,
     ];
 
@@ -104,6 +109,13 @@ impl CurveKind {
                 in_box: "free curves",
                 axes: [2, 2],
                 drawn: &SPLINES,
+            },
+            CurveKind::Nurbs => Traits {
+                name: "NURBS",
+                takes: "NURBS (--nurbs X,Y,W,… or FILE [--degree P] [--knots U,…], or --bezier X,Y,…)",
+                in_box: "free curves",
+                axes: [2, 2],
+                drawn: &[Drawn::Nurbs],
             },
             CurveKind::Move => Traits {
                 name: "move",
@@ -172,6 +184,7 @@ impl CurveKind {
             CurveKind::Conic => Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], turn)?.into(),
             CurveKind::Helix => Helix::new([5, 0, 0], [0, 5, 3], [0, 0], turn)?.into(),
             CurveKind::Spline => Spline::new(SplineForm::Bezier, &[[0, 0], [4, 0], [8, 4], [8, 8]])?.into(),
+            CurveKind::Nurbs => Nurbs::bezier(&[[0, 0], [4, 0], [8, 4], [8, 8]])?.into(),
         };
         Ok(vec![one])
     }
@@ -204,6 +217,8 @@ pub enum Interpolates {
     Helices(Method<Helix>),
     /// Free curves in the plane.
     Splines(Method<Spline>),
+    /// Rational B-splines in the plane.
+    Nurbs(Method<Nurbs>),
     /// The moves of a program, or one of them alone.
     Moves(Paced),
     /// What data describe, wiring included: [`Model::hardware`](crate::Model::hardware) is not called.
@@ -238,6 +253,7 @@ impl Interpolates {
             Interpolates::Conics(method) => (CurveKind::Conic, Some(method)),
             Interpolates::Helices(method) => (CurveKind::Helix, Some(method)),
             Interpolates::Splines(method) => (CurveKind::Spline, Some(method)),
+            Interpolates::Nurbs(method) => (CurveKind::Nurbs, Some(method)),
             Interpolates::Moves(moves) if moves.arcs.is_some() => (CurveKind::Move, None),
             Interpolates::Moves(_) => (CurveKind::Line { max_axes: 3 }, None),
             Interpolates::Described(described) => (described.curve(), None),

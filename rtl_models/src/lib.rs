@@ -40,6 +40,7 @@ pub mod ramping;
 pub mod registers;
 pub mod sampled_arc;
 pub mod sampled_line;
+pub mod sampled_spline;
 pub mod spline_dda;
 pub mod stepgen;
 pub mod vector_arc;
@@ -64,6 +65,7 @@ static MODELS: &[&Model] = &[
     &vector_arc::MODEL,
     &sampled_line::MODEL,
     &sampled_arc::MODEL,
+    &sampled_spline::MODEL,
     &spline_dda::MODEL,
     &ramp::MODEL,
     &stepgen::MODEL,

@@ -57,10 +57,10 @@ use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System, TOLERANCE};
-use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
+use crate::parts::Task::{Start, Wait};
 use crate::parts::{
-    BURST, Block, CCW, DISPLACEMENT, EndRadius, FineStage, JV, Microprogram, POINT, POSITION, Row, STATE, magnitude,
-    magnitude_of_difference, row, squares, states, with_sign,
+    BURST, Block, CCW, DISPLACEMENT, EndRadius, FineStage, JV, Microprogram, POINT, POSITION, Row, STATE, divide,
+    magnitude, magnitude_of_difference, multiply, row, square_root, squares, states, with_sign,
 };
 use crate::plan::Plan;
 use crate::registers::{Reg, Rule};
@@ -181,14 +181,14 @@ fn by_direction(coarse: Coarse<'_>) -> Vec<Row<'_>> {
     let [ahead, scaled_f] = [ahead, f].map(|value| value.concat(m.lit(p, 0)));
     let (cosine, tan, coordinate) = (product.slice(k, f.bits()), quotient.slice(0, p + 1), size(driven));
     vec![
-        row(at::HALF_STEP, Multiply(f, half_cosine), [(half_step, cosine)], at::SIDE_X),
-        row(at::TANGENT, Divide(ahead, below), [(tangent, tan)], at::SQUARE_TAN).keeping(kept),
-        row(at::SQUARE_TAN, Multiply(tangent.q, tangent.q), [], at::SECANT),
-        row(at::SECANT, Root(above_one), [], at::COSINE),
-        row(at::COSINE, Divide(scaled_f, root.slice(0, p + 2)), [], at::DRIVE),
+        row(at::HALF_STEP, multiply(f, half_cosine), [(half_step, cosine)], at::SIDE_X),
+        row(at::TANGENT, divide(ahead, below), [(tangent, tan)], at::SQUARE_TAN).keeping(kept),
+        row(at::SQUARE_TAN, multiply(tangent.q, tangent.q), [], at::SECANT),
+        row(at::SECANT, square_root(above_one), [], at::COSINE),
+        row(at::COSINE, divide(scaled_f, root.slice(0, p + 2)), [], at::DRIVE),
         row(at::DRIVE, Wait(m.lit(1, 1)), drive, at::SQUARE),
-        row(at::SQUARE, Multiply(coordinate, coordinate), [], at::ROOT),
-        row(at::ROOT, Root(radicand.saturating_sub(product)), follow, at::SIDE_X),
+        row(at::SQUARE, multiply(coordinate, coordinate), [], at::ROOT),
+        row(at::ROOT, square_root(radicand.saturating_sub(product)), follow, at::SIDE_X),
     ]
 }
 
@@ -218,12 +218,12 @@ fn by_step_factor<'m>(coarse: Coarse<'m>) -> (Vec<Row<'m>>, [Register<'m>; 2]) {
         [px.q, py.q, middle_y.q, middle_x.q].map(|coordinate| magnitude(m, coordinate.as_signed()).slice(0, bits));
     let (scaled_f, found) = (f.concat(m.lit(bits, 0)), program.divider.quotient().slice(0, bits));
     let rows = vec![
-        row(at::RADIUS, Root(radicand), [], at::LAMBDA),
-        row(at::LAMBDA, Divide(scaled_f, program.root.root()), [(lambda, found)], at::SIDE_X),
-        row(at::MIDDLE_X, Multiply(x, lambda.q), [(middle_y, to_y)], at::MIDDLE_Y),
-        row(at::MIDDLE_Y, Multiply(y, lambda.q), [(middle_x, to_x)], at::STEP_X),
-        row(at::STEP_X, Multiply(at_y, lambda.q), step_x, at::STEP_Y),
-        row(at::STEP_Y, Multiply(at_x, lambda.q), step_y, at::SIDE_X),
+        row(at::RADIUS, square_root(radicand), [], at::LAMBDA),
+        row(at::LAMBDA, divide(scaled_f, program.root.root()), [(lambda, found)], at::SIDE_X),
+        row(at::MIDDLE_X, multiply(x, lambda.q), [(middle_y, to_y)], at::MIDDLE_Y),
+        row(at::MIDDLE_Y, multiply(y, lambda.q), [(middle_x, to_x)], at::STEP_X),
+        row(at::STEP_X, multiply(at_y, lambda.q), step_x, at::STEP_Y),
+        row(at::STEP_Y, multiply(at_x, lambda.q), step_y, at::SIDE_X),
     ];
     (rows, [rest_x, rest_y])
 }

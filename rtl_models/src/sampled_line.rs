@@ -46,10 +46,10 @@ use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{FRACTION, ON_OVERFLOW, PRESET, STEP, System};
-use crate::parts::Task::{Divide, Multiply, Root, Start, Wait};
+use crate::parts::Task::{Start, Wait};
 use crate::parts::{
-    BURST, Block, DISPLACEMENT, FineStage, JV, LONGEST, Microprogram, POINT, POSITION, Row, SIGN, STATE, row, squares,
-    states, with_sign,
+    BURST, Block, DISPLACEMENT, FineStage, JV, LONGEST, Microprogram, POINT, POSITION, Row, SIGN, STATE, divide,
+    multiply, row, square_root, squares, states, with_sign,
 };
 use crate::plan::Plan;
 use crate::registers::{Reg, Rule};
@@ -129,7 +129,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let last = m.name("arrived", !far.less_than(long.concat(m.lit(q, 0)).extend(bits + 1)));
     let hand = m.name("hand", program.at(at::HAND_OVER) & fine.free());
     let squares = squares(&program, square, [long, short], [at::SQUARE_FAR, at::SQUARE_NEAR, at::LENGTH]);
-    let length = row(at::LENGTH, Root(square.q.concat(m.lit(2 * q, 0))), [], after_length);
+    let length = row(at::LENGTH, square_root(square.q.concat(m.lit(2 * q, 0))), [], after_length);
     let idle = row(at::IDLE, Start(block.load), [], at::SQUARE_FAR).clearing(m, &cleared);
     let hand_over = row(at::HAND_OVER, Wait(fine.free()), [], period).unless(last, at::IDLE);
     program.close(&[&[idle][..], &squares, &[length, hand_over], &own].concat());
@@ -169,10 +169,10 @@ fn own_rows<'m>(
         let rest = program.divider.remainder().slice(0, n);
         let point = [(far, far.q.wrapping_add(factor.q)), (near, next_near), (near_rest, rest)];
         vec![
-            row(at::SHARE, Multiply(f, long), [], at::STEP),
-            row(at::STEP, Divide(share, length), [(factor, limited)], at::SLOPE),
-            row(at::SLOPE, Multiply(factor.q, short), [], at::RATIO),
-            row(at::RATIO, Divide(ratio, long), point, at::HAND_OVER),
+            row(at::SHARE, multiply(f, long), [], at::STEP),
+            row(at::STEP, divide(share, length), [(factor, limited)], at::SLOPE),
+            row(at::SLOPE, multiply(factor.q, short), [], at::RATIO),
+            row(at::RATIO, divide(ratio, long), point, at::HAND_OVER),
         ]
     } else {
         // λ = f / length; {travel, rest} := {travel, rest} + λ·L.
@@ -183,9 +183,9 @@ fn own_rows<'m>(
             [(travel, sum.slice(n, bits + 1)), (rest, sum.slice(0, n))]
         });
         vec![
-            row(at::LAMBDA, Divide(f.concat(m.lit(bits, 0)), length), [(factor, limited)], at::STEP_FAR),
-            row(at::STEP_FAR, Multiply(factor.q, long), far, at::STEP_NEAR),
-            row(at::STEP_NEAR, Multiply(factor.q, short), near, at::HAND_OVER),
+            row(at::LAMBDA, divide(f.concat(m.lit(bits, 0)), length), [(factor, limited)], at::STEP_FAR),
+            row(at::STEP_FAR, multiply(factor.q, long), far, at::STEP_NEAR),
+            row(at::STEP_NEAR, multiply(factor.q, short), near, at::HAND_OVER),
         ]
     };
     ([far.q, near.q], cleared, rows)

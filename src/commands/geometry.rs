@@ -7,6 +7,8 @@ use crate::nc::{Curve, Description, Direction, Drawn, Spline, SplineForm};
 use crate::Error;
 use crate::cli::{GeometryArgs, HardwareArgs, Point, parse_point};
 
+mod nurbs;
+
 /// The curve of this kind that the options give, for a model or a command; the radii of an arc may differ by this many
 /// BLU beyond what rounding makes.
 ///
@@ -17,7 +19,10 @@ pub(crate) fn curve(who: &str, kind: CurveKind, args: &GeometryArgs, radii: f64)
     if let Some(Drawn::Spline(form)) = args.drawn().filter(|drawn| kind.has(*drawn)) {
         return spline(who, kind, form, args);
     }
-    if kind == CurveKind::Spline {
+    if kind == CurveKind::Nurbs && (args.bezier.is_some() || args.nurbs.is_some()) {
+        return nurbs::curve(who, args);
+    }
+    if matches!(kind, CurveKind::Spline | CurveKind::Nurbs) {
         return invalid(format!("the curve is missing: {who} takes {}", kind.describe()));
     }
     for (given, option) in superfluous(kind, args) {
@@ -68,10 +73,8 @@ fn sizes(args: &GeometryArgs) -> Vec<i64> {
 fn spline(who: &str, kind: CurveKind, form: SplineForm, args: &GeometryArgs) -> Result<Curve, Error> {
     let mut superfluous = superfluous(kind, args);
     let along = args.b_spline && form != SplineForm::BSpline;
-    superfluous.extend([(args.from.is_some(), "--from"), (args.to.is_some(), "--to"), (along, "--b-spline")]);
-    if let Some((_, option)) = superfluous.into_iter().find(|(given, _)| *given) {
-        return invalid(format!("{who} takes a free curve by its points alone: leave {option} out"));
-    }
+    superfluous.push((along, "--b-spline"));
+    by_points_alone(who, args, superfluous)?;
     let option = Drawn::Spline(form).option();
     let read = |text: &String| points(text);
     let given = [&args.bezier, &args.hermite].into_iter().flatten().map(|Point(numbers)| Ok(numbers.clone()));
@@ -81,6 +84,15 @@ fn spline(who: &str, kind: CurveKind, form: SplineForm, args: &GeometryArgs) -> 
         return invalid(format!("{option} has {} numbers: give X,Y of each point", numbers.len()));
     }
     Ok(Spline::new(form, points)?.into())
+}
+
+/// Refuses the ends of a free curve, and what else has no meaning for it.
+fn by_points_alone(who: &str, args: &GeometryArgs, others: Vec<(bool, &'static str)>) -> Result<(), Error> {
+    let ends = [(args.from.is_some(), "--from"), (args.to.is_some(), "--to")];
+    match others.into_iter().chain(ends).find(|(given, _)| *given) {
+        Some((_, option)) => invalid(format!("{who} takes a free curve by its points alone: leave {option} out")),
+        None => Ok(()),
+    }
 }
 
 /// The points X,Y,… themselves, or those of a CSV file of this name: x,y in each line, below a heading if there is one.
@@ -122,6 +134,8 @@ fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)
         ((args.cw || args.ccw) && none(Drawn::turns), "--cw or --ccw"),
         (args.opens.is_some() && none(Drawn::is_open), "--opens"),
         (args.b_spline && none(Drawn::is_spline), "--b-spline"),
+        (args.degree.is_some() && args.nurbs.is_none(), "--degree"),
+        (args.knots.is_some() && args.nurbs.is_none(), "--knots"),
     ];
     if let Some(drawn) = args.drawn() {
         options.push((!kind.has(drawn), drawn.option()));

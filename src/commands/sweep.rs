@@ -61,7 +61,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
 
 /// All geometries that the options tell.
 fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Error> {
-    if let kind @ (CurveKind::Spline | CurveKind::Axis) = model.curve() {
+    if let kind @ (CurveKind::Spline | CurveKind::Nurbs | CurveKind::Axis) = model.curve() {
         let (name, what) = (model.name, kind.in_box());
         return invalid(format!("a sweep has no {what}: give {name} one at a time to `stepwave run`"));
     }

@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use super::{Case, names_fit};
 use crate::Error;
-use crate::cli::{Cli, Command, names_points, usage};
+use crate::cli::{Cli, Command, names_nurbs, names_points, usage};
 use crate::commands::{program, run};
 use crate::engine::EngineKind;
 use crate::output::Outputs;
@@ -52,6 +52,7 @@ impl Listed {
             "--bench" => true,
             "--method" => is_netlist(word),
             "--points" => names_points(word),
+            "--nurbs" => names_nurbs(word),
             _ => false,
         };
         let of_folder = |index: usize, word: &str| match index.checked_sub(1) {
@@ -84,13 +85,16 @@ impl Listed {
     /// The same as a value.
     /// The file of points, if one is read.
     fn points(&self) -> Option<&Path> {
-        let mut words = self.args.iter().enumerate();
-        let given = words.find_map(|(index, word)| match word.strip_prefix("--points") {
-            Some("") => self.args.get(index + 1).map(String::as_str),
-            Some(rest) => rest.strip_prefix('='),
-            None => None,
-        });
-        given.filter(|given| names_points(given)).map(Path::new)
+        let given = |option: &str| {
+            let mut words = self.args.iter().enumerate();
+            words.find_map(|(index, word)| match word.strip_prefix(option) {
+                Some("") => self.args.get(index + 1).map(String::as_str),
+                Some(rest) => rest.strip_prefix('='),
+                None => None,
+            })
+        };
+        let points = given("--points").filter(|given| names_points(given));
+        points.or_else(|| given("--nurbs").filter(|given| names_nurbs(given))).map(Path::new)
     }
 
     fn case(self, dir: &Path) -> Case {

@@ -167,9 +167,10 @@ impl OfCurve {
         let (Some(sampling), Some(coarse)) = (&report.hardware.sampling, &self.coarse) else { return String::new() };
         let micrometres = |length: f64| format!("{length:.6} BLU ({:.6} µm)", length * report.blu_mm * 1e3);
         let period = sampling.system.period();
+        let free = matches!(self.curve, Curve::Nurbs(_));
         let mut text = format!(
             "coarse stage {}: {} BLU in {} ms, {:.3} mm/min; {} clocks a period\n",
-            sampling.system.word(),
+            if free { "by steps of the first order" } else { sampling.system.word() },
             sampling.step,
             period * 1e3,
             sampling.step.units() * report.blu_mm * 60.0 / period,
@@ -191,7 +192,8 @@ impl OfCurve {
             coarse.period
         );
         if sampling.chord_error > 0.0 {
-            let _ = writeln!(text, "chord error f²/8R: {}", micrometres(sampling.chord_error));
+            let how = if free { "at the middle of a period's parameters" } else { "f²/8R" };
+            let _ = writeln!(text, "chord error {how}: {}", micrometres(sampling.chord_error));
         }
         text
     }

@@ -2,13 +2,16 @@
 
 use serde_json::{Value, json};
 use stepwave_models::{Hardware, Model, Options, Takes};
-use stepwave_nc::{Curve, Description, Direction, Drawn, SplineForm};
+use stepwave_nc::{Curve, Description, Direction, Drawn, NURBS_UNIT, Nurbs, SplineForm};
 
 use crate::testbench::point;
 
 /// The geometry in words: `line (0, 0) to (8, 6)`.
 #[must_use]
 pub fn geometry(curve: &Curve) -> String {
+    if let Curve::Nurbs(nurbs) = curve {
+        return self::nurbs(nurbs);
+    }
     let Description { drawn, sizes, center, direction, .. } = curve.description();
     if drawn.is_spline() {
         return spline(drawn, sizes.as_chunks().0);
@@ -26,6 +29,39 @@ pub fn geometry(curve: &Curve) -> String {
     let about = if sizes.len() == 1 { "from the vertex" } else { "about" };
     words.extend(drawn.is_centered().then(|| format!("{about} {}", point(&center))));
     words.join(" ")
+}
+
+/// A NURBS by its degree and points, or where they are many by its ends.
+fn nurbs(nurbs: &Nurbs) -> String {
+    let points: Vec<_> = nurbs.points().iter().map(|point| point.at).collect();
+    let weighted = nurbs.points().iter().any(|point| point.weight != NURBS_UNIT);
+    let what = spline(Drawn::Nurbs, &points);
+    format!("{what}, degree {}{}", nurbs.degree(), if weighted { ", with weights" } else { "" })
+}
+
+/// In ones: `0.707106781`.
+fn decimal(value: i64) -> String {
+    let (sign, size) = (if value < 0 { "-" } else { "" }, value.unsigned_abs());
+    let unit = NURBS_UNIT.unsigned_abs();
+    let rest = format!("{:09}", size % unit);
+    let rest = rest.trim_end_matches('0');
+    format!("{sign}{}{}{rest}", size / unit, if rest.is_empty() { "" } else { "." })
+}
+
+/// Numbers in ones, as options take them.
+fn decimals(values: impl IntoIterator<Item = i64>) -> String {
+    values.into_iter().map(decimal).collect::<Vec<_>>().join(",")
+}
+
+/// The options that give a NURBS.
+fn nurbs_options(nurbs: &Nurbs) -> Vec<String> {
+    let point = |point: &stepwave_nc::ControlPoint| {
+        let [x, y] = point.at;
+        format!("{x},{y},{}", decimal(point.weight))
+    };
+    let points = nurbs.points().iter().map(point).collect::<Vec<_>>().join(",");
+    let (degree, knots) = (nurbs.degree().to_string(), decimals(nurbs.knots().iter().copied()));
+    ["--nurbs", &points, "--degree", &degree, "--knots", &knots].map(str::to_owned).to_vec()
 }
 
 /// A free curve by its points, or where they are many by its ends.
@@ -51,7 +87,13 @@ pub(super) fn json(curve: &Curve) -> Value {
     if let Some(arc) = curve.arc() {
         fields["radius"] = json!(arc.radius());
     }
-    if drawn.is_spline() {
+    if let Curve::Nurbs(nurbs) = curve {
+        let ones = |value: i64| value as f64 / NURBS_UNIT as f64;
+        fields["points"] = json!(nurbs.points().iter().map(|point| point.at).collect::<Vec<_>>());
+        fields["weights"] = json!(nurbs.points().iter().map(|point| ones(point.weight)).collect::<Vec<_>>());
+        fields["degree"] = json!(nurbs.degree());
+        fields["knots"] = json!(nurbs.knots().iter().map(|knot| ones(*knot)).collect::<Vec<_>>());
+    } else if drawn.is_spline() {
         fields["points"] = json!(sizes.as_chunks::<2>().0);
     } else if !sizes.is_empty() {
         fields["sizes"] = json!(sizes);
@@ -63,6 +105,9 @@ pub(super) fn json(curve: &Curve) -> Value {
 /// The options that give a curve.
 #[must_use]
 pub fn geometry_options(curve: &Curve) -> Vec<String> {
+    if let Curve::Nurbs(nurbs) = curve {
+        return nurbs_options(nurbs);
+    }
     let list = |numbers: &[i64]| numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
     let Description { drawn, sizes, center, direction, .. } = curve.description();
     let mut words = Vec::new();

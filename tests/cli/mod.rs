@@ -13,6 +13,7 @@ mod inputs;
 mod machine;
 mod models;
 mod nearest;
+mod nurbs;
 mod outputs;
 mod overflow;
 mod pages;

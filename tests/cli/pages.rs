@@ -184,6 +184,7 @@ fn the_list_says_which_choices_a_model_takes() {
             "arc" | "move" => "--from 5,0 --to 0,5 --ccw",
             "conic" => "--ellipse 5,3 --from 5,0 --to 0,3 --ccw",
             "spline" => "--bezier 0,0,1,0,2,1",
+            "NURBS" => "--bezier 0,0,1,0,2,1 --step 1 --clock-hz 4000000",
             "helix" => "--from 5,0,0 --to 0,5,4 --ccw",
             kind => panic!("{name}: {kind}"),
         };

@@ -111,7 +111,7 @@ fn rows_of_every_model_are_what_single_runs_report() {
             }
             CurveKind::Conic => "--ellipse 3..9,2..9 --to-grid -9..9x-9..9 --cw --ccw --samples 12",
             // A sweep has none.
-            CurveKind::Spline | CurveKind::Axis => continue,
+            CurveKind::Spline | CurveKind::Nurbs | CurveKind::Axis => continue,
             CurveKind::Helix => "--radius 3..9 --height -20..20/5 --cw --ccw --samples 12",
         };
         let all = rows(&good(&format!("sweep {name} {geometries} --csv -")));

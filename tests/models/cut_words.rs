@@ -5,7 +5,7 @@ use stepwave::testbench::{Ending, PathWatch, Testbench};
 use stepwave_engine::EngineKind;
 use stepwave_models::options::{ON_OVERFLOW, WIDTH};
 use stepwave_models::{CurveKind, ModelError, OnOverflow, Options, catalogue, find};
-use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Spline, SplineForm};
+use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Nurbs, Spline, SplineForm};
 use stepwave_netlist::Width;
 
 use super::{line, widths};
@@ -23,6 +23,7 @@ fn curve(kind: CurveKind) -> Curve {
         CurveKind::Arc | CurveKind::Move => Arc::new([25, 0], [-7, 24], [0, 0], ccw).unwrap().into(),
         CurveKind::Conic => Conic::ellipse([12, 7], [12, 0], [-12, 0], [0, 0], ccw).unwrap().into(),
         CurveKind::Spline => Spline::new(SplineForm::Bezier, &[[5, -2], [40, 0], [3, 31], [42, 21]]).unwrap().into(),
+        CurveKind::Nurbs => Nurbs::bezier(&[[5, -2], [40, 0], [3, 31], [42, 21]]).unwrap().into(),
         CurveKind::Helix => Helix::new([25, 0, 3], [-7, 24, -9], [0, 0], ccw).unwrap().into(),
     }
 }

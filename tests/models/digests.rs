@@ -12,7 +12,7 @@ use stepwave::study::{Dimension, Variants};
 use stepwave_models::options::AnyOption;
 use stepwave_models::program::Size;
 use stepwave_models::{CurveKind, Model, catalogue};
-use stepwave_nc::{Arc, Conic, Curve, Direction, Helix, Line, Spline, SplineForm};
+use stepwave_nc::{Arc, Conic, ControlPoint, Curve, Direction, Helix, Line, NURBS_UNIT, Nurbs, Spline, SplineForm};
 use stepwave_netlist::text;
 
 /// Values of each option, of which at least one is refused where there can be one.
@@ -68,6 +68,15 @@ pub(super) fn curves(model: &Model) -> [Curve; 2] {
             Curve::Spline(Spline::new(SplineForm::Bezier, &[[0, 0], [4, 0], [8, 4], [8, 8]]).unwrap()),
             Curve::Spline(Spline::new(SplineForm::BSpline, &[[0, 5], [40, -9], [3, 4], [18, 40], [8, 8]]).unwrap()),
         ],
+        CurveKind::Nurbs => {
+            let point = |at, eighths: i64| ControlPoint { at, weight: eighths * NURBS_UNIT / 8 };
+            let points =
+                [point([0, 5], 8), point([40, -9], 5), point([3, 4], 30), point([18, 40], 8), point([8, 8], 1)];
+            [
+                Curve::Nurbs(Nurbs::bezier(&[[0, 0], [4, 0], [8, 4], [8, 8]]).unwrap()),
+                Curve::Nurbs(Nurbs::new(2, &points, None).unwrap()),
+            ]
+        }
         CurveKind::Helix => [
             Curve::Helix(Helix::new([5, 0, 0], [0, 5, 3], [0, 0], ccw).unwrap()),
             Curve::Helix(Helix::new([17, -4, 9], [-17, 4, -31], [0, 0], cw).unwrap()),

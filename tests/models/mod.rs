@@ -18,6 +18,7 @@ mod promises;
 mod ramp;
 mod registers;
 mod sampled;
+mod sampled_spline;
 mod space_lines;
 mod spacing;
 mod spline;

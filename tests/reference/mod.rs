@@ -19,6 +19,7 @@
 //! - [`ppc_space_line`], [`cim_space_line`], [`mindev_space_line`]: the same for lines of 3 axes and more, each axis against
 //!   the longest one.
 //! - [`sampled_line`], [`sampled_arc`]: data sampling, the points of the coarse stage in real numbers.
+//! - [`sampled_nurbs`]: data sampling of a NURBS, the points of the coarse stage in whole numbers.
 //! - [`spline_dda`], [`spline_dda_fraction`]: free curves in whole numbers, and by rounded forward differences.
 //! - [`ramp`]: acceleration and deceleration of a pulse source.
 //! - [`stepgen`], [`stepgen_clocks`], [`bresenham`]: what motion cards and firmware of today do.
@@ -37,6 +38,7 @@ mod dda_helix;
 mod dpm;
 mod eight_arcs;
 mod eight_lines;
+mod nurbs;
 mod ppc;
 mod ppc_conic;
 mod ramp;
@@ -57,6 +59,7 @@ pub(crate) use dda_helix::{dda_helix, helix_words};
 pub(crate) use dpm::{dpm_line, dpm_line_cascade, dpm_line_decade, dpm_line_override};
 pub(crate) use eight_arcs::{mindev_arc, vector_arc};
 pub(crate) use eight_lines::{mindev_line, vector_line};
+pub(crate) use nurbs::{Row, Sampled, sampled_nurbs};
 pub(crate) use ppc::{ppc_arc, ppc_line};
 pub(crate) use ppc_conic::ppc_conic;
 #[cfg(test)]

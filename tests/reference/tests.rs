@@ -6,6 +6,7 @@ mod conics;
 mod dda;
 mod eight;
 mod modern;
+mod nurbs;
 mod ppc;
 mod ramp;
 mod rates;

@@ -1,6 +1,6 @@
 //! The ideal curve of a block, of any kind, and what gives one.
 
-use crate::{Arc, Conic, Direction, GeometryError, Helix, Line, Opens, Shape, Spline, SplineForm};
+use crate::{Arc, Conic, Direction, GeometryError, Helix, Line, Nurbs, Opens, Shape, Spline, SplineForm};
 
 /// The greatest number of points of an outline, so that no request exhausts the memory.
 pub const OUTLINE_LIMIT: usize = 1 << 16;
@@ -32,6 +32,8 @@ pub enum Curve {
     Helix(Helix),
     /// A free curve in x and y.
     Spline(Spline),
+    /// A rational B-spline in x and y.
+    Nurbs(Nurbs),
 }
 
 impl Curve {
@@ -44,6 +46,7 @@ impl Curve {
             Curve::Conic(conic) => conic.ends().0,
             Curve::Helix(helix) => helix.ends().0,
             Curve::Spline(spline) => &spline.both_ends()[0],
+            Curve::Nurbs(nurbs) => &nurbs.both_ends()[0],
         }
     }
 
@@ -56,6 +59,7 @@ impl Curve {
             Curve::Conic(conic) => conic.ends().1,
             Curve::Helix(helix) => helix.ends().1,
             Curve::Spline(spline) => &spline.both_ends()[1],
+            Curve::Nurbs(nurbs) => &nurbs.both_ends()[1],
         }
     }
 
@@ -74,6 +78,7 @@ impl Curve {
             Curve::Conic(conic) => conic.length(),
             Curve::Helix(helix) => helix.length(),
             Curve::Spline(spline) => spline.length(),
+            Curve::Nurbs(nurbs) => nurbs.length(),
         }
     }
 
@@ -90,6 +95,7 @@ impl Curve {
             Curve::Conic(conic) => conic.deviation(position),
             Curve::Helix(helix) => helix.deviation(position),
             Curve::Spline(spline) => spline.deviation(position),
+            Curve::Nurbs(nurbs) => nurbs.deviation(position),
         }
     }
 
@@ -105,6 +111,7 @@ impl Curve {
             Curve::Conic(conic) => conic.signed_deviation(position),
             Curve::Helix(helix) => helix.signed_deviation(position),
             Curve::Spline(spline) => spline.signed_deviation(position),
+            Curve::Nurbs(nurbs) => nurbs.signed_deviation(position),
         }
     }
 
@@ -138,6 +145,7 @@ impl Curve {
             Curve::Conic(conic) => conic.outline(max_points),
             Curve::Helix(helix) => helix.outline(max_points),
             Curve::Spline(spline) => spline.outline(max_points),
+            Curve::Nurbs(nurbs) => nurbs.outline(max_points),
         }
     }
 
@@ -160,7 +168,7 @@ impl Curve {
             Curve::Arc(_) => "positive outside the circle",
             Curve::Conic(_) => "positive where the implicit function is",
             Curve::Helix(_) => "positive outside the cylinder",
-            Curve::Spline(_) => "positive left of the curve",
+            Curve::Spline(_) | Curve::Nurbs(_) => "positive left of the curve",
         }
     }
 
@@ -180,6 +188,7 @@ impl Curve {
                 (drawn, sizes, conic.center(), conic.direction())
             }
             Curve::Spline(spline) => (Drawn::Spline(spline.form()), spline.points().concat(), [0, 0], None),
+            Curve::Nurbs(nurbs) => (Drawn::Nurbs, nurbs.numbers(), [0, 0], None),
         };
         let direction = direction.unwrap_or(Direction::CounterClockwise);
         let (from, to) = (self.from().to_vec(), self.to().to_vec());
@@ -211,7 +220,7 @@ macro_rules! curve_types {
     };
 }
 
-curve_types!(Line, Arc, Conic, Helix, Spline);
+curve_types!(Line, Arc, Conic, Helix, Spline, Nurbs);
 
 /// What is drawn through given points.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -230,6 +239,8 @@ pub enum Drawn {
     Hyperbola(Option<Opens>),
     /// Free curves of as many points as they have.
     Spline(SplineForm),
+    /// Rational B-splines of as many points as they have.
+    Nurbs,
 }
 
 /// What is said of one kind of curve.
@@ -259,6 +270,7 @@ impl Drawn {
             Drawn::Spline(SplineForm::Hermite) => ("a Hermite segment", "--hermite", 2, 0, false),
             Drawn::Spline(SplineForm::CatmullRom) => ("a Catmull-Rom spline", "--points", 2, 0, false),
             Drawn::Spline(SplineForm::BSpline) => ("a uniform B-spline", "--points", 2, 0, false),
+            Drawn::Nurbs => ("a NURBS", "--nurbs", 2, 0, false),
         };
         Traits { noun, option, axes, sizes, turns }
     }
@@ -297,13 +309,13 @@ impl Drawn {
     /// A free curve, which its points give.
     #[must_use]
     pub fn is_spline(self) -> bool {
-        matches!(self, Drawn::Spline(_))
+        matches!(self, Drawn::Spline(_) | Drawn::Nurbs)
     }
 
     /// It is about a centre or vertex.
     #[must_use]
     pub fn is_centered(self) -> bool {
-        !matches!(self, Drawn::Line | Drawn::Spline(_))
+        !matches!(self, Drawn::Line | Drawn::Spline(_) | Drawn::Nurbs)
     }
 
     /// It runs clockwise or counter-clockwise; others lead from their start to their end.
@@ -361,7 +373,8 @@ impl Drawn {
 pub struct Description {
     /// What is drawn.
     pub drawn: Drawn,
-    /// Semi-axes or parameter of a conic; x and y of each point of a free curve, whose ends follow from them.
+    /// Semi-axes or parameter of a conic; x and y of each point of a free curve, whose ends follow from them; of a NURBS
+    /// degree and number of points, x, y and weight of each, and the knots.
     pub sizes: Vec<i64>,
     /// Start point.
     pub from: Vec<i64>,
@@ -401,6 +414,7 @@ impl Description {
             Drawn::Parabola(opens) => Conic::parabola(sizes[0], opens, from, to, center)?.into(),
             Drawn::Hyperbola(opens) => Conic::hyperbola(sizes, opens, from, to, center)?.into(),
             Drawn::Spline(form) => Spline::new(form, self.sizes.as_chunks().0)?.into(),
+            Drawn::Nurbs => Nurbs::of_numbers(&self.sizes)?.into(),
         })
     }
 }

@@ -2,7 +2,10 @@
 
 use std::fmt;
 
-use crate::{AXES_MAX, AXES_MIN, CONIC_LIMIT, COORDINATE_LIMIT, Drawn, SPLINE_POINTS, Shape, SplineForm};
+use crate::{
+    AXES_MAX, AXES_MIN, CONIC_LIMIT, COORDINATE_LIMIT, Drawn, KnotFault, NURBS_DEGREE, NURBS_MOST, NURBS_POINTS,
+    NURBS_UNIT, SPLINE_POINTS, Shape, SplineForm,
+};
 
 /// The limit of a chain of segments, in words.
 fn most(form: SplineForm) -> String {
@@ -64,6 +67,39 @@ pub enum GeometryError {
     SplineIsPoint {
         /// The first point given, in BLU.
         point: [i64; 2],
+    },
+    /// A NURBS has too few control points, or too many.
+    #[error("a NURBS has 2 to {NURBS_POINTS} points, but {given} were given: give as many")]
+    NurbsPoints {
+        /// How many points were given.
+        given: usize,
+    },
+    /// The degree of a NURBS is 0, or too high for its points.
+    #[error(
+        "the degree {degree} does not fit {points} points: give a degree from 1 to {}", NURBS_DEGREE.min(*.points - 1)
+    )]
+    NurbsDegree {
+        /// The degree given.
+        degree: usize,
+        /// How many points were given.
+        points: usize,
+    },
+    /// A weight of a NURBS is 0, negative or too large.
+    #[error(
+        "point {} has the weight {}, which must be more than 0 and at most {NURBS_MOST}: correct the weight",
+        .index + 1, *.weight as f64 / NURBS_UNIT as f64
+    )]
+    NurbsWeight {
+        /// Which point, from 0.
+        index: usize,
+        /// The weight in [`NURBS_UNIT`]s.
+        weight: i64,
+    },
+    /// The knots of a NURBS are no knot vector.
+    #[error("{fault}")]
+    Knots {
+        /// What is wrong.
+        fault: KnotFault,
     },
     /// The start point of an arc is its centre.
     #[error(

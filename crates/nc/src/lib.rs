@@ -2,7 +2,7 @@
 //!
 //! Every length is in BLU (basic length units, the pulse equivalent δ): one pulse moves an axis by one BLU, and a
 //! programmed point has integer coordinates. This crate holds what a block *is* (a [`Line`], an [`Arc`], a [`Conic`], a
-//! [`Helix`] or a [`Spline`], all a [`Curve`]), into which quadrants it falls ([`Arc::sectors`], [`Conic::sectors`],
+//! [`Helix`], a [`Spline`] or a [`Nurbs`], all a [`Curve`]), into which quadrants it falls ([`Arc::sectors`], [`Conic::sectors`],
 //! [`Helix::sectors`]), and how far a point that hardware has reached lies off the ideal curve ([`Curve::deviation`]).
 //! It knows no register, no clock and no interpolation method.
 //!
@@ -32,6 +32,7 @@ mod gauge;
 mod helix;
 mod limit;
 mod line;
+mod nurbs;
 mod program;
 mod pulses;
 mod quadrant;
@@ -49,6 +50,7 @@ pub use gauge::{BatchGauge, Gauge};
 pub use helix::{Helix, HelixSector};
 pub use limit::{AXES_MAX, AXES_MIN, AXIS_LETTERS, CONIC_LIMIT, COORDINATE_LIMIT, PARABOLA_LIMIT};
 pub use line::Line;
+pub use nurbs::{ControlPoint, KnotFault, NURBS_DEGREE, NURBS_MOST, NURBS_POINTS, NURBS_UNIT, Nurbs};
 pub use program::{
     Auxiliary, Coolant, Event, Integers, PROGRAM_LIMIT, Program, ProgramError, ProgramErrorKind, Reading, ReadingError,
     Spindle,

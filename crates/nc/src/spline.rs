@@ -6,6 +6,8 @@ use crate::limit::check_coordinates;
 
 mod distance;
 
+pub(crate) use distance::{Foot, HALVINGS, beyond, minima, nearest_first};
+
 /// What the points of a [`Spline`] mean.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum SplineForm {
@@ -86,27 +88,31 @@ impl SplineSegment {
 
     /// Its length in BLU, by the formula of Gauss over 32 parts.
     fn length(&self) -> f64 {
-        const PARTS: u32 = 32;
-        const NODES: [(f64, f64); 3] = [
-            (0.0, 128.0 / 225.0),
-            (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
-            (0.906_179_845_938_664, 0.236_926_885_056_189_1),
-        ];
-        let half = 0.5 / f64::from(PARTS);
-        let speed = |u: f64| {
+        gauss(|u| {
             let [x, y] = self.tangent(u);
             x.hypot(y)
-        };
-        let part = |index: u32| {
-            let middle = f64::from(2 * index + 1) * half;
-            let both = |(node, weight): (f64, f64)| match node {
-                0.0 => weight * speed(middle),
-                _ => weight * (speed(middle - node * half) + speed(middle + node * half)),
-            };
-            half * NODES.into_iter().map(both).sum::<f64>()
-        };
-        (0..PARTS).map(part).sum()
+        })
     }
+}
+
+/// The integral over u from 0 to 1, by the formula of Gauss over 32 parts.
+pub(crate) fn gauss(speed: impl Fn(f64) -> f64) -> f64 {
+    const PARTS: u32 = 32;
+    const NODES: [(f64, f64); 3] = [
+        (0.0, 128.0 / 225.0),
+        (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+        (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    ];
+    let half = 0.5 / f64::from(PARTS);
+    let part = |index: u32| {
+        let middle = f64::from(2 * index + 1) * half;
+        let both = |(node, weight): (f64, f64)| match node {
+            0.0 => weight * speed(middle),
+            _ => weight * (speed(middle - node * half) + speed(middle + node * half)),
+        };
+        half * NODES.into_iter().map(both).sum::<f64>()
+    };
+    (0..PARTS).map(part).sum()
 }
 
 /// A free curve: polynomial segments in x and y, one after another.

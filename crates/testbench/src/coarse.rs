@@ -43,7 +43,8 @@ impl<'a> CoarseWatch<'a> {
         Some(CoarseWatch { curve, steps, points, unit, rows: 0, at: [0, 0], worst: None })
     }
 
-    /// The distance of a coarse point, relative to the start of a line or the centre of an arc; the numerators are exact.
+    /// The distance of a coarse point, relative to the start of a line or the centre of an arc, whose numerators are exact;
+    /// of a NURBS it is the place itself.
     fn distance(&self, at: [i64; 2]) -> f64 {
         let [x, y] = at.map(i128::from);
         let unit = self.unit as f64;
@@ -56,6 +57,7 @@ impl<'a> CoarseWatch<'a> {
                 let (reached, wanted) = (x * x + y * y, arc.radius_squared() * self.unit * self.unit);
                 (reached - wanted).abs() as f64 / ((reached as f64).sqrt() + (wanted as f64).sqrt()) / unit
             }
+            Curve::Nurbs(nurbs) => nurbs.distance(at.map(|c| c as f64 / unit)),
             _ => f64::NAN,
         }
     }

@@ -2,8 +2,7 @@
 
 use stepwave_netlist::dsl::{Register, Signal};
 
-use super::Task::Multiply;
-use super::{Microprogram, Row, State, magnitude, row, with_sign};
+use super::{Microprogram, Row, State, magnitude, multiply, row, with_sign};
 
 /// The side on which a point (x, y) about the centre lies of the radius to the end (xe, ye): the sign of xe·y - ye·x, by two
 /// products of the multiplier.
@@ -61,8 +60,8 @@ impl<'m> EndRadius<'m> {
         let part = signed(self.program, self.bits, self.end[0].msb() ^ self.point[1].msb());
         let judged = [(self.was_before, self.before), (self.arrives, self.passed), (self.first, no)];
         [
-            row(x, Multiply(ay, ex), [(self.half, part)], y),
-            row(y, Multiply(ax, ey), judged, next).unless(self.first.q, begin),
+            row(x, multiply(ay, ex), [(self.half, part)], y),
+            row(y, multiply(ax, ey), judged, next).unless(self.first.q, begin),
         ]
     }
 }

@@ -108,24 +108,45 @@ impl<'m> FineStage<'m> {
         !self.full.q
     }
 
-    /// Closes it and the block. At an edge with `hand` = 1 (1 bit), which must find it free, it takes the points of
-    /// both axes, two's complement with `fraction` bits of fraction, or, with `last` = 1, the `ends`, whole. After the
-    /// burst of the last point the block is done.
+    /// 1 bit: the burst that runs is the last one.
+    #[must_use]
+    pub fn last(&self) -> Signal<'m> {
+        self.last.q
+    }
+
+    /// Closes it and the block: see [`draw`](FineStage::draw). After the burst of the last point the block is done.
     pub fn close(
         self,
         block: Block<'m>,
+        hardware: &Hardware,
+        hands: [Signal<'m>; 2],
+        points: [Signal<'m>; 2],
+        fraction: u32,
+        ends: [Signal<'m>; 2],
+    ) {
+        let (over, _) = self.draw(&block, hardware, hands, points, fraction, ends);
+        block.close(block.load, over, self.last.q);
+    }
+
+    /// Closes it. At an edge with `hand` = 1 (1 bit), which must find it free, it takes the points of both axes, two's
+    /// complement with `fraction` bits of fraction, or, with `last` = 1, the `ends`, whole. Returns 1 bit each: a burst is
+    /// over at this edge; what was handed over is taken.
+    #[must_use]
+    pub fn draw(
+        &self,
+        block: &Block<'m>,
         hardware: &Hardware,
         [hand, last]: [Signal<'m>; 2],
         points: [Signal<'m>; 2],
         fraction: u32,
         ends: [Signal<'m>; 2],
-    ) {
+    ) -> (Signal<'m>, Signal<'m>) {
         let m = self.m;
         let [yes, no] = [m.lit(1, 1), m.lit(1, 0)];
         let burst = m.name("burst", self.e.q.is_nonzero());
         let take = m.name("take", self.full.q & !burst);
         let one = m.lit(self.e.q.bits(), 1);
-        let tick = self.ticks(&block, hardware, take) & burst;
+        let tick = self.ticks(block, hardware, take) & burst;
         let over = tick & self.e.q.equals(one);
         let clocks = m.lit(1, 1).concat(m.lit(self.e.q.bits() - 1, 0));
         self.e
@@ -171,10 +192,10 @@ impl<'m> FineStage<'m> {
             let drawn = scope.reg_signed(POINT.of(axis).name(), point.bits());
             drawn.when(block.load, fine(start)).when(take, next_point.q).else_hold();
 
-            let pulse = integrator(scope, &block, hardware, axis, jv.q, Iteration { add: tick, complete: tick });
-            hardware.axis(scope, &block, axis, pulse, sign.q);
+            let pulse = integrator(scope, block, hardware, axis, jv.q, Iteration { add: tick, complete: tick });
+            hardware.axis(scope, block, axis, pulse, sign.q);
         }
-        block.close(block.load, over, self.last.q);
+        (over, take)
     }
 
     /// The divider of the clock, which begins with the first period that is taken (`take` = 1, 1 bit). Returns 1 bit:

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
-use super::{SerialDivider, SerialMultiplier, SerialRoot};
+use super::{Long, SerialDivider, SerialMultiplier, SerialRoot};
 use crate::registers::{Reg, Rule};
 
 /// The step of a calculation.
@@ -16,7 +16,7 @@ const STATE_BITS: u32 = 4;
 /// A state: its number in the register `state`, and its name in waves. 0 is the idle one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct State {
-    /// Up to 15.
+    /// As many as the register has bits for.
     pub number: u64,
     /// In capitals.
     pub name: &'static str,
@@ -38,15 +38,30 @@ pub(crate) use states;
 #[derive(Clone, Copy, Debug)]
 pub enum Task<'m> {
     /// Multiplicand and multiplier.
-    Multiply(Signal<'m>, Signal<'m>),
+    Multiply(Long<'m>, Long<'m>),
     /// Dividend and divisor.
-    Divide(Signal<'m>, Signal<'m>),
+    Divide(Long<'m>, Long<'m>),
     /// Radicand.
-    Root(Signal<'m>),
+    Root(Long<'m>),
     /// Nothing, until this is 1 (1 bit).
     Wait(Signal<'m>),
     /// Nothing. At an edge with 1 (1 bit) the row applies in every state.
     Start(Signal<'m>),
+}
+
+/// Multiplies these.
+pub fn multiply<'m>(a: impl Into<Long<'m>>, b: impl Into<Long<'m>>) -> Task<'m> {
+    Task::Multiply(a.into(), b.into())
+}
+
+/// Divides the first by the second.
+pub fn divide<'m>(dividend: impl Into<Long<'m>>, divisor: impl Into<Long<'m>>) -> Task<'m> {
+    Task::Divide(dividend.into(), divisor.into())
+}
+
+/// Takes the root of this.
+pub fn square_root<'m>(radicand: impl Into<Long<'m>>) -> Task<'m> {
+    Task::Root(radicand.into())
 }
 
 /// A register and the value that it takes.
@@ -62,14 +77,14 @@ pub struct Row<'m> {
     /// At the edge that ends the state.
     last: Vec<Write<'m>>,
     next: State,
-    /// The state after it where the signal (1 bit) is 1.
-    exit: Option<(Signal<'m>, State)>,
+    /// The state after it where the signal (1 bit) is 1; the first that is counts.
+    exits: Vec<(Signal<'m>, State)>,
 }
 
 /// A row: the state, its task, the registers that take a result at its end, and the state after it.
 #[must_use]
 pub fn row<'m, const N: usize>(state: State, task: Task<'m>, last: [Write<'m>; N], next: State) -> Row<'m> {
-    Row { state, task, first: Vec::new(), last: last.to_vec(), next, exit: None }
+    Row { state, task, first: Vec::new(), last: last.to_vec(), next, exits: Vec::new() }
 }
 
 /// Rows that leave a² + b² of two magnitudes in the register `square`, twice as wide: both states, and the one after them.
@@ -82,10 +97,7 @@ pub fn squares<'m>(
 ) -> [Row<'m>; 2] {
     let product = program.multiplier.product().slice(0, square.q.bits());
     let sum = square.q.wrapping_add(product);
-    [
-        row(first, Task::Multiply(a, a), [(square, product)], second),
-        row(second, Task::Multiply(b, b), [(square, sum)], next),
-    ]
+    [row(first, multiply(a, a), [(square, product)], second), row(second, multiply(b, b), [(square, sum)], next)]
 }
 
 impl<'m> Row<'m> {
@@ -102,16 +114,24 @@ impl<'m> Row<'m> {
         self
     }
 
-    /// Where the condition (1 bit) is 1 at the end of the state, another state comes after it.
+    /// Further registers that take a value at the end of the state.
     #[must_use]
-    pub fn unless(self, condition: Signal<'m>, state: State) -> Row<'m> {
-        Row { exit: Some((condition, state)), ..self }
+    pub fn taking(mut self, last: impl IntoIterator<Item = Write<'m>>) -> Row<'m> {
+        self.last.extend(last);
+        self
+    }
+
+    /// Where the condition (1 bit) is 1 at the end of the state, and none given before it, another state comes after it.
+    #[must_use]
+    pub fn unless(mut self, condition: Signal<'m>, state: State) -> Row<'m> {
+        self.exits.push((condition, state));
+        self
     }
 }
 
 /// Multiplier, divider and root, and the state register that gives each its operands and waits for its result.
 ///
-/// - `state`, 4 bits. `waits`, 1 bit: the state has lasted for a clock or more.
+/// - `state`, 4 bits or as many as given. `waits`, 1 bit: the state has lasted for a clock or more.
 #[derive(Clone, Copy, Debug)]
 pub struct Microprogram<'m> {
     /// Where it is.
@@ -129,10 +149,22 @@ pub struct Microprogram<'m> {
 impl<'m> Microprogram<'m> {
     /// The registers, for factors of `a` and `b` bits, for a dividend and a divisor, and for a root of these bits.
     #[must_use]
-    pub fn new(m: Scope<'m>, [a, b]: [u32; 2], [dividend, divisor]: [u32; 2], root: u32) -> Microprogram<'m> {
+    pub fn new(m: Scope<'m>, factors: [u32; 2], division: [u32; 2], root: u32) -> Microprogram<'m> {
+        Microprogram::of_states(m, STATE_BITS, factors, division, root)
+    }
+
+    /// The same with a state register of this many bits.
+    #[must_use]
+    pub fn of_states(
+        m: Scope<'m>,
+        bits: u32,
+        [a, b]: [u32; 2],
+        [dividend, divisor]: [u32; 2],
+        root: u32,
+    ) -> Microprogram<'m> {
         Microprogram {
             m,
-            state: m.reg(STATE.name(), STATE_BITS),
+            state: m.reg(STATE.name(), bits),
             waits: m.reg("waits", 1),
             multiplier: SerialMultiplier::new(m, a, b),
             divider: SerialDivider::new(m, dividend, divisor),
@@ -147,7 +179,7 @@ impl<'m> Microprogram<'m> {
     }
 
     fn number(&self, state: State) -> Signal<'m> {
-        self.m.lit(STATE_BITS, state.number)
+        self.m.lit(self.state.q.bits(), state.number)
     }
 
     /// Wires what the rows say: the operands, the state, and every register that a row writes. The row that starts is
@@ -180,7 +212,8 @@ impl<'m> Microprogram<'m> {
                 Task::Start(start) => start,
             };
             let next = self.number(row.next);
-            let next = row.exit.map_or(next, |(condition, state)| condition.mux(self.number(state), next));
+            let exits = row.exits.iter().rev();
+            let next = exits.fold(next, |next, &(condition, state)| condition.mux(self.number(state), next));
             moves = moves | ends;
             writes.extend(row.first.iter().map(|&write| (begins, write)));
             writes.extend(row.last.iter().chain(&[(state, next)]).map(|&write| (ends, write)));
@@ -208,8 +241,8 @@ fn close_registers<'m>(writes: &[(Signal<'m>, Write<'m>)]) {
 
 /// That any of the conditions is 1 (1 bit), and its value, extended to `bits` bits; 0 where none is.
 #[must_use]
-pub(super) fn operand<'m>(m: Scope<'m>, bits: u32, values: &[(Signal<'m>, Signal<'m>)]) -> (Signal<'m>, Signal<'m>) {
-    values.iter().fold((m.lit(1, 0), m.lit(bits, 0)), |(any, value), &(condition, own)| {
-        (any | condition, condition.mux(own.extend(bits), value))
+pub(super) fn operand<'m>(m: Scope<'m>, bits: u32, values: &[(Signal<'m>, Long<'m>)]) -> (Signal<'m>, Long<'m>) {
+    values.iter().fold((m.lit(1, 0), Long::zero(m, bits)), |(any, value), &(condition, own)| {
+        (any | condition, Long::select(condition, own.extend(m, bits), value))
     })
 }

@@ -1,8 +1,8 @@
 //! The sequential multiplier: shift and add, one bit a clock.
 
-use stepwave_netlist::dsl::{Register, Scope, Signal};
+use stepwave_netlist::dsl::{Scope, Signal};
 
-use super::{Timer, operand};
+use super::{Long, LongRegister, Timer, operand};
 
 /// Multiplies two unsigned numbers: the multiplicand is added above the product where its lowest bit, which is the next
 /// bit of the multiplier, is 1; then the product shifts right. It takes as many clocks as the multiplier has bits.
@@ -12,8 +12,8 @@ use super::{Timer, operand};
 #[derive(Clone, Copy, Debug)]
 pub struct SerialMultiplier<'m> {
     m: Scope<'m>,
-    multiplicand: Register<'m>,
-    product: Register<'m>,
+    multiplicand: LongRegister<'m>,
+    product: LongRegister<'m>,
     left: Timer<'m>,
 }
 
@@ -22,7 +22,8 @@ impl<'m> SerialMultiplier<'m> {
     #[must_use]
     pub fn new(m: Scope<'m>, a: u32, b: u32) -> SerialMultiplier<'m> {
         let m = m.scope("multiplier");
-        let (multiplicand, product) = (m.reg("multiplicand", a), m.reg("product", a + b));
+        let multiplicand = LongRegister::new(m, "multiplicand", a);
+        let product = LongRegister::new(m, "product", a + b);
         SerialMultiplier { m, multiplicand, product, left: Timer::new(m, "left", b.into()) }
     }
 
@@ -32,30 +33,36 @@ impl<'m> SerialMultiplier<'m> {
         self.left.running()
     }
 
-    /// The product, a+b bits.
+    /// The product, a+b bits, which are 64 at most.
     #[must_use]
     pub fn product(&self) -> Signal<'m> {
+        self.product.q.net()
+    }
+
+    /// The product, a+b bits.
+    #[must_use]
+    pub fn long_product(&self) -> Long<'m> {
         self.product.q
     }
 
     /// Closes it: at an edge where a condition (1 bit) is 1 it begins with that multiplicand and multiplier.
-    pub fn close(self, operands: &[(Signal<'m>, Signal<'m>, Signal<'m>)]) {
+    pub fn close(self, operands: &[(Signal<'m>, Long<'m>, Long<'m>)]) {
         let a = self.multiplicand.q.bits();
         let b = self.product.q.bits() - a;
-        let list = |part: fn(&(Signal<'m>, Signal<'m>, Signal<'m>)) -> Signal<'m>, bits| {
+        let list = |part: fn(&(Signal<'m>, Long<'m>, Long<'m>)) -> Long<'m>, bits| {
             let list: Vec<_> = operands.iter().map(|operands| (operands.0, part(operands))).collect();
             operand(self.m, bits, &list)
         };
         let (begin, first) = list(|operands| operands.1, a);
         let (_, second) = list(|operands| operands.2, b);
-        self.multiplicand.when(begin, first).else_hold();
+        self.multiplicand.close([(begin, first)]);
 
         let high = self.product.q.slice(b, a);
-        let addend = self.product.q.bit(0).mux(self.multiplicand.q, self.m.lit(a, 0));
+        let addend = Long::select(self.product.q.bit(0), self.multiplicand.q, Long::zero(self.m, a));
         let (carry, sum) = high.carrying_add(addend);
         let low = self.product.q.slice(0, b);
-        let shifted = carry.concat(sum).concat(low).slice(1, a + b);
-        self.product.when(begin, self.m.lit(a, 0).concat(second)).when(self.running(), shifted).else_hold();
+        let shifted = Long::from(carry).concat(sum).concat(low).slice(1, a + b);
+        self.product.close([(begin, Long::zero(self.m, a).concat(second)), (self.running(), shifted)]);
         self.left.close(begin);
     }
 }

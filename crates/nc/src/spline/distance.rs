@@ -3,7 +3,7 @@
 use super::{Spline, SplineSegment};
 
 /// Halvings of a segment that place a minimum as exactly as an `f64` can.
-const HALVINGS: u32 = 52;
+pub(crate) const HALVINGS: u32 = 52;
 
 /// Segments that have a box together.
 pub(super) const GROUP: usize = 32;
@@ -27,7 +27,7 @@ pub(super) fn boxes(segments: &[SplineSegment]) -> Vec<Bounds> {
 }
 
 /// A distance that no place in a box is nearer than.
-fn beyond(bounds: [[f64; 2]; 2], position: [f64; 2]) -> f64 {
+pub(crate) fn beyond(bounds: [[f64; 2]; 2], position: [f64; 2]) -> f64 {
     let [x, y] = [0, 1].map(|axis: usize| {
         let ([least, most], at) = (bounds[axis], position[axis]);
         (least - at).max(at - most).max(0.0)
@@ -36,7 +36,7 @@ fn beyond(bounds: [[f64; 2]; 2], position: [f64; 2]) -> f64 {
 }
 
 /// Visits what may be nearer than the nearest so far by its bound, that of the least bound first.
-fn nearest_first(
+pub(crate) fn nearest_first(
     nearest: &mut Foot,
     count: usize,
     bound: impl Fn(usize) -> f64,
@@ -51,10 +51,10 @@ fn nearest_first(
 }
 
 /// The place of a curve that is nearest to a position.
-struct Foot {
-    distance: f64,
+pub(crate) struct Foot {
+    pub(crate) distance: f64,
     /// Positive where the position is on the left.
-    side: f64,
+    pub(crate) side: f64,
 }
 
 impl SplineSegment {
@@ -104,16 +104,22 @@ impl SplineSegment {
             }
         };
         take(1.0);
-        minima(self.growth(position), 0.0, 1.0, HALVINGS, &mut take);
+        minima(self.growth(position), 6, [0.0, 1.0], HALVINGS, &mut take);
         nearest
     }
 }
 
-/// Visits every place from `low` to `low + length` at which a polynomial of these Bézier coefficients may turn from
-/// negative to positive.
-fn minima(growth: [f64; 6], low: f64, length: f64, halvings: u32, visit: &mut impl FnMut(f64)) {
+/// Visits every place from `low` to `low + length` at which a polynomial of these Bézier coefficients, `count` of them,
+/// may turn from negative to positive.
+pub(crate) fn minima<const N: usize>(
+    growth: [f64; N],
+    count: usize,
+    [low, length]: [f64; 2],
+    halvings: u32,
+    visit: &mut impl FnMut(f64),
+) {
     // A polynomial has no more roots than its coefficients have changes of sign.
-    let mut signs = growth.into_iter().filter(|c| *c != 0.0).map(|c| c > 0.0);
+    let mut signs = growth[..count].iter().filter(|c| **c != 0.0).map(|c| *c > 0.0);
     let Some(first) = signs.next() else { return };
     let (mut sign, mut changes) = (first, 0);
     for next in signs {
@@ -127,20 +133,20 @@ fn minima(growth: [f64; 6], low: f64, length: f64, halvings: u32, visit: &mut im
         visit(low + length / 2.0);
         return;
     }
-    let [left, right] = halves(growth);
+    let [left, right] = halves(growth, count);
     if right[0] == 0.0 {
         visit(low + length / 2.0);
     }
-    minima(left, low, length / 2.0, halvings - 1, visit);
-    minima(right, low + length / 2.0, length / 2.0, halvings - 1, visit);
+    minima(left, count, [low, length / 2.0], halvings - 1, visit);
+    minima(right, count, [low + length / 2.0, length / 2.0], halvings - 1, visit);
 }
 
 /// The Bézier coefficients of both halves, by de Casteljau.
-fn halves(mut right: [f64; 6]) -> [[f64; 6]; 2] {
+fn halves<const N: usize>(mut right: [f64; N], count: usize) -> [[f64; N]; 2] {
     let mut left = right;
-    for (round, left) in left.iter_mut().enumerate() {
+    for (round, left) in left[..count].iter_mut().enumerate() {
         if round > 0 {
-            for place in 0..6 - round {
+            for place in 0..count - round {
                 right[place] = f64::midpoint(right[place], right[place + 1]);
             }
         }

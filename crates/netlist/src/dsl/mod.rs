@@ -248,6 +248,23 @@ impl<'m> Scope<'m> {
         Register { q }
     }
 
+    /// An unsigned register of any number of bits, 0 at reset: the lowest 64 bits first, of one name.
+    #[track_caller]
+    pub fn wide_reg(self, name: &str, bits: u32) -> Vec<Register<'m>> {
+        if bits <= NamedNet::PART {
+            return vec![self.reg(name, bits)];
+        }
+        let parts = (0..bits).step_by(NamedNet::PART as usize).map(|low| (bits - low).min(NamedNet::PART));
+        let op = || Op::Register { next: None, reset: 0 };
+        let parts: Vec<_> = parts.map(|bits| Register { q: self.of_width(name, op(), bits, false) }).collect();
+        self.claim_name(name);
+        let above = parts[1..].iter().map(|part| part.q.net()).collect();
+        let format = Format::Unsigned;
+        let named = NamedNet { net: parts[0].q.net(), above, scope: self.id, name: name.to_owned(), format };
+        self.module.state.borrow_mut().netlist.names.push(named);
+        parts
+    }
+
     /// An unsigned constant.
     #[track_caller]
     #[must_use]

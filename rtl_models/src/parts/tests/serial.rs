@@ -1,7 +1,7 @@
 //! The sequential multiplier, divider and square root, and the microprogram that starts them.
 
-use super::super::Task::{Multiply, Start, Wait};
-use super::super::{Microprogram, SerialDivider, SerialMultiplier, SerialRoot, row, states};
+use super::super::Task::{Start, Wait};
+use super::super::{Long, Microprogram, SerialDivider, SerialMultiplier, SerialRoot, multiply, row, states};
 use super::bench::{Bench, numbers, on_every_engine};
 
 /// Starts a unit, and waits for it as many clocks as it may take.
@@ -22,7 +22,7 @@ fn every_two_numbers_of_up_to_four_bits_are_multiplied_in_as_many_clocks_as_the_
             |m| {
                 let unit = SerialMultiplier::new(m, a_bits, b_bits);
                 m.name("running", unit.running());
-                unit.close(&[(m.input("start", 1), m.input("a", a_bits), m.input("b", b_bits))]);
+                unit.close(&[(m.input("start", 1), m.input("a", a_bits).into(), m.input("b", b_bits).into())]);
             },
             |bench| {
                 for a in numbers(a_bits, false) {
@@ -45,7 +45,7 @@ fn every_number_of_up_to_five_bits_is_divided_with_its_remainder() {
             |m| {
                 let unit = SerialDivider::new(m, n, d);
                 m.name("running", unit.running());
-                unit.close(&[(m.input("start", 1), m.input("a", n), m.input("b", d))]);
+                unit.close(&[(m.input("start", 1), m.input("a", n).into(), m.input("b", d).into())]);
             },
             |bench| {
                 for a in numbers(n, false) {
@@ -70,7 +70,7 @@ fn every_number_of_up_to_eight_bits_has_the_whole_part_of_its_root() {
             |m| {
                 let unit = SerialRoot::new(m, k);
                 m.name("running", unit.running());
-                unit.close(&[(m.input("start", 1), m.input("a", 2 * k))]);
+                unit.close(&[(m.input("start", 1), m.input("a", 2 * k).into())]);
             },
             |bench| {
                 for a in numbers(2 * k, false) {
@@ -81,6 +81,47 @@ fn every_number_of_up_to_eight_bits_has_the_whole_part_of_its_root() {
             },
         );
     }
+}
+
+/// The lowest 64 bits, and those above them.
+fn halves(value: i128) -> [i128; 2] {
+    [value & i128::from(u64::MAX), value >> 64]
+}
+
+/// Numbers whose carries and borrows reach the next part, and some others.
+const WIDE: [i128; 6] = [0, 1, (1 << 64) - 1, 1 << 64, (1 << 70) - 3, 0x2A_5555_F0F0_1234_5678];
+
+#[test]
+fn numbers_of_more_than_64_bits_are_multiplied_and_divided_in_parts() {
+    on_every_engine(
+        |m| {
+            let [low, high, by] = [("low", 64), ("high", 6), ("by", 50)].map(|(name, bits)| m.input(name, bits));
+            let (start, wide) = (m.input("start", 1), Long::from(high).concat(low));
+            let multiplier = SerialMultiplier::new(m, 70, 50);
+            let divider = SerialDivider::new(m, 70, 50);
+            let root = SerialRoot::new(m, 66);
+            let radicand = wide.extend(m, 132);
+            m.name("running", multiplier.running() | divider.running() | root.running());
+            m.name("product_above", multiplier.long_product().slice(64, 56).net());
+            m.name("divider_rest", divider.remainder());
+            m.name("quotient_above", divider.long_quotient().slice(64, 6).net());
+            multiplier.close(&[(start, wide, by.into())]);
+            divider.close(&[(start, wide, by.into())]);
+            root.close(&[(start, radicand)]);
+        },
+        |bench| {
+            for a in WIDE {
+                for b in [1, 7, (1 << 50) - 1, 0x2_AAAA_0000_1234] {
+                    let [low, high] = halves(a);
+                    wait(bench, &[("low", low), ("high", high), ("by", b)], 70);
+                    let parts = |name: &str, above: &str| [bench.value(name), bench.value(above)];
+                    assert_eq!(parts("product", "product_above"), halves(a * b), "{a} · {b}");
+                    assert_eq!(parts("quotient", "quotient_above"), halves(a / b), "{a} / {b}");
+                    assert_eq!((bench.value("divider_rest"), bench.value("root")), (a % b, a.isqrt()), "{a}");
+                }
+            }
+        },
+    );
 }
 
 states! { mod at { IDLE = 0, FIRST = 1, SECOND = 2 } }
@@ -95,7 +136,7 @@ fn a_microprogram_begins_each_state_once_waits_for_its_result_and_goes_on() {
             let product = program.multiplier.product();
             program.close(&[
                 row(at::IDLE, Start(load), [], at::FIRST).clearing(m, &[total]),
-                row(at::FIRST, Multiply(m.lit(2, 3), m.lit(2, 2)), [(total, product)], at::SECOND)
+                row(at::FIRST, multiply(m.lit(2, 3), m.lit(2, 2)), [(total, product)], at::SECOND)
                     .keeping([(kept, mark)]),
                 row(at::SECOND, Wait(ready), [], at::IDLE).unless(more, at::FIRST),
             ]);

@@ -1,0 +1,83 @@
+//! One span of a NURBS as a rational Bézier curve, in as many axes as its points have.
+
+use super::NURBS_DEGREE;
+
+/// Most Bézier points of a piece.
+pub(super) const MOST: usize = NURBS_DEGREE + 1;
+
+/// A rational Bézier curve over u from 0 to 1, of N axes. A control point is given by the coordinates, each times the
+/// weight, in BLU.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Piece<const N: usize> {
+    pub(super) degree: usize,
+    /// By axis; those beyond the degree do not count.
+    pub(super) control: [[f64; N]; MOST],
+    pub(super) weights: [f64; MOST],
+}
+
+impl<const N: usize> Piece<N> {
+    /// The numerators and the denominator at u, and their derivatives by u.
+    fn homogeneous(&self, u: f64) -> [([f64; N], f64); 2] {
+        let (mut control, mut weights, p) = (self.control, self.weights, self.degree);
+        for round in 0..p.saturating_sub(1) {
+            for index in 0..p - round {
+                let next = control[index + 1];
+                control[index].iter_mut().zip(next).for_each(|(c, next)| *c += (next - *c) * u);
+                weights[index] += (weights[index + 1] - weights[index]) * u;
+            }
+        }
+        let [low, high] = [0, 1].map(|index| (control[index], weights[index]));
+        let factor = p as f64;
+        let slope = (std::array::from_fn(|axis| factor * (high.0[axis] - low.0[axis])), factor * (high.1 - low.1));
+        let value = std::array::from_fn(|axis| low.0[axis] + (high.0[axis] - low.0[axis]) * u);
+        [(value, low.1 + (high.1 - low.1) * u), slope]
+    }
+
+    /// The point at u, in BLU.
+    pub(crate) fn at(&self, u: f64) -> [f64; N] {
+        let [(value, weight), _] = self.homogeneous(u);
+        value.map(|c| c / weight)
+    }
+
+    /// The first derivative by u, in BLU.
+    pub(crate) fn tangent(&self, u: f64) -> [f64; N] {
+        let [(value, weight), (slope, by)] = self.homogeneous(u);
+        std::array::from_fn(|axis| (slope[axis] - value[axis] / weight * by) / weight)
+    }
+
+    /// Its length in BLU, by the formula of Gauss over 32 parts.
+    pub(crate) fn length(&self) -> f64 {
+        crate::spline::gauss(|u| self.tangent(u).iter().map(|c| c * c).sum::<f64>().sqrt())
+    }
+}
+
+/// The pieces of a NURBS, one for each span of its knots that is not empty. A control point is the coordinates, each times
+/// the weight, and the weight (M = N + 1 numbers).
+pub(crate) fn pieces<const N: usize, const M: usize>(
+    degree: usize,
+    points: &[[f64; M]],
+    knots: &[f64],
+) -> Vec<Piece<N>> {
+    let spans = (degree..points.len()).filter(|&k| knots[k] < knots[k + 1]);
+    spans
+        .map(|k| {
+            let mut piece = Piece { degree, control: [[0.0; N]; MOST], weights: [0.0; MOST] };
+            for index in 0..=degree {
+                // The polar form, with its arguments `index` times at the end of the span, and else at its start.
+                let mut d: [[f64; M]; MOST] = [[0.0; M]; MOST];
+                d[..=degree].copy_from_slice(&points[k - degree..=k]);
+                for r in 1..=degree {
+                    let u = if r <= index { knots[k + 1] } else { knots[k] };
+                    for j in (r..=degree).rev() {
+                        let (low, high) = (knots[j + k - degree], knots[j + 1 + k - r]);
+                        let alpha = (u - low) / (high - low);
+                        d[j] = std::array::from_fn(|axis| d[j - 1][axis] + (d[j][axis] - d[j - 1][axis]) * alpha);
+                    }
+                }
+                piece.control[index] = std::array::from_fn(|axis| d[degree][axis]);
+                piece.weights[index] = d[degree][N];
+            }
+            piece
+        })
+        .collect()
+}

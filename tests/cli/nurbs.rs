@@ -1,0 +1,93 @@
+//! NURBS: how they are given, what is reported, and what is refused.
+
+use serde_json::Value;
+
+use super::{Folder, good, refused, run_refused};
+
+const QUARTER: &str = "--nurbs 1000,0,1,1000,1000,0.707106781,0,1000,1 --degree 2";
+const SAMPLED: &str = "--step 200 --fraction 16 --tolerance 10";
+
+#[test]
+fn a_quarter_circle_gives_the_worked_step_table() {
+    let table = good(&format!("run sampled-spline {QUARTER} {SAMPLED} --steps -"));
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines[0], "step,clock,u,cx,cy,jvx,jrx,jvy,jry,dx,dy,x,y");
+    assert!(lines[2].contains(",607399444,64125589,13526509,"), "{}", lines[2]);
+    assert!(lines[9].contains(",4294967296,0,65536000,") && lines[9].ends_with(",0,1000"), "{}", lines[9]);
+}
+
+#[test]
+fn points_come_from_a_file_with_or_without_a_heading_and_knots_are_uniform_by_default() {
+    let folder = Folder::new();
+    folder.write("a.csv", "X,Y,W\n1000,0,1\n1000, 1000, 0.707106781\n\n0,1000,1\n");
+    folder.write("b.csv", "1000,0,1\n1000,1000,0.7071067811865\n0,1000,1");
+    let ran = |given: &str| folder.run(&format!("run sampled-spline --nurbs {given} {SAMPLED} --steps -"));
+    let inline = ran("1000,0,1,1000,1000,0.707106781,0,1000,1 --degree 2 --knots 0,0,0,1,1,1");
+    assert!(inline.code == 0, "{inline:?}");
+    // Three points have the degree 2.
+    assert_eq!([ran("a.csv"), ran("b.csv --degree 2")], [inline.clone(), inline]);
+}
+
+#[test]
+fn the_report_has_the_curve_the_chord_error_and_the_command_that_repeats_it() {
+    let run = format!("run sampled-spline {QUARTER} {SAMPLED}");
+    let report: Value = serde_json::from_str(&good(&format!("{run} --json -"))).unwrap();
+    let geometry = &report["geometry"];
+    assert_eq!(geometry["curve"], "NURBS");
+    assert_eq!(geometry["weights"].to_string(), "[1.0,0.707106781,1.0]");
+    assert_eq!(geometry["knots"], serde_json::json!([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]));
+    let chord = report["sampling"]["chord_error"].as_f64().unwrap();
+    assert!(chord > 5.0 && chord < 6.0, "{chord}");
+    let summary = good(&run);
+    assert!(summary.contains("chord error at the middle of a period's parameters: 5.712465 BLU"), "{summary}");
+    assert!(summary.contains("NURBS (1000, 0), (1000, 1000), (0, 1000), degree 2, with weights"), "{summary}");
+}
+
+#[test]
+fn a_bezier_curve_is_a_nurbs_of_one_span() {
+    let by = |curve: &str| good(&format!("run sampled-spline {curve} --clock-hz 2000000 --steps -"));
+    assert_eq!(by("--bezier 0,0,40,0,80,40,80,80"), by("--nurbs 0,0,1,40,0,1,80,40,1,80,80,1 --knots 0,0,0,0,1,1,1,1"));
+}
+
+#[test]
+fn what_is_not_a_nurbs_is_refused() {
+    run_refused("sampled-spline", &["the curve is missing", "--nurbs", "--bezier"]);
+    run_refused("sampled-spline --to 5,3", &["the curve is missing", "--nurbs"]);
+    run_refused("sampled-spline --nurbs 0,0,1,5", &["4 numbers", "X,Y,W of each point"]);
+    run_refused("sampled-spline --nurbs 0,0,1", &["2 to 1024 points", "1 were given"]);
+    run_refused("sampled-spline --nurbs 0,0.5,1,4,4,1", &["0.5", "whole numbers of BLU"]);
+    run_refused("sampled-spline --nurbs 0,0,1,4,4,-1", &["point 2 has the weight -1", "more than 0"]);
+    run_refused("sampled-spline --nurbs 0,0,1,4,4,1 --degree 2", &["the degree 2", "from 1 to 1"]);
+    run_refused("sampled-spline --nurbs 0,0,1,4,4,1 --knots 0,0,1", &["3 knots", "= 4"]);
+    run_refused("sampled-spline --nurbs 0,0,1,4,4,1 --knots 0,x", &["--knots", "'x'"]);
+    run_refused("sampled-spline --nurbs no.csv", &["no.csv", "cannot be read", "x,y,w"]);
+    run_refused("sampled-spline --bezier 0,0,4,4", &["4 numbers", "three or four points"]);
+    run_refused("sampled-spline --bezier 0,0,4,0,8,8 --degree 2", &["--degree", "out"]);
+    run_refused("dda-arc --from 5,0 --to 0,5 --ccw --knots 1", &["--nurbs"]);
+    for option in ["--to 8,4", "--from 1,1", "--cw", "--center 1,1", "--opens +x", "--b-spline"] {
+        let name = option.split(' ').next().unwrap();
+        run_refused(&format!("sampled-spline --nurbs 0,0,1,4,4,1 {option}"), &[name]);
+    }
+    run_refused("spline-dda --nurbs 0,0,1,4,4,1", &["the curve is missing", "--bezier"]);
+    refused("sweep sampled-spline --to 1,1", &["free curves", "stepwave run"]);
+    refused("widths sampled-spline --box 4", &["no boxes"]);
+}
+
+#[test]
+fn the_file_of_points_is_never_written_over() {
+    let folder = Folder::new();
+    folder.write("p.csv", "0,0,1\n40,9,1\n");
+    let ran = folder.run("run sampled-spline --nurbs p.csv --steps p.csv");
+    assert!(ran.code == 2 && ran.err.contains("p.csv"), "{ran:?}");
+}
+
+#[test]
+fn a_recorded_case_has_its_file_in_the_folder() {
+    let folder = Folder::new();
+    folder.write("p.csv", "0,0,1\n40,9,1\n");
+    folder.write("cases.toml", "[[case]]\nname = \"line\"\nargs = [\"sampled-spline\", \"--nurbs\", \"p.csv\"]\n");
+    for what in ["record", "check"] {
+        let ran = folder.run(&format!("golden {what} ."));
+        assert_eq!(ran.code, 0, "{ran:?}");
+    }
+}
