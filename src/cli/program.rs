@@ -126,8 +126,8 @@ pub(crate) struct TextArgs {
     /// Feed of G00 in mm/min [default: a pulse of the source every second clock, or as fast as hardware of one's own can]
     #[arg(long, requires = "program", value_name = "MM/MIN", value_parser = parse_feed)]
     pub(crate) rapid: Option<f64>,
-    /// How far a chord may be off its arc, in BLU, for machines that draw lines only, and for helices whose third axis is too
-    /// steep for others
+    /// How far a chord may be off its curve, in BLU: of free curves (G5), of arcs for machines that draw lines only, and of
+    /// helices whose third axis is too steep for others
     #[arg(long, requires = "program", value_name = "BLU", default_value = "0.5", value_parser = parse_chords)]
     pub(crate) chords: f64,
 }

@@ -50,8 +50,9 @@ pub(super) fn simulation(
     clock_hz: f64,
 ) -> Result<Simulation, Error> {
     let default = Preparation::default();
-    let reading = Reading { integers: text.integers, tools: tools(&text.tool)?, home: text.home.0, ..default.reading };
-    let preparation = Preparation { reading, scheme: text.compensation, corner: text.corner, chords: text.chords };
+    let (tools, home) = (tools(&text.tool)?, text.home.0);
+    let reading = Reading { integers: text.integers, tools, home, chords: text.chords, ..default.reading };
+    let preparation = Preparation { reading, scheme: text.compensation, corner: text.corner };
     let simulation = Simulation::program(model, file).preparation(preparation).rapid(text.rapid);
     Ok(simulation.options(hardware.choices()).clock_hz(clock_hz).blu_mm(hardware.blu))
 }

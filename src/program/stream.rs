@@ -19,16 +19,15 @@ pub struct Preparation {
     pub scheme: Scheme,
     /// How an outside corner is gone round.
     pub corner: Corner,
-    /// How far a chord may be off its arc, in BLU, where the machine draws lines only or cannot follow a steep helix.
-    pub chords: f64,
 }
 
-/// mm by RS-274, scheme C, straight corners, and chords up to half a BLU off their arc.
+/// mm by RS-274, scheme C, straight corners, and chords up to half a BLU off their curve, or off their arc where the machine
+/// draws lines only or cannot follow a steep helix.
 impl Default for Preparation {
     fn default() -> Preparation {
         let (integers, tools, home) = (Integers::Units, BTreeMap::new(), Some([0.0; 3]));
-        let reading = Reading { blu: 1e-3, integers, tools, tolerance: 0.0, home };
-        Preparation { reading, scheme: Scheme::C, corner: Corner::Straight, chords: 0.5 }
+        let reading = Reading { blu: 1e-3, integers, tools, tolerance: 0.0, chords: 0.5, home };
+        Preparation { reading, scheme: Scheme::C, corner: Corner::Straight }
     }
 }
 
@@ -63,13 +62,13 @@ impl<R: BufRead> Stream<R> {
     /// # Errors
     /// The BLU or the radius of a tool is not a length.
     pub fn new(text: R, machine: &'static dyn Moves, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
-        let chords = (!machine.arcs()).then_some(preparation.chords);
+        let chords = preparation.reading.chords;
         Ok(Stream {
             program: Program::new(text, preparation.reading.clone())?,
             compensator: Compensator::new(preparation.scheme, preparation.corner),
-            rounder: Rounder::new(chords),
+            rounder: Rounder::new((!machine.arcs()).then_some(chords)),
             machine,
-            chords: preparation.chords,
+            chords,
             moves: Vec::new(),
             items: VecDeque::new(),
             ended: false,

@@ -162,9 +162,15 @@ mod tests {
 
     #[test]
     fn a_tool_beyond_what_is_promised_of_its_contour_fails() {
-        let reading =
-            Reading { blu: 0.01, integers: Integers::Units, tools: BTreeMap::new(), tolerance: 0.0, home: None };
-        let preparation = Preparation { reading, scheme: Scheme::B, corner: Corner::Straight, chords: 0.5 };
+        let reading = Reading {
+            blu: 0.01,
+            integers: Integers::Units,
+            tools: BTreeMap::new(),
+            tolerance: 0.0,
+            chords: 0.5,
+            home: None,
+        };
+        let preparation = Preparation { reading, scheme: Scheme::B, corner: Corner::Straight };
         let text = "G21 G90 G1 X1 F100\n".as_bytes();
         let moves = find("ppc-machine").and_then(|model| model.moves()).expect("a machine");
         let mut stream = Stream::new(text, moves, &preparation).expect("a program");

@@ -70,8 +70,15 @@ fn a_machine_of_a_program_with_a_loader_runs_as_on_the_bench() {
         "G21 G90 G4 P0.01\nG4 P0.001\nG1 X0.3 Y0.09 F300\nX0.09 Y0.36 F500\nG4 P0.002\nG2 X0.24 Y0.21 I0.15 J0\n\
         G1 X0 Y0 Z0.03\nG0 X0.1\nG4 P0\nG4 P0.001\nG18 G2 X0.3 Z0.03 I0.1 K0\nG4 P0.001\nM30\n"
             .as_bytes();
-    let reading = Reading { blu: 0.01, integers: Integers::Units, tools: BTreeMap::new(), tolerance: 0.0, home: None };
-    let preparation = Preparation { reading, scheme: Scheme::C, corner: Corner::Straight, chords: 0.5 };
+    let reading = Reading {
+        blu: 0.01,
+        integers: Integers::Units,
+        tools: BTreeMap::new(),
+        tolerance: 0.0,
+        chords: 0.5,
+        home: None,
+    };
+    let preparation = Preparation { reading, scheme: Scheme::C, corner: Corner::Straight };
     let pace = Pace { clock_hz: 20_000.0, blu_mm: 0.01, rapid: None };
     // Own hardware has no buffer, and takes arcs as chords.
     let line = Line::new(vec![0; 3], vec![127; 3]).unwrap().into();

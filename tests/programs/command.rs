@@ -17,7 +17,7 @@ pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("no number: {value}"))
 }
 
-const FAMILIES: [&str; 7] = ["ppc", "dda", "dpm", "cim", "mindev", "stepgen", "bresenham"];
+pub(super) const FAMILIES: [&str; 7] = ["ppc", "dda", "dpm", "cim", "mindev", "stepgen", "bresenham"];
 
 /// Coarse and slow, so that it is short; r = 200 BLU.
 const PART: &str = "--blu 0.01mm --clock-hz 2e4 --tool 1=2mm";

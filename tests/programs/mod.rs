@@ -2,6 +2,7 @@
 
 mod alone;
 mod command;
+mod curves;
 mod field;
 mod like_any;
 mod machines;

@@ -119,7 +119,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("give the program and the calls that LinuxCNC made of it".into());
     };
     let theirs = of_linuxcnc(BufReader::new(File::open(calls)?))?;
-    let reading = Reading { blu: BLU, integers: Integers::Units, tools: BTreeMap::new(), tolerance: 0.0, home: None };
+    let reading = Reading {
+        blu: BLU,
+        integers: Integers::Units,
+        tools: BTreeMap::new(),
+        tolerance: 0.0,
+        chords: 0.5,
+        home: None,
+    };
     let mut ours: Vec<(Place, Call)> = Vec::new();
     let mut end = String::from("its end");
     for event in Program::new(BufReader::new(File::open(program)?), reading)? {

@@ -49,6 +49,59 @@ impl<const N: usize> Piece<N> {
     pub(crate) fn length(&self) -> f64 {
         crate::spline::gauss(|u| self.tangent(u).iter().map(|c| c * c).sum::<f64>().sqrt())
     }
+
+    /// The point at its end, in BLU.
+    fn end(&self) -> [f64; N] {
+        self.control[self.degree].map(|c| c / self.weights[self.degree])
+    }
+
+    /// No Bézier point, and so no place of it, is farther from the chord than this, in BLU.
+    fn is_flat(&self, tolerance: f64) -> bool {
+        let (from, to) = (self.control[0].map(|c| c / self.weights[0]), self.end());
+        let along: [f64; N] = std::array::from_fn(|axis| to[axis] - from[axis]);
+        let dot = |a: [f64; N], b: [f64; N]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let square = dot(along, along);
+        (1..self.degree).all(|index| {
+            let place = self.control[index].map(|c| c / self.weights[index]);
+            let off: [f64; N] = std::array::from_fn(|axis| place[axis] - from[axis]);
+            let share = if square > 0.0 { (dot(off, along) / square).clamp(0.0, 1.0) } else { 0.0 };
+            let off: [f64; N] = std::array::from_fn(|axis| off[axis] - share * along[axis]);
+            dot(off, off) <= tolerance * tolerance
+        })
+    }
+
+    /// Both halves, by de Casteljau.
+    fn halves(&self) -> [Piece<N>; 2] {
+        let (mut left, mut right) = (*self, *self);
+        for round in 1..=self.degree {
+            for index in 0..=self.degree - round {
+                let next = (right.control[index + 1], right.weights[index + 1]);
+                right.control[index].iter_mut().zip(next.0).for_each(|(c, next)| *c = f64::midpoint(*c, next));
+                right.weights[index] = f64::midpoint(right.weights[index], next.1);
+            }
+            (left.control[round], left.weights[round]) = (right.control[0], right.weights[0]);
+        }
+        [left, right]
+    }
+
+    /// Visits the ends of chords that no place of it is farther from than the tolerance, in BLU, one after another; with more
+    /// chords than the limit the rest is left out.
+    pub(crate) fn chords(&self, tolerance: f64, limit: usize, visit: &mut impl FnMut([f64; N])) {
+        let (mut left, mut count) = (vec![*self], 0);
+        while let Some(piece) = left.pop() {
+            // Its halves have been halved as often as numbers allow.
+            if left.len() > 60 || piece.is_flat(tolerance) {
+                visit(piece.end());
+                count += 1;
+                if count >= limit {
+                    return;
+                }
+            } else {
+                let [first, second] = piece.halves();
+                left.extend([second, first]);
+            }
+        }
+    }
 }
 
 /// The pieces of a NURBS, one for each span of its knots that is not empty. A control point is the coordinates, each times

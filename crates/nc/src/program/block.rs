@@ -19,12 +19,18 @@ pub(super) enum FeedMode {
     PerMinute,
 }
 
-/// G00 to G03.
+/// G00 to G03, and G05 to G05.2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Motion {
     Rapid,
     Line,
     Arc(Direction),
+    /// G05.
+    Cubic,
+    /// G05.1.
+    Quadratic,
+    /// G05.2.
+    Nurbs,
 }
 
 /// G40 to G42.1.
@@ -82,6 +88,8 @@ pub(super) struct BlockWords<'l> {
     /// G80, which may come with a word of motion.
     pub(super) cycles_off: Slot<'l, ()>,
     pub(super) motion: Slot<'l, Motion>,
+    /// G05.3.
+    pub(super) nurbs_end: Slot<'l, ()>,
     pub(super) halt: Slot<'l, Halt>,
     letters: [Option<Word<'l>>; 26],
 }
@@ -115,7 +123,7 @@ impl<'l> BlockWords<'l> {
                 'O' => return Err(word.fault(|word| ProgramErrorKind::FlowControl { word })),
                 'G' => block.g(word)?,
                 'M' => block.m(word)?,
-                'D' | 'F' | 'H' | 'I' | 'J' | 'K' | 'P' | 'Q' | 'R' | 'S' | 'T' | 'X' | 'Y' | 'Z' => {
+                'D' | 'F' | 'H' | 'I' | 'J' | 'K' | 'L' | 'P' | 'Q' | 'R' | 'S' | 'T' | 'X' | 'Y' | 'Z' => {
                     let slot = &mut block.letters[place(word.letter)];
                     if let Some(first) = slot {
                         let first = first.name();
@@ -148,6 +156,10 @@ impl<'l> BlockWords<'l> {
             Some(10) => put(&mut self.motion, Motion::Line, word),
             Some(20) => put(&mut self.motion, Motion::Arc(Direction::Clockwise), word),
             Some(30) => put(&mut self.motion, Motion::Arc(Direction::CounterClockwise), word),
+            Some(50) => put(&mut self.motion, Motion::Cubic, word),
+            Some(51) => put(&mut self.motion, Motion::Quadratic, word),
+            Some(52) => put(&mut self.motion, Motion::Nurbs, word),
+            Some(53) => put(&mut self.nurbs_end, (), word),
             Some(800) => put(&mut self.cycles_off, (), word),
             Some(40) => put(&mut self.dwell, (), word),
             Some(170) => put(&mut self.plane, Plane::Xy, word),
@@ -194,20 +206,22 @@ impl<'l> BlockWords<'l> {
         }
     }
 
-    /// Whether P belongs to G04 or G64, and not to an arc.
-    pub(super) fn times(&self) -> bool {
-        self.dwell.is_some() || matches!(self.path_control, Some((true, _)))
+    /// Whether Q belongs to G64, and not to a curve.
+    pub(super) fn blends(&self) -> bool {
+        matches!(self.path_control, Some((true, _)))
     }
 
-    /// Checks that D, H and Q belong to something in the block; I, J, K, P and R are up to the motion in force.
+    /// Whether P belongs to G04 or G64, and not to an arc.
+    pub(super) fn times(&self) -> bool {
+        self.dwell.is_some() || self.blends()
+    }
+
+    /// Checks that D and H belong to something in the block; I, J, K, L, P, Q and R are up to the motion in force.
     fn check_owners(&self) -> Result<(), Fault> {
-        let blends = matches!(self.path_control, Some((true, _)));
         let compensates = self.compensation.is_some_and(|(compensation, _)| compensation != Compensation::Off);
-        for (letter, used, owner) in [
-            ('D', compensates, "G41 or G42"),
-            ('H', matches!(self.length_offset, Some((true, _))), "G43"),
-            ('Q', blends, "G64"),
-        ] {
+        for (letter, used, owner) in
+            [('D', compensates, "G41 or G42"), ('H', matches!(self.length_offset, Some((true, _))), "G43")]
+        {
             if let (Some(word), false) = (self.word(letter), used) {
                 return Err(word.fault(|word| ProgramErrorKind::Unused { word, owner }));
             }

@@ -4,6 +4,7 @@ use std::io;
 
 use super::words::{DIGITS_LIMIT, LINE_LIMIT};
 use super::{CENTER_TOLERANCE, PROGRAM_LIMIT, TURNS_LIMIT};
+use crate::{NURBS_MOST, NURBS_POINTS};
 
 /// Why a program cannot be read, and where.
 #[derive(Debug, thiserror::Error)]
@@ -295,6 +296,120 @@ pub enum ProgramErrorKind {
         /// What `--tolerance` is, and may be at most, in BLU.
         more: [f64; 2],
     },
+    /// A free curve under compensation.
+    #[error("{word} is a free curve, and tool radius compensation is on: write G40 into a block in front of it")]
+    SplineUnderCompensation {
+        /// The word.
+        word: String,
+    },
+    /// A G05 or G05.1 outside of the plane XY.
+    #[error("{word} belongs to {name}, which is in the plane XY: write G17 into this block or one in front of it")]
+    SplinePlane {
+        /// The word.
+        word: String,
+        /// The G word of the curve.
+        name: &'static str,
+    },
+    /// A G05 or G05.1 without an end.
+    #[error("{word} belongs to {name}, which needs its end point: give X or Y, or both")]
+    SplineEnd {
+        /// The word.
+        word: String,
+        /// The G word of the curve.
+        name: &'static str,
+    },
+    /// The first control point of a curve is missing.
+    #[error(
+        "{word} belongs to {name}, which needs I and J from its start to its control point: G05 needs both, or neither where \
+         the block before is a G05, and G05.1 one that is not 0"
+    )]
+    SplineHandle {
+        /// The word.
+        word: String,
+        /// The G word of the curve.
+        name: &'static str,
+    },
+    /// The second control point of a G05 is missing.
+    #[error("{word} belongs to G05, which needs both P and Q, from its end to its second control point: give both")]
+    SplineEndHandle {
+        /// The word.
+        word: String,
+    },
+    /// A NURBS is not ended.
+    #[error(
+        "{word} begins a NURBS, and between it and G05.3 there are control points only: write G05.3 in front of other motions, \
+         of another plane and of the end"
+    )]
+    NurbsOpen {
+        /// The word that began it.
+        word: String,
+    },
+    /// A G05.3 without G05.2.
+    #[error("{word} ends a NURBS, but none was begun: begin one with G05.2")]
+    NurbsNotOpen {
+        /// The word.
+        word: String,
+    },
+    /// A control point of a NURBS has one coordinate.
+    #[error("{word} gives a control point of a NURBS, which needs both {} and {}: give both", .axes[0], .axes[1])]
+    NurbsHalfPoint {
+        /// The first word of the block.
+        word: String,
+        /// The two axes of the plane.
+        axes: [char; 2],
+    },
+    /// A weight without a control point.
+    #[error(
+        "{word} gives a weight without {} and {}, which only the first block of a NURBS may, for the start point: give the \
+         control point too", .axes[0], .axes[1]
+    )]
+    NurbsWeightAlone {
+        /// The first word of the block.
+        word: String,
+        /// The two axes of the plane.
+        axes: [char; 2],
+    },
+    /// A weight is not positive.
+    #[error("{word} is the weight of a control point, which must be from 0.000001 to {NURBS_MOST}: correct it")]
+    NurbsPointWeight {
+        /// The word.
+        word: String,
+    },
+    /// The order of a NURBS is out of range.
+    #[error("{word} is the order of a NURBS, its degree and 1: give a whole number from {least} to {most}")]
+    NurbsOrder {
+        /// The word.
+        word: String,
+        /// The least order.
+        least: usize,
+        /// The greatest order.
+        most: usize,
+    },
+    /// A NURBS has too few control points.
+    #[error(
+        "{word} ends a NURBS of {count} control points, its start among them, but of the order {order} it needs as many: \
+         give more points, or a lower L"
+    )]
+    NurbsTooFew {
+        /// The word.
+        word: String,
+        /// Control points given.
+        count: usize,
+        /// The order.
+        order: usize,
+    },
+    /// A NURBS has too many control points.
+    #[error("{word} gives a control point more than the {NURBS_POINTS} that a NURBS may have: break the curve in two")]
+    NurbsTooMany {
+        /// The first word of the block.
+        word: String,
+    },
+    /// A curve needs too many chords.
+    #[error("the curve needs {limit} chords or more: choose a larger BLU or a larger --chords")]
+    TooManyChords {
+        /// The greatest number.
+        limit: usize,
+    },
     /// No block of the program moves.
     #[error("the program ends and no block of it moved the tool: give it one with G00 to G03 and a coordinate")]
     Empty,
@@ -314,6 +429,12 @@ pub enum ReadingError {
     Tolerance {
         /// The tolerance given, in BLU.
         tolerance: f64,
+    },
+    /// The distance of chords from their curve is not a length.
+    #[error("chords {chords} BLU off their curve are invalid: give more than 0")]
+    Chords {
+        /// The distance given, in BLU.
+        chords: f64,
     },
     /// A coordinate of the home is not a place.
     #[error("the home {home:?} mm is invalid: give three coordinates that a program may have")]

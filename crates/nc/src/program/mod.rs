@@ -7,6 +7,10 @@
 //! | words | meaning |
 //! |---|---|
 //! | G00, G01, G02, G03 | rapid move, line, arc with the clock, arc against it; in force until the next of them |
+//! | G05 X Y I J P Q | cubic curve: I J from the start to the first control point, P Q from the end to the second; without I J it continues as the G05 before it ended |
+//! | G05.1 X Y I J | quadratic curve: I J from the start to its control point, 0 where one is missing |
+//! | G05.2 X Y P L | control point of a NURBS with its weight P (1 without it), and its order L, degree and 1 (3 without it); the first is where the tool is, with the weight P of a block without X and Y |
+//! | G05.3 | the NURBS ends: its moves are made |
 //! | G04 P | dwell, in seconds |
 //! | G28 X Y Z | rapid move over the place given to the machine's home, along the axes given; without any along all |
 //! | G53 X Y Z | with G00 or G01: move to a place in the machine's own coordinates |
@@ -52,6 +56,11 @@
 //! but never by more than half of its radius; [`Reading::tolerance`] allows more. Such an R makes half a turn about the
 //! middle of the chord. The third of the words I, J and K may be given as 0.
 //!
+//! A free curve becomes chords, no farther off it than [`Reading::chords`]; each is a move of the same block. G05 and G05.1 are
+//! in the plane XY, a NURBS is in the plane that is chosen. Under G91 a control point counts from where the tool is, as the
+//! end of every other curve does. No compensation is taken, and between G05.2 and G05.3 no other motion, plane or end. All this is
+//! as LinuxCNC documents it.
+//!
 //! What is in comments may be text of any code; outside of them it is UTF-8.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -71,6 +80,7 @@ mod block;
 mod error;
 mod home;
 mod modal;
+mod spline;
 #[cfg(test)]
 mod tests;
 mod words;
@@ -107,6 +117,8 @@ pub struct Reading {
     pub tools: BTreeMap<u64, f64>,
     /// How far the radii of the two ends of an arc may differ beyond what is always allowed, in BLU, at least 0.
     pub tolerance: f64,
+    /// How far a chord may be off a free curve, in BLU, more than 0.
+    pub chords: f64,
     /// Where the machine's zero is in the program, in mm, which G28 and G53 move by; `None` where they do not move.
     pub home: Option<[f64; 3]>,
 }
@@ -188,8 +200,8 @@ pub enum Event {
 /// ```
 /// use stepwave_nc::{Event, Integers, Program, Reading};
 ///
-/// let reading = Reading { blu: 0.001, integers: Integers::Units, tools: Default::default(), tolerance: 0.0, home: None
-/// }; let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?; let
+/// let reading = Reading { blu: 0.001, integers: Integers::Units, tools: Default::default(), tolerance: 0.0, home: None,
+/// chords: 0.5 }; let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?; let
 /// Some(Ok(Event::Move(first))) = program.next() else { panic!() }; assert_eq!(first.segment.to, [1500.0, 0.0, 0.0]);
 /// let Some(Err(error)) = program.next() else { panic!() }; assert_eq!(
 ///     error.to_string(),
@@ -218,7 +230,7 @@ impl<R: BufRead> Program<R> {
     ///
     /// # Errors
     ///
-    /// If the BLU, the tolerance or the radius of a tool is not a length, or the home is beyond all coordinates.
+    /// If the BLU, the tolerance, the distance of chords or the radius of a tool is not a length, or the home is beyond all coordinates.
     pub fn new(text: R, reading: Reading) -> Result<Program<R>, ReadingError> {
         let blu = reading.blu;
         if !(blu.is_finite() && blu > 0.0) {
@@ -231,6 +243,9 @@ impl<R: BufRead> Program<R> {
         }
         if !(reading.tolerance.is_finite() && reading.tolerance >= 0.0) {
             return Err(ReadingError::Tolerance { tolerance: reading.tolerance });
+        }
+        if !(reading.chords.is_finite() && reading.chords > 0.0) {
+            return Err(ReadingError::Chords { chords: reading.chords });
         }
         let far = |c: &f64| !c.is_finite() || c.abs() / blu > PROGRAM_LIMIT as f64;
         if let Some(home) = reading.home.filter(|home| home.iter().any(far)) {
@@ -300,6 +315,7 @@ impl<R: BufRead> Program<R> {
 
     fn end(&mut self, place: Place) -> Result<(), Fault> {
         self.ended = true;
+        self.modal.curves.check(None)?;
         if !self.moved {
             return Err(Fault { column: 1, kind: ProgramErrorKind::Empty });
         }

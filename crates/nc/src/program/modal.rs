@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use super::arc;
 use super::block::{BlockWords, Compensation, Distance, FeedMode, Halt, Hand, Motion};
 use super::error::{Fault, ProgramErrorKind};
+use super::spline::Curves;
 use super::words::Word;
 use super::{Auxiliary, Event, Integers, PROGRAM_LIMIT, Reading};
 use crate::{Direction, Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side};
@@ -23,6 +24,7 @@ pub(super) struct Modal {
     feed: Option<f64>,
     pub(super) side: Side,
     pub(super) motion: Option<Motion>,
+    pub(super) curves: Curves,
 }
 
 impl Default for Modal {
@@ -38,6 +40,7 @@ impl Default for Modal {
             feed: None,
             side: Side::On,
             motion: None,
+            curves: Curves::default(),
         }
     }
 }
@@ -76,6 +79,7 @@ impl Modal {
         reading: &Reading,
         events: &mut VecDeque<Event>,
     ) -> Result<bool, Fault> {
+        self.curves.check(Some(block))?;
         let feed = self.feed(block)?;
         auxiliaries(block, place, events)?;
         if let Some(((), word)) = block.dwell {
@@ -101,8 +105,11 @@ impl Modal {
             (None, Some(_)) => None,
             (None, None) => self.motion,
         };
+        self.check_curve_words(block)?;
         if block.home.is_some() {
             self.go_home(block, place, reading, events)?;
+        } else if self.curve(block, place, feed, reading, events)? {
+            // It has made its moves.
         } else if let Some(segment) = self.segment(block, reading)? {
             let turns = self.turns(block)?;
             let feed = self.feed_of_move(block, feed)?;
@@ -169,7 +176,7 @@ impl Modal {
     }
 
     /// The feed of a block that moves, whose own F number is known.
-    fn feed_of_move(&self, block: &BlockWords<'_>, number: Option<f64>) -> Result<Feed, Fault> {
+    pub(super) fn feed_of_move(&self, block: &BlockWords<'_>, number: Option<f64>) -> Result<Feed, Fault> {
         let (feed, missing) = match (self.motion, self.feed_mode) {
             (Some(Motion::Rapid), _) => return Ok(Feed::Rapid),
             (_, FeedMode::PerMinute) => (self.feed.map(Feed::PerMinute), ProgramErrorKind::NoFeed),
@@ -243,7 +250,7 @@ impl Modal {
                 let [first, second, _] = self.plane.axes();
                 [still[first], still[second]] = [still[first] && still[second]; 2];
             }
-            Motion::Rapid | Motion::Line => still = [still == [true; 3]; 3],
+            _ => still = [still == [true; 3]; 3],
         }
         for axis in [0, 1, 2] {
             if still[axis] {

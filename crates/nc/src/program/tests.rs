@@ -7,6 +7,7 @@ mod faults;
 mod home;
 mod language;
 mod random;
+mod splines;
 
 /// A BLU of 0.01 mm, tool 1 of 4 mm and tool 2 of 2.5 mm.
 fn reading() -> Reading {
@@ -15,6 +16,7 @@ fn reading() -> Reading {
         integers: Integers::Units,
         tools: BTreeMap::from([(1, 4.0), (2, 2.5)]),
         tolerance: 0.0,
+        chords: 0.25,
         home: Some([0.0; 3]),
     }
 }
