@@ -178,7 +178,11 @@ fn plan(nurbs: &Nurbs, plan: &mut Plan) -> Result<(), ModelError> {
     let spans = control.points.len() - control.degree;
     let clocks = widths.clocks(fraction, control.degree, spans, course.halvings + 1);
     let positions = [0, 1].map(|axis| nurbs.points().iter().map(move |point| point.at[axis]));
-    FineStage::plan(sampling, plan, more, clocks, positions)
+    FineStage::plan(sampling, plan, more, clocks, positions)?;
+    // Halved steps may be shorter than a pulse.
+    let period = plan.sampling.map_or(0, |sampling| sampling.clocks[0] / sampling.clocks[1] + 1);
+    plan.stall_clocks = plan.stall_clocks.saturating_add(period.saturating_mul(course.still));
+    Ok(())
 }
 
 /// Bits of an address of the knots, and of a span.

@@ -199,6 +199,14 @@ fn the_chord_error_that_is_reported_is_that_of_the_periods_and_is_held() {
 }
 
 #[test]
+fn steps_far_below_a_pulse_are_no_stall() {
+    // A chord of 0.28 BLU is 0.001 BLU off the circle of 10 BLU.
+    let curve = nurbs(2, &[[10, 0, ONE], [10, 10, HALF_ROOT], [0, 10, ONE]], None);
+    let long = check(&curve, Choices { fraction: 12, step: 8_000, tolerance: 1 }, EngineKind::Compiled);
+    assert!(long > 50, "{long}");
+}
+
+#[test]
 fn an_integrand_that_is_too_narrow_traps_and_else_loses_its_top_bit() {
     let curve: Curve = nurbs(2, &[[100, 0, ONE], [100, 100, HALF_ROOT], [0, 100, ONE]], None).into();
     let choices = Choices { fraction: 12, step: 12_000, tolerance: 1_000 };

@@ -25,6 +25,8 @@ pub(super) struct Control {
 pub(super) struct Course {
     /// Most pulses of an axis in a period.
     pub(super) widest: u64,
+    /// Most periods without a pulse one after another.
+    pub(super) still: u64,
     /// Most halvings of a step.
     pub(super) halvings: u32,
     /// Greatest chord error that is left, in BLU.
@@ -113,7 +115,7 @@ impl Control {
     /// All periods of this displacement, whose chords leave the curve by less than `limit` says.
     pub(super) fn course(&self, word: u64, limit: u128) -> Result<Course, Stuck> {
         let (mut course, end) = (Course::default(), self.end());
-        let (mut u, mut place, mut periods) = (0, self.at(0, self.degree), 0);
+        let (mut u, mut place, mut periods, mut still) = (0, self.at(0, self.degree), 0, 0);
         while u < end {
             let rests = || Stuck::Rests(u as f64 / f64::from(PLACE_FRACTION).exp2());
             let mut step = self.step(&place, word).ok_or_else(rests)?.min(end - u);
@@ -131,10 +133,11 @@ impl Control {
             course.halvings = course.halvings.max(halvings);
             course.chord_error = course.chord_error.max((off as f64).sqrt() / 2.0 / f64::from(self.fraction).exp2());
             let whole = |c: i128| (c + (1 << (self.fraction - 1))) >> self.fraction;
-            for axis in 0..2 {
-                let travel = (whole(next.point[axis]) - whole(place.point[axis])).unsigned_abs();
-                course.widest = course.widest.max(u64::try_from(travel).unwrap_or(u64::MAX));
-            }
+            let travel = [0, 1].map(|axis| (whole(next.point[axis]) - whole(place.point[axis])).unsigned_abs());
+            let travel = u64::try_from(travel[0].max(travel[1])).unwrap_or(u64::MAX);
+            course.widest = course.widest.max(travel);
+            still = if travel == 0 { still + 1 } else { 0 };
+            course.still = course.still.max(still);
             (u, place, periods) = (u + step, next, periods + 1);
             if periods > MOST_PERIODS {
                 return Err(Stuck::Periods(MOST_PERIODS));
