@@ -161,6 +161,15 @@ impl Simulation {
         self
     }
 
+    /// With this speed in mm/min at which an axis can start and stop, and by which it can change at a corner, of a program
+    /// with acceleration; else the least with which no pulse is waited for, sqrt(a).
+    pub fn jump(mut self, speed: impl Into<Option<f64>>) -> Simulation {
+        if let Source::Program(program) = &mut self.source {
+            program.jump = speed.into();
+        }
+        self
+    }
+
     /// On this engine. All give the same samples.
     pub fn engine(self, engine: EngineKind) -> Simulation {
         Simulation { engine, ..self }

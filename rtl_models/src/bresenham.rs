@@ -42,7 +42,7 @@ use crate::hardware::{Hardware, Pace};
 use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
 use crate::model::Model;
-use crate::options::{COMPARE, Compare, END_POINT, EndPoint, FORM, Form, ON_OVERFLOW, WIDTH};
+use crate::options::{COMPARE, Compare, END_POINT, EndPoint, FORM, Form, ON_OVERFLOW, Taken, WIDTH};
 use crate::parts::{Block, E, POSITION, SIGN, axis_scope};
 use crate::per_axis;
 use crate::plan::Plan;
@@ -53,6 +53,14 @@ const STEPS: PerAxis = Reg::each(per_axis!("steps"), N, "|d| of each axis");
 const COUNTER: PerAxis = Reg::each(per_axis!("cnt"), N.plus(1), "counter, from N/2 (signed form: from -N/2)");
 const EVENTS: Reg = Reg::new("events", N, "N, the longest |d|");
 
+pub(crate) static FORMS: Taken<Form> = FORM.only(
+    Some(Form::Magnitude),
+    &[(Form::Magnitude, ""), (Form::Signed, ": counters are N lower")],
+    "its counters have no case of their own for a line along an axis",
+);
+pub(crate) static COMPARISONS: Taken<Compare> =
+    COMPARE.only(None, &[(Compare::AtLeast, " (default)"), (Compare::Greater, " (default of the signed form)")], "");
+
 /// Step counters of printer and mill firmware, line of 2 to 6 axes.
 pub static MODEL: Model = Model {
     name: "bresenham",
@@ -60,20 +68,7 @@ pub static MODEL: Model = Model {
     method: "modern step generators",
     source: "the line tracing of open firmware for printers and mills, after J. E. Bresenham, 1965",
     registers: &[&(STEPS, COUNTER), &EVENTS, &E.width(N).about("step events left, from N"), &POSITION],
-    options: &[
-        &WIDTH,
-        &FORM.only(
-            Some(Form::Magnitude),
-            &[(Form::Magnitude, ""), (Form::Signed, ": counters are N lower")],
-            "its counters have no case of their own for a line along an axis",
-        ),
-        &COMPARE.only(
-            None,
-            &[(Compare::AtLeast, " (default)"), (Compare::Greater, " (default of the signed form)")],
-            "",
-        ),
-        &ON_OVERFLOW,
-    ],
+    options: &[&WIDTH, &FORMS, &COMPARISONS, &ON_OVERFLOW],
     claims: Some(Claims::of(Region::LinesHalved)),
     interpolates: Interpolates::Lines(6, Method { plan, load }),
     hardware,

@@ -20,7 +20,7 @@
 //! **S curve.** With `--jerk` a ramp is 2m + h ticks: in the first m of them `av` grows by j, h it stays, in the last m it falls again, and
 //! v goes by `av`. The loader plans m, h and j for the jerk and the acceleration given as limits, adds what is left of vc - vs
 //! to vs and ve, and lowers the greatest speed of a short block until both ramps fit. The ramp down begins with the first tick in which less than
-//! v and its length `b` remain.
+//! v and its `length` remain.
 //!
 //! **Events.** `hold` takes the target to 0, `trim` to another share of vc (`run --event CLOCK:hold`, `CLOCK:resume`,
 //! `CLOCK:override=PERCENT`). What comes at clock k is in force at edge k+1: v changes there, and the phase adds that v at
@@ -50,7 +50,8 @@ use crate::options::{
     ACCEL, BRAKE, Brake, Gains, JERK, Millionths, ON_OVERFLOW, Options, PRESET, PerRegister, Quantity, SPEED, WIDTH,
 };
 use crate::parts::{
-    Block, CHANGE, E, GAINS, GROWTH, LENGTH, LIMITS, PARTS, PHASE, POSITION, RISEN, Ramp, SIGN, TICKS, V, axis_scope,
+    Block, CHANGE, E, GAINS, GROWTH, LENGTH, LIMITS, PARTS, PHASE, POSITION, RISEN, Ramp, RampBits, RampEdge, SIGN,
+    TICKS, V, axis_scope,
 };
 use crate::plan::Plan;
 use crate::ramping::{MOST_BITS, SBlock, SRamp, Scale, bits, usual_start};
@@ -253,13 +254,21 @@ impl Ramping {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let e = hardware.counter(m, &block, E);
-    let ramp = Ramp::new(m.scope("ramp"), hardware, &block);
+    let scope = m.scope("ramp");
+    let ramp = Ramp::new(scope, RampBits::of(hardware), &block);
     let tick = block.busy & !block.load;
     let pulse = ramp.pulse(tick);
     let axis = axis_scope(m, 0);
     let negative = block.held(axis, SIGN.of(0).name(), 1);
     hardware.axis(axis, &block, 0, pulse, negative);
-    ramp.close(hardware, block.load, tick, tick, e.left());
+    let [preset, first] = [PHASE, V].map(|register| hardware.word(&block, register));
+    let brake = hardware.get(&BRAKE);
+    let risen = (brake == Brake::Count).then(|| hardware.reg(scope, RISEN));
+    ramp.close(
+        RampEdge { preset: Some(preset), first, by_hand: m.lit(1, 0), runs: tick, tick, left: e.left() },
+        brake,
+        risen,
+    );
     let last = e.count(pulse);
     block.close(block.load, block.busy, last);
 }

@@ -51,7 +51,9 @@ use crate::hardware::Hardware;
 use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
 use crate::model::Model;
-use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, PICK_OFF, PRESET, Preset, StepTiming, TIMING, WIDTH};
+use crate::options::{
+    END_POINT, EndPoint, ON_OVERFLOW, PICK_OFF, PRESET, PerRegister, Preset, StepTiming, TIMING, Taken, WIDTH,
+};
 use crate::parts::{ACC, Block, E, POSITION, PhaseAccumulator, RATE, StepOutput, axis_scope};
 use crate::per_axis;
 use crate::plan::Plan;
@@ -69,6 +71,13 @@ const OUTPUTS: (PerAxis, PerAxis) = (
 /// Longest time of an output, in clocks.
 const LONGEST_TIME: u64 = 1 << 20;
 
+pub(crate) static PART_OF_A_STEP: Taken<PerRegister<Preset>> =
+    PRESET.about("zero (default) | half | full | N below 2^p, or accx=N,accy=N");
+pub(crate) static PICKED: Taken<Option<u64>> =
+    PICK_OFF.about("bit p whose changes are steps (default: k; on many cards 32)");
+pub(crate) static TIMES: Taken<StepTiming> =
+    TIMING.about("length=CLOCKS,space=CLOCKS,setup=CLOCKS,hold=CLOCKS (default: 2, 2, 4, 4)");
+
 /// Phase accumulators of a motion card, line of 2 to 6 axes.
 pub static MODEL: Model = Model {
     name: NAME,
@@ -81,13 +90,7 @@ pub static MODEL: Model = Model {
         &OUTPUTS,
         &POSITION,
     ],
-    options: &[
-        &WIDTH,
-        &PRESET.about("zero (default) | half | full | N below 2^p, or accx=N,accy=N"),
-        &PICK_OFF.about("bit p whose changes are steps (default: k; on many cards 32)"),
-        &TIMING.about("length=CLOCKS,space=CLOCKS,setup=CLOCKS,hold=CLOCKS (default: 2, 2, 4, 4)"),
-        &ON_OVERFLOW,
-    ],
+    options: &[&WIDTH, &PART_OF_A_STEP, &PICKED, &TIMES, &ON_OVERFLOW],
     claims: None,
     interpolates: Interpolates::Lines(6, Method { plan, load }),
     hardware,
@@ -203,7 +206,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 }
 
 /// A pulse source that runs while its last argument (1 bit) is 1.
-type Source<'m> = fn(Scope<'m>, &Block<'m>, Signal<'m>) -> Signal<'m>;
+type Source<'m> = fn(Scope<'m>, &Hardware, &Block<'m>, Signal<'m>) -> Signal<'m>;
 
 /// The wiring after a block loader. Each pulse of a source is an accumulation; without one there is one a clock.
 pub(crate) fn interpolator<'m>(m: Scope<'m>, hardware: &Hardware, block: Block<'m>, source: Option<Source<'m>>) {
@@ -221,7 +224,7 @@ pub(crate) fn interpolator<'m>(m: Scope<'m>, hardware: &Hardware, block: Block<'
     let counting = block.busy & e.running();
     let hold = m.name("hold", waiting.map_or(!counting, |waiting| counting & waiting));
     let ready = counting & !hold;
-    let accumulate = m.name("accumulate", source.map_or(ready, |source| source(m, &block, ready)));
+    let accumulate = m.name("accumulate", source.map_or(ready, |source| source(m, hardware, &block, ready)));
     let mut resting = e.count(accumulate);
     for (i, (scope, acc, output)) in axes.into_iter().enumerate() {
         let send = scope.name("send", accumulate & acc.steps());

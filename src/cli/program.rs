@@ -8,7 +8,7 @@ use crate::nc::{Corner, Integers, Scheme};
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Args, Command};
 
-use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu};
+use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu, parse_speed};
 use super::{BenchArgs, HardwareArgs};
 use crate::own::is_netlist;
 use crate::simulation::FileOptions;
@@ -126,6 +126,10 @@ pub(crate) struct TextArgs {
     /// Feed of G00 in mm/min [default: a pulse of the source every second clock, or as fast as hardware of one's own can]
     #[arg(long, requires = "program", value_name = "MM/MIN", value_parser = parse_feed)]
     pub(crate) rapid: Option<f64>,
+    /// Speed at which an axis can start and stop, and by which it can change at a corner, with --accel [default: the least with
+    /// which no pulse is waited for, the square root of the acceleration in BLU]
+    #[arg(long, requires = "accel", value_name = "V", value_parser = parse_speed)]
+    pub(crate) jump: Option<f64>,
     /// How far a chord may be off its curve, in BLU: of free curves (G5), of arcs for machines that draw lines only, and of
     /// helices whose third axis is too steep for others
     #[arg(long, requires = "program", value_name = "BLU", default_value = "0.5", value_parser = parse_chords)]

@@ -53,7 +53,7 @@ pub(super) fn simulation(
     let (tools, home) = (tools(&text.tool)?, text.home.0);
     let reading = Reading { integers: text.integers, tools, home, chords: text.chords, ..default.reading };
     let preparation = Preparation { reading, scheme: text.compensation, corner: text.corner };
-    let simulation = Simulation::program(model, file).preparation(preparation).rapid(text.rapid);
+    let simulation = Simulation::program(model, file).preparation(preparation).rapid(text.rapid).jump(text.jump);
     Ok(simulation.options(hardware.choices()).clock_hz(clock_hz).blu_mm(hardware.blu))
 }
 

@@ -6,7 +6,8 @@ use stepwave_models::Hardware;
 use stepwave_models::program::{Moves, Pacing};
 
 use super::ProgramFailure;
-use super::feed::{Pace, Paced, Pacer};
+use super::feed::Pace;
+use super::planner::{Planned, Planner};
 use super::stream::{Item, Preparation, Stream};
 
 /// What a run of a program comes to, from its feeds and lengths.
@@ -41,29 +42,31 @@ impl Estimate {
         if let Pacing::Hardware { .. } = moves.pacing() {
             return Ok(None);
         }
-        let (mut estimate, mut pacer) = (Estimate::default(), Pacer::new(moves, hardware, pace));
+        let (mut estimate, mut planner) = (Estimate::default(), Planner::new(moves, hardware, pace));
         for item in Stream::new(text, moves, preparation)? {
             match item? {
-                Item::Dwell(_, seconds) => estimate.clocks += pace.dwell(seconds),
-                Item::Stop(_) | Item::LeftOut(..) => {}
-                Item::Move(_, blocks) => {
-                    pacer.begin(&blocks);
-                    for block in &blocks {
-                        pacer.blocks(block)?.iter().for_each(|paced| estimate.add(paced, pace));
-                    }
+                Item::Dwell(_, seconds) => {
+                    planner.stop();
+                    estimate.clocks += pace.dwell(seconds);
                 }
+                Item::Stop(_) => planner.stop(),
+                Item::LeftOut(..) => {}
+                Item::Move(of, blocks) => planner.push(&of, &blocks, |_, _, _| ())?,
             }
+            std::iter::from_fn(|| planner.next()).for_each(|planned| estimate.add(&planned, pace));
         }
+        planner.stop();
+        std::iter::from_fn(|| planner.next()).for_each(|planned| estimate.add(&planned, pace));
         Ok(Some(estimate))
     }
 
-    fn add(&mut self, Paced { block, source, .. }: &Paced, pace: Pace) {
+    fn add(&mut self, Planned { block, source, seconds, .. }: &Planned<()>, pace: Pace) {
         let Some((word, source_hz)) = source else { return };
         self.steps += block.steps;
         self.moving += block.steps.min(block.length * PULSES);
         // Where the source gives a pulse every 2^n clocks, its phase comes round.
         self.drifting += if word.is_power_of_two() { 0.0 } else { block.steps };
         // The next block is taken over in one clock.
-        self.clocks += block.steps * pace.clock_hz / source_hz + 1.0;
+        self.clocks += seconds.unwrap_or(block.steps / source_hz) * pace.clock_hz + 1.0;
     }
 }

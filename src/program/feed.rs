@@ -2,7 +2,7 @@
 
 use stepwave_models::Hardware;
 use stepwave_models::parts::{FASTEST_RATE, PULSE_RATE, RATE_BITS};
-use stepwave_models::program::{FASTEST_SPEED, HardwareBlock, Moves, PROGRAM_WORDS, Pacing};
+use stepwave_models::program::{Acceleration, FASTEST_SPEED, HardwareBlock, Moves, PROGRAM_WORDS, Pacing};
 use stepwave_nc::{Cause, Feed, PulseBlock};
 
 use super::ProgramFailure;
@@ -16,6 +16,9 @@ pub struct Pace {
     pub blu_mm: f64,
     /// Rapid feed in mm/min; `None` for as fast as the pulse source runs.
     pub rapid: Option<f64>,
+    /// Speed in mm/min at which an axis of a machine that accelerates can start and stop, and by which it can change at
+    /// once; `None` for the least with which no pulse is waited for.
+    pub jump: Option<f64>,
 }
 
 impl Pace {
@@ -67,6 +70,7 @@ pub(super) struct Pacer<'a> {
     pace: Pace,
     /// The commanded speed of the present move, in BLU per second; `None` where it is as fast as the machine runs.
     pub(super) speed: Option<f64>,
+    accelerates: bool,
 }
 
 /// A block of the machine with its speed.
@@ -78,11 +82,13 @@ pub(super) struct Paced {
     pub(super) source: Option<(u64, f64)>,
     /// The feed is out of reach of what sets it.
     pub(super) limited: bool,
+    /// Pulses of our source for a BLU of the path at the speed that it is given.
+    pub(super) pulses_per_blu: f64,
 }
 
 impl<'a> Pacer<'a> {
     pub(super) fn new(moves: &'static dyn Moves, hardware: &'a Hardware, pace: Pace) -> Pacer<'a> {
-        Pacer { moves, hardware, pace, speed: None }
+        Pacer { moves, hardware, pace, speed: None, accelerates: Acceleration::of(hardware).is_some() }
     }
 
     /// Begins a move of these blocks.
@@ -104,7 +110,7 @@ impl<'a> Pacer<'a> {
         let parts = parts.map_err(|error| ProgramFailure::Block { line: block.of.place.line, error })?;
         let paced = |part| match self.moves.pacing() {
             Pacing::Hardware { reads_speed } => {
-                Paced { block: part, source: None, limited: reads_speed && own.limited }
+                Paced { block: part, source: None, limited: reads_speed && own.limited, pulses_per_blu: 1.0 }
             }
             pacing => self.by_source(block, part, pacing == Pacing::Feed),
         };
@@ -117,15 +123,18 @@ impl<'a> Pacer<'a> {
     /// numbers f_g = v · steps / length, so that the block takes the time that is wanted.
     fn by_source(&self, block: &PulseBlock, part: HardwareBlock, takes_feed: bool) -> Paced {
         let timed = !takes_feed || matches!(block.feed(), Feed::Inverse(_));
-        let hertz = |speed| if timed { speed * part.steps / part.length } else { speed };
+        let pulses_per_blu = if timed { part.steps / part.length } else { 1.0 };
+        let hertz = |speed| speed * pulses_per_blu;
         let fastest = Rate { word: FASTEST_RATE, limited: false };
         let Rate { word, limited } = self.speed.map_or(fastest, |speed| self.pace.nearest(hertz(speed), FASTEST_RATE));
         let hz = self.pace.frequency(word);
         let place = block.place();
         let [shown, speed] = PROGRAM_WORDS;
-        let words = part.words.set(PULSE_RATE, word).set(shown, place.number.unwrap_or(place.line));
+        let words = part.words.set(shown, place.number.unwrap_or(place.line));
+        // A machine that accelerates learns its speeds when those of the next blocks are known.
+        let words = if self.accelerates { words } else { words.set(PULSE_RATE, word) };
         let words = words.set(speed, self.shown_feed(part.steps, part.length, hz));
-        Paced { block: HardwareBlock { words, ..part }, source: Some((word, hz)), limited }
+        Paced { block: HardwareBlock { words, ..part }, source: Some((word, hz)), limited, pulses_per_blu }
     }
 
     /// The feed that the control shows of a block, in whole mm/min: the commanded one, or else what the pulse source gives.

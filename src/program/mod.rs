@@ -7,6 +7,8 @@
 mod control;
 mod estimate;
 mod feed;
+mod lookahead;
+mod planner;
 mod stream;
 mod survey;
 mod tally;

@@ -16,7 +16,7 @@ use crate::testbench::Testbench;
 use crate::waves::{probes, runs};
 
 /// What the wave of a program begins with: where the machine is, how fast it is to be, and in which block.
-const LEADING: [&str; 5] = ["axis_x.x", "axis_y.y", "program.feed", "program.block", "axis_z.z"];
+const LEADING: [&str; 6] = ["axis_x.x", "axis_y.y", "program.feed", "program.block", "axis_z.z", "pulse_source.v"];
 
 #[derive(Clone, Debug)]
 pub(super) enum Source {
@@ -31,6 +31,8 @@ pub(super) struct NcProgram {
     pub(super) preparation: Preparation,
     /// Feed of G00 in mm/min.
     pub(super) rapid: Option<f64>,
+    /// Speed in mm/min at which an axis can start and stop.
+    pub(super) jump: Option<f64>,
 }
 
 /// A machine that is ready to run.
@@ -60,7 +62,7 @@ impl Source {
 
 impl NcProgram {
     pub(super) fn new(file: PathBuf) -> NcProgram {
-        NcProgram { file, preparation: Preparation::default(), rapid: None }
+        NcProgram { file, preparation: Preparation::default(), rapid: None, jump: None }
     }
 
     /// An error of the text, with the file.
@@ -98,7 +100,7 @@ impl NcProgram {
     }
 
     fn pace(&self, simulation: &Simulation) -> Pace {
-        Pace { clock_hz: simulation.clock_hz, blu_mm: simulation.blu_mm, rapid: self.rapid }
+        Pace { clock_hz: simulation.clock_hz, blu_mm: simulation.blu_mm, rapid: self.rapid, jump: self.jump }
     }
 }
 

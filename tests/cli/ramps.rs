@@ -62,6 +62,10 @@ fn what_cannot_be_is_refused_with_a_remedy() {
         ("run ramp --to 12 --event 9:override=300", &["300", "0 to 200"]),
         ("run ramp --to 12 --event 9:single", &["single", "program"]),
         ("run ppc-line --to 5,3 --event 9:hold", &["ppc-line", "hold"]),
+        ("run dda-machine --to 12,5 --jerk 9mm/s3", &["9mm/s3", "--accel"]),
+        ("run dda-machine --to 12,5 --accel 16", &["16", "500mm/s2"]),
+        ("run dda-line --to 12,5 --accel 500mm/s2", &["dda-line does not take --accel"]),
+        ("run dda-machine --to 12,5 --accel 1e-30mm/s2", &["62 bits", "--clock-hz"]),
         ("sweep ramp --to 12 --csv -", &["displacements of one axis", "run"]),
     ] {
         refused(command, hints);

@@ -11,7 +11,8 @@ use stepwave_models::parts::PULSE_RATE;
 use stepwave_models::program::{FASTEST_SPEED, Moves, Size};
 use stepwave_models::{Hardware, Model, OnOverflow, Options, Preset, Promise, Words, catalogue};
 use stepwave_nc::{
-    Arc, Cause, Curve, Direction, Feed, Line, Place, Plane, PulseBlock, Rounder, Segment, SegmentShape, Side, ToolMove,
+    Arc, Cause, Curve, Direction, Feed, Line, PathControl, Place, Plane, PulseBlock, Rounder, Segment, SegmentShape,
+    Side, ToolMove,
 };
 
 use crate::reference::{self, EndPoint, Form, cim_arc, cim_line, dpm_line, mindev_arc, mindev_line, ppc_arc, ppc_line};
@@ -20,7 +21,15 @@ use crate::reference::{self, EndPoint, Form, cim_arc, cim_line, dpm_line, mindev
 fn tool_move(from: [f64; 3], to: [f64; 3], shape: SegmentShape) -> ToolMove {
     let segment = Segment { from, to, shape };
     let (place, cause) = (Place { line: 1, number: None }, Cause::Programmed);
-    ToolMove { place, segment, feed: Feed::Rapid, cause, programmed: segment, side: Side::On }
+    ToolMove {
+        place,
+        segment,
+        feed: Feed::Rapid,
+        cause,
+        programmed: segment,
+        side: Side::On,
+        path: PathControl::default(),
+    }
 }
 
 /// Gives the machine its blocks, each with this rate of the pulse source and as a block of its own.

@@ -1,5 +1,6 @@
 //! Whole programs: machines of every method, and what comes before them.
 
+mod acceleration;
 mod alone;
 mod command;
 mod curves;

@@ -106,6 +106,18 @@ pub enum Side {
     Right(f64),
 }
 
+/// How the end of a block is passed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum PathControl {
+    /// G61: exact stop.
+    Exact,
+    /// G64: continuous.
+    #[default]
+    Continuous,
+    /// G64 P: continuous, where the path could be left by this many BLU.
+    Within(f64),
+}
+
 /// A block of a program that moves the tool, as programmed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
@@ -119,6 +131,8 @@ pub struct Move {
     pub plane: Plane,
     /// The side at the end of the block.
     pub side: Side,
+    /// How its end is passed.
+    pub path: PathControl,
 }
 
 /// Why the tool moves.
@@ -149,4 +163,6 @@ pub struct ToolMove {
     pub programmed: Segment,
     /// The side and radius that the move keeps to.
     pub side: Side,
+    /// How its end is passed.
+    pub path: PathControl,
 }

@@ -38,12 +38,13 @@ mod pulses;
 mod quadrant;
 mod sector;
 mod spline;
+mod tangent;
 mod turn;
 
 pub use arc::Arc;
 pub use compensation::{CompensationError, CompensationErrorKind, Compensator, Corner, Scheme, WAITING_LIMIT};
 pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
-pub use contour::{Cause, Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove};
+pub use contour::{Cause, Feed, Move, PathControl, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove};
 pub use curve::{Curve, CurveType, Description, Drawn, OUTLINE_LIMIT};
 pub use error::{End, GeometryError};
 pub use gauge::{BatchGauge, Gauge};

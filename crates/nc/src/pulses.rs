@@ -6,8 +6,8 @@ use bow::Bow;
 use nearest::{Nearest, nearest};
 
 use crate::{
-    Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, Place, Plane, Point, Segment, SegmentShape, Side,
-    ToolMove,
+    Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, PathControl, Place, Plane, Point, Segment,
+    SegmentShape, Side, ToolMove,
 };
 
 /// The largest distance between the curve that a machine gets and the move in real numbers, in BLU, in both directions:
@@ -50,7 +50,15 @@ impl PulseBlock {
         let [start, end] = [from, to].map(|point| point.map(|c| c as f64));
         let segment = Segment { from: start, to: end, shape };
         let (place, cause) = (Place { line: 1, number: None }, Cause::Programmed);
-        let of = ToolMove { place, segment, feed: Feed::Rapid, cause, programmed: segment, side: Side::On };
+        let of = ToolMove {
+            place,
+            segment,
+            feed: Feed::Rapid,
+            cause,
+            programmed: segment,
+            side: Side::On,
+            path: PathControl::default(),
+        };
         Some(PulseBlock { of, plane, curve, from, to })
     }
 

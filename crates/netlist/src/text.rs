@@ -100,6 +100,7 @@ impl fmt::Display for Format {
             Format::Unsigned => f.write_str("unsigned"),
             Format::Signed => f.write_str("signed"),
             Format::Analog => f.write_str("analog"),
+            Format::Level => f.write_str("level"),
             Format::Binary => f.write_str("binary"),
             Format::Decimal => f.write_str("decimal"),
             Format::States(states) => {

@@ -36,10 +36,12 @@ impl Testbench {
         Ok(self)
     }
 
+    /// The input of this name: other signals may have it too.
     fn input(&self, action: Action, name: &str) -> Result<Port, ModelError> {
-        let missing = |_| ModelError::NoEvents { model: self.hardware.model, event: action.to_string() };
-        let port = Port::of(self.design().netlist(), name).map_err(missing)?;
-        let is_input = self.design().inputs().contains(&port.net);
-        if is_input { Ok(port) } else { Err(missing(ModelError::MissingPort(name.to_owned()))) }
+        let (netlist, inputs) = (self.design().netlist(), self.design().inputs());
+        let named = netlist.names.iter().find(|named| named.name == name && inputs.contains(&named.net));
+        let named =
+            named.ok_or_else(|| ModelError::NoEvents { model: self.hardware.model, event: action.to_string() })?;
+        Ok(Port { net: named.net, width: netlist.width(named.net), reading: named.format.reading() })
     }
 }

@@ -295,7 +295,7 @@ impl<'a, 'o> Run<'a, 'o> {
                 self.keep_state();
                 continue;
             }
-            match self.engine.run(self.left(), &mut self.rows) {
+            match self.engine.run(self.left().min(self.patience()), &mut self.rows) {
                 Stop::Net(net) if net > usize::from(buffered) => return Ok(Some(Ending::Trapped)),
                 // The first of several that are 1 is reported: a trap may hide another.
                 Stop::Net(_) if buffered && self.trapped() => return Ok(Some(Ending::Trapped)),
@@ -376,6 +376,11 @@ impl<'a, 'o> Run<'a, 'o> {
     pub(super) fn left(&self) -> u64 {
         let event = self.bench.events.get(self.events).map_or(u64::MAX, |event| event.clock - 1);
         self.limit.min(event).saturating_sub(self.engine.clock())
+    }
+
+    /// Clocks after which a machine that an operator may have stopped for ever is looked at.
+    fn patience(&self) -> u64 {
+        if self.bench.events.is_empty() { u64::MAX } else { 1 << 16 }
     }
 
     /// The run has taken all clocks that it may.

@@ -32,6 +32,7 @@ mod flag {
     pub(super) const SIGNED_ANALOG: &str = "@88420";
     /// Scaled to what is in view.
     pub(super) const SIGNED_ANALOG_IN_VIEW: &str = "@8420";
+    pub(super) const UNSIGNED_ANALOG: &str = "@88024";
     pub(super) const TRANSLATED: &str = "@2028";
     pub(super) const GROUP_OPEN: &str = "@800200";
     pub(super) const GROUP_CLOSE: &str = "@1000200";
@@ -216,7 +217,7 @@ fn longest_value(probe: &Probe) -> usize {
         }
         Format::Analog | Format::Signed => digits(bits - 1) + 1,
         Format::Decimal => bits.div_ceil(4) as usize,
-        Format::Unsigned => digits(bits),
+        Format::Unsigned | Format::Level => digits(bits),
         Format::Binary => bits as usize,
     }
 }
@@ -293,6 +294,14 @@ fn row(line: &mut impl FnMut(&str), view: &View<'_>, probe: &Probe, states: &[(&
             line(if view.scaled_in_view { flag::SIGNED_ANALOG_IN_VIEW } else { flag::SIGNED_ANALOG });
             line(&name);
             for _ in 1..analog_rows(view, probe) {
+                line(flag::HEIGHT);
+                line("-");
+            }
+        }
+        Format::Level => {
+            line(flag::UNSIGNED_ANALOG);
+            line(&name);
+            for _ in 1..USUAL_ROWS {
                 line(flag::HEIGHT);
                 line("-");
             }

@@ -3,8 +3,9 @@
 use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
+use crate::hardware::Hardware;
 use crate::machine::input_name;
-use crate::options::Radix;
+use crate::options::{ACCEL, Radix};
 
 /// Block loader and sequencer.
 ///
@@ -22,6 +23,8 @@ pub struct Block<'m> {
     registers: [Register<'m>; 4],
     /// 1 bit: this edge takes the words into a buffer in front of the registers, if there is one.
     write: Option<Signal<'m>>,
+    /// 1 bit each, where blocks may be run one by one: they are, and the next has not been started.
+    single: Option<[Signal<'m>; 2]>,
 }
 
 impl<'m> Block<'m> {
@@ -32,7 +35,7 @@ impl<'m> Block<'m> {
         let load = m.input("load", 1);
         let preset_position = load & m.input("preset_position", 1);
         let registers = ["busy", "done", "loaded", "stepped"].map(|name| m.reg(name, 1));
-        Block { words: m, load, preset_position, busy: registers[0].q, registers, write: None }
+        Block { words: m, load, preset_position, busy: registers[0].q, registers, write: None, single: None }
     }
 
     /// The unsigned load word of a register.
@@ -99,6 +102,18 @@ impl<'m> Block<'m> {
         held.q
     }
 
+    /// 1 bit: blocks are run one by one.
+    #[must_use]
+    pub fn single(&self, m: Scope<'m>) -> Signal<'m> {
+        self.single.map_or_else(|| m.lit(1, 0), |[single, _]| single)
+    }
+
+    /// 1 bit: blocks are run one by one, and the next has not been started.
+    #[must_use]
+    pub fn stopped(&self, m: Scope<'m>) -> Signal<'m> {
+        self.single.map_or_else(|| m.lit(1, 0), |[_, stopped]| stopped)
+    }
+
     /// Closes the sequencer. Each is 1 bit: `ready`, the registers are loaded after this edge; `step`, a step is
     /// completed at this edge; `last`, it is the last one.
     pub fn close(self, ready: Signal<'m>, step: Signal<'m>, last: Signal<'m>) {
@@ -123,6 +138,7 @@ impl<'m> Block<'m> {
 /// - `load` = 1 at an edge takes the words on the inputs into the buffer, which must be free: `full` rises.
 /// - `more`, an input: the host has a further block. `call`: it may write it. `at_end`: all is done.
 /// - A block begins, and the buffer is free again, at an edge at which it is full and nothing runs.
+/// - `single`, an input of a machine that accelerates: a block begins only after `start` = 1 while nothing runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Buffer<'m> {
     m: Scope<'m>,
@@ -132,17 +148,22 @@ pub struct Buffer<'m> {
     full: Register<'m>,
     registers: [Register<'m>; 4],
     more: Signal<'m>,
+    /// Inputs of the operator, and whether the next block is started.
+    operator: Option<([Signal<'m>; 2], Register<'m>)>,
 }
 
 impl<'m> Buffer<'m> {
     /// Ports and state in the scope `block`.
     #[must_use]
-    pub fn new(m: Scope<'m>) -> Buffer<'m> {
+    pub fn new(m: Scope<'m>, hardware: &Hardware) -> Buffer<'m> {
         let m = m.scope("block");
         let write = m.input("load", 1);
         let preset = write & m.input("preset_position", 1);
         let registers = ["busy", "done", "loaded", "stepped"].map(|name| m.reg(name, 1));
-        Buffer { m, write, preset, full: m.reg("full", 1), registers, more: m.input("more", 1) }
+        let (full, more) = (m.reg("full", 1), m.input("more", 1));
+        let operator = || (["single", "start"].map(|name| m.input(name, 1)), m.reg("started", 1));
+        let operator = hardware.get(&ACCEL).map(|_| operator());
+        Buffer { m, write, preset, full, registers, more, operator }
     }
 
     /// 1 bit: the buffer holds a block.
@@ -160,13 +181,18 @@ impl<'m> Buffer<'m> {
     /// The block loader that the buffer feeds. While `wait` (1 bit) is 1 the buffer is not ready yet.
     #[must_use]
     pub fn block(self, wait: Signal<'m>) -> Block<'m> {
-        let Buffer { m, write, preset, full, registers, more } = self;
+        let Buffer { m, write, preset, full, registers, more, operator } = self;
         let busy = registers[0].q;
-        let transfer = m.name("transfer", full.q & !wait & !busy);
         let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
+        let single = operator.map(|([single, _], started)| [single, m.name("stopped", single & !started.q)]);
+        let wait = single.map_or(wait, |[_, stopped]| wait | stopped);
+        let transfer = m.name("transfer", full.q & !wait & !busy);
+        if let Some(([_, start], started)) = operator {
+            started.when(transfer, no).when(start & !busy, yes).else_hold();
+        }
         full.when(write, yes).when(transfer, no).else_hold();
         m.name("call", more & !full.q);
         m.name("at_end", !more & !full.q & !busy);
-        Block { words: m, load: transfer, preset_position: preset, busy, registers, write: Some(write) }
+        Block { words: m, load: transfer, preset_position: preset, busy, registers, write: Some(write), single }
     }
 }

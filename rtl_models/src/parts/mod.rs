@@ -66,11 +66,13 @@ pub use minimum_deviation::{LeastDeviation, line_change};
 pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
 pub use phase_accumulator::{ACC, PhaseAccumulator, RATE};
 pub use point_comparison::{judged_by_sign, step_of_circle};
-pub use pulse_source::{FASTEST_RATE, PULSE_RATE, RATE_BITS, pulse_source, pulse_source_while};
+pub use pulse_source::{
+    FASTEST_RATE, PULSE_RATE, PULSES, RATE_BITS, RATIO, RATIO_BITS, RATIO_FRACTION, pulse_source, pulse_source_while,
+};
 pub use quadrant::{ArcKind, CCW, QUAD, next_quadrant, quadrant_register, x_grows};
-pub use ramp::{GAINS, LIMITS, PHASE, RISEN, Ramp, V, WHOLE_OVERRIDE};
+pub use ramp::{GAINS, LIMITS, PATH_GAINS, PHASE, RESTART, RISEN, Ramp, RampBits, RampEdge, V, WHOLE_OVERRIDE};
 pub use rate_multiplier::{COEFFICIENT, Q, RateMultiplier, Units};
-pub use s_curve::{CHANGE, GROWTH, LENGTH, PARTS, TICKS};
+pub use s_curve::{CHANGE, GROWTH, LENGTH, PARTS, SCurveBits, TICKS};
 pub use serial_divider::SerialDivider;
 pub use serial_multiplier::SerialMultiplier;
 pub use serial_root::SerialRoot;

@@ -2,7 +2,11 @@
 
 use stepwave_netlist::dsl::{Scope, Signal};
 
-use super::Block;
+use super::wide::Wide;
+use super::{Block, DownCounter, RESTART, Ramp, RampEdge, V};
+use crate::hardware::Hardware;
+use crate::options::Brake;
+use crate::program::Acceleration;
 use crate::registers::{Reg, Rule};
 
 /// Bits of the phase of a pulse source: a pulse comes `rate` / 2^32 times a clock.
@@ -13,33 +17,87 @@ pub const PULSE_RATE: Reg = Reg::new("rate", Rule::Bits(RATE_BITS + 1), "pulses 
 /// The greatest rate: a pulse every second clock.
 pub const FASTEST_RATE: u64 = 1 << (RATE_BITS - 1);
 
+/// Pulses of a block that accelerates.
+pub const PULSES: Reg =
+    Reg::new("pulses", Rule::Planned("as the blocks need"), "pulses of the source left of the block");
+
+/// Bits of a ratio of scales, and of its fraction.
+pub const RATIO_BITS: u32 = 32;
+/// Those of its fraction.
+pub const RATIO_FRACTION: u32 = 16;
+/// How many pulses a BLU has, to those in the block before.
+pub const RATIO: Reg =
+    Reg::new("ratio", Rule::Bits(RATIO_BITS), "pulses of a BLU, to those of the block before, in 2^-16");
+
 /// The pulse source f_g, a DDA on the clock: at every edge `rate` is added to `phase`, and the carry is its pulse.
 ///
 /// - `rate`, 33 bits: held for the whole block; at most 2^31, which is a pulse every second clock.
 /// - `phase`, 32 bits: continues from block to block, so that pulses keep their distance across the blocks.
 ///
 /// It does not count while no block runs and none waits, so that a pulse never meets a machine without a block: the
-/// invariant `no_pulse_is_lost`. Returns the pulse, 1 bit.
+/// invariant `no_pulse_is_lost`. With `--accel` it is a [`Ramp`]. Returns the pulse, 1 bit.
 #[must_use]
-pub fn pulse_source<'m>(m: Scope<'m>, block: &Block<'m>, waiting: Signal<'m>) -> Signal<'m> {
-    source(m, block, || block.busy | waiting)
+pub fn pulse_source<'m>(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>, waiting: Signal<'m>) -> Signal<'m> {
+    source(m, hardware, block, || block.busy | waiting & !block.stopped(m))
 }
 
 /// The same pulse source for an interpolator that is not always ready for a pulse: it does not count while `ready` (1
 /// bit) is 0, so that none is lost.
 #[must_use]
-pub fn pulse_source_while<'m>(m: Scope<'m>, block: &Block<'m>, ready: Signal<'m>) -> Signal<'m> {
-    source(m, block, || ready)
+pub fn pulse_source_while<'m>(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>, ready: Signal<'m>) -> Signal<'m> {
+    source(m, hardware, block, || ready)
 }
 
-fn source<'m>(m: Scope<'m>, block: &Block<'m>, runs: impl FnOnce() -> Signal<'m>) -> Signal<'m> {
+fn source<'m>(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>, runs: impl FnOnce() -> Signal<'m>) -> Signal<'m> {
     let m = m.scope("pulse_source");
+    let pulse = match Acceleration::of(hardware) {
+        None => constant(m, block, runs),
+        Some(acceleration) => accelerating(m, &acceleration, block, runs()),
+    };
+    m.invariant("no_pulse_is_lost", !pulse | block.busy);
+    pulse
+}
+
+/// At one rate for a whole block.
+fn constant<'m>(m: Scope<'m>, block: &Block<'m>, runs: impl FnOnce() -> Signal<'m>) -> Signal<'m> {
     let rate = block.held(m, PULSE_RATE.name(), RATE_BITS + 1);
     let phase = m.reg("phase", RATE_BITS);
     let runs = runs();
     let sum = m.name("sum", phase.q.extend(RATE_BITS + 1).wrapping_add(rate));
     phase.when(runs, sum.slice(0, RATE_BITS)).else_hold();
-    let pulse = m.name("tick", runs & sum.msb());
-    m.invariant("no_pulse_is_lost", !pulse | block.busy);
+    m.name("tick", runs & sum.msb())
+}
+
+/// Along a ramp. `pulses` counts those of the block down to 0: a block of which they are an estimate ends by itself.
+///
+/// After a block with a hold or an override the next one does not begin at the speed that was planned, but at the one that
+/// there is, in its own scale: the speed times `ratio`, in 2^-16.
+fn accelerating<'m>(m: Scope<'m>, by: &Acceleration, block: &Block<'m>, runs: Signal<'m>) -> Signal<'m> {
+    let bits = by.bits();
+    let pulses = DownCounter::new(m, block, PULSES.name(), by.pulse_bits());
+    let [planned, after_stop] = [V, RESTART].map(|register| block.word(register.name(), bits.v));
+    let restart = m.reg(RESTART.name(), bits.v);
+    restart.when(block.load, after_stop).else_hold();
+    let single = block.single(m);
+    let ramp = Ramp::new(m, bits, block).between_blocks(restart.q, single);
+
+    let disturbed = m.reg("disturbed", 1);
+    disturbed.when(ramp.event(), m.lit(1, 1)).when(block.load, m.lit(1, 0)).else_hold();
+    let by_hand = disturbed.q | ramp.event();
+    let present = scaled(m, ramp.speed(), block.word(RATIO.name(), RATIO_BITS), planned);
+    let first = single.mux(after_stop, by_hand.mux(present, planned));
+
+    let pulse = ramp.pulse(runs);
+    let tick = runs & block.busy & !block.load;
+    ramp.close(RampEdge { preset: None, first, by_hand, runs, tick, left: pulses.left() }, Brake::Square, None);
+    let _ = pulses.count_pulses(pulse);
     pulse
+}
+
+/// A speed times a ratio in 2^-16, at most another speed.
+fn scaled<'m>(m: Scope<'m>, speed: Signal<'m>, ratio: Signal<'m>, most: Signal<'m>) -> Signal<'m> {
+    let wide = Wide::new(m, speed.bits() + RATIO_BITS);
+    let product = wide.product(&wide.of(speed), ratio);
+    let fits = wide.at_most(&product, &wide.shifted(most, RATIO_FRACTION));
+    fits.mux(wide.slice(&product, RATIO_FRACTION, speed.bits()), most)
 }

@@ -1,12 +1,13 @@
 //! Acceleration and deceleration of a pulse source.
 
+use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::Block;
-use super::s_curve::SCurve;
+use super::s_curve::{SCurve, SCurveBits};
 use super::wide::Wide;
 use crate::hardware::Hardware;
-use crate::options::{BRAKE, Brake, JERK};
+use crate::options::{BRAKE, Brake};
 use crate::registers::{AS_NEEDED, N, Reg, With};
 
 /// Phase of the pulses.
@@ -18,10 +19,44 @@ pub const LIMITS: Reg<3> = Reg::each(["vs", "vc", "ve"], N, "start, drive and st
 /// Acceleration and deceleration.
 pub const GAINS: Reg<2> =
     Reg::each(["a", "d"], AS_NEEDED, "acceleration and deceleration, in 2^-n pulses a tick each tick").hidden();
+/// The same of a machine that runs programs, whose methods have an `a` of their own.
+pub const PATH_GAINS: Reg<2> = Reg::each(["accel", "decel"], AS_NEEDED, "acceleration and deceleration").hidden();
 /// Pulses of the acceleration.
 pub const RISEN: Reg = Reg::new("r", AS_NEEDED, "pulses of the acceleration").when(&BY_COUNT);
 
 static BY_COUNT: With<Brake> = With(&BRAKE, |brake| *brake == Brake::Count);
+
+/// Speed after a stop between blocks.
+pub const RESTART: Reg = Reg::new("vr", N, "speed after a stop between blocks").hidden();
+
+/// Widths of the registers of a ramp, in bits.
+#[derive(Clone, Copy, Debug)]
+pub struct RampBits {
+    /// The phase.
+    pub phase: u32,
+    /// The speed and its limits; at most those of the phase.
+    pub v: u32,
+    /// The greatest speed, whatever the override.
+    pub most: u64,
+    /// Acceleration and deceleration: the names of their registers, and their widths.
+    pub gains: [(&'static str, u32); 2],
+    /// Those of S curves.
+    pub curve: Option<SCurveBits>,
+}
+
+impl RampBits {
+    /// Of hardware that has these registers in its list.
+    pub(crate) fn of(hardware: &Hardware) -> RampBits {
+        let v = hardware.bits(V);
+        RampBits {
+            phase: hardware.bits(PHASE),
+            v,
+            most: u64::MAX >> (64 - v),
+            gains: [0, 1].map(|index| GAINS.of(index)).map(|gain| (gain.name(), hardware.bits(gain))),
+            curve: SCurveBits::of(hardware),
+        }
+    }
+}
 
 /// Override of 100 %, in the units of its input.
 pub const WHOLE_OVERRIDE: u32 = 128;
@@ -32,7 +67,7 @@ pub const WHOLE_OVERRIDE: u32 = 128;
 /// - `phase`, n bits: continues from block to block.
 /// - `v`, up to n bits: loaded with `vs`.
 /// - `vs`, `vc`, `ve`, `a`, `d`: held for the whole block.
-/// - `hold`, an input of 1 bit: the target is 0. `trim`, an input of 9 bits in two's complement: the override in 128ths beyond
+/// - `hold`, an input of 1 bit in the scope `operator`: the target is 0. `trim`, an input of 9 bits in two's complement: the override in 128ths beyond
 ///   100 %.
 ///
 /// **Braking.** `square` brakes when the ramp down from the speed of the next tick would be longer than what remains:
@@ -42,11 +77,16 @@ pub const WHOLE_OVERRIDE: u32 = 128;
 pub struct Ramp<'m> {
     m: Scope<'m>,
     block: Block<'m>,
+    bits: RampBits,
     phase: Register<'m>,
     v: Register<'m>,
     sum: Signal<'m>,
     limits: [Signal<'m>; 3],
     gains: [Signal<'m>; 2],
+    /// Speeds at which it starts after a hold, and stops for one.
+    rest: [Signal<'m>; 2],
+    /// 1 bit: the block ends for a stop.
+    single: Option<Signal<'m>>,
     /// 1 bit: the target is 0 whatever else is wanted.
     hold: Signal<'m>,
     trim: Signal<'m>,
@@ -55,20 +95,25 @@ pub struct Ramp<'m> {
 impl<'m> Ramp<'m> {
     /// The registers and inputs.
     #[must_use]
-    pub fn new(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>) -> Ramp<'m> {
-        let [phase, v] = [PHASE, V].map(|register| hardware.reg(m, register));
-        let n = phase.q.bits();
+    pub fn new(m: Scope<'m>, bits: RampBits, block: &Block<'m>) -> Ramp<'m> {
+        let n = bits.phase;
+        let (phase, v) = (m.reg(PHASE.name(), n), m.reg(V.name(), bits.v).shown(Format::Level));
+        let operator = m.scope("operator");
         let sum = m.name("sum", phase.q.extend(n + 1).wrapping_add(v.q.extend(n + 1)));
+        let limits = [0, 1, 2].map(|index| block.held(m, LIMITS.of(index).name(), bits.v));
         Ramp {
             m,
             block: *block,
+            bits,
             phase,
             v,
             sum,
-            limits: [0, 1, 2].map(|index| hardware.held(m, block, LIMITS.of(index))),
-            gains: [0, 1].map(|index| hardware.held(m, block, GAINS.of(index))),
-            hold: m.input("hold", 1),
-            trim: m.input_signed("trim", 9),
+            limits,
+            rest: [limits[0], limits[2]],
+            single: None,
+            gains: bits.gains.map(|(name, bits)| block.held(m, name, bits)),
+            hold: operator.input("hold", 1),
+            trim: operator.input_signed("trim", 9),
         }
     }
 
@@ -78,32 +123,56 @@ impl<'m> Ramp<'m> {
         self.m.name("pulse", runs & self.sum.msb())
     }
 
-    /// Closes it. `preset` (1 bit) loads the phase with its word; `runs` (1 bit) counts; at an edge with `tick` = 1
-    /// (1 bit) the speed goes on, with `left` pulses of the block to come before that edge.
-    pub fn close(self, hardware: &Hardware, preset: Signal<'m>, runs: Signal<'m>, tick: Signal<'m>, left: Signal<'m>) {
-        let (m, block) = (self.m, &self.block);
+    /// The same ramp in front of blocks that follow each other at speed: from a hold it starts, and to one it stops, at
+    /// `rest`; at an edge with `single` = 1 (1 bit) it ends its block for a stop.
+    #[must_use]
+    pub fn between_blocks(mut self, rest: Signal<'m>, single: Signal<'m>) -> Ramp<'m> {
+        (self.rest, self.single) = ([rest; 2], Some(single));
+        self.limits[2] = self.m.name("end", single.mux(rest, self.limits[2]));
+        self
+    }
+
+    /// 1 bit: a hold, an override or a stop after the block is in force.
+    #[must_use]
+    pub fn event(&self) -> Signal<'m> {
+        let event = self.hold | self.trim.is_nonzero();
+        self.single.map_or(event, |single| event | single)
+    }
+
+    /// The speed, unsigned.
+    #[must_use]
+    pub fn speed(&self) -> Signal<'m> {
+        self.v.q
+    }
+
+    /// Closes it. At a load the phase takes its word, if there is a `preset`, and the speed its own, `first`; an edge with `runs` =
+    /// 1 (1 bit) counts; at one with `tick` = 1 (1 bit) the speed changes, with `left` pulses of the block before it.
+    pub fn close(self, by: RampEdge<'m>, brake: Brake, risen: Option<Register<'m>>) {
+        let (m, block, RampEdge { preset, first, by_hand, runs, tick, left }) = (self.m, &self.block, by);
         let remaining = Remaining::new(&self, left);
         let target = self.target();
         let wanted = m.name("wanted", self.towards(target));
-        let brake = match hardware.get(&BRAKE) {
-            Brake::Square => self.brake_by_square(&remaining, wanted),
-            Brake::Count => self.brake_by_count(hardware, tick, left, wanted),
-        };
         let braked = least(wanted, self.slower(self.limits[2]));
+        let brake = match (brake, risen) {
+            (Brake::Count, Some(risen)) => self.brake_by_count(risen, tick, left, [wanted, braked]),
+            _ => self.brake_by_square(&remaining, wanted),
+        };
         let trapezoid = m.name("brake", brake).mux(braked, wanted);
-        let next = match hardware.get(&JERK) {
+        let next = match self.bits.curve {
             None => trapezoid,
-            Some(_) => {
-                let event = self.hold | self.trim.is_nonzero();
-                let curve = SCurve::new(m.scope("s_curve"), hardware, block);
-                let speed = [self.v.q, self.limits[2]];
+            Some(bits) => {
+                let curve = SCurve::new(m.scope("s_curve"), bits, block);
                 let down = remaining.is_within(&self, curve.length());
-                curve.close(tick, speed, down, event, trapezoid)
+                let single = self.single.unwrap_or_else(|| m.lit(1, 0));
+                curve.close(tick, [self.v.q, self.limits[2]], down, [by_hand, self.event(), single], trapezoid)
             }
         };
-        self.v.when(block.load, hardware.word(block, V)).when(tick, next).else_hold();
-        let n = self.phase.q.bits();
-        self.phase.when(preset, hardware.word(block, PHASE)).when(runs, self.sum.slice(0, n)).else_hold();
+        self.v.when(block.load, first).when(tick, next).else_hold();
+        let sum = self.sum.slice(0, self.bits.phase);
+        match preset {
+            Some(preset) => self.phase.when(block.load, preset).when(runs, sum).else_hold(),
+            None => self.phase.when(runs, sum).else_hold(),
+        }
     }
 
     /// The speed to go to: vc times the override, at most what the register holds; 0 on hold.
@@ -114,8 +183,8 @@ impl<'m> Ramp<'m> {
         let share = whole.wrapping_add(self.trim.extend(10)).as_unsigned().slice(0, 9);
         let product = self.limits[1].extend(wide).wrapping_mul(share.extend(wide));
         let scaled = product.slice(WHOLE_OVERRIDE.trailing_zeros(), bits + 1);
-        let most = scaled.msb().mux(m.lit(bits, u64::MAX >> (64 - bits)), scaled.slice(0, bits));
-        m.name("target", self.hold.mux(m.lit(bits, 0), most))
+        let most = m.lit(bits + 1, self.bits.most);
+        m.name("target", self.hold.mux(m.lit(bits, 0), least(scaled, most).slice(0, bits)))
     }
 
     /// The speed of the next tick without braking.
@@ -124,9 +193,9 @@ impl<'m> Ramp<'m> {
         let [a, _] = self.gains;
         let wide = bits.max(a.bits()) + 1;
         let faster = least(v.extend(wide).wrapping_add(a.extend(wide)), target.extend(wide)).slice(0, bits);
-        let rising = v.is_zero().mux(least(self.limits[0], target), faster);
+        let rising = v.is_zero().mux(least(self.rest[0], target), faster);
         // Below the stop speed there is nothing but to stand.
-        let stops = target.is_zero() & self.falls_below(self.limits[2]);
+        let stops = target.is_zero() & self.falls_below(self.rest[1]);
         let falling = stops.mux(self.m.lit(bits, 0), self.slower(target));
         v.less_than(target).mux(rising, target.less_than(v).mux(falling, v))
     }
@@ -156,16 +225,15 @@ impl<'m> Ramp<'m> {
 
     fn brake_by_count(
         &self,
-        hardware: &Hardware,
+        risen: Register<'m>,
         tick: Signal<'m>,
         left: Signal<'m>,
-        wanted: Signal<'m>,
+        [wanted, braked]: [Signal<'m>; 2],
     ) -> Signal<'m> {
-        let risen = hardware.reg(self.m, RISEN);
         let bits = left.bits().max(risen.q.bits()) + 1;
         let one = self.m.lit(bits, 1);
         let brake = !risen.q.extend(bits).wrapping_add(one).less_than(left.extend(bits));
-        let next = brake.mux(least(wanted, self.slower(self.limits[2])), wanted);
+        let next = brake.mux(braked, wanted);
         let carry = self.sum.msb().extend(risen.q.bits());
         let up = tick & self.v.q.less_than(next);
         let down = tick & next.less_than(self.v.q);
@@ -174,6 +242,23 @@ impl<'m> Ramp<'m> {
         risen.when(self.block.load, none).when(up, rising).when(down, risen.q.saturating_sub(carry)).else_hold();
         brake
     }
+}
+
+/// What acts on a ramp at an edge.
+#[derive(Clone, Copy, Debug)]
+pub struct RampEdge<'m> {
+    /// The phase that a load sets, if it does.
+    pub preset: Option<Signal<'m>>,
+    /// The speed that a load sets.
+    pub first: Signal<'m>,
+    /// 1 bit: a load begins a block that is a trapezoid whatever else is planned.
+    pub by_hand: Signal<'m>,
+    /// 1 bit: the phase counts.
+    pub runs: Signal<'m>,
+    /// 1 bit: the speed changes.
+    pub tick: Signal<'m>,
+    /// Pulses of the block that are left, unsigned.
+    pub left: Signal<'m>,
 }
 
 /// The lesser of two unsigned numbers.

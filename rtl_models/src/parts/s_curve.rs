@@ -20,9 +20,39 @@ pub const PARTS: Reg<4> =
         .hidden()
         .when(&BY_JERK);
 /// Length of the ramp down.
-pub const LENGTH: Reg = Reg::new("b", AS_NEEDED, "length of the ramp down, in 2^-n pulses").hidden().when(&BY_JERK);
+pub const LENGTH: Reg =
+    Reg::new("length", AS_NEEDED, "length of the ramp down, in 2^-n pulses").hidden().when(&BY_JERK);
 
 static BY_JERK: With<Option<Quantity>> = With(&JERK, Option::is_some);
+
+/// Widths of the registers of S curves, in bits.
+#[derive(Clone, Copy, Debug)]
+pub struct SCurveBits {
+    /// Acceleration of a tick.
+    pub change: u32,
+    /// Ticks of a ramp.
+    pub ticks: u32,
+    /// Jerks.
+    pub growth: [u32; 2],
+    /// Ticks of the parts of both ramps.
+    pub parts: [u32; 4],
+    /// Length of the ramp down.
+    pub length: u32,
+}
+
+impl SCurveBits {
+    /// Of hardware that has these registers in its list; `None` without a jerk.
+    pub(super) fn of(hardware: &Hardware) -> Option<SCurveBits> {
+        hardware.get(&JERK)?;
+        Some(SCurveBits {
+            change: hardware.bits(CHANGE),
+            ticks: hardware.bits(TICKS),
+            growth: [0, 1].map(|ramp| hardware.bits(GROWTH.of(ramp))),
+            parts: [0, 1, 2, 3].map(|part| hardware.bits(PARTS.of(part))),
+            length: hardware.bits(LENGTH),
+        })
+    }
+}
 
 /// A third-order DDA in front of a speed: a ramp is 2m + h ticks, in the first m of which `av` grows by the jerk, stays for
 /// h, and in the last m falls again, while v goes by `av`.
@@ -46,18 +76,18 @@ pub(super) struct SCurve<'m> {
 }
 
 impl<'m> SCurve<'m> {
-    pub(super) fn new(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>) -> SCurve<'m> {
+    pub(super) fn new(m: Scope<'m>, bits: SCurveBits, block: &Block<'m>) -> SCurve<'m> {
         SCurve {
             m,
             block: *block,
-            av: hardware.reg(m, CHANGE),
-            k: hardware.reg(m, TICKS),
+            av: m.reg(CHANGE.name(), bits.change),
+            k: m.reg(TICKS.name(), bits.ticks),
             falling: m.reg("falling", 1),
             manual: m.reg("manual", 1),
-            growth: [0, 1].map(|ramp| hardware.held(m, block, GROWTH.of(ramp))),
-            parts: [0, 1, 2, 3].map(|part| hardware.held(m, block, PARTS.of(part))),
-            first: hardware.word(block, TICKS),
-            length: hardware.held(m, block, LENGTH),
+            growth: [0, 1].map(|ramp| block.held(m, GROWTH.of(ramp).name(), bits.growth[ramp])),
+            parts: [0, 1, 2, 3].map(|part| block.held(m, PARTS.of(part).name(), bits.parts[part])),
+            first: block.word(TICKS.name(), bits.ticks),
+            length: block.held(m, LENGTH.name(), bits.length),
         }
     }
 
@@ -67,22 +97,22 @@ impl<'m> SCurve<'m> {
     }
 
     /// Closes it, with `speed` as v and ve, `near` (1 bit) where the ramp down must begin, `event` (1 bit) while a hold or an
-    /// override is in force, and the speed of the next tick that the `trapezoid` would have. Returns that speed.
+    /// override is in force, `loaded_by_hand` (1 bit) where a block begins as a trapezoid, `stop` (1 bit) where it is to end for a stop, and the speed of the next tick that the `trapezoid` would have. Returns that speed.
     pub(super) fn close(
         self,
         tick: Signal<'m>,
         [v, ve]: [Signal<'m>; 2],
         near: Signal<'m>,
-        event: Signal<'m>,
+        [loaded_by_hand, event, stop]: [Signal<'m>; 3],
         trapezoid: Signal<'m>,
     ) -> Signal<'m> {
         let SCurve { m, block, av, k, falling, manual, growth, parts, .. } = self;
         let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
         let running = k.q.is_nonzero();
-        let by_hand = m.name("by_hand", manual.q | event & !running);
+        let by_hand = m.name("by_hand", manual.q | event & !running | stop);
         let begins = m.name("down", !by_hand & !running & ve.less_than(v) & near);
         let down = falling.q | begins;
-        manual.when(block.load, no).when(tick & by_hand, yes).else_hold();
+        manual.when(block.load, loaded_by_hand).when(tick & by_hand, yes).else_hold();
         falling.when(block.load, no).when(tick & begins, yes).else_hold();
 
         // Ticks of the ramp from this one on.

@@ -49,6 +49,18 @@ impl<'m> Wide<'m> {
         self.shifted(signal, 0)
     }
 
+    /// `bits` bits of a number from bit `low` upwards.
+    #[must_use]
+    pub(super) fn slice(&self, number: &[Signal<'m>], low: u32, bits: u32) -> Signal<'m> {
+        let part = |(index, &word): (u32, &Signal<'m>)| {
+            let from = index * self.word;
+            let [first, end] = [low.max(from), (low + bits).min(from + self.word)];
+            (first < end).then(|| word.slice(first - from, end - first))
+        };
+        let parts = (0..).zip(number).filter_map(part);
+        parts.reduce(|below, part| part.concat(below)).unwrap_or_else(|| self.m.lit(bits, 0))
+    }
+
     /// The sum, which must have the bits of these numbers.
     #[must_use]
     pub(super) fn sum(&self, a: &[Signal<'m>], b: &[Signal<'m>]) -> Number<'m> {

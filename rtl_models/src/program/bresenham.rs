@@ -19,7 +19,7 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::model::Model;
-use crate::options::{COMPARE, FORM};
+use crate::options::{ACCEL, COMPARE, FORM, JERK, ON_OVERFLOW, WIDTH};
 use crate::parts::{Buffer, pulse_source_while};
 use crate::plan::Plan;
 
@@ -30,12 +30,13 @@ pub static MODEL: Model = Model {
     method: bresenham::MODEL.method,
     source: bresenham::MODEL.source,
     registers: bresenham::MODEL.registers,
-    options: bresenham::MODEL.options,
+    options: &[&WIDTH, &bresenham::FORMS, &bresenham::COMPARISONS, &ON_OVERFLOW, &ACCEL, &JERK],
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
         arcs: None,
         direct: false,
         plan,
+        most_steps: |size, _| size.magnitude,
         load,
         error_bound: |hardware, block| {
             let right = bresenham::compares_right(hardware.get(&FORM), hardware.get(&COMPARE));
@@ -53,8 +54,8 @@ fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    let block = Buffer::new(m).block(m.lit(1, 0));
-    let tick = pulse_source_while(m, &block, block.busy);
+    let block = Buffer::new(m, hardware).block(m.lit(1, 0));
+    let tick = pulse_source_while(m, hardware, &block, block.busy);
     program_words(m, &block, hardware);
     bresenham::interpolator(m, hardware, block, Some(tick));
 }

@@ -19,14 +19,14 @@ use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::frame::{Frame, MODE};
-use super::{HardwareBlock, Paced, Size, planar};
+use super::{HardwareBlock, Paced, Size, planar, power};
 use crate::claims::{Claims, Region};
 use crate::dda_line;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::model::Model;
-use crate::options::{NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
+use crate::options::{ACCEL, JERK, NORMALIZE, ON_OVERFLOW, PRESET, Preset, WIDTH};
 use crate::parts::{
     Buffer, END, Iteration, JR, JV, PLANE, POSITION, QUAD, WHOLE, integrator, shifted_left, up_down_counter,
 };
@@ -49,12 +49,13 @@ pub static MODEL: Model = Model {
     method: dda_line::MODEL.method,
     source: dda_line::MODEL.source,
     registers: &[&MODE, &PLANE, &QUAD, &(JV.pair(), JR.pair()), &UNIT, &END.pair(), &WHOLE, &POSITION],
-    options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N"), &NORMALIZE, &ON_OVERFLOW],
+    options: &[&WIDTH, &PRESET.about("half (default) | zero | full | N"), &NORMALIZE, &ON_OVERFLOW, &ACCEL, &JERK],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: Interpolates::Moves(Paced {
         arcs: Some(CROSSING),
         direct: false,
         plan,
+        most_steps: |_, plan| 2_u64.saturating_mul(power(plan.bits(JV.of(0)))),
         load,
         error_bound: |hardware, block| {
             // Each axis of a line is rounded to the nearest, or cut; an arc has no promise.
@@ -113,7 +114,7 @@ fn normalized<'m>(m: Scope<'m>, buffer: &Buffer<'m>, bits: u32, normalize: bool)
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let bits = hardware.bits(JV.of(0));
-    let buffer = Buffer::new(m);
+    let buffer = Buffer::new(m, hardware);
     let next = normalized(m, &buffer, bits, hardware.get(&NORMALIZE));
     let frame = Frame::new(m, hardware, buffer, next.shifting);
     let block = frame.block;

@@ -13,7 +13,7 @@ use stepwave_nc::PulseBlock;
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::program_words;
-use super::{HardwareBlock, Paced, Size, planar};
+use super::{HardwareBlock, Paced, Size, planar, power};
 use crate::claims::{Claims, Region};
 use crate::dpm_line;
 use crate::error::ModelError;
@@ -21,7 +21,7 @@ use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::model::Model;
-use crate::options::{END_POINT, EndPoint, ON_OVERFLOW, Radix, WIDTH};
+use crate::options::{ACCEL, END_POINT, EndPoint, JERK, ON_OVERFLOW, Radix, WIDTH};
 use crate::parts::{Buffer, COEFFICIENT, POSITION, Q, RateMultiplier, SIGN, Units, axis_scope, pulse_source};
 use crate::plan::Plan;
 
@@ -32,12 +32,13 @@ pub static MODEL: Model = Model {
     method: dpm_line::MODEL.method,
     source: dpm_line::MODEL.source,
     registers: &[&Q, &COEFFICIENT, &POSITION],
-    options: &[&WIDTH, &ON_OVERFLOW],
+    options: &[&WIDTH, &ON_OVERFLOW, &ACCEL, &JERK],
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
         arcs: None,
         direct: false,
         plan,
+        most_steps: |_, plan| power(plan.bits(Q)),
         load,
         error_bound: |hardware, block| {
             let moving = (0..3).filter(|&axis| block.from[axis] != block.to[axis]);
@@ -60,9 +61,9 @@ fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let bits = hardware.bits(Q);
-    let buffer = Buffer::new(m);
+    let buffer = Buffer::new(m, hardware);
     let block = buffer.block(m.lit(1, 0));
-    let step = m.name("step", pulse_source(m, &block, buffer.full()) & block.busy);
+    let step = m.name("step", pulse_source(m, hardware, &block, buffer.full()) & block.busy);
     program_words(m, &block, hardware);
     let units = Units { radix: Radix::Binary, bits, count: 1 };
     let counter = RateMultiplier::new(m.scope("counter"), &block, Q.name(), units, step);

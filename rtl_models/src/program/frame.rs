@@ -41,7 +41,7 @@ impl<'m> Frame<'m> {
     /// The registers. The block waits in its buffer while `wait` (1 bit) is 1.
     pub(super) fn new(m: Scope<'m>, hardware: &Hardware, buffer: Buffer<'m>, wait: Signal<'m>) -> Frame<'m> {
         let block = buffer.block(wait);
-        let step = pulse_source(m, &block, buffer.full() & !wait);
+        let step = pulse_source(m, hardware, &block, buffer.full() & !wait);
         program_words(m, &block, hardware);
         // One bit each, as viewers show no text for a single bit.
         let modes = [(0, "NONE"), (1, "LINE"), (2, "ARC")].map(|(value, name)| (value, name.to_owned()));
@@ -106,7 +106,7 @@ pub(super) fn program_words<'m>(m: Scope<'m>, block: &Block<'m>, hardware: &Hard
 
 /// A frame with a buffer that is ready as soon as it is full.
 pub(super) fn plain<'m>(m: Scope<'m>, hardware: &Hardware) -> Frame<'m> {
-    Frame::new(m, hardware, Buffer::new(m), m.lit(1, 0))
+    Frame::new(m, hardware, Buffer::new(m, hardware), m.lit(1, 0))
 }
 
 /// The displacement of each axis in a block, in BLU.

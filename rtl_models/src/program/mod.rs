@@ -6,6 +6,7 @@
 //! Every step is one clock, and the clock after the last step of a block loads the next, while the phase of the pulse
 //! source continues: pulses keep their distance across blocks.
 
+mod acceleration;
 pub mod bresenham;
 pub mod cim;
 pub mod dda;
@@ -15,6 +16,8 @@ pub mod mindev;
 mod planar;
 pub mod ppc;
 pub mod stepgen;
+
+pub use acceleration::{Acceleration, Profile};
 
 use std::fmt;
 
@@ -84,6 +87,11 @@ impl HardwareBlock {
     fn has_pulses(&self) -> bool {
         self.words.get(WHOLE).is_some_and(|pulses| pulses > 0)
     }
+}
+
+/// 2^bits.
+fn power(bits: u32) -> u64 {
+    1_u64.checked_shl(bits).unwrap_or(u64::MAX)
 }
 
 /// What sets the feed of a machine.
@@ -160,6 +168,8 @@ pub struct Paced {
     ///
     /// An error names a width or a value that cannot be.
     pub plan: fn(&Size, &mut Plan) -> Result<(), ModelError>,
+    /// Most steps of a line or a sector.
+    pub most_steps: fn(&Size, &Plan) -> u64,
     /// What the machine is loaded with for a block of the program, in order; all words but the rate of the pulse source.
     pub load: fn(&PulseBlock, &Hardware) -> Vec<HardwareBlock>,
     /// Greatest distance from a curve whose ends lie on it that the method promises, in BLU, if it promises one.
@@ -184,7 +194,8 @@ impl Moves for Paced {
     }
 
     fn plan(&self, size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
-        (self.plan)(size, plan)
+        (self.plan)(size, plan)?;
+        acceleration::plan(plan, (self.most_steps)(size, plan))
     }
 
     fn words(&self, hardware: &Hardware, block: &PulseBlock, _: u64) -> Result<Vec<HardwareBlock>, ModelError> {
@@ -217,7 +228,11 @@ impl Paced {
         let [number, feed] = PROGRAM_WORDS;
         let blocks = self.block(curve).map(|block| (self.load)(&block, hardware)).unwrap_or_default();
         let loaded = |(index, block): (i128, HardwareBlock)| {
-            let words = block.words.set(PULSE_RATE, FASTEST_RATE).set(number, index).set(feed, 0);
+            let words = match Acceleration::of(hardware) {
+                None => block.words.set(PULSE_RATE, FASTEST_RATE),
+                Some(by) => block.words.clone().and(by.alone(block.steps, block.length)),
+            };
+            let words = words.set(number, index).set(feed, 0);
             let from = curve.from().iter().enumerate();
             from.fold(words, |words, (axis, &from)| words.set(POSITION.of(axis), from))
         };
@@ -281,7 +296,7 @@ impl Model {
                 self.name
             )));
         }
-        (moves.plan)(&Size::of(moves.crossing(), block), &mut plan)?;
+        moves.plan(&Size::of(moves.crossing(), block), &mut plan)?;
         let hardware = plan.finish()?;
         // A program divides a helix, so that its third axis strays by less than a pulse; alone it is not divided.
         let divided = !matches!(block.curve, Curve::Helix(_));

@@ -43,7 +43,15 @@ pub(super) const fn judging(
     load: fn(&PulseBlock, &Hardware) -> Vec<HardwareBlock>,
     error_bound: fn(&Hardware, &PulseBlock) -> Option<f64>,
 ) -> Interpolates {
-    Interpolates::Moves(Paced { arcs: Some(crossing), direct: true, plan: judged, load, error_bound })
+    Interpolates::Moves(Paced {
+        arcs: Some(crossing),
+        direct: true,
+        plan: judged,
+        // Those of both axes of a sector.
+        most_steps: |size, _| size.magnitude.saturating_mul(2),
+        load,
+        error_bound,
+    })
 }
 
 /// Plans a machine that judges its steps by a deviation `f`, with the coordinates or displacements `xi` and `yi`.

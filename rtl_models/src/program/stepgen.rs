@@ -14,13 +14,14 @@ use stepwave_nc::PulseBlock;
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::{delta, program_words};
-use super::{HardwareBlock, Paced, Size};
+use super::{HardwareBlock, Paced, Size, power};
 use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::model::Model;
-use crate::parts::{Buffer, pulse_source_while};
+use crate::options::{ACCEL, JERK, ON_OVERFLOW, WIDTH};
+use crate::parts::{Buffer, E, pulse_source_while};
 use crate::plan::Plan;
 use crate::stepgen;
 
@@ -31,12 +32,13 @@ pub static MODEL: Model = Model {
     method: stepgen::MODEL.method,
     source: stepgen::MODEL.source,
     registers: stepgen::MODEL.registers,
-    options: stepgen::MODEL.options,
+    options: &[&WIDTH, &stepgen::PART_OF_A_STEP, &stepgen::PICKED, &stepgen::TIMES, &ON_OVERFLOW, &ACCEL, &JERK],
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
         arcs: None,
         direct: false,
         plan,
+        most_steps: |_, plan| power(plan.bits(E)),
         load,
         error_bound: |hardware, block| {
             let moving = delta(block).iter().filter(|travel| **travel != 0).count();
@@ -54,7 +56,7 @@ fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
 }
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
-    let block = Buffer::new(m).block(m.lit(1, 0));
+    let block = Buffer::new(m, hardware).block(m.lit(1, 0));
     program_words(m, &block, hardware);
     stepgen::interpolator(m, hardware, block, Some(pulse_source_while));
 }

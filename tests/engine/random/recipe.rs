@@ -141,7 +141,14 @@ fn format() -> impl Strategy<Value = Format> {
     let odd = prop::sample::select(&ODD_NAMES[..]).prop_map(str::to_owned);
     let state_name = prop_oneof!["[A-Z]{1,6}", odd];
     let states = prop::collection::vec((value(), state_name), 0..4).prop_map(Format::States);
-    prop_oneof![Just(Format::Unsigned), Just(Format::Signed), Just(Format::Analog), Just(Format::Binary), states]
+    prop_oneof![
+        Just(Format::Unsigned),
+        Just(Format::Signed),
+        Just(Format::Analog),
+        Just(Format::Level),
+        Just(Format::Binary),
+        states
+    ]
 }
 
 fn register() -> impl Strategy<Value = RegisterRecipe> {

@@ -19,7 +19,7 @@ const GAP: f64 = 1e-3;
 /// A call that returns an error has put out nothing and changed nothing.
 ///
 /// ```
-/// use stepwave_nc::{Compensator, Corner, Feed, Move, Place, Plane, Scheme, Segment, Side, SegmentShape};
+/// use stepwave_nc::{Compensator, Corner, Feed, Move, PathControl, Place, Plane, Scheme, Segment, Side, SegmentShape};
 ///
 /// let line = |line, from, to, side| Move {
 ///     place: Place { line, number: None },
@@ -27,6 +27,7 @@ const GAP: f64 = 1e-3;
 ///     feed: Feed::PerMinute(100.0),
 ///     plane: Plane::Xy,
 ///     side,
+///     path: PathControl::Continuous,
 /// };
 /// let mut compensator = Compensator::new(Scheme::C, Corner::Straight);
 /// let mut out = Vec::new();
@@ -158,9 +159,9 @@ impl Compensator {
     /// A block while compensation is off.
     fn start(&mut self, block: Move, edge: Edge, out: &mut Vec<ToolMove>) -> Result<(), Kind> {
         let Some((side, radius)) = sided(block.side)?.filter(|_| edge.moves()) else {
-            let Move { place, segment, feed, .. } = block;
+            let Move { place, segment, feed, path, .. } = block;
             let (cause, side) = (Cause::Programmed, Side::On);
-            out.push(ToolMove { place, segment, feed, cause, programmed: segment, side });
+            out.push(ToolMove { place, segment, feed, cause, programmed: segment, side, path });
             return Ok(());
         };
         let length = edge.length();
@@ -269,9 +270,9 @@ impl Compensator {
             let [_, _, third] = source.plane.of(source.segment.to);
             let to = source.plane.point([u, v, third]);
             let segment = Segment { from: self.position, to, shape: SegmentShape::Line };
-            let Move { place, feed, segment: programmed, .. } = source;
+            let Move { place, feed, segment: programmed, path, .. } = source;
             self.send(
-                ToolMove { place, segment, feed, cause: Cause::Programmed, programmed, side: before.source.side },
+                ToolMove { place, segment, feed, cause: Cause::Programmed, programmed, side: before.source.side, path },
                 out,
             );
         }
@@ -294,8 +295,8 @@ impl Compensator {
         for ([u, v], shape) in shapes.into_iter().flatten() {
             let segment = Segment { from: self.position, to: plane.point([u, v, third]), shape };
             let programmed = Segment { from: corner, to: corner, shape: SegmentShape::Line };
-            let Move { place, feed, side, .. } = before.source;
-            self.send(ToolMove { place, segment, feed, cause: Cause::Inserted, programmed, side }, out);
+            let Move { place, feed, side, path, .. } = before.source;
+            self.send(ToolMove { place, segment, feed, cause: Cause::Inserted, programmed, side, path }, out);
         }
     }
 
@@ -308,8 +309,9 @@ impl Compensator {
         let closed = matches!(path.shape, SegmentShape::Arc { .. }) && length(sub(path.to, [u, v])) < LEAST;
         let [u, v] = if closed { [u, v] } else { path.to };
         let segment = Segment { from: self.position, to: plane.point([u, v, third]), shape: path.shape };
-        let Move { place, feed, side, segment: programmed, .. } = block.source;
-        self.send(ToolMove { place, segment, feed, cause: path.cause, programmed, side }, out);
+        let cause = path.cause;
+        let Move { place, feed, side, segment: programmed, path, .. } = block.source;
+        self.send(ToolMove { place, segment, feed, cause, programmed, side, path }, out);
     }
 
     fn send(&mut self, tool: ToolMove, out: &mut Vec<ToolMove>) {

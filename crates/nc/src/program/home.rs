@@ -76,6 +76,7 @@ impl Modal {
                     feed: Feed::Rapid,
                     plane: self.plane,
                     side: self.side,
+                    path: self.path,
                 }));
                 self.position = to;
             }

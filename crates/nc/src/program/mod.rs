@@ -39,8 +39,8 @@
 //! |---|---|
 //! | G49 | the path is that of the tool's tip before and after |
 //! | G54 | the first coordinate system, and the only one: its zero is the zero of the program |
-//! | G61, G61.1 | every block is run exactly to its end |
-//! | G64 P Q | allows the path to be left by P, which is a permission and not a duty |
+//! | G61, G61.1 | exact stop: where the machine accelerates, a block ends at the speed at which an axis can stop |
+//! | G64 P Q | continuous, from the start of a program on; with P corners are passed as if the path could be left by P, though it never is |
 //! | G80 | there are no canned cycles to be ended; no motion mode is in force after it, unless G00 to G03 stand next to it |
 //! | G98, G99 | where canned cycles retract to |
 //!

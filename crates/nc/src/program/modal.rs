@@ -8,7 +8,7 @@ use super::error::{Fault, ProgramErrorKind};
 use super::spline::Curves;
 use super::words::Word;
 use super::{Auxiliary, Event, Integers, PROGRAM_LIMIT, Reading};
-use crate::{Direction, Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side};
+use crate::{Direction, Feed, Move, PathControl, Place, Plane, Point, Segment, SegmentShape, Side};
 
 /// The words that stay in force, and where the tool is.
 #[derive(Debug)]
@@ -23,6 +23,7 @@ pub(super) struct Modal {
     /// In mm/min; none under G93.
     feed: Option<f64>,
     pub(super) side: Side,
+    pub(super) path: PathControl,
     pub(super) motion: Option<Motion>,
     pub(super) curves: Curves,
 }
@@ -39,6 +40,7 @@ impl Default for Modal {
             feed_mode: FeedMode::PerMinute,
             feed: None,
             side: Side::On,
+            path: PathControl::default(),
             motion: None,
             curves: Curves::default(),
         }
@@ -98,6 +100,7 @@ impl Modal {
         if let Some((compensation, word)) = block.compensation {
             self.side = self.side(compensation, word, block.word('D'), reading)?;
         }
+        self.path = self.path_control(block, reading)?;
         self.distance = block.distance.map_or(self.distance, |(distance, _)| distance);
         self.centers = block.centers.map_or(self.centers, |(distance, _)| distance);
         self.motion = match (block.motion, block.cycles_off) {
@@ -149,7 +152,7 @@ impl Modal {
         }
         let of = |(segment, share): (Segment, f64)| {
             let feed = if let Feed::Inverse(number) = feed { Feed::Inverse(number / share) } else { feed };
-            Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side })
+            Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side, path: self.path })
         };
         events.extend(arc::turns(segment, turns).map(of));
     }
@@ -184,6 +187,21 @@ impl Modal {
         };
         let column = || block.motion.map(|(_, word)| word).or(block.any("XYZIJKR")).map_or(1, |word| word.column);
         feed.ok_or_else(|| Fault { column: column(), kind: missing })
+    }
+
+    /// How ends of blocks are passed from this one on.
+    fn path_control(&self, block: &BlockWords<'_>, reading: &Reading) -> Result<PathControl, Fault> {
+        match block.path_control {
+            None => Ok(self.path),
+            Some((false, _)) => Ok(PathControl::Exact),
+            Some((true, _)) => match block.word('P').filter(|_| block.dwell.is_none()) {
+                None => Ok(PathControl::Continuous),
+                Some(word) => {
+                    not_negative(word)?;
+                    Ok(PathControl::Within(self.length(word, reading)?))
+                }
+            },
+        }
     }
 
     fn side(

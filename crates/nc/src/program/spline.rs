@@ -264,7 +264,14 @@ impl Modal {
                 other => other,
             };
             let segment = Segment { from, to, shape: SegmentShape::Line };
-            events.push_back(Event::Move(Move { place, segment, feed, plane: self.plane, side: Side::On }));
+            events.push_back(Event::Move(Move {
+                place,
+                segment,
+                feed,
+                plane: self.plane,
+                side: Side::On,
+                path: self.path,
+            }));
         }
         self.position = ends.last().copied().unwrap_or(self.position);
     }

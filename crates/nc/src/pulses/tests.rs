@@ -1,12 +1,20 @@
 use super::*;
-use crate::Side;
+use crate::{PathControl, Side};
 
 mod tiny;
 
 fn moved(from: Point, to: Point, shape: SegmentShape) -> ToolMove {
     let segment = Segment { from, to, shape };
     let place = Place { line: 1, number: None };
-    ToolMove { place, segment, feed: Feed::Rapid, cause: Cause::Programmed, programmed: segment, side: Side::On }
+    ToolMove {
+        place,
+        segment,
+        feed: Feed::Rapid,
+        cause: Cause::Programmed,
+        programmed: segment,
+        side: Side::On,
+        path: PathControl::default(),
+    }
 }
 
 fn blocks(moves: &[ToolMove], chords: Option<f64>) -> Vec<PulseBlock> {

@@ -12,6 +12,8 @@ pub enum Format {
     Signed,
     /// Two's-complement decimal, drawn as a curve.
     Analog,
+    /// Unsigned decimal, drawn as a curve.
+    Level,
     /// Ones and zeros.
     Binary,
     /// Decimal digits, 4 bits each.
@@ -33,7 +35,7 @@ impl Format {
         match self {
             Format::Signed | Format::Analog => Reading::Signed,
             Format::Decimal => Reading::Decimal,
-            Format::Unsigned | Format::Binary | Format::States(_) => Reading::Unsigned,
+            Format::Unsigned | Format::Level | Format::Binary | Format::States(_) => Reading::Unsigned,
         }
     }
 }

@@ -188,6 +188,7 @@ impl<'a> Words<'a> {
             "unsigned" => Format::Unsigned,
             "signed" => Format::Signed,
             "analog" => Format::Analog,
+            "level" => Format::Level,
             "binary" => Format::Binary,
             "decimal" => Format::Decimal,
             "states" => {

@@ -1,0 +1,48 @@
+//! Directions and bends of segments.
+
+use crate::pulses::swept;
+use crate::{Direction, Point, Segment, SegmentShape};
+
+impl Segment {
+    /// The unit vectors along the segment at its start and its end, in x, y and z; none of a segment of no length.
+    ///
+    /// ```
+    /// use stepwave_nc::{Direction, Plane, Segment, SegmentShape};
+    ///
+    /// let shape = SegmentShape::Arc { plane: Plane::Xy, center: [0.0; 2], direction: Direction::CounterClockwise };
+    /// let [start, end] = Segment { from: [5.0, 0.0, 0.0], to: [0.0, 5.0, 0.0], shape }.tangents().unwrap();
+    /// assert_eq!((start, end), ([0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]));
+    /// ```
+    #[must_use]
+    pub fn tangents(&self) -> Option<[Point; 2]> {
+        let SegmentShape::Arc { plane, center, direction } = self.shape else {
+            let unit = unit([0, 1, 2].map(|axis| self.to[axis] - self.from[axis]))?;
+            return Some([unit; 2]);
+        };
+        let sign = if direction == Direction::Clockwise { -1.0 } else { 1.0 };
+        let angle = swept(self, plane, center, direction);
+        let climb = plane.of(self.to)[2] - plane.of(self.from)[2];
+        let at = |point: Point| {
+            let [u, v, _] = plane.of(point);
+            let [u, v] = [u - center[0], v - center[1]];
+            // The third axis goes as far for each radian as the plane goes by the radius.
+            unit(plane.point([-v * sign, u * sign, climb / angle]))
+        };
+        Some([at(self.from)?, at(self.to)?])
+    }
+
+    /// The radius of curvature, in BLU; `None` of a line.
+    #[must_use]
+    pub fn bend(&self) -> Option<f64> {
+        let SegmentShape::Arc { plane, center, direction } = self.shape else { return None };
+        let [u, v, third] = plane.of(self.from);
+        let radius = f64::hypot(u - center[0], v - center[1]);
+        let climb = (plane.of(self.to)[2] - third) / swept(self, plane, center, direction);
+        Some(radius + climb * climb / radius)
+    }
+}
+
+fn unit(vector: Point) -> Option<Point> {
+    let length = vector.into_iter().fold(0.0, f64::hypot);
+    (length > 0.0).then(|| vector.map(|c| c / length + 0.0))
+}

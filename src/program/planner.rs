@@ -1,0 +1,139 @@
+//! From moves to blocks of the machine with their speeds: at once, or after a look at what follows where it accelerates.
+
+use std::collections::VecDeque;
+
+use stepwave_models::Hardware;
+use stepwave_models::program::{Acceleration, HardwareBlock, Moves, Profile};
+use stepwave_nc::{Cause, PathControl, Point, PulseBlock, ToolMove};
+
+use super::ProgramFailure;
+use super::feed::{Pace, Paced, Pacer};
+use super::lookahead::{Lookahead, Stretch, seconds};
+
+/// A block of the machine with all its words, and what it was planned for.
+#[derive(Clone, Debug)]
+pub(super) struct Planned<T> {
+    /// The block.
+    pub(super) block: HardwareBlock,
+    /// What our pulse source is given, in 2^-32 pulses a clock, and the frequency in Hz that it has then; `None` where the
+    /// hardware sets its own feed.
+    pub(super) source: Option<(u64, f64)>,
+    /// The feed is out of reach of what sets it.
+    pub(super) limited: bool,
+    /// Seconds that it takes with acceleration; `None` where it has one speed.
+    pub(super) seconds: Option<f64>,
+    /// What it is of.
+    pub(super) of: T,
+}
+
+/// Plans the blocks of a machine.
+pub(super) struct Planner<'a, T> {
+    pacer: Pacer<'a>,
+    ahead: Option<Ahead<T>>,
+    /// Blocks whose words are known.
+    planned: VecDeque<Planned<T>>,
+}
+
+/// What is known of a machine that accelerates.
+struct Ahead<T> {
+    by: Acceleration,
+    queue: Lookahead<(Paced, T)>,
+    /// How the move before ends, unless the machine stops there.
+    end: Option<(PathControl, Point)>,
+    /// Pulses of a BLU in the part before.
+    scale: Option<f64>,
+}
+
+impl<'a, T> Planner<'a, T> {
+    pub(super) fn new(moves: &'static dyn Moves, hardware: &'a Hardware, pace: Pace) -> Planner<'a, T> {
+        let ahead = Acceleration::of(hardware).map(|by| {
+            let jump = pace.jump.map_or_else(|| by.start(), |jump| jump / (60.0 * pace.blu_mm));
+            Ahead { by, queue: Lookahead::new(by, jump), end: None, scale: None }
+        });
+        Planner { pacer: Pacer::new(moves, hardware, pace), ahead, planned: VecDeque::new() }
+    }
+
+    /// Takes the next move, and with each of its parts what `of` makes of the block and of whether it is the first of it.
+    ///
+    /// # Errors
+    /// The machine does not take a block.
+    pub(super) fn push(
+        &mut self,
+        of: &ToolMove,
+        blocks: &[PulseBlock],
+        mut with: impl FnMut(&Pacer<'a>, &PulseBlock, bool) -> T,
+    ) -> Result<(), ProgramFailure> {
+        self.pacer.begin(blocks);
+        let mut joint = self.ahead.as_mut().map_or(f64::INFINITY, |ahead| ahead.joint(of));
+        for block in blocks {
+            for (index, paced) in self.pacer.blocks(block)?.into_iter().enumerate() {
+                let what = with(&self.pacer, block, index == 0);
+                match &mut self.ahead {
+                    None => self.planned.push_back(at_once(paced, what)),
+                    Some(ahead) => {
+                        ahead.push(of, paced, self.pacer.speed, std::mem::replace(&mut joint, f64::INFINITY), what)
+                    }
+                }
+            }
+        }
+        self.settle();
+        Ok(())
+    }
+
+    /// The machine stops here.
+    pub(super) fn stop(&mut self) {
+        if let Some(ahead) = &mut self.ahead {
+            ahead.queue.stop();
+            ahead.end = None;
+        }
+        self.settle();
+    }
+
+    fn settle(&mut self) {
+        if let Some(ahead) = &mut self.ahead {
+            self.planned.extend(std::iter::from_fn(|| ahead.pop()));
+        }
+    }
+
+    /// The next block whose words are known.
+    pub(super) fn next(&mut self) -> Option<Planned<T>> {
+        self.planned.pop_front()
+    }
+}
+
+fn at_once<T>(Paced { block, source, limited, .. }: Paced, of: T) -> Planned<T> {
+    Planned { block, source, limited, seconds: None, of }
+}
+
+impl<T> Ahead<T> {
+    /// The greatest speed at the start of a move.
+    fn joint(&mut self, of: &ToolMove) -> f64 {
+        let jump = self.queue.jump();
+        let Some([start, end]) = of.segment.tangents() else { return jump };
+        let before = self.end.replace((of.path, end));
+        // What compensation puts in belongs to the block before it.
+        let path = |(path, _): (PathControl, Point)| if of.cause == Cause::Inserted { of.path } else { path };
+        before.map_or(jump, |before| self.queue.joint(path(before), [before.1, start]))
+    }
+
+    fn push(&mut self, of: &ToolMove, paced: Paced, speed: Option<f64>, joint: f64, what: T) {
+        let fastest = self.by.fastest(paced.pulses_per_blu);
+        let bend = of.segment.bend().map_or(f64::INFINITY, |radius| self.queue.bend(radius));
+        let cap = speed.unwrap_or(fastest).min(fastest).min(bend);
+        // The way that the source counts, at the speed that it is given.
+        let length = paced.block.steps / paced.pulses_per_blu;
+        self.queue.push(Stretch { length, cap, joint }, (paced, what));
+    }
+
+    fn pop(&mut self) -> Option<Planned<T>> {
+        let ((paced, of), speeds) = self.queue.pop()?;
+        let Paced { block, source, limited, pulses_per_blu } = paced;
+        let before = self.scale.replace(pulses_per_blu).unwrap_or(pulses_per_blu);
+        let jump = self.queue.jump().min(speeds[1]);
+        let profile = Profile { speeds, jump, pulses_per_blu, before, pulses: block.steps };
+        let (words, hz) = self.by.words(&profile);
+        let seconds = seconds(&self.by, block.steps / pulses_per_blu, speeds);
+        let block = HardwareBlock { words: block.words.clone().and(words), ..block };
+        Some(Planned { block, source: source.map(|(word, _)| (word, hz)), limited, seconds: Some(seconds), of })
+    }
+}
