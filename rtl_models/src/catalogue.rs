@@ -109,6 +109,9 @@ fn tried(model: &'static Model) -> Result<Vec<Options>, ModelError> {
         if let Shape::Numbers { least, .. } = takes.option().shape() {
             texts.push(least.to_string());
         }
+        if let Shape::Text { some, .. } = takes.option().shape() {
+            texts.extend(some.iter().map(|text| (*text).to_owned()));
+        }
         for text in texts {
             let mut options = Options::default();
             options.set(takes.option().parse(&text).map_err(|reason| ModelError::defect(model.name, reason))?);

@@ -36,6 +36,7 @@ pub mod ppc_conic;
 pub mod ppc_line;
 pub mod program;
 pub mod ramp;
+pub mod ramp_after;
 pub mod ramping;
 pub mod registers;
 pub mod sampled_arc;
@@ -68,6 +69,7 @@ static MODELS: &[&Model] = &[
     &sampled_spline::MODEL,
     &spline_dda::MODEL,
     &ramp::MODEL,
+    &ramp_after::MODEL,
     &stepgen::MODEL,
     &bresenham::MODEL,
     &program::ppc::MODEL,

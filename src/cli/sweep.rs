@@ -166,7 +166,7 @@ pub(crate) struct VariantArgs(pub(crate) Vec<(&'static dyn AnyOption, Vec<String
 fn list(option: &'static dyn AnyOption) -> Arg {
     let (value_name, values) = match option.shape() {
         Shape::Words(words) => ("LIST", words.join(",")),
-        Shape::Numbers { values, .. } | Shape::PerRegister { values, .. } | Shape::Text { values } => {
+        Shape::Numbers { values, .. } | Shape::PerRegister { values, .. } | Shape::Text { values, .. } => {
             ("LIST", values.to_owned())
         }
         Shape::Commas => (option.value_name(), "may be repeated".to_owned()),

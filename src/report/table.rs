@@ -114,7 +114,12 @@ impl TextbookTable {
             });
         }
         let pulses = step.pulses.iter().zip(self.letters).filter(|(pulse, _)| **pulse != 0);
-        cells.push(pulses.map(|(pulse, axis)| format!("{pulse:+}{}", axis.to_uppercase()).replace('1', "")).collect());
+        let one = |(pulse, axis): (&i64, &&str)| match (*pulse, axis.to_uppercase()) {
+            (1, axis) => format!("+{axis}"),
+            (-1, axis) => format!("-{axis}"),
+            (pulses, axis) => format!("{pulses:+}{axis}"),
+        };
+        cells.push(pulses.map(one).collect());
         cells.extend(step.counters.iter().map(ToString::to_string));
         cells
     }

@@ -54,7 +54,9 @@ impl Dimension {
 fn wrong(option: &dyn AnyOption, word: &str) -> StudyError {
     let values = match option.shape() {
         Shape::Words(words) => words.join(", "),
-        Shape::Numbers { values, .. } | Shape::PerRegister { values, .. } | Shape::Text { values } => values.to_owned(),
+        Shape::Numbers { values, .. } | Shape::PerRegister { values, .. } | Shape::Text { values, .. } => {
+            values.to_owned()
+        }
         Shape::Commas => format!("values such as {}", option.default_text()),
     };
     StudyError::NoValue { word: word.to_owned(), option: option.name(), values }

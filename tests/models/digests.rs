@@ -40,6 +40,7 @@ fn values(option: &dyn AnyOption) -> &'static [&'static str] {
         "speed" => &["100", "vs=9,vc=200,ve=3", "300mm/min"],
         "accel" => &["9", "40,7", "500mm/s2"],
         "jerk" => &["none", "3"],
+        "smooth" => &["sum=3", "exp=2"],
         "brake" => &["square", "count"],
         "on-overflow" => &["trap", "saturate", "wrap"],
         option => panic!("values of {option} are missing here"),

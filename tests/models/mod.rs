@@ -19,6 +19,7 @@ mod ramp;
 mod registers;
 mod sampled;
 mod sampled_spline;
+mod smooth;
 mod space_lines;
 mod spacing;
 mod spline;

@@ -21,7 +21,7 @@
 //! - [`sampled_line`], [`sampled_arc`]: data sampling, the points of the coarse stage in real numbers.
 //! - [`sampled_nurbs`]: data sampling of a NURBS, the points of the coarse stage in whole numbers.
 //! - [`spline_dda`], [`spline_dda_fraction`]: free curves in whole numbers, and by rounded forward differences.
-//! - [`ramp`]: acceleration and deceleration of a pulse source.
+//! - [`ramp`], [`smooth`]: acceleration and deceleration of a pulse source, and after an interpolator.
 //! - [`stepgen`], [`stepgen_clocks`], [`bresenham`]: what motion cards and firmware of today do.
 //!
 //! A call outside a method's domain (a register too narrow, an end point that the arc cannot reach)
@@ -43,6 +43,7 @@ mod ppc;
 mod ppc_conic;
 mod ramp;
 mod sampled;
+mod smooth;
 mod space_lines;
 mod spline;
 mod stepgen;
@@ -66,6 +67,7 @@ pub(crate) use ppc_conic::ppc_conic;
 use ramp::speeds_up as ramp_speeds_up;
 pub(crate) use ramp::{Braking, InForce, RampBlock, plan as ramp_plan, ramp};
 pub(crate) use sampled::{System, sampled_arc, sampled_line, step_factor_points};
+pub(crate) use smooth::{Filter, smooth};
 pub(crate) use space_lines::{cim_space_line, mindev_space_line, ppc_space_line};
 pub(crate) use spline::{Basis, Segment, spline_dda, spline_dda_fraction, spline_owes};
 pub(crate) use stepgen::{StepOutput, Timing, stepgen, stepgen_clocks};

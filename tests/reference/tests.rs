@@ -10,6 +10,7 @@ mod nurbs;
 mod ppc;
 mod ramp;
 mod rates;
+mod smooth;
 mod space;
 mod spline;
 

@@ -1,5 +1,7 @@
 //! Options that are one of a few words: the types of their values.
 
+use std::fmt;
+
 use stepwave_netlist::OnOverflow;
 use stepwave_netlist::bits::Reading;
 
@@ -187,4 +189,35 @@ pub enum Brake {
 
 impl Named for Brake {
     const ALL: &'static [(&'static str, Brake)] = &[("square", Brake::Square), ("count", Brake::Count)];
+}
+
+/// What displacements of periods go through after the interpolator.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Smooth {
+    /// The mean of the last periods, 1 to 64.
+    Sum(u64),
+    /// 2^-s of what has not come out, s from 1 to 16.
+    Exponential(u64),
+}
+
+impl Smooth {
+    /// `sum=4`, `exp=2`
+    pub(super) fn parse(text: &str) -> Result<Smooth, String> {
+        let number = |text: &str, most| text.trim().parse().ok().filter(|number| (1..=most).contains(number));
+        let of = match text.split_once('=') {
+            Some(("sum", periods)) => number(periods, 64).map(Smooth::Sum),
+            Some(("exp", shift)) => number(shift, 16).map(Smooth::Exponential),
+            _ => None,
+        };
+        of.ok_or_else(|| format!("'{text}' is not a filter: give sum=1 to sum=64 periods, or exp=1 to exp=16"))
+    }
+}
+
+impl fmt::Display for Smooth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Smooth::Sum(periods) => write!(f, "sum={periods}"),
+            Smooth::Exponential(shift) => write!(f, "exp={shift}"),
+        }
+    }
 }

@@ -21,12 +21,12 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-pub use choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, System, Weights};
+pub use choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, Smooth, System, Weights};
 pub use given::{Options, Value};
 pub use table::{
     ACCEL, ADDER, ALL, BEATS, BRAKE, CASCADE, COMPARE, DIVISIONS, END_POINT, FORM, FRACTION, JERK, NORMALIZE,
-    ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, SPEED, STEP, STRICT, SYSTEM, TIMING, TOLERANCE, WEIGHTS, WIDTH,
-    WRAPS,
+    ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, SMOOTH, SPEED, STEP, STRICT, SYSTEM, TIMING, TOLERANCE, WEIGHTS,
+    WIDTH, WRAPS,
 };
 pub use taken::{Taken, Takes};
 pub(crate) use taken::{chosen, taken};
@@ -94,6 +94,8 @@ pub enum Shape {
     Text {
         /// For a message: `lengths in BLU such as 8,102.4`.
         values: &'static str,
+        /// Some of them, with which hardware has every register that it can have.
+        some: &'static [&'static str],
     },
     /// Texts with commas of their own: a list gives the option several times.
     Commas,

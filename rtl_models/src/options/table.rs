@@ -5,7 +5,7 @@
 
 use stepwave_netlist::{OnOverflow, Width};
 
-use super::choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, System, Weights};
+use super::choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, Smooth, System, Weights};
 use super::{AnyOption, Gains, Millionths, Named, OptionDef, PerRegister, Preset, Quantity, Shape, StepTiming, Values};
 
 /// Declares the options, and the list of them in the order of the command line.
@@ -229,7 +229,7 @@ options! {
         help: "Way of a period of data sampling, in BLU",
         value_name: "BLU",
         values: Values::Parsed {
-            shape: Shape::Text { values: "ways in BLU such as 8,102.4" },
+            shape: Shape::Text { values: "ways in BLU such as 8,102.4", some: &[] },
             parse: |text| Millionths::parse(text).map(Some),
             text: |step| text_or_none(step.as_ref()),
         },
@@ -243,7 +243,7 @@ options! {
                differ from that of the start by so much more than rounding makes",
         value_name: "BLU",
         values: Values::Parsed {
-            shape: Shape::Text { values: "lengths in BLU such as 0.5,1" },
+            shape: Shape::Text { values: "lengths in BLU such as 0.5,1", some: &[] },
             parse: |text| Millionths::parse(text).map(Some),
             text: |length| text_or_none(length.as_ref()),
         },
@@ -306,6 +306,19 @@ options! {
         values: Values::Words(Brake::ALL),
         about: "",
         default: Brake::Square,
+    };
+    /// Acceleration after the interpolator.
+    SMOOTH: Smooth = OptionDef {
+        name: "smooth",
+        help: "Acceleration after the interpolator: the mean of the last periods, or an exponential",
+        value_name: "sum=K|exp=S",
+        values: Values::Parsed {
+            shape: Shape::Text { values: "sum=K or exp=S", some: &["sum=4", "exp=2"] },
+            parse: Smooth::parse,
+            text: Smooth::to_string,
+        },
+        about: "sum=4 (default), of up to 64 periods, or exp=S, of up to 16 bits",
+        default: Smooth::Sum(4),
     };
     /// What a strict cell does on overflow.
     ON_OVERFLOW: OnOverflow = OptionDef {
