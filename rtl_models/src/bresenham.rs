@@ -91,6 +91,8 @@ pub(crate) fn registers(
     plan.positions(positions);
     plan.fix(&END_POINT, EndPoint::Longest);
     plan.decide(&COMPARE, right_test(plan.get(&FORM)));
+    // Adding and testing.
+    plan.step_clocks = Some(2);
 }
 
 fn right_test(form: Form) -> Compare {

@@ -45,6 +45,9 @@ pub struct Hardware {
     pub table: Vec<&'static str>,
     /// No pulse for this many clocks while a block runs means that none will come; `u64::MAX` where that is not known.
     pub stall_clocks: u64,
+    /// Clocks of a step that nothing delays, if they are known; of data sampling those of a step of the coarse stage are
+    /// in `sampling`.
+    pub step_clocks: Option<u64>,
     /// Greatest path error in BLU that the method promises, if it promises one.
     pub error_bound: Option<f64>,
     /// Steps of a line.
@@ -200,6 +203,15 @@ impl Hardware {
     #[must_use]
     pub fn has_stall_clocks(&self) -> bool {
         self.stall_clocks < u64::MAX
+    }
+
+    /// Clocks of a step of at most one pulse of each axis that nothing delays, in the mean: the beats of a step, or the
+    /// clocks from one pulse of a pulse source, or one addition of the fine stage of data sampling, to the next. `None`
+    /// where they are not known.
+    #[must_use]
+    pub fn clocks_of_step(&self) -> Option<f64> {
+        let Some(sampling) = &self.sampling else { return self.step_clocks.map(|clocks| clocks as f64) };
+        Some(sampling.period_clocks() / self.modulus(self.bits(JR.of(0))) as f64)
     }
 
     /// Letters of the axes.

@@ -113,8 +113,6 @@ pub struct Machine {
     pub buffer: Option<BufferPorts>,
     /// Flags that end a run where overflows trap; 1 bit each.
     pub traps: Vec<Net>,
-    /// Clocks in which the first block of a machine without a buffer is loaded, and each further one.
-    pub load_clocks: [u64; 2],
 }
 
 /// Ports of a machine that takes the next block while the present one runs; 1 bit each but the last.
@@ -171,7 +169,6 @@ impl Machine {
             table: table.collect::<Result<_, ModelError>>()?,
             inputs: inputs.collect::<Result<_, ModelError>>()?,
             traps: netlist.properties.iter().map(|property| property.never).collect(),
-            load_clocks: [1, 2],
             design: elaborate(netlist)?,
         })
     }

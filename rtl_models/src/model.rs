@@ -8,7 +8,7 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::{CurveKind, Interpolates};
 use crate::machine::{Machine, Words};
-use crate::options::{AnyOption, ON_OVERFLOW, Options, Takes, chosen, taken};
+use crate::options::{AnyOption, BEATS, ON_OVERFLOW, Options, Takes, chosen, taken};
 use crate::plan::Plan;
 use crate::registers::{RegisterGroup, Registers, rows};
 
@@ -88,6 +88,9 @@ impl Model {
             return Err(other());
         }
         let mut plan = new()?;
+        if self.takes(&BEATS) {
+            plan.step_clocks = Some(plan.get(&BEATS).clocks());
+        }
         let planned = match &self.interpolates {
             Interpolates::Moves(moves) => {
                 return self.plan_alone(moves, &moves.block(curve).ok_or_else(other)?, plan);

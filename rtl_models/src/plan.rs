@@ -33,6 +33,8 @@ pub struct Plan {
     pub rate_bound: Option<f64>,
     /// No pulse for this many clocks while a block runs means that none will come; `u64::MAX` where that is not known.
     pub stall_clocks: u64,
+    /// Clocks of a step that nothing delays, if they are known: 1, or in a model that takes the option `beats` as many.
+    pub step_clocks: Option<u64>,
     /// Numbers that the hardware is built with besides widths and options.
     pub constants: Vec<(&'static str, i128)>,
     /// What to do where a component overflows that no width helps, by its name.
@@ -54,6 +56,7 @@ impl Plan {
             pace: Pace::default(),
             rate_bound: None,
             stall_clocks: 16,
+            step_clocks: Some(1),
             constants: Vec::new(),
             remedies: Vec::new(),
             sampling: None,
@@ -301,6 +304,7 @@ impl Plan {
             sampling: self.sampling,
             table,
             stall_clocks: self.stall_clocks,
+            step_clocks: self.step_clocks,
             error_bound: self.error_bound,
             pace: self.pace,
             rate_bound: self.rate_bound,
@@ -363,6 +367,7 @@ impl Plan {
         // An integrator that has not pulsed in this many additions never will; and as many clocks of normalisation as
         // bits, and those of loading.
         let additions = u64::try_from(crate::hardware::modulus(radix, n)).unwrap_or(u64::MAX);
+        self.step_clocks = Some(clocks);
         self.stall_clocks = additions.saturating_mul(clocks).saturating_add(u64::from(n) + 8);
         Ok(())
     }

@@ -57,10 +57,12 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     \n\
     Rows. One a run: index (all points of the grid count, those without a curve too), geometry, choices,\n\
     ending (done, trapped, stalled, limit, refused), clocks, steps, pulses and end point of each axis,\n\
-    whether that is exact, error_max and error_mean (BLU, behind all steps), overflows and the first\n\
+    whether that is exact, error_max and error_mean (BLU, behind all steps), v_mean (mean speed over\n\
+    v_max, one BLU in each step that nothing delays), overflows and the first\n\
     overflow's component, spacing_min and spacing_max (clocks between two pulses of an axis), and the\n\
     reason of a refusal. Rows are the same, byte for byte, whatever the number of threads\n\
-    (RAYON_NUM_THREADS).\n\
+    (RAYON_NUM_THREADS). The summary has the least and the greatest v_mean, and of lines of one\n\
+    length, within a BLU, k_v, their ratio.\n\
     \n\
     A sweep that was killed leaves its rows next to the final file; the same words with --resume go on.\n\
     The exit code is 0 whatever the rows say.")]

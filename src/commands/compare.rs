@@ -5,7 +5,8 @@ use std::time::Instant;
 use crate::engine::{EngineKind, Rows};
 use crate::models::{CurveKind, Millionths, Model, ModelError, Options, Preset, installed};
 use crate::nc::Curve;
-use crate::testbench::{Ending, Observer, ObserverError, PathWatch, Step, Testbench};
+use crate::report::RelativeSpeed;
+use crate::testbench::{Ending, Observer, ObserverError, PathWatch, SpeedWatch, Step, Testbench};
 
 use super::columns::{aligned, markdown};
 use super::geometry;
@@ -51,9 +52,18 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     output::print(&(note + &table + &left_out.concat()))
 }
 
-const HEADING: [&str; 6] = ["model", "steps", "clocks", "greatest error (BLU)", "widest register", "end point"];
+const HEADING: [&str; 8] = [
+    "model",
+    "steps",
+    "clocks",
+    "greatest error (BLU)",
+    "v/v_max, mean (least to greatest)",
+    "ripple",
+    "widest register",
+    "end point",
+];
 /// Its columns of numbers.
-const NUMBERS: [usize; 3] = [1, 2, 3];
+const NUMBERS: [usize; 5] = [1, 2, 3, 4, 5];
 
 /// The models to compare: those that are named; all, and netlists of one's own, where no model of the catalogue is.
 fn models(args: &CompareArgs) -> Result<Vec<&'static Model>, Error> {
@@ -85,7 +95,7 @@ fn row(
     curve: &Curve,
     choices: &Options,
     args: &CompareArgs,
-) -> Result<Result<[String; 6], ModelError>, Error> {
+) -> Result<Result<[String; 8], ModelError>, Error> {
     let bench = match Testbench::new(model, curve, choices) {
         Ok(bench) => bench.limited(args.max_clocks),
         Err(error @ (ModelError::TooWide { .. } | ModelError::Widths(_))) => return Ok(Err(error)),
@@ -93,7 +103,8 @@ fn row(
     };
     let mut path = PathWatch::new(&bench, curve);
     let mut deadline = Deadline { begun: Instant::now(), seconds: args.max_seconds, clocks: 0, steps: 0 };
-    let mut observers: [&mut dyn Observer; 2] = [&mut path, &mut deadline];
+    let mut speed = SpeedWatch::new(&bench);
+    let mut observers: [&mut dyn Observer; 3] = [&mut path, &mut speed, &mut deadline];
     let (steps, clocks, end) = match bench.run(EngineKind::Compiled, &mut observers) {
         Ok(outcome) => {
             let end = match outcome.ending {
@@ -111,6 +122,9 @@ fn row(
     };
     // Positions are as wide as the travel, for every method.
     let hardware = bench.hardware();
+    let length = ["exact", "missed"].contains(&end).then(|| curve.length());
+    let clocks_of_step = hardware.clocks_of_step();
+    let speeds = speed.finish().zip(clocks_of_step).map(|(speed, step)| RelativeSpeed::new(&speed, step, length));
     let own = hardware.widths.iter().filter(|(name, _)| !hardware.letters().contains(name));
     let widest = own.max_by_key(|(name, width)| (width.get(), std::cmp::Reverse(*name)));
     Ok(Ok([
@@ -118,6 +132,11 @@ fn row(
         steps.to_string(),
         clocks.to_string(),
         path.worst.map_or_else(String::new, |worst| format!("{:.3}", worst.error)),
+        speeds.map_or_else(String::new, |of| {
+            let mean = of.mean.map_or_else(|| "-".to_owned(), |mean| format!("{mean:.4}"));
+            format!("{mean} ({:.4} to {:.4})", of.least.0, of.greatest.0)
+        }),
+        speeds.and_then(|of| of.ripple()).map_or_else(String::new, |ripple| format!("{:.2} %", 100.0 * ripple)),
         widest.map_or_else(String::new, |(name, width)| format!("{name} {width}")),
         end.to_owned(),
     ]))

@@ -2,6 +2,7 @@
 
 use stepwave_models::CutWord;
 
+use super::speeds::Speeds;
 use crate::testbench::{BlockReport, Observer, ObserverError, missed};
 
 /// The greatest of a number, and the line of the program where it was.
@@ -44,6 +45,8 @@ pub struct Totals {
     pub off_compensated: Greatest,
     /// Greatest distance from the programmed contour, in BLU.
     pub off_programmed: Greatest,
+    /// How fast they were.
+    pub speeds: Speeds,
     /// Moves that asked the pulse source for more than it can give.
     pub limited: u64,
     /// Sentences about what is wrong; the first few.
@@ -125,6 +128,7 @@ impl Totals {
             self.off_programmed.take(off, line);
         }
         self.limited += u64::from(report.limited);
+        self.speeds.take(report);
         let mut fail = |what: String| {
             if self.failures.len() < FAILURES {
                 self.failures.push(what);
@@ -176,10 +180,12 @@ mod tests {
         let mut stream = Stream::new(text, moves, &preparation).expect("a program");
         let Some(Ok(Item::Move(of, _))) = stream.next() else { panic!("no move") };
         let mut totals = Totals::default();
-        let report = BlockReport { contour_bound: Some(1.5), off_compensated: 1.5, ..BlockReport::new(of, 0, [0; 3]) };
+        let mut report = BlockReport::new(of, 0, [0; 3]);
+        (report.contour_bound, report.off_compensated) = (Some(1.5), 1.5);
         totals.add(&report);
         assert_eq!((totals.beyond, totals.failures.len()), (0, 0));
-        totals.add(&BlockReport { off_compensated: 1.75, ..report });
+        report.off_compensated = 1.75;
+        totals.add(&report);
         let said = "line 1: the tool's centre is 1.750 BLU off the contour, where method and rounding promise 1.500 BLU: \
                     choose a smaller --blu";
         assert_eq!((totals.beyond, totals.failures), (1, vec![said.to_owned()]));

@@ -6,10 +6,11 @@ use serde_json::{Map, Value, json};
 use stepwave_models::{Named, Promise};
 use stepwave_nc::Curve;
 
-use super::Report;
 use super::geometry;
 use super::json::cut_words;
-use crate::testbench::{CoarseError, Ending, PulseTrain, WorstError, missed, point};
+use super::speed::ripple;
+use super::{RelativeSpeed, Report};
+use crate::testbench::{CoarseError, Ending, PulseTrain, Speed, WorstError, missed, point};
 
 /// What is known of a run along a curve, beyond what every [`Report`] has.
 #[derive(Debug)]
@@ -23,6 +24,8 @@ pub struct OfCurve {
     pub coarse: Option<CoarseError>,
     /// The pulses of each axis.
     pub trains: Vec<PulseTrain>,
+    /// How fast it was; `None` without a step.
+    pub speed: Option<Speed>,
     /// Blocks that the curve was loaded in.
     pub blocks: usize,
 }
@@ -30,7 +33,7 @@ pub struct OfCurve {
 impl OfCurve {
     /// Before its run.
     pub(crate) fn new(curve: Curve, blocks: usize) -> OfCurve {
-        OfCurve { curve, worst: None, coarse: None, trains: Vec::new(), blocks }
+        OfCurve { curve, worst: None, coarse: None, trains: Vec::new(), speed: None, blocks }
     }
 
     /// What the method promises of the path, if it promises anything.
@@ -96,6 +99,9 @@ impl OfCurve {
         if let Some(worst) = &self.worst {
             let at = point(&worst.position);
             let _ = writeln!(text, "greatest path error {:.3} BLU at {at} after step {}", worst.error, worst.step);
+        }
+        if let Some(speed) = self.relative_speed(report) {
+            let _ = writeln!(text, "speed over v_max: {}", speed.words());
         }
         text + &self.coarse_stage(report) + &self.pulse_trains(report)
     }
@@ -176,11 +182,10 @@ impl OfCurve {
             sampling.step.units() * report.blu_mm * 60.0 / period,
             sampling.period_clocks(),
         );
-        if report.outcome.ending == Ending::Done {
+        if let Some(mean) = self.mean_feed(report) {
             let _ = writeln!(
                 text,
-                "mean feed {:.3} mm/min over {} period(s): the last goes what is left of the way",
-                self.mean_feed(report),
+                "mean feed {mean:.3} mm/min over {} period(s): the last goes what is left of the way",
                 report.outcome.steps
             );
         }
@@ -247,26 +252,36 @@ impl OfCurve {
         }))
     }
 
-    /// Clocks of the motion: those that load are none.
-    fn moving_clocks(&self, report: &Report) -> u64 {
-        report.outcome.clocks.saturating_sub(report.outcome.load_clocks)
+    /// Length of the curve in BLU, if it was run to its end.
+    fn length_run(&self, report: &Report) -> Option<f64> {
+        (report.outcome.ending == Ending::Done).then(|| self.curve.length())
+    }
+
+    /// Its speed over v_max; `None` without a step, or where it is not known how many clocks a step of the hardware takes.
+    #[must_use]
+    pub fn relative_speed(&self, report: &Report) -> Option<RelativeSpeed> {
+        let clocks = report.hardware.clocks_of_step()?;
+        self.speed.as_ref().map(|speed| RelativeSpeed::new(speed, clocks, self.length_run(report)))
     }
 
     /// Mean speed along the curve, in mm/min at the clock and BLU chosen.
-    fn mean_feed(&self, report: &Report) -> f64 {
-        60.0 * self.curve.length() * report.blu_mm * report.clock_hz / self.moving_clocks(report).max(1) as f64
+    fn mean_feed(&self, report: &Report) -> Option<f64> {
+        let (speed, length) = (self.speed.as_ref()?, self.length_run(report)?);
+        Some(60.0 * length * report.blu_mm * report.clock_hz / speed.clocks as f64)
     }
 
-    /// Mean speed along the curve: BLU per step, and mm/min.
+    /// Speed along the curve: over v_max, and in mm/min.
     fn feed(&self, report: &Report) -> Value {
-        let (steps, length) = (report.outcome.steps.max(1) as f64, self.curve.length());
-        json!({
+        let mut feed = json!({
             "clock_hz": report.clock_hz,
             "blu_mm": report.blu_mm,
-            "length": length,
-            "clocks": self.moving_clocks(report),
-            "mean_per_step": length / steps,
+            "length": self.curve.length(),
+            "clocks": self.speed.as_ref().map(|speed| speed.clocks),
+            "step_clocks": report.hardware.clocks_of_step(),
             "mean_mm_per_min": self.mean_feed(report),
-        })
+        });
+        RelativeSpeed::put(self.relative_speed(report), &mut feed);
+        feed["ripple"] = json!(ripple(self.speed.as_ref(), self.length_run(report)));
+        feed
     }
 }

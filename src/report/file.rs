@@ -85,10 +85,10 @@ pub struct PathPicture<W> {
 }
 
 impl<W> PathPicture<W> {
-    /// Still without points.
+    /// Still without points, of hardware whose steps take so long, in clocks, where that is known.
     #[must_use]
-    pub fn new(of: &OfCurve, out: W) -> PathPicture<W> {
-        PathPicture { out, plot: Plot::new(&of.curve) }
+    pub fn new(of: &OfCurve, step_clocks: Option<f64>, out: W) -> PathPicture<W> {
+        PathPicture { out, plot: Plot::new(&of.curve, step_clocks) }
     }
 }
 
@@ -104,7 +104,7 @@ impl<W: Write> RunFile for PathPicture<W> {
 
 impl<W> Observer for PathPicture<W> {
     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
-        self.plot.point(&step.position);
+        self.plot.point(&step.position, step.clock);
         Ok(())
     }
 }

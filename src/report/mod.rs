@@ -9,6 +9,7 @@ pub(crate) mod json;
 pub mod plot;
 mod png;
 mod program;
+mod speed;
 mod summary;
 mod table;
 mod workpiece;
@@ -27,6 +28,7 @@ pub use curve::OfCurve;
 pub use file::{JsonFile, PathPicture, RunFile};
 pub use geometry::{geometry, geometry_options, run_command, title};
 pub use program::{MoveTable, OfProgram, TABLE_MOVES};
+pub use speed::RelativeSpeed;
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};
 pub use workpiece::Workpiece;
 
@@ -89,7 +91,7 @@ impl Report {
             subject,
             hardware: bench.hardware().clone(),
             engine: EngineKind::Compiled,
-            outcome: Outcome { ending: Ending::Done, clocks: 0, load_clocks: 0, steps: 0, pulses, reached, counters },
+            outcome: Outcome { ending: Ending::Done, clocks: 0, steps: 0, pulses, reached, counters },
             ranges: Vec::new(),
             cut: CutWords::default(),
             overflows: Vec::new(),
@@ -144,7 +146,7 @@ impl Report {
     /// The picture of the run, still without points.
     pub(crate) fn picture(&self, out: Sink) -> Box<dyn RunFile> {
         match &self.subject {
-            Subject::Curve(of) => Box::new(PathPicture::new(of, out)),
+            Subject::Curve(of) => Box::new(PathPicture::new(of, self.hardware.clocks_of_step(), out)),
             Subject::Program(_) => Box::new(Workpiece::new(&self.headline(), out)),
         }
     }

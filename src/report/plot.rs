@@ -1,14 +1,18 @@
-//! The picture of a run as SVG: the pulses as a staircase over the ideal curve, the deviation of every step below.
+//! The picture of a run as SVG: the pulses as a staircase over the ideal curve, and below it the deviation after every step
+//! and the speed over 32 steps.
 //!
 //! Both axes have one scale. The memory is bounded whatever the length of the run: a long path is thinned, but the
 //! greatest deviation and its step are exact, and no peak is lost from the chart. The same run gives the same bytes.
 
+mod envelope;
+
 use stepwave_nc::Curve;
+
+use self::envelope::Envelope;
+use crate::testbench::SpeedTrack;
 
 /// Points of the path that are kept; when they are full, every second one goes.
 const PATH_LIMIT: usize = 8192;
-/// Spans of steps whose least and greatest deviation are kept; when they are full, neighbours merge.
-const SPAN_LIMIT: usize = 1024;
 /// Marks that are kept, and characters of a label and of the title.
 const MARK_LIMIT: usize = 8;
 const LABEL_LIMIT: usize = 60;
@@ -24,6 +28,9 @@ const SCALE_COARSE: f64 = 4.0;
 const PANEL_LEAST: Pair = [280.0, 110.0];
 const PANEL_MOST: Pair = [860.0, 520.0];
 const CHART_HEIGHT: f64 = 120.0;
+/// From one panel to the next, and below the last.
+const BETWEEN: f64 = 58.0;
+const BELOW: f64 = 42.0;
 pub(super) const FONT: f64 = 11.0;
 pub(super) const TITLE_FONT: f64 = 15.0;
 
@@ -55,27 +62,43 @@ pub struct Plot {
     /// Every `stride`-th point.
     path: Vec<Pair>,
     stride: u64,
-    /// The ranges of the deviation, each over `span` steps.
-    spans: Vec<Pair>,
-    span: u64,
+    /// The deviation after each step.
+    deviation: Envelope,
+    /// The speed over 32 steps, over v_max; in BLU a clock where that is not known.
+    speed: Envelope,
+    track: SpeedTrack,
+    step_clocks: Option<f64>,
     /// The first step with the greatest magnitude of deviation, the position and the deviation.
     worst: Option<(u64, Vec<i64>, f64)>,
     marks: Vec<(u64, Vec<i64>, String)>,
 }
 
 impl Plot {
-    /// A picture of a run along a curve, still without points.
+    /// A picture of a run along a curve, still without points, by hardware whose steps take so long, in clocks, where that is
+    /// known.
     #[must_use]
-    pub fn new(curve: &Curve) -> Plot {
+    pub fn new(curve: &Curve, step_clocks: Option<f64>) -> Plot {
         let ranges = curve.outline(OUTLINE_POINTS).into_iter().fold([[f64::INFINITY, f64::NEG_INFINITY]; 2], reaching);
-        let (path, spans, marks) = (Vec::new(), Vec::new(), Vec::new());
-        Plot { curve: curve.clone(), last: None, ranges, path, stride: 1, spans, span: 1, worst: None, marks }
+        let track = SpeedTrack::new(curve.axes());
+        Plot {
+            curve: curve.clone(),
+            last: None,
+            ranges,
+            path: Vec::new(),
+            stride: 1,
+            deviation: Envelope::new(0),
+            speed: Envelope::new(SpeedTrack::STEPS),
+            track,
+            step_clocks,
+            worst: None,
+            marks: Vec::new(),
+        }
     }
 
-    /// Takes the position after a step, every axis of the curve in BLU; the first one is the start of the run.
+    /// Takes the position after a step, every axis of the curve in BLU, and its clock; the first one is the start of the run.
     ///
     /// A position with too few axes is left out.
-    pub fn point(&mut self, position: &[i64]) {
+    pub fn point(&mut self, position: &[i64], clock: u64) {
         let deviation = self.curve.signed_deviation(position);
         if deviation.is_nan() {
             return;
@@ -91,13 +114,9 @@ impl Plot {
         if step.is_multiple_of(self.stride) {
             self.path.push(at);
         }
-        if self.spans.len() == SPAN_LIMIT && step.is_multiple_of(self.span) {
-            self.spans = self.spans.chunks(2).filter_map(|pair| pair.iter().copied().reduce(union)).collect();
-            self.span *= 2;
-        }
-        match self.spans.last_mut() {
-            Some(span) if !step.is_multiple_of(self.span) => *span = union(*span, [deviation; 2]),
-            _ => self.spans.push([deviation; 2]),
+        self.deviation.take(deviation);
+        if let Some(window) = self.track.row(position, clock) {
+            self.speed.take(self.step_clocks.unwrap_or(1.0) * window.speed());
         }
         if self.worst.as_ref().is_none_or(|(.., worst)| deviation.abs() > worst.abs()) {
             self.worst = Some((step, position.to_vec(), deviation));
@@ -125,11 +144,12 @@ impl Plot {
         let width = panel.size[0];
 
         let usual = if self.curve.axes() == 2 { [-1.0, 1.0] } else { [0.0, 1.0] };
-        let [least, most] = self.spans.iter().copied().fold(usual, union);
+        let [least, most] = self.deviation.range().map_or(usual, |range| union(usual, range));
         let steps = self.last.as_ref().map_or(0, |(step, _)| *step) as f64;
         let (aside, above) = (0.5 + 0.012 * steps, 0.1 * (most - least));
         let ranges = [[-aside, steps + aside], [least - above, most + above]];
 
+        let speeds = self.speed.range().map(|[slow, fast]| [0.0, fast + 0.1 * fast.max(slow).max(0.1)]);
         let left = 32.0 + label_width(panel.ranges[1]).max(label_width(ranges[1]));
         let coarse = usize::from(panel.scale(0) < SCALE_COARSE);
         let mut page =
@@ -138,9 +158,14 @@ impl Plot {
         panel.origin = [left, page.legend([left, 48.0], width, coarse, &symbols)];
         self.draw_path(&mut page, &panel, coarse);
         symbols.iter().for_each(|(point, symbol, _)| page.symbol(symbol, panel.at(*point)));
-        let top = panel.origin[1] + panel.size[1] + 58.0;
-        self.draw_deviation(&mut page, &View { origin: [left, top], size: [width, CHART_HEIGHT], ranges }, steps);
-        let (wide, high) = ((left + width + 26.0).ceil(), (top + CHART_HEIGHT + 42.0).ceil());
+        let mut top = panel.origin[1] + panel.size[1] + BETWEEN;
+        let size = [width, CHART_HEIGHT];
+        self.draw_deviation(&mut page, &View { origin: [left, top], size, ranges }, steps);
+        if let Some(speeds) = speeds {
+            top += CHART_HEIGHT + BETWEEN;
+            self.draw_speed(&mut page, &View { origin: [left, top], size, ranges: [ranges[0], speeds] }, steps);
+        }
+        let (wide, high) = ((left + width + 26.0).ceil(), (top + CHART_HEIGHT + BELOW).ceil());
         let size = format!(r#"width="{wide}" height="{high}" viewBox="0 0 {wide} {high}" font-size="{FONT}""#);
         format!("<svg {HEAD} {size}>\n{}</svg>\n", page.0)
     }
@@ -179,11 +204,12 @@ impl Plot {
     fn draw_deviation(&self, page: &mut Page, view: &View, steps: f64) {
         let step = format!("step (deviation {})", self.curve.positive_side());
         page.axes(view, [&step, "deviation (BLU)"], false, 0.1);
-        let gap = if self.spans.len() <= FEW_STEPS + 1 { (0.5 - 8.0 / view.scale(0)).max(0.15) } else { 0.0 };
+        let spans = &self.deviation.spans;
+        let gap = if spans.len() <= FEW_STEPS + 1 { (0.5 - 8.0 / view.scale(0)).max(0.15) } else { 0.0 };
         let (mut area, mut below) = (Vec::new(), Vec::new());
-        for (place, &[least, most]) in self.spans.iter().enumerate() {
-            let from = place as f64 * self.span as f64 - 0.5;
-            let (from, to) = (from + gap, (from + self.span as f64).min(steps + 0.5) - gap);
+        for (place, &[least, most]) in spans.iter().enumerate() {
+            let [from, to] = self.deviation.place(place, steps);
+            let (from, to) = (from + gap, to - gap);
             for (side, end) in [(&mut area, most.max(0.0)), (&mut below, least.min(0.0))] {
                 let foot = if gap > 0.0 { 0.0 } else { end };
                 side.extend([[from, foot], [from, end], [to, end], [to, foot]]);
@@ -198,6 +224,20 @@ impl Plot {
             }
         }
         self.worst.iter().for_each(|(step, _, worst)| page.symbol(WORST, view.at([*step as f64, *worst])));
+    }
+
+    /// The speed against the last step of a window, as an area from the least to the greatest of each span.
+    fn draw_speed(&self, page: &mut Page, view: &View, steps: f64) {
+        let unit = if self.step_clocks.is_some() { "v/v_max" } else { "BLU/clock" };
+        page.axes(view, ["step (speed over the 32 steps to it)", unit], false, 0.1);
+        let (mut upper, mut lower) = (Vec::new(), Vec::new());
+        for (place, &[least, most]) in self.speed.spans.iter().enumerate() {
+            let [from, to] = self.speed.place(place, steps);
+            upper.extend([[from, most], [to, most]]);
+            lower.extend([[from, least], [to, least]]);
+        }
+        upper.extend(lower.into_iter().rev());
+        page.path(view, r##"fill="#56b4e9" stroke="#0072b2""##, &upper);
     }
 }
 
@@ -380,9 +420,9 @@ mod tests {
 
     #[test]
     fn the_picture_is_well_formed_and_always_the_same_and_its_texts_are_escaped() {
-        let mut plot = Plot::new(&Arc::new([6, 0], [0, 6], [0, 0], Direction::CounterClockwise).unwrap().into());
+        let mut plot = Plot::new(&Arc::new([6, 0], [0, 6], [0, 0], Direction::CounterClockwise).unwrap().into(), None);
         check_markup(&plot.svg("no points"));
-        [[6, 0], [5, 0], [5, 1]].iter().for_each(|position| plot.point(position));
+        (1..).zip([[6, 0], [5, 0], [5, 1]]).for_each(|(clock, position)| plot.point(&position, clock));
         plot.mark("jr < 0 & f > 5");
         let svg = plot.svg("R \"6\" <&>\u{1}");
         check_markup(&svg);
@@ -393,11 +433,19 @@ mod tests {
 
     #[test]
     fn a_million_points_take_bounded_memory_and_keep_the_greatest_deviation() {
-        let mut plot = Plot::new(&Line::new(vec![0, 0], vec![1_000_000, 0]).unwrap().into());
-        (0..=1_000_000).for_each(|x| plot.point(&[x, if x == 765_432 { -3 } else { x % 2 }]));
-        assert!(plot.path.len() <= PATH_LIMIT && plot.spans.len() <= SPAN_LIMIT);
+        let mut plot = Plot::new(&Line::new(vec![0, 0], vec![1_000_000, 0]).unwrap().into(), Some(4.0));
+        for x in 0..=1_000_000_u32 {
+            let y = if x == 765_432 { -3 } else { i64::from(x % 2) };
+            // A step of eight clocks in the middle of others of four.
+            plot.point(&[x.into(), y], u64::from(4 * x) + if x > 500_000 { 4 } else { 0 });
+        }
+        assert!(plot.path.len() <= PATH_LIMIT);
+        assert!([&plot.deviation, &plot.speed].iter().all(|envelope| envelope.spans.len() <= envelope::SPAN_LIMIT));
+        let [slow, fast] = plot.speed.range().unwrap();
+        assert!((slow - 32.0 / 33.0).abs() < 1e-12 && (1.0..1.01).contains(&fast), "{slow} {fast}");
+        assert!(plot.svg("long").contains(">v/v_max</text>"));
         assert_eq!(plot.worst, Some((765_432, vec![765_432, -3], -3.0)));
-        assert_eq!(plot.spans.iter().copied().reduce(union), Some([-3.0, 1.0]));
+        assert_eq!(plot.deviation.range(), Some([-3.0, 1.0]));
         assert!(plot.svg("long").len() < 300_000);
     }
 }

@@ -8,10 +8,11 @@ use stepwave_models::Promise;
 use stepwave_models::program::Pacing;
 use stepwave_nc::Side;
 
-use super::Report;
 use super::json::cut_words;
+use super::speed::ripple;
 use super::table::aligned;
-use crate::program::{Greatest, LeftOut, Totals};
+use super::{RelativeSpeed, Report};
+use crate::program::{Greatest, LeftOut, SpeedAt, Speeds, Totals};
 use crate::testbench::{BlockReport, Observer, ObserverError};
 
 /// Most moves that a table for people shows.
@@ -87,6 +88,7 @@ impl OfProgram {
             "path_error": greatest(totals.error),
             "compensated_contour_error": greatest(totals.off_compensated),
             "programmed_contour_error": greatest(totals.off_programmed),
+            "speed": speeds(totals.speeds, report.clock_hz),
             "limited_feeds": totals.limited,
             "cut_words": { "count": report.cut.count, "words": cut_words(&report.cut) },
         })
@@ -138,6 +140,12 @@ impl OfProgram {
         for sentence in report.announced() {
             let _ = writeln!(text, "warning: {sentence}");
         }
+        if let (Some(least), Some(greatest)) = (totals.speeds.least, totals.speeds.greatest) {
+            let words = |at: SpeedAt| format!("{:.4} (line {}, step {})", at.over(report.clock_hz), at.line, at.step);
+            let (least, greatest) = (words(least), words(greatest));
+            let mean = totals.speeds.mean(report.clock_hz).map(|mean| format!(", mean {mean:.4}")).unwrap_or_default();
+            let _ = writeln!(text, "speed over v_max: {least} to {greatest}{mean}");
+        }
         if let Some(by) = pacing(report) {
             let _ = writeln!(text, "feed: {by}");
         }
@@ -161,6 +169,12 @@ impl OfProgram {
             )
         })
     }
+}
+
+/// Speeds of a program over v_max; null where the hardware sets its own feed.
+fn speeds(of: Speeds, clock_hz: f64) -> Value {
+    let at = |at: SpeedAt| json!({ "value": at.over(clock_hz), "line": at.line, "step": at.step });
+    json!({ "least": of.least.map(at), "mean": of.mean(clock_hz), "greatest": of.greatest.map(at) })
 }
 
 /// What sets the feed of own hardware, in words; `None` where our pulse source does.
@@ -193,7 +207,7 @@ impl Units {
 /// A move in the JSON report.
 pub(super) fn move_json(block: &BlockReport, units: Units) -> Value {
     let clock_hz = units.clock_hz;
-    json!({
+    let mut report = json!({
         "line": block.of.place.line,
         "n": block.of.place.number,
         "kind": block.kind(),
@@ -218,9 +232,22 @@ pub(super) fn move_json(block: &BlockReport, units: Units) -> Value {
             "reached_mm_per_min": block.reached_feed(clock_hz).map(|speed| units.feed(speed)),
             "source_hz": block.source_hz,
             "limited": block.limited,
-            "ripple": block.ripple.value(),
+            "ripple": move_ripple(block),
         },
-    })
+    });
+    RelativeSpeed::put(relative_speed(block, clock_hz), &mut report["feed"]);
+    report
+}
+
+/// How unevenly a move went.
+fn move_ripple(block: &BlockReport) -> Option<f64> {
+    ripple(block.speed().as_ref(), block.end_exact().then_some(block.length))
+}
+
+/// Speed of a move over v_max: one BLU in each pulse of the pulse source; `None` where the hardware sets its own feed.
+fn relative_speed(block: &BlockReport, clock_hz: f64) -> Option<RelativeSpeed> {
+    let length = block.end_exact().then_some(block.length);
+    Some(RelativeSpeed::new(&block.speed()?, clock_hz / block.source_hz?, length))
 }
 
 /// The table of a program for people, kept up to 64 moves.
@@ -273,7 +300,10 @@ impl Observer for MoveTable {
             format!("{:.3}", report.error),
             report.off_programmed.map_or_else(|| "-".to_owned(), |off| format!("{off:.3}")),
             format!("{feed} → {reached}{}", if report.limited { " limited" } else { "" }),
-            report.ripple.value().map_or_else(|| "-".to_owned(), |ripple| format!("{:.1} %", ripple * 100.0)),
+            // Up to 32 steps are one window, which says nothing of it.
+            move_ripple(report)
+                .filter(|_| report.steps > 32)
+                .map_or_else(|| "-".to_owned(), |ripple| format!("{:.1} %", ripple * 100.0)),
         ]);
         Ok(())
     }

@@ -2,21 +2,34 @@
 
 use super::source::Source;
 use crate::report::{Report, Subject};
-use crate::testbench::{CoarseWatch, Observer, Outcome, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, Testbench};
+use crate::testbench::{
+    CoarseWatch, Observer, Outcome, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, SpeedWatch, Testbench,
+};
 
 /// What looks on for the report; the account of a program keeps itself.
 pub(super) struct Watches<'a> {
     overflow: OverflowWatch,
     ranges: RangeWatch,
-    curve: Option<(PathWatch<'a>, SpacingWatch, Option<CoarseWatch<'a>>)>,
+    curve: Option<OfCurve<'a>>,
+}
+
+/// What looks on along a curve.
+struct OfCurve<'a> {
+    path: PathWatch<'a>,
+    spacing: SpacingWatch,
+    speed: SpeedWatch,
+    coarse: Option<CoarseWatch<'a>>,
 }
 
 impl<'a> Watches<'a> {
     pub(super) fn new(bench: &Testbench, source: &'a Source) -> Watches<'a> {
         let curve = match source {
-            Source::Curve(curve) => {
-                Some((PathWatch::new(bench, curve), SpacingWatch::new(bench, curve), CoarseWatch::new(bench, curve)))
-            }
+            Source::Curve(curve) => Some(OfCurve {
+                path: PathWatch::new(bench, curve),
+                spacing: SpacingWatch::new(bench, curve),
+                speed: SpeedWatch::new(bench),
+                coarse: CoarseWatch::new(bench, curve),
+            }),
             Source::Program(_) => None,
         };
         Watches { overflow: OverflowWatch::new(bench), ranges: RangeWatch::new(bench), curve }
@@ -24,8 +37,8 @@ impl<'a> Watches<'a> {
 
     pub(super) fn observers<'o>(&'o mut self, subject: &'o mut Subject) -> Vec<&'o mut dyn Observer> {
         let mut all: Vec<&mut dyn Observer> = vec![&mut self.overflow, &mut self.ranges];
-        if let Some((path, spacing, coarse)) = &mut self.curve {
-            all.extend([path as &mut dyn Observer, spacing]);
+        if let Some(OfCurve { path, spacing, speed, coarse }) = &mut self.curve {
+            all.extend([path as &mut dyn Observer, spacing, speed]);
             all.extend(coarse.as_mut().map(|coarse| coarse as &mut dyn Observer));
         }
         if let Subject::Program(of) = subject {
@@ -41,9 +54,11 @@ impl<'a> Watches<'a> {
         report.overflows = self.overflow.events();
         report.overflow_count = self.overflow.count;
         report.tallies = self.overflow.tallies();
-        if let (Some((path, spacing, coarse)), Subject::Curve(of)) = (self.curve, &mut report.subject) {
+        if let (Some(OfCurve { path, spacing, speed, coarse }), Subject::Curve(of)) = (self.curve, &mut report.subject)
+        {
             of.worst = path.worst;
             of.trains = spacing.finish();
+            of.speed = speed.finish();
             of.coarse = coarse.and_then(|coarse| coarse.worst);
         }
     }

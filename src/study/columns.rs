@@ -67,6 +67,7 @@ impl Layout {
         add("exact", ColumnType::Flag);
         add("error_max", ColumnType::Real);
         add("error_mean", ColumnType::Real);
+        add("v_mean", ColumnType::Real);
         add("overflows", ColumnType::Whole);
         add("overflow", ColumnType::Word);
         for axis in letters {
@@ -108,7 +109,13 @@ impl Layout {
                 row.extend(run.pulses.iter().map(|&count| Value::from(count)));
                 row.extend(run.reached.iter().map(|&place| Value::Whole(place)));
                 row.push(Value::Flag(is_ended(&site.from, &site.to, &run.reached, &run.pulses)));
-                row.extend([run.greatest.into(), run.mean.into(), run.overflows.into(), run.component.into()]);
+                row.extend([
+                    run.greatest.into(),
+                    run.mean.into(),
+                    run.speed.into(),
+                    run.overflows.into(),
+                    run.component.into(),
+                ]);
                 for axis in 0..self.axes {
                     let gaps = run.spacing.get(axis).copied().flatten();
                     row.extend([0, 1].map(|end| Value::from(gaps.map(|gaps| gaps[end]))));

@@ -60,8 +60,14 @@ fn json_to_standard_output_is_the_report_and_nothing_else() {
     assert_eq!(report["pulse_spacing"], spacing);
     let off = json!({ "greatest": 0.4, "step": 1 });
     assert_eq!(report["rate_deviation"], json!({ "axes": { "x": off, "y": off }, "bound": null }));
-    let per_step = report["feed"]["mean_per_step"].as_f64().unwrap();
-    assert!((per_step - 52f64.sqrt() / 10.0).abs() < 1e-12, "{per_step}");
+    // Ten steps of four clocks, from the first row to the last, are one window.
+    let feed = &report["feed"];
+    let [least, mean, greatest] = [&feed["least"]["value"], &feed["mean"], &feed["greatest"]["value"]];
+    for speed in [least, mean, greatest].map(|speed| speed.as_f64().unwrap()) {
+        assert!((speed - 52f64.sqrt() / 10.0).abs() < 1e-12, "{feed}");
+    }
+    assert_eq!((&feed["clocks"], &feed["step_clocks"], &feed["ripple"]), (&json!(40), &json!(4.0), &json!(0.0)));
+    assert_eq!((&feed["least"]["step"], &feed["greatest"]["step"]), (&json!(10), &json!(10)));
 }
 
 #[test]

@@ -409,3 +409,23 @@ fn the_examples_of_the_help_of_sweep_work_as_written() {
         assert_eq!(Folder::new().run(&format!("sweep {example}")).code, 0, "{example}");
     }
 }
+
+#[test]
+fn k_v_is_the_ratio_of_mean_speeds_of_lines_of_one_length() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("lines.csv"), "to_x,to_y\n100,0\n71,71\n-60,80\n0,-100\n").unwrap();
+    for options in ["", "--beats 1"] {
+        let out = folder.good(&format!("sweep ppc-line --file lines.csv {options} --csv rows.csv"));
+        let rows = folder.read("rows.csv");
+        let names: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
+        let place = names.iter().position(|name| *name == "v_mean").unwrap();
+        let means: Vec<f64> =
+            rows.lines().skip(1).map(|row| row.split(',').nth(place).unwrap().parse().unwrap()).collect();
+        let expected = [1.0, 71f64.hypot(71.0) / 142.0, 100.0 / 140.0, 1.0];
+        assert!(means.iter().zip(expected).all(|(mean, expected)| (mean - expected).abs() < 1e-12), "{means:?}");
+        assert!(out.contains("\nk_v 1.4142, "), "{out}");
+    }
+    // Lines of several lengths have none.
+    let out = folder.good("sweep ppc-line --to-grid 1..9x1..9");
+    assert!(out.contains("mean speed over v_max: least 0.7071: ") && !out.contains("k_v"), "{out}");
+}

@@ -125,7 +125,7 @@ fn pulses_of_every_kind_lead_where_those_of_the_model_lead() {
                 continue;
             }
             same(&own, &model);
-            let clocks = |report: &Report| report.outcome.clocks - report.outcome.load_clocks;
+            let clocks = |report: &Report| report.curve().and_then(|of| of.speed).map(|speed| speed.clocks);
             assert_eq!(clocks(&own), clocks(&model), "{to:?}");
         }
     }
@@ -417,7 +417,7 @@ fn an_overflow_of_own_hardware_is_reported_traps_or_is_announced_as_the_user_say
     );
     // Lanes see what a run sees.
     let sweep = ran("sweep t.net --to-grid 1..9x0..0 --csv -", 0);
-    let overflows = |row: &str| row.split(',').nth(15).map(str::to_owned);
+    let overflows = |row: &str| row.split(',').nth(16).map(str::to_owned);
     let found: Vec<Option<String>> = sweep.lines().skip(1).map(overflows).collect();
     assert_eq!(found.iter().flatten().collect::<Vec<_>>(), ["0", "0", "0", "1", "1", "1", "1", "2", "2"], "{sweep}");
     assert_eq!(ran("sweep t.net --to-grid 1..9x0..0 --strict narrow --csv -", 0).matches(",trapped,").count(), 6);

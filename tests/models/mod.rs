@@ -22,6 +22,7 @@ mod sampled_spline;
 mod smooth;
 mod space_lines;
 mod spacing;
+mod speed;
 mod spline;
 mod stepgen_bresenham;
 mod widths;

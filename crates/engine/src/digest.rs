@@ -33,10 +33,12 @@ impl Wanted {
         self.forms.len() - 1
     }
 
-    /// Index of the range of a register, which is added.
+    /// Index of the range of a register, which is added if it is not wanted yet.
     pub fn range(&mut self, net: Net, turned: u64) -> usize {
-        self.ranges.push((net, turned));
-        self.ranges.len() - 1
+        self.ranges.iter().position(|&other| other == (net, turned)).unwrap_or_else(|| {
+            self.ranges.push((net, turned));
+            self.ranges.len() - 1
+        })
     }
 }
 

@@ -32,6 +32,7 @@ impl StepTrains {
 }
 
 /// How many samples of a train have their bit.
+#[inline(always)]
 pub(super) fn count(train: &[u64]) -> u64 {
     train.iter().map(|word| u64::from(word.count_ones())).sum()
 }

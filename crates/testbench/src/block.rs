@@ -7,7 +7,7 @@ use stepwave_models::Promise;
 use stepwave_nc::{Cause, Curve, Feed, PulseBlock, ROUNDING_LIMIT, SegmentShape, ToolMove};
 
 use super::contour;
-use super::ripple::Ripple;
+use super::speed::{Speed, Windows};
 use super::steps::StepReader;
 use super::{Observer, ObserverError, Step};
 
@@ -77,8 +77,8 @@ pub struct BlockReport {
     pub free: bool,
     /// Greatest distance of the tool's edge from the programmed contour, in BLU.
     pub off_programmed: Option<f64>,
-    /// How evenly it went.
-    pub ripple: Ripple,
+    /// Where it was after each step.
+    windows: Windows,
 }
 
 impl BlockReport {
@@ -103,7 +103,7 @@ impl BlockReport {
             contour_bound: None,
             free: false,
             off_programmed: None,
-            ripple: Ripple::new(from, begun),
+            windows: Windows::begun(&from, begun),
         }
     }
 
@@ -111,6 +111,7 @@ impl BlockReport {
     fn step(&mut self, block: &PulseBlock, step: &Step) {
         let (clock, pulses, position) = (step.clock, of_axes(&step.pulses), of_axes(&step.position));
         self.steps += 1;
+        self.windows.row(&position, clock);
         self.clocks = clock - self.begun;
         self.reached = position;
         let count: u64 = pulses.iter().map(|pulse| pulse.unsigned_abs()).sum();
@@ -120,7 +121,6 @@ impl BlockReport {
         for (all, pulse) in self.pulses.iter_mut().zip(pulses) {
             *all += pulse.unsigned_abs();
         }
-        self.ripple.pulses(count, position, clock);
         self.error = self.error.max(block.deviation(position));
         // Within 2^52, as every position of a block is.
         let at = position.map(|c| c as f64);
@@ -178,6 +178,12 @@ impl BlockReport {
     #[must_use]
     pub fn reached_feed(&self, clock_hz: f64) -> Option<f64> {
         self.end_exact().then(|| self.length * clock_hz / self.clocks.max(1) as f64)
+    }
+
+    /// How fast it was, from its row 0 to its last; `None` without a step.
+    #[must_use]
+    pub fn speed(&self) -> Option<Speed> {
+        self.windows.speed()
     }
 
     /// `line`, `arc`, and why where it was not programmed.

@@ -16,6 +16,7 @@ use stepwave_engine::lanes::{Observe, ROOT_GAP_UNIT, root_gap};
 use stepwave_models::CurveKind;
 use stepwave_models::options::ON_OVERFLOW;
 use stepwave_nc::{Arc, Curve, Line};
+use stepwave_netlist::cells::Op;
 use stepwave_netlist::dsl::{Module, Scope, Signal};
 use stepwave_netlist::{Design, Net, OnOverflow, Width, elaborate};
 
@@ -47,6 +48,10 @@ pub(super) struct Instruments {
     /// A relative coordinate is less than 2 to this power.
     reach: u32,
     pulses: Vec<Net>,
+    /// Completes a step.
+    stepped: Net,
+    /// 1 in each sample before row 0 of the step table; `None` where that is the sample after the load, of clock 1.
+    waits: Option<Net>,
     /// Flags and names of all properties.
     properties: Vec<(Net, String)>,
     traps: bool,
@@ -76,6 +81,12 @@ impl Instruments {
             CurveKind::Arc => circle(m, bits, steps, loads),
             _ => return None,
         };
+        let waits = (!follows_load(bench)).then(|| {
+            let begun = m.reg("begun", 1);
+            let now = begun.q | stepped | m.net(machine.loaded.net, false);
+            begun.set(now);
+            (!now).net()
+        });
         let every = bench.hardware().sampling.is_some().then(|| seen.net());
         let seen = stepped.mux(seen, m.lit(bits, 0)).net();
         let deviation = deviation.net();
@@ -89,6 +100,8 @@ impl Instruments {
             bits: [bits, (reach + 18).min(Width::MAX.get())],
             reach,
             pulses,
+            stepped: machine.stepped.net,
+            waits,
             properties: properties.map(|property| (property.never, property.name.clone())).collect(),
             traps: bench.hardware().get(&ON_OVERFLOW) == OnOverflow::Trap,
             design: elaborate(module.finish().ok()?).ok()?,
@@ -115,7 +128,8 @@ impl Instruments {
         };
         let gaps = self.pulses.iter().flat_map(|&net| [Observe::LeastGap(net), Observe::GreatestGap(net)]);
         let never = self.properties.iter().map(|&(never, _)| Observe::Last(never));
-        path.into_iter().chain([Observe::Last(self.deviation)]).chain(gaps).chain(never).collect()
+        let rows = self.waits.map(|net| Observe::Count(vec![net])).into_iter().chain([Observe::Since(self.stepped)]);
+        path.into_iter().chain([Observe::Last(self.deviation)]).chain(gaps).chain(rows).chain(never).collect()
     }
 
     /// What the inputs are to hold for a geometry; `None` where it is too large.
@@ -145,7 +159,13 @@ impl Instruments {
     }
 
     /// What was measured of a run; `None` where the instruments cannot have followed it.
-    pub(super) fn read(&self, curve: &Curve, outcome: LaneOutcome, values: &[u64]) -> Option<Measured> {
+    pub(super) fn read(
+        &self,
+        bench: &Testbench,
+        curve: &Curve,
+        outcome: LaneOutcome,
+        values: &[u64],
+    ) -> Option<Measured> {
         if outcome.ending.is_none() {
             return Some(Measured::given_up(self.pulses.len(), outcome.clocks));
         }
@@ -181,21 +201,33 @@ impl Instruments {
         if u128::from(most) * u128::from(outcome.steps) >= 1 << 32 && !self.has_wide_sums() {
             return None;
         }
-        let (gaps, never) = rest.split_at_checked(2 * self.pulses.len())?;
+        let (gaps, rest) = rest.split_at_checked(2 * self.pulses.len())?;
+        let (rows, never) = rest.split_at_checked(1 + usize::from(self.waits.is_some()))?;
+        let (first, since) = if let &[waits, since] = rows { (waits, since) } else { (1, *rows.first()?) };
+        let clocks = outcome.clocks.saturating_sub(since).saturating_sub(first);
         let flagged = || never.iter().zip(&self.properties).filter(|(flag, _)| **flag == 1);
-        Some(Measured {
+        let mut measured = Measured {
             greatest: Some(worst),
             mean: (outcome.steps > 0).then(|| mean / outcome.steps as f64),
             overflows: if self.traps { flagged().count() as u64 } else { 0 },
             component: flagged().next().filter(|_| self.traps).map(|(_, (_, name))| name.clone()),
             spacing: gaps.chunks(2).map(|gap| (gap[0] > 0).then_some([gap[0], gap[1]])).collect(),
             ..Measured::unfinished(outcome)
-        })
+        };
+        measured.take_speed(bench, curve, clocks);
+        Some(measured)
     }
 
     fn has_wide_sums(&self) -> bool {
         self.bits.iter().any(|&bits| bits > 32)
     }
+}
+
+/// The strobe `loaded` is 1 in the very sample after an edge that loads.
+fn follows_load(bench: &Testbench) -> bool {
+    let machine = bench.machine();
+    let cell = bench.design().netlist().cell(machine.loaded.net);
+    matches!(cell.op, Op::Register { next: Some(next), .. } if next == machine.load.net)
 }
 
 /// The sign of the pulse of an axis; 1 bit each.

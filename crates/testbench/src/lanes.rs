@@ -175,7 +175,7 @@ impl Lanes {
             sink(end.map(|end| {
                 let (curve, instruments) = (curve?, self.instruments.as_ref()?);
                 let outcome = self.outcome(&end, curve.borrow().from());
-                let measured = instruments.read(curve.borrow(), outcome, end.values.get(self.own..)?)?;
+                let measured = instruments.read(&self.bench, curve.borrow(), outcome, end.values.get(self.own..)?)?;
                 let cut = if self.trusted { Vec::new() } else { self.load(curve.borrow()).ok()?.cut };
                 Some(Measured { cut, ..measured })
             }));

@@ -18,10 +18,10 @@ mod overflow;
 mod path;
 mod ranges;
 mod recording;
-mod ripple;
 mod run;
 mod running;
 mod spacing;
+mod speed;
 mod steps;
 mod stimulus;
 mod tool;
@@ -45,10 +45,10 @@ pub use overflow::{OverflowEvent, OverflowTally, OverflowWatch};
 pub use path::{PathWatch, WorstError};
 pub use ranges::{RangeWatch, RegisterRange, StuckBits};
 pub use recording::{Recording, Trace};
-pub use ripple::Ripple;
 use run::Run;
 pub use running::Running;
 pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
+pub use speed::{Speed, SpeedTrack, SpeedWatch, Window as SpeedWindow};
 pub use steps::Step;
 use steps::StepColumns;
 pub use wave::{Taken, Trigger, WaveBody, WaveWriter, Window};
@@ -171,8 +171,6 @@ pub struct Outcome {
     pub ending: Ending,
     /// Clocks since reset: the clock of the last sample.
     pub clocks: u64,
-    /// Those of them in which blocks were loaded: the others the machine was moving, or had the time to.
-    pub load_clocks: u64,
     /// Steps completed.
     pub steps: u64,
     /// Pulses of each axis, in either direction.

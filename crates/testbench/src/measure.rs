@@ -28,6 +28,9 @@ pub struct Measured {
     pub greatest: Option<f64>,
     /// Mean of the path errors after all steps, in BLU; of an arc each to 2^-17 BLU. None without a step.
     pub mean: Option<f64>,
+    /// Mean speed over v_max, as [`Speed`](super::Speed) defines it; `None` where the curve was not run to its end, or it is
+    /// not known how many clocks a step of the hardware takes.
+    pub speed: Option<f64>,
     /// Violations of properties, as [`OverflowWatch`] counts them.
     pub overflows: u64,
     /// Path of the component of the first.
@@ -51,11 +54,19 @@ impl Measured {
             reached,
             greatest: None,
             mean: None,
+            speed: None,
             overflows: 0,
             component: None,
             cut: Vec::new(),
             spacing,
         }
+    }
+
+    /// Takes the clocks from row 0 of the step table to its last row, if the curve was run.
+    pub(super) fn take_speed(&mut self, bench: &Testbench, curve: &Curve, clocks: u64) {
+        let is_run = self.ending == Some(Ending::Done) && clocks > 0;
+        let step = bench.hardware().clocks_of_step().filter(|_| is_run);
+        self.speed = step.map(|step| step * curve.length() / clocks as f64);
     }
 
     /// A run of this many axes that was not done after `clocks` clocks.
@@ -73,7 +84,10 @@ impl Testbench {
     pub fn measure(&self, curve: &Curve, limit: u64) -> Result<Measured, ObserverError> {
         let (mut overflow, mut path) = (OverflowWatch::new(self), PathWatch::new(self, curve));
         let (mut mean, mut spacing, mut end) = (Mean::new(self, curve), Spacing::new(self), Limit(limit));
-        let run = self.run(EngineKind::Compiled, &mut [&mut end, &mut overflow, &mut path, &mut mean, &mut spacing]);
+        let mut motion = Motion::new(self);
+        let observers: &mut [&mut dyn Observer] =
+            &mut [&mut end, &mut overflow, &mut path, &mut mean, &mut spacing, &mut motion];
+        let run = self.run(EngineKind::Compiled, observers);
         let outcome = match run {
             Err(error) if error.is::<Reached>() => None,
             Err(error) => return Err(error),
@@ -87,7 +101,7 @@ impl Testbench {
             let given_up = Measured::given_up(self.machine().pulses.len(), limit);
             return Ok(Measured { cut: self.cut.clone(), ..given_up });
         };
-        Ok(Measured {
+        let mut measured = Measured {
             ending: Some(ending),
             clocks,
             steps,
@@ -95,11 +109,14 @@ impl Testbench {
             reached,
             greatest: path.worst.map(|worst| worst.error),
             mean: (steps > 0).then(|| mean.sum() / steps as f64),
+            speed: None,
             overflows: overflow.count,
             component: overflow.events().first().map(|event| event.component().to_owned()),
             cut: self.cut.clone(),
             spacing: spacing.axes.iter().map(|axis| axis.seen).collect(),
-        })
+        };
+        measured.take_speed(self, curve, motion.clocks());
+        Ok(measured)
     }
 }
 
@@ -221,6 +238,42 @@ impl Observer for Spacing {
                     axis.seen = Some([least.min(gap), most.max(gap)]);
                 }
             }
+        }
+        Ok(())
+    }
+}
+
+/// The rows of the step table, from the first to the last.
+struct Motion {
+    columns: StepColumns,
+    /// Clocks of row 0 and of the last row.
+    rows: Option<[u64; 2]>,
+}
+
+impl Motion {
+    fn new(bench: &Testbench) -> Motion {
+        Motion { columns: StepColumns::of(bench), rows: None }
+    }
+
+    fn clocks(&self) -> u64 {
+        self.rows.map_or(0, |[first, last]| last - first)
+    }
+}
+
+impl Observer for Motion {
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        if self.rows.is_none() {
+            let first = (0..rows.len()).find(|&row| self.columns.completes(rows, row, true));
+            self.rows = first.map(|row| [rows.clock(row); 2]);
+        }
+        let stepped = rows.column(self.columns.stepped);
+        let last = stepped.iter().rposition(|&stepped| stepped == 1);
+        if let (Some(rows_so_far), Some(last)) = (&mut self.rows, last) {
+            rows_so_far[1] = rows_so_far[1].max(rows.clock(last));
         }
         Ok(())
     }

@@ -53,8 +53,6 @@ pub(super) struct Run<'a, 'o> {
 
 /// Index among the stop nets of that by which a machine takes a block: `call`, or `done` without a buffer.
 const READY: usize = 0;
-/// Clocks from reset until a machine with a buffer runs its first block.
-const BUFFER_CLOCKS: u64 = 4;
 
 impl<'a, 'o> Run<'a, 'o> {
     pub(super) fn new(
@@ -126,15 +124,7 @@ impl<'a, 'o> Run<'a, 'o> {
         let ending = self.blocks()?;
         self.drain()?;
         self.account.end(self.observers)?;
-        let [first, further] = self.bench.machine().load_clocks;
-        // A buffer loads while blocks run.
-        let load_clocks = match (self.is_buffered(), self.alone) {
-            (false, _) if self.loaded == 0 => 0,
-            (false, _) => first + further * (self.loaded as u64 - 1),
-            (true, true) => BUFFER_CLOCKS,
-            (true, false) => 0,
-        };
-        Ok(self.steps.outcome(ending, self.engine.clock(), load_clocks))
+        Ok(self.steps.outcome(ending, self.engine.clock()))
     }
 
     fn is_buffered(&self) -> bool {

@@ -317,11 +317,10 @@ impl<'a> StepReader<'a> {
         }
     }
 
-    pub(super) fn outcome(&self, ending: Ending, clocks: u64, load_clocks: u64) -> Outcome {
+    pub(super) fn outcome(&self, ending: Ending, clocks: u64) -> Outcome {
         Outcome {
             ending,
             clocks,
-            load_clocks,
             steps: self.rows - self.first_rows,
             pulses: self.pulses.clone(),
             reached: self.position.clone(),

@@ -56,6 +56,17 @@ pub enum Beats {
     One,
 }
 
+impl Beats {
+    /// Clocks of a step.
+    #[must_use]
+    pub fn clocks(self) -> u64 {
+        match self {
+            Beats::Four => 4,
+            Beats::One => 1,
+        }
+    }
+}
+
 impl Named for Beats {
     const ALL: &'static [(&'static str, Beats)] = &[("4", Beats::Four), ("1", Beats::One)];
 }

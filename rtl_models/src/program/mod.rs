@@ -29,7 +29,7 @@ use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{Options, chosen};
-use crate::parts::{FASTEST_RATE, POSITION, PULSE_RATE, SHARE, WHOLE};
+use crate::parts::{FASTEST_RATE, POSITION, PULSE_RATE, RATE_BITS, SHARE, WHOLE};
 use crate::plan::Plan;
 use crate::promise::Promise;
 use crate::registers::{Reg, Rule};
@@ -297,6 +297,7 @@ impl Model {
             )));
         }
         moves.plan(&Size::of(moves.crossing(), block), &mut plan)?;
+        plan.step_clocks = Some((1 << RATE_BITS) / FASTEST_RATE);
         let hardware = plan.finish()?;
         // A program divides a helix, so that its third axis strays by less than a pulse; alone it is not divided.
         let divided = !matches!(block.curve, Curve::Helix(_));

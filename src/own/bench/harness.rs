@@ -102,7 +102,6 @@ impl Bench {
         for letter in letters() {
             inputs.insert((*letter).to_owned(), find(&format!("block.{letter}_in"))?);
         }
-        let reset = self.reset.map_or(0, |reset| reset.clocks).max(1);
         Ok(Machine {
             load: find("block.load")?,
             preset_position: find("block.preset_position")?,
@@ -119,8 +118,6 @@ impl Bench {
             inputs,
             buffer: None,
             traps,
-            // Resetting, starting, and the edge at which `done` rises.
-            load_clocks: [reset + 2, 3],
             design: elaborate(netlist)?,
         })
     }

@@ -115,6 +115,7 @@ impl Bench {
         }
         // Nothing is known of its pauses: only a machine at rest, or back where it was, is one that has stalled.
         plan.stall_clocks = u64::MAX;
+        plan.step_clocks = None;
         Ok(())
     }
 

@@ -69,6 +69,10 @@ impl<'d> Alone<'d> {
                     let offset = to_signed(netlist.width(*offset), now(offset));
                     *value = value.wrapping_add(root_gap(now(base) as f64, offset as f64));
                 }
+                Observe::Since(net) => {
+                    let last = if now(net) != 0 { last_set.insert(clock) } else { last_set.get_or_insert(u64::MAX) };
+                    *value = if *last == u64::MAX { u64::MAX } else { clock - *last };
+                }
                 Observe::LeastGap(net) | Observe::GreatestGap(net) => {
                     if now(net) != 0 {
                         let gap = last_set.replace(clock).map_or(0, |last| clock - last);

@@ -74,6 +74,7 @@ fn watch(design: &Design, plan: &Plan) -> LaneWatch {
             Observe::Min { net, signed },
             Observe::Max { net, signed },
             Observe::Count(counted),
+            Observe::Since(net),
             Observe::LeastGap(net),
             Observe::GreatestGap(net),
         ]

@@ -214,6 +214,7 @@ fn accumulators(watch: &LaneWatch) -> (Vec<(Reduce, Vec<Net>)>, Vec<Net>) {
             Observe::RootGaps { .. } => Reduce::RootGaps,
             Observe::LeastGap(net) => Reduce::LeastGap { since: counted(*net) },
             Observe::GreatestGap(net) => Reduce::GreatestGap { since: counted(*net) },
+            Observe::Since(_) => Reduce::Since,
         };
         accumulators.push((reduce, observe.nets().collect()));
     }
@@ -227,7 +228,7 @@ fn is_wide(observe: &Observe, limit: u64) -> bool {
     match observe {
         Observe::Sum { bits, .. } | Observe::RootGaps { bits, .. } => *bits > 32,
         // Clocks are counted with a sign.
-        Observe::LeastGap(_) | Observe::GreatestGap(_) => limit >= 1 << 31,
+        Observe::LeastGap(_) | Observe::GreatestGap(_) | Observe::Since(_) => limit >= 1 << 31,
         _ => false,
     }
 }

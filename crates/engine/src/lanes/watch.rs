@@ -44,6 +44,8 @@ pub enum Observe {
     LeastGap(Net),
     /// Most clocks between a sample in which the net is not 0 and the next such sample; 0 with fewer than two.
     GreatestGap(Net),
+    /// Clocks from the last sample in which the net was not 0 to the end; [`u64::MAX`] where it never was.
+    Since(Net),
 }
 
 impl Observe {
@@ -51,7 +53,9 @@ impl Observe {
     pub fn nets(&self) -> impl Iterator<Item = Net> + '_ {
         let (one, two, many): (Option<Net>, Option<Net>, &[Net]) = match self {
             Observe::Last(net) | Observe::Min { net, .. } | Observe::Max { net, .. } => (Some(*net), None, &[]),
-            Observe::Sum { net, .. } | Observe::LeastGap(net) | Observe::GreatestGap(net) => (Some(*net), None, &[]),
+            Observe::Sum { net, .. } | Observe::LeastGap(net) | Observe::GreatestGap(net) | Observe::Since(net) => {
+                (Some(*net), None, &[])
+            }
             Observe::RootGaps { base, offset, .. } => (Some(*base), Some(*offset), &[]),
             Observe::Count(nets) => (None, None, nets),
         };

@@ -265,6 +265,11 @@ impl<'p, T: Loops> Worker<'p, T> {
                 // With fewer than two it is negative.
                 if least.less_signed(T::default()) { 0 } else { least.get() }
             }
+            Observe::Since(_) => {
+                let since = word(accumulators.next(), &self.lanes, lane);
+                // Counted up to the sample after the last.
+                if since.less_signed(T::default()) { u64::MAX } else { since.get() - 1 }
+            }
             Observe::Min { .. } | Observe::Max { .. } => word(accumulators.next(), &self.lanes, lane).decode(*width),
         };
         let values = program.watch.observe.iter().zip(&program.widths).map(value).collect();
