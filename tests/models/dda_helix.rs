@@ -20,15 +20,18 @@ pub(super) fn helix(from: [i64; 3], to: [i64; 3], center: [i64; 2], clockwise: b
 /// fraction.
 fn check_helix(curve: &Curve, spare: u32, fraction: u32, preset: Preset, engine: EngineKind) -> bool {
     let Curve::Helix(given) = curve else { panic!("a helix") };
-    let n = find("dda-helix").unwrap().plan(curve, &Options::default()).unwrap().widths["jrx"].get() + spare;
+    let (from, to, center) = (given.from(), given.to(), given.arc().center());
+    let clockwise = given.arc().direction() == Direction::Clockwise;
+    let words = helix_words(from, to, center, clockwise, fraction);
+    // A short fraction, rounded up, may make a word one bit longer.
+    let longest = words.iter().map(|(jvz, _)| Width::needed_unsigned(jvz.unsigned_abs().into())).max().unwrap();
+    let least = find("dda-helix").unwrap().plan(curve, &Options::default()).unwrap().widths["jrx"].get();
+    let n = least.max(longest - longest.min(fraction)) + spare;
     let wide = |bits: u32| Width::new(bits.into()).unwrap();
     let widths = [("jvz".to_owned(), wide(n + fraction)), ("jrz".to_owned(), wide(n + fraction))];
     let choices =
         Options::default().with_all(&WIDTH, wide(n)).with_single(&WIDTH, widths.into()).with_all(&PRESET, preset);
     let presets = [n, n, n + fraction].map(|bits| preset_value(preset, bits));
-    let (from, to, center) = (given.from(), given.to(), given.arc().center());
-    let clockwise = given.arc().direction() == Direction::Clockwise;
-    let words = helix_words(from, to, center, clockwise, fraction);
     let table = dda_helix(n, fraction, from, to, center, clockwise, &words, presets);
     if table.finished {
         check("dda-helix", curve, &choices, engine, &table);
@@ -49,6 +52,11 @@ fn every_lattice_helix_up_to_radius_8_upwards_downwards_and_flat() {
         let steep = helix([from[0], from[1], 0], [to[0], to[1], -60], [0, 0], clockwise);
         assert!(!check_helix(&steep, 0, 8, Preset::Half, EngineKind::Word), "{steep:?} hangs");
     });
+}
+
+#[test]
+fn a_word_that_a_short_fraction_makes_longer_has_its_bit() {
+    check_helix(&helix([0, -1, 5], [0, -1, 206], [0, 0], false), 0, 4, Preset::Half, EngineKind::Word);
 }
 
 #[test]
