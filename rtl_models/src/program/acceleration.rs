@@ -16,6 +16,9 @@ const BITS: &str = "ramp bits";
 /// Bits of the pulses of a block.
 const PULSE_BITS: &str = "ramp pulses";
 
+/// Bits of an acceleration.
+const GAIN_BITS: &str = "ramp gains";
+
 /// Most bits of a load word.
 const MOST_WORD: u32 = 63;
 
@@ -28,6 +31,7 @@ pub struct Acceleration {
     pub jerk: Option<f64>,
     n: u32,
     pulse_bits: u32,
+    gain_bits: u32,
     hz: f64,
 }
 
@@ -62,8 +66,8 @@ fn physical(model: &'static str, option: &'static str, quantity: Quantity, examp
     })
 }
 
-/// Plans the ramp of a machine whose blocks take up to `most` pulses, if it has one.
-pub(super) fn plan(plan: &mut Plan, most: u64) -> Result<(), ModelError> {
+/// Plans the ramp of a machine whose blocks take up to `most` pulses, and up to `per_blu` for a BLU, if it has one.
+pub(super) fn plan(plan: &mut Plan, [most, per_blu]: [u64; 2]) -> Result<(), ModelError> {
     let model = plan.model();
     let (gains, jerk) = (plan.get(&ACCEL), plan.get(&JERK));
     let Some(gains) = gains else {
@@ -94,7 +98,10 @@ pub(super) fn plan(plan: &mut Plan, most: u64) -> Result<(), ModelError> {
              one, a lower --clock-hz or a smaller --blu"
         ))
     })?;
-    plan.constants.push((BITS, n.max(2).into()));
+    let n = n.max(2);
+    plan.constants.push((BITS, n.into()));
+    let greatest = gains.both().map(|gain| scale.word(gain, 2, n)).into_iter().max().unwrap_or(1);
+    plan.constants.push((GAIN_BITS, bits(greatest.saturating_mul(per_blu)).clamp(1, n).into()));
     plan.constants.push((PULSE_BITS, bits(most.saturating_add(1)).into()));
     // The slowest speed that is loaded may be 1.
     plan.stall_clocks = u64::MAX;
@@ -114,6 +121,7 @@ impl Acceleration {
             jerk: hardware.get(&JERK).and_then(blu),
             n: size(BITS),
             pulse_bits: size(PULSE_BITS),
+            gain_bits: size(GAIN_BITS),
             hz: scale.hz,
         })
     }
@@ -179,7 +187,8 @@ impl Acceleration {
         let drive = rounded(speeds[1] * k * unit).clamp(1, 1 << (self.n - 1));
         let [mut start, mut stop, restart] =
             [speeds[0], speeds[2], jump].map(|v| rounded(v * k * unit).clamp(1, drive));
-        let mut gains = self.gains.map(|gain| rounded(gain * k * unit / self.hz).clamp(1, most));
+        let greatest = (1 << self.gain_bits) - 1;
+        let mut gains = self.gains.map(|gain| rounded(gain * k * unit / self.hz).clamp(1, greatest));
         let left = rounded(pulses.ceil()).min((1 << self.pulse_bits) - 1);
         let ratio = rounded(k / before * 2f64.powi(RATIO_FRACTION.cast_signed())).min((1 << RATIO_BITS) - 1);
         let mut words = Words::new().set(PULSES, left).set(RESTART, restart).set(RATIO, ratio);

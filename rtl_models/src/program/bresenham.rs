@@ -36,7 +36,7 @@ pub static MODEL: Model = Model {
         arcs: None,
         direct: false,
         plan,
-        most_steps: |size, _| size.magnitude,
+        most_steps: |size, _| [size.magnitude, 1],
         load,
         error_bound: |hardware, block| {
             let right = bresenham::compares_right(hardware.get(&FORM), hardware.get(&COMPARE));

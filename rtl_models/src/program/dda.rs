@@ -55,7 +55,7 @@ pub static MODEL: Model = Model {
         arcs: Some(CROSSING),
         direct: false,
         plan,
-        most_steps: |_, plan| 2_u64.saturating_mul(power(plan.bits(JV.of(0)))),
+        most_steps: |_, plan| [2_u64.saturating_mul(power(plan.bits(JV.of(0)))); 2],
         load,
         error_bound: |hardware, block| {
             // Each axis of a line is rounded to the nearest, or cut; an arc has no promise.

@@ -38,7 +38,7 @@ pub static MODEL: Model = Model {
         arcs: None,
         direct: false,
         plan,
-        most_steps: |_, plan| power(plan.bits(Q)),
+        most_steps: |_, plan| [power(plan.bits(Q)); 2],
         load,
         error_bound: |hardware, block| {
             let moving = (0..3).filter(|&axis| block.from[axis] != block.to[axis]);

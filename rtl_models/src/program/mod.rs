@@ -168,8 +168,8 @@ pub struct Paced {
     ///
     /// An error names a width or a value that cannot be.
     pub plan: fn(&Size, &mut Plan) -> Result<(), ModelError>,
-    /// Most steps of a line or a sector.
-    pub most_steps: fn(&Size, &Plan) -> u64,
+    /// Most steps of a line or a sector, and for a BLU of its path.
+    pub most_steps: fn(&Size, &Plan) -> [u64; 2],
     /// What the machine is loaded with for a block of the program, in order; all words but the rate of the pulse source.
     pub load: fn(&PulseBlock, &Hardware) -> Vec<HardwareBlock>,
     /// Greatest distance from a curve whose ends lie on it that the method promises, in BLU, if it promises one.

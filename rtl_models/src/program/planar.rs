@@ -48,7 +48,7 @@ pub(super) const fn judging(
         direct: true,
         plan: judged,
         // Those of both axes of a sector.
-        most_steps: |size, _| size.magnitude.saturating_mul(2),
+        most_steps: |size, _| [size.magnitude.saturating_mul(2), 1],
         load,
         error_bound,
     })

@@ -38,7 +38,7 @@ pub static MODEL: Model = Model {
         arcs: None,
         direct: false,
         plan,
-        most_steps: |_, plan| power(plan.bits(E)),
+        most_steps: |_, plan| [power(plan.bits(E)); 2],
         load,
         error_bound: |hardware, block| {
             let moving = delta(block).iter().filter(|travel| **travel != 0).count();
