@@ -28,7 +28,7 @@
 //!
 //! **Units.** Speeds, accelerations and jerks are numbers of the registers, 2^-n pulses a tick and so on, or have a unit:
 //! `--accel 500mm/s2 --speed 2400mm/min` at `--clock-hz` and `--blu`. n is then the least with which every acceleration (or the
-//! jerk) is 128 or more. vs and ve are without a choice the greatest speed at which no pulse is waited for, sqrt(a·2^n).
+//! jerk) is 128 or more, at most 54. vs and ve are without a choice the greatest speed at which no pulse is waited for, sqrt(a·2^n).
 //!
 //! The recurrence is the project's own form of what motion control chips do. 12 pulses with 8 bits, from the golden file
 //! `waves/ramp-12.csv`; the wave is next to it:
@@ -63,6 +63,9 @@ const NAME: &str = "ramp";
 /// What is not given, in units of the registers.
 const USUAL: (Quantity, Quantity) = (Quantity::Word(16), Quantity::Word(144));
 
+/// The drive speed that is not given, where accelerations have units.
+const USUAL_FEED: Quantity = Quantity::Physical { number: 2400.0, unit: "mm/min", mm: 1.0 / 60.0 };
+
 /// A pulse source that accelerates and brakes, for one axis.
 pub static MODEL: Model = Model {
     name: NAME,
@@ -87,7 +90,7 @@ pub static MODEL: Model = Model {
     options: &[
         &WIDTH.about("n of phase and v, or REGISTER=N,… (default: the least that holds speeds and accelerations)"),
         &PRESET.about("zero (default) | half | full | N: of the phase"),
-        &SPEED.about("vc, or vs=V,vc=V,ve=V (default: vc=144, and vs and ve as fast as one can start)"),
+        &SPEED.about("vc, or vs=V,vc=V,ve=V (default: vc=144, or 2400mm/min where accelerations have units, and vs and ve as fast as one can start)"),
         &ACCEL.about("A or A,D (default: 16)"),
         &JERK,
         &BRAKE,
@@ -120,18 +123,26 @@ fn ramping(options: &Options, n: Option<u32>) -> Result<Ramping, ModelError> {
     let (gains, jerk) = (options.value(&ACCEL), options.value(&JERK));
     let hz = options.clock_hz.map_or(1e6, Millionths::units);
     let scale = Scale { hz, per_mm: 1.0 / options.blu_mm.unwrap_or(1e-3) };
-    let drive = get_speed("vc").unwrap_or(USUAL.1);
     let gains = gains.map_or([USUAL.0; 2], Gains::both);
+    // Of an acceleration with a unit a speed of the register would say nothing.
+    let has_unit = gains.iter().any(|gain| gain.mm().is_some()) || jerk.is_some_and(|jerk| jerk.mm().is_some());
+    let drive = get_speed("vc").unwrap_or(if has_unit { USUAL_FEED } else { USUAL.1 });
     let by_gain = match jerk {
         Some(jerk) => scale.least_bits(&[jerk], 3),
         None => scale.least_bits(&gains, 2),
     };
     let by_speed = (1..=MOST_BITS + 1).find(|&n| bits(scale.word(drive, 1, n)) <= n).unwrap_or(MOST_BITS + 1);
-    let n = n.unwrap_or_else(|| by_gain.unwrap_or(1).max(by_speed));
+    if let Some(n) = n.filter(|n| *n > MOST_BITS) {
+        return Err(ModelError::Widths(format!(
+            "{NAME}: a phase of {n} bits is too wide, as a speed times an override has 10 more: give --width {MOST_BITS} or less"
+        )));
+    }
+    let by_gain = by_gain.unwrap_or(if has_unit { MOST_BITS + 1 } else { 1 });
+    let n = n.unwrap_or_else(|| by_gain.max(by_speed));
     if n > MOST_BITS {
         return Err(ModelError::Widths(format!(
             "{NAME}: speeds and accelerations as low as these need a phase of more than {MOST_BITS} bits: give a lower \
-             --clock-hz, or --width"
+             --clock-hz, greater ones, or --width"
         )));
     }
     let words = gains.map(|gain| scale.word(gain, 2, n));
@@ -254,7 +265,7 @@ impl Ramping {
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let e = hardware.counter(m, &block, E);
-    let scope = m.scope("ramp");
+    let scope = m.scope("pulse_source");
     let ramp = Ramp::new(scope, RampBits::of(hardware), &block);
     let tick = block.busy & !block.load;
     let pulse = ramp.pulse(tick);

@@ -6,8 +6,8 @@ use crate::options::Quantity;
 
 /// Least value of an acceleration, or of a jerk, that is given with a unit: rounding changes it by less than half a percent.
 const LEAST_GAIN: f64 = 128.0;
-/// Most bits of a phase.
-pub(crate) const MOST_BITS: u32 = 62;
+/// Most bits of a phase: a speed times an override has 10 more.
+pub(crate) const MOST_BITS: u32 = 54;
 
 /// How lengths and times become pulses and ticks.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -39,7 +39,7 @@ impl Scale {
     pub fn least_bits(self, quantities: &[Quantity], power: i32) -> Option<u32> {
         let least = quantities.iter().filter_map(|quantity| quantity.mm()).min_by(f64::total_cmp)?;
         // One half less is rounded up.
-        (1..=MOST_BITS + 1).find(|&n| self.exact(least, power, n).round() >= LEAST_GAIN)
+        (1..=MOST_BITS + 1).find(|&n| self.exact(least, power, n).round() >= LEAST_GAIN).or(Some(MOST_BITS + 1))
     }
 }
 

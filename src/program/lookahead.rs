@@ -2,7 +2,8 @@
 //! machine always can stop in time.
 //!
 //! A block waits until what follows it is as long as the braking distance from its own speed, or a stop follows: then
-//! nothing further on can change the speed at its end.
+//! nothing further on can change the speed at its end. With a jerk, whose ramps every block has for itself, a chain of blocks
+//! shorter than that distance brakes over a longer one, and is planned slower than it could be run.
 
 use std::collections::VecDeque;
 
@@ -11,6 +12,9 @@ use stepwave_nc::{PathControl, Point};
 
 /// Most blocks that wait. With more of them so short a stop is assumed after the last.
 const MOST: usize = 4096;
+
+/// Halvings by which a speed is found that has no formula: to a part in 2^30.
+const BISECTIONS: usize = 30;
 
 /// What a part of a block is to the plan; lengths in BLU, speeds in BLU/s.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -31,6 +35,8 @@ pub(super) struct Lookahead<T> {
     queue: VecDeque<(Stretch, T)>,
     /// Speed at which the first of them begins.
     entry: f64,
+    /// It begins there from a stop.
+    rests: bool,
     /// How many of them are before the first stop, if there is one.
     stop: Option<usize>,
     /// Length of all but the first.
@@ -40,7 +46,7 @@ pub(super) struct Lookahead<T> {
 impl<T> Lookahead<T> {
     /// With nothing in it. An axis can start, stop and change by `jump` in BLU/s at once.
     pub(super) fn new(by: Acceleration, jump: f64) -> Lookahead<T> {
-        Lookahead { by, jump, queue: VecDeque::new(), entry: jump, stop: None, beyond: 0.0 }
+        Lookahead { by, jump, queue: VecDeque::new(), entry: jump, rests: true, stop: None, beyond: 0.0 }
     }
 
     /// The speed in BLU/s by which an axis may change at once.
@@ -103,12 +109,15 @@ impl<T> Lookahead<T> {
             exit = self.reach(exit.min(stretch.cap), stretch.length, 1);
             exit = exit.min(stretch.joint).min(stretch.cap).min(before);
         }
-        let entry = self.entry.min(cap);
+        // From a stop it begins no faster than it can brake.
+        let entry =
+            self.entry.min(cap).min(if self.rests { self.reach(exit.min(cap), length, 1) } else { f64::INFINITY });
         let exit = exit.min(cap).min(self.reach(entry, length, 0));
         let (_, what) = self.queue.pop_front()?;
         let next = self.queue.front().map_or(0.0, |(next, _)| next.length);
         self.beyond = if self.queue.len() > 1 { self.beyond - next } else { 0.0 };
-        self.entry = if self.stop == Some(1) { self.jump } else { exit };
+        self.rests = self.stop == Some(1);
+        self.entry = if self.rests { self.jump } else { exit };
         self.stop = self.stop.map(|parts| parts - 1).filter(|parts| *parts > 0);
         Some((what, [entry, cap, exit]))
     }
@@ -120,7 +129,7 @@ impl<T> Lookahead<T> {
         let Some(jerk) = self.by.jerk else { return without_jerk };
         // A ramp along an S gains less.
         let (mut low, mut high) = (from, without_jerk);
-        for _ in 0..60 {
+        for _ in 0..BISECTIONS {
             let middle = f64::midpoint(low, high);
             if s_length(from, middle, gain, jerk) <= length { low = middle } else { high = middle }
         }
@@ -160,7 +169,7 @@ pub(super) fn seconds(by: &Acceleration, length: f64, [start, drive, stop]: [f64
     if fits(high) {
         low = high;
     } else {
-        for _ in 0..60 {
+        for _ in 0..BISECTIONS {
             let middle = f64::midpoint(low, high);
             if fits(middle) { low = middle } else { high = middle }
         }

@@ -38,6 +38,21 @@ fn what_the_operator_does_is_in_force_at_the_next_edge() {
 }
 
 #[test]
+fn a_start_is_not_lost_with_one_just_before_it() {
+    let folder = Folder::new();
+    folder.write("p.ngc", "G21 G91 G1 X1 F2400\nX1\nX1\n");
+    let run = "program p.ngc --method bresenham --accel 500mm/s2 --blu 0.01mm --clock-hz 2e4 --event 0:single";
+    let ran = folder.run(&format!("{run} --event 3001:start --event 3000:start --event 9:start --event 6000:start"));
+    assert_eq!(ran.code, 0, "{ran:?}");
+}
+
+#[test]
+fn an_acceleration_with_a_unit_has_a_speed_with_one() {
+    let report: serde_json::Value = serde_json::from_str(&good("run ramp --to 3 --accel 500mm/s2 --json -")).unwrap();
+    assert_eq!(report["choices"]["speed"].as_str().unwrap().split(',').next(), Some("vc=10737418"), "{report}");
+}
+
+#[test]
 fn a_hold_without_an_end_stalls() {
     let ran = Folder::new().run("run ramp --to 12 --event 9:hold");
     assert_eq!(ran.code, 1, "{ran:?}");
@@ -55,6 +70,8 @@ fn what_cannot_be_is_refused_with_a_remedy() {
         ("run ramp --to 12 --jerk 2 --brake count", &["count", "S curve"]),
         ("run ramp --to 12 --accel 5mm", &["'5mm'", "mm/s2"]),
         ("run ramp --to 12 --accel 1e-9mm/s2 --width 8", &["0 in registers of 8 bits"]),
+        ("run ramp --to 12 --width 60", &["phase of 60 bits", "--width 54"]),
+        ("run ramp --to 12 --accel 0.001mm/s2 --clock-hz 1e9 --speed 1mm/s", &["54 bits", "--clock-hz"]),
         ("run ramp --to 12 --width v=9,phase=8", &["v of 9 bits", "phase has 8"]),
         ("run ramp --to 12,5", &["one axis", "a line of 2 axes"]),
         ("run dda-line --to 12", &["2 to 6 axes", "a displacement of one axis"]),
@@ -65,7 +82,7 @@ fn what_cannot_be_is_refused_with_a_remedy() {
         ("run dda-machine --to 12,5 --jerk 9mm/s3", &["9mm/s3", "--accel"]),
         ("run dda-machine --to 12,5 --accel 16", &["16", "500mm/s2"]),
         ("run dda-line --to 12,5 --accel 500mm/s2", &["dda-line does not take --accel"]),
-        ("run dda-machine --to 12,5 --accel 1e-30mm/s2", &["62 bits", "--clock-hz"]),
+        ("run dda-machine --to 12,5 --accel 1e-30mm/s2", &["54 bits", "--clock-hz"]),
         ("sweep ramp --to 12 --csv -", &["displacements of one axis", "run"]),
     ] {
         refused(command, hints);

@@ -28,11 +28,12 @@ impl Testbench {
             for (later, name, value) in action.inputs() {
                 let input = self.input(*action, name)?;
                 let value = input.reading.wrapped(input.width, value).value();
-                all.push(Event { clock: clock.saturating_add(later), input: input.net, value });
+                all.push((later == 0, Event { clock: clock.saturating_add(later), input: input.net, value }));
             }
         }
-        all.sort_by_key(|event| event.clock);
-        self.events = all;
+        // What ends by itself does so before the operator acts again at that clock.
+        all.sort_by_key(|(acts, event)| (event.clock, *acts));
+        self.events = all.into_iter().map(|(_, event)| event).collect();
         Ok(self)
     }
 
