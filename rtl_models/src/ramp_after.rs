@@ -50,6 +50,11 @@ const USUAL_STEP: u64 = 10;
 /// Most BLU of a period.
 const MOST_STEP: u64 = 1 << 30;
 
+/// The net that is 0, to which the pulses of a period are added.
+const NONE: &str = "none";
+/// The net that is the sum without the oldest.
+const YOUNGER: &str = "younger";
+
 static BY_SUM: With<Smooth> = With(&SMOOTH, |smooth| matches!(smooth, Smooth::Sum(_)));
 static BY_SHARE: With<Smooth> = With(&SMOOTH, |smooth| matches!(smooth, Smooth::Exponential(_)));
 static DIVIDED: Where = Where("--smooth sum", |plan| matches!(plan.get(&SMOOTH), Smooth::Sum(_)));
@@ -126,6 +131,18 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
         }
     };
     plan.integrators(1)?;
+    if let Smooth::Sum(k) = smooth
+        && plan.bits(REMAINDER) < bits(k - 1)
+    {
+        return Err(ModelError::Widths(format!(
+            "{NAME}: rem of {} does not hold the remainders of a division by {k}: give --width rem={} or more",
+            plan.bits(REMAINDER),
+            bits(k - 1)
+        )));
+    }
+    plan.remedies.push((NONE, format!("a period has more pulses than jv holds: give --width {} or more", bits(f))));
+    plan.remedies
+        .push((YOUNGER, format!("the sum has more bits: give --width s={} or more", bits(f.saturating_mul(periods)))));
     if plan.bits(JR.of(0)) > 52 {
         return Err(ModelError::Widths(format!("{NAME}: a period has 2^n additions: give --width 52 or less")));
     }
@@ -154,7 +171,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let axis = axis_scope(m, 0);
     let jv = axis.reg(JV.of(0).name(), hardware.bits(JV.of(0)));
     // What does not fit in jv would be lost.
-    let none = axis.name("none", m.lit(jv.q.bits(), 0));
+    let none = axis.name(NONE, m.lit(jv.q.bits(), 0));
     let fits = none.strict_add(output, begins);
     jv.when(block.load, m.lit(jv.q.bits(), 0)).when(begins, fits).else_hold();
     let add = running & !clock.q.is_zero();
@@ -197,7 +214,7 @@ fn moving_sum<'m>(
     // The oldest one is in the sum.
     let wide = sum.q.bits().max(input.bits());
     let younger = sum.q.extend(wide).wrapping_sub(oldest.extend(wide)).slice(0, sum.q.bits());
-    let fits = m.name("younger", younger).strict_add(input, begins);
+    let fits = m.name(YOUNGER, younger).strict_add(input, begins);
     sum.when(load, zero(sum.q.bits())).when(begins, fits).else_hold();
     let bits = sum.q.bits().max(remainder.q.bits()) + 1;
     let all = m.name("all", fits.extend(bits).wrapping_add(remainder.q.extend(bits)));

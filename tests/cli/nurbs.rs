@@ -91,3 +91,48 @@ fn a_recorded_case_has_its_file_in_the_folder() {
         assert_eq!(ran.code, 0, "{ran:?}");
     }
 }
+
+/// From one side of the origin to the other a period is longer than any coordinate.
+#[test]
+fn a_period_may_be_longer_than_the_coordinates() {
+    let run = "run sampled-spline --degree 1 --clock-hz 5e6 --steps - --nurbs";
+    for (points, step, places) in [
+        ("-30,0,1,30,0,1,-30,0,1", "60", &["-30", "30", "-30"][..]),
+        ("-500,0,1,500,0,1", "520", &["-500", "20", "500"]),
+    ] {
+        let table = good(&format!("{run} {points} --step {step}"));
+        let x: Vec<&str> = table.lines().skip(1).map(|line| line.rsplit(',').nth(1).unwrap()).collect();
+        assert_eq!(x, places, "{points}");
+    }
+}
+
+#[test]
+fn the_length_of_a_line_is_right_whatever_its_weights() {
+    let run = "run sampled-spline --degree 1 --clock-hz 5e6 --step 20 --json - --nurbs 0,0,1,300,400";
+    for weight in ["1000", "50", "0.01"] {
+        let report: serde_json::Value = serde_json::from_str(&good(&format!("{run},{weight}"))).unwrap();
+        let length = report["feed"]["length"].as_f64().unwrap();
+        assert!((length - 500.0).abs() < 1e-6, "{weight}: {length}");
+    }
+}
+
+#[test]
+fn numbers_too_long_for_the_registers_are_refused_with_a_fraction_that_fits() {
+    let curve = "--nurbs 0,0,1000000,1,1,1000000 --degree 1 --step 1000 --knots 0,0,1000000,1000000";
+    let hints = ["194 bits, but 192 fit", "--fraction 33 or less"];
+    super::refused(&format!("run sampled-spline {curve} --fraction 34"), &hints);
+    good(&format!("run sampled-spline {curve} --fraction 33"));
+}
+
+#[test]
+fn compensation_does_not_end_on_a_chord_of_a_free_curve() {
+    let folder = Folder::new();
+    for end in ["G40\nG5.1 X30 Y5 I10 J0.2", "G40 G5.1 X30 Y5 I10 J0.2", "G40\nG5 X30 Y5 I10 J0 P-9 Q0"] {
+        folder.write("p.ngc", &format!("G21 G90 G17 F600\nG41 D1 G1 X5 Y5\nG1 X10\n{end}\nM2\n"));
+        let ran = folder.run("program p.ngc --method mindev --blu 0.01mm --clock-hz 1e6 --tool 1=1mm --chords 5");
+        assert!(ran.code == 2 && ran.err.contains("the straight move that ends it"), "{end}: {ran:?}");
+    }
+    folder.write("p.ngc", "G21 G90 G17 F600\nG41 D1 G1 X5 Y5\nG1 X10\nG40 G1 X13\nG5.1 X30 Y5 I10 J0.2\nM2\n");
+    let ran = folder.run("program p.ngc --method mindev --blu 0.01mm --clock-hz 1e6 --tool 1=1mm");
+    assert_eq!(ran.code, 0, "{ran:?}");
+}

@@ -83,6 +83,9 @@ fn what_cannot_be_is_refused_with_a_remedy() {
         ("run dda-machine --to 12,5 --accel 16", &["16", "500mm/s2"]),
         ("run dda-line --to 12,5 --accel 500mm/s2", &["dda-line does not take --accel"]),
         ("run dda-machine --to 12,5 --accel 1e-30mm/s2", &["54 bits", "--clock-hz"]),
+        ("run ramp-after --to 60 --width rem=1", &["rem of 1", "--width rem=2"]),
+        ("run ramp-after --to 60 --smooth sum=65", &["'sum=65'", "sum=64"]),
+        ("run ramp-after --to 60 --step 1.5", &["1.5", "whole BLU"]),
         ("sweep ramp --to 12 --csv -", &["displacements of one axis", "run"]),
     ] {
         refused(command, hints);

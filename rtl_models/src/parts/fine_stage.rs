@@ -170,7 +170,9 @@ impl<'m> FineStage<'m> {
             let fine = |whole: Signal<'m>| whole.concat(m.lit(fraction, 0)).as_signed();
             let start = block.word_signed(TARGET.of(axis).name(), whole_bits);
             target.when(block.load, start).when(hand, goal).else_hold();
-            let travel = goal.wrapping_sub(target.q);
+            // From one side of the origin to the other it may be longer than any coordinate.
+            let [to, from] = [goal, target.q].map(|place| place.extend(whole_bits + 1));
+            let travel = to.wrapping_sub(from);
 
             let bits = hardware.bits(JV.of(axis));
             let next = scope.reg(&format!("{}_next", JV.of(axis).name()), bits);

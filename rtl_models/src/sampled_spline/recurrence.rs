@@ -109,7 +109,10 @@ impl Control {
         // As many bits as a speed has, and one more.
         let length = i128::try_from((square(0) + square(1)).sqrt()).unwrap_or(i128::MAX);
         let span = self.knots[place.span + 1] - self.knots[place.span];
-        (length > 0).then(|| (i128::from(word) * place.weight * span / length).max(1))
+        // The product may have more bits than a number here; the step is cut to what is left.
+        let product =
+            BigUint::from(word) * BigUint::from(place.weight.unsigned_abs()) * BigUint::from(span.unsigned_abs());
+        (length > 0).then(|| i128::try_from(product / BigUint::from(length.unsigned_abs())).unwrap_or(i128::MAX).max(1))
     }
 
     /// All periods of this displacement, whose chords leave the curve by less than `limit` says.

@@ -64,8 +64,15 @@ impl Widths {
         if let Some((bits, what)) = net {
             return Some(format!("{what} would have {bits} bits, but {MOST_NET} fit"));
         }
-        let radicand = 2 * self.root();
-        (radicand > MOST_BITS).then(|| format!("the square root would be of {radicand} bits, but {MOST_BITS} fit"))
+        // A sum has a carry, and a remainder a bit more than its divisor. q is less than a point has.
+        let [[first, second], [dividend, divisor]] = [self.factors(), self.division(self.point)];
+        let long = [
+            (2 * self.root(), "the square root"),
+            (first + second + 2, "a product"),
+            (dividend.max(divisor) + 2, "a dividend"),
+        ];
+        let long = long.into_iter().find(|(bits, _)| *bits > MOST_BITS);
+        long.map(|(bits, what)| format!("{what} would have {bits} bits, but {MOST_BITS} fit"))
     }
 
     fn all(&self) -> [u32; 7] {

@@ -15,6 +15,9 @@ pub(crate) struct Piece<const N: usize> {
     pub(super) weights: [f64; MOST],
 }
 
+/// Most halvings of a piece for its length: weights are up to 10^15 apart.
+const HALVINGS: u32 = 50;
+
 impl<const N: usize> Piece<N> {
     /// The numerators and the denominator at u, and their derivatives by u.
     fn homogeneous(&self, u: f64) -> [([f64; N], f64); 2] {
@@ -45,9 +48,24 @@ impl<const N: usize> Piece<N> {
         std::array::from_fn(|axis| (slope[axis] - value[axis] / weight * by) / weight)
     }
 
-    /// Its length in BLU, by the formula of Gauss over 32 parts.
+    /// Its length in BLU, by the formula of Gauss over 32 parts; weights far apart crowd the curve into a small share of u, so
+    /// it is halved until both halves come to the same length.
     pub(crate) fn length(&self) -> f64 {
+        self.refined(self.by_gauss(), HALVINGS)
+    }
+
+    fn by_gauss(&self) -> f64 {
         crate::spline::gauss(|u| self.tangent(u).iter().map(|c| c * c).sum::<f64>().sqrt())
+    }
+
+    fn refined(&self, whole: f64, halvings: u32) -> f64 {
+        let halves = self.halves();
+        let parts = halves.map(|half| half.by_gauss());
+        let sum: f64 = parts.iter().sum();
+        if halvings == 0 || (sum - whole).abs() <= 1e-9 * sum {
+            return sum;
+        }
+        halves.iter().zip(parts).map(|(half, part)| half.refined(part, halvings - 1)).sum()
     }
 
     /// The point at its end, in BLU.

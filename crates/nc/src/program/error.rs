@@ -297,7 +297,9 @@ pub enum ProgramErrorKind {
         more: [f64; 2],
     },
     /// A free curve under compensation.
-    #[error("{word} is a free curve, and tool radius compensation is on: write G40 into a block in front of it")]
+    #[error(
+        "{word} is a free curve, and tool radius compensation is on: write G40, and the straight move that ends it, into blocks in front of it"
+    )]
     SplineUnderCompensation {
         /// The word.
         word: String,

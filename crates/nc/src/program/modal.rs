@@ -23,6 +23,8 @@ pub(super) struct Modal {
     /// In mm/min; none under G93.
     feed: Option<f64>,
     pub(super) side: Side,
+    /// The move before is compensated, so that the next one ends that.
+    pub(super) compensated: bool,
     pub(super) path: PathControl,
     pub(super) motion: Option<Motion>,
     pub(super) curves: Curves,
@@ -40,6 +42,7 @@ impl Default for Modal {
             feed_mode: FeedMode::PerMinute,
             feed: None,
             side: Side::On,
+            compensated: false,
             path: PathControl::default(),
             motion: None,
             curves: Curves::default(),
@@ -146,7 +149,7 @@ impl Modal {
     }
 
     /// The moves of a segment: one, but of an arc of several turns each turn is one.
-    fn moves(&self, segment: Segment, turns: u64, feed: Feed, place: Place, events: &mut VecDeque<Event>) {
+    fn moves(&mut self, segment: Segment, turns: u64, feed: Feed, place: Place, events: &mut VecDeque<Event>) {
         if segment.from == segment.to && segment.shape == SegmentShape::Line {
             return;
         }
@@ -155,6 +158,7 @@ impl Modal {
             Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side, path: self.path })
         };
         events.extend(arc::turns(segment, turns).map(of));
+        self.compensated = self.side != Side::On;
     }
 
     /// Takes the feed mode and the F word, and returns the block's own F number.

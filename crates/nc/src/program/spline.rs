@@ -125,7 +125,7 @@ impl Modal {
         if self.plane != Plane::Xy {
             return Err(first.fault(|word| ProgramErrorKind::SplinePlane { word, name }));
         }
-        if self.side != Side::On {
+        if self.side != Side::On || self.compensated {
             return Err(first.fault(|word| ProgramErrorKind::SplineUnderCompensation { word }));
         }
         if let Some(word) = block.any(if motion == Motion::Cubic { "ZKR" } else { "ZKRPQ" }) {
@@ -182,7 +182,7 @@ impl Modal {
     /// A block with a control point of a NURBS, or its beginning.
     fn nurbs_block(&mut self, block: &BlockWords<'_>, reading: &Reading) -> Result<(), Fault> {
         let Some(first) = block.motion.map(|(_, word)| word).or(block.any("XYZPLIJKQR")) else { return Ok(()) };
-        if self.side != Side::On {
+        if self.side != Side::On || self.compensated {
             return Err(first.fault(|word| ProgramErrorKind::SplineUnderCompensation { word }));
         }
         let [one, other, third] = self.plane.axes().map(|axis| AXES[axis]);
