@@ -98,7 +98,7 @@ pub static MODEL: Model = Model {
     options: &[
         &FRACTION.about("bits of the fraction of coarse points, 8 or more (default: 8 more than the coordinates have)"),
         &STEP.about("BLU of a period (default: 8); or --feed"),
-        &TOLERANCE.about("greatest chord error in BLU (default: 1)"),
+        &TOLERANCE.about("chord error in BLU, in the middle of each step of u, at most (default: 1)"),
         &SAMPLED_WIDTH,
         &PRESET,
         &ON_OVERFLOW,

@@ -262,7 +262,9 @@ impl Report {
     pub fn failures(&self) -> Vec<String> {
         let (clocks, position) = (self.outcome.clocks, point(&self.outcome.reached));
         // Of a program, where in it.
-        let line = self.program().map(|of| format!("line {}: ", of.totals.line)).unwrap_or_default();
+        // Before the first block there is no line.
+        let line = self.program().filter(|of| of.totals.line > 0);
+        let line = line.map(|of| format!("line {}: ", of.totals.line)).unwrap_or_default();
         let mut failures = Vec::new();
         match self.outcome.ending {
             Ending::Trapped => {
@@ -306,6 +308,8 @@ impl Report {
                 let by_curve = matches!(self.model.name, "dda-arc" | "dda-conic" | "dda-helix");
                 let remedy = if by_curve && self.hardware.presets.iter().any(|preset| *preset != Preset::Half) {
                     "; give --preset half, with which curves whose ends lie on them exactly were never seen to"
+                } else if !self.events.is_empty() {
+                    "; the operator has held it, or not started the next block: give --event CLOCK:resume or CLOCK:start"
                 } else {
                     ""
                 };

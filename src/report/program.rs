@@ -13,7 +13,7 @@ use super::speed::ripple;
 use super::table::aligned;
 use super::{RelativeSpeed, Report};
 use crate::program::{Greatest, LeftOut, SpeedAt, Speeds, Totals};
-use crate::testbench::{BlockReport, Observer, ObserverError};
+use crate::testbench::{BlockReport, Ending, Observer, ObserverError};
 
 /// Most moves that a table for people shows.
 pub const TABLE_MOVES: usize = 64;
@@ -106,7 +106,9 @@ impl OfProgram {
             totals.moves,
             totals.steps,
         );
-        let exact = if report.end_exact() {
+        let exact = if report.end_exact() && report.outcome.ending != Ending::Done {
+            format!("the run was given up after {} moves", totals.moves)
+        } else if report.end_exact() {
             "every end point reached exactly".to_owned()
         } else {
             format!("{} end points missed", totals.missed)

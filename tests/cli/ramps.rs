@@ -47,6 +47,16 @@ fn a_start_is_not_lost_with_one_just_before_it() {
 }
 
 #[test]
+fn a_program_that_nobody_starts_says_what_it_waits_for() {
+    let folder = Folder::new();
+    folder.write("p.ngc", "G21 G91 G1 X1 F2400\n");
+    let ran = folder.run("program p.ngc --method ppc --accel 500mm/s2 --blu 0.01mm --clock-hz 2e4 --event 0:single");
+    assert_eq!(ran.code, 1, "{ran:?}");
+    assert!(ran.err.contains("stepwave: stalled at (0, 0, 0)") && ran.err.contains("CLOCK:start"), "{ran:?}");
+    assert!(ran.out.contains("given up after 0 moves") && !ran.out.contains("reached exactly"), "{ran:?}");
+}
+
+#[test]
 fn an_acceleration_with_a_unit_has_a_speed_with_one() {
     let report: serde_json::Value = serde_json::from_str(&good("run ramp --to 3 --accel 500mm/s2 --json -")).unwrap();
     assert_eq!(report["choices"]["speed"].as_str().unwrap().split(',').next(), Some("vc=10737418"), "{report}");
