@@ -122,7 +122,7 @@ impl<'m> SCurve<'m> {
         let whole = md.wrapping_add(md).wrapping_add(hd);
         let left = begins.mux(whole, k.q);
         let one = m.lit(bits, 1);
-        let ramp = m.name("ramp", left.is_nonzero() & !by_hand);
+        let ramp = m.name("ramping", left.is_nonzero() & !by_hand);
         k.when(block.load, self.first).when(tick & ramp, left.wrapping_sub(one)).else_hold();
 
         let wide = av.q.bits().max(growth[0].bits()).max(growth[1].bits());
