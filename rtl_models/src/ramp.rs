@@ -84,7 +84,7 @@ pub static MODEL: Model = Model {
         &GROWTH,
         &PARTS,
         &LENGTH,
-        &SIGN.count(Plan::axes),
+        &SIGN,
         &POSITION,
     ],
     options: &[

@@ -40,7 +40,7 @@ use crate::options::{Millionths, ON_OVERFLOW, PRESET, SMOOTH, STEP, Smooth, WIDT
 use crate::parts::{Block, DISPLACEMENT, E, Iteration, JR, JV, POSITION, SIGN, axis_scope, integrator};
 use crate::plan::Plan;
 use crate::ramping::bits;
-use crate::registers::{AS_NEEDED, Reg, Rule, Where, With};
+use crate::registers::{AS_NEEDED, Reg, Rule, Where};
 use crate::sizes;
 
 const NAME: &str = "ramp-after";
@@ -55,16 +55,15 @@ const NONE: &str = "none";
 /// The net that is the sum without the oldest.
 const YOUNGER: &str = "younger";
 
-static BY_SUM: With<Smooth> = With(&SMOOTH, |smooth| matches!(smooth, Smooth::Sum(_)));
-static BY_SHARE: With<Smooth> = With(&SMOOTH, |smooth| matches!(smooth, Smooth::Exponential(_)));
-static DIVIDED: Where = Where("--smooth sum", |plan| matches!(plan.get(&SMOOTH), Smooth::Sum(_)));
+static BY_SUM: Where = Where("--smooth sum", |plan| matches!(plan.get(&SMOOTH), Smooth::Sum(_)));
+static BY_SHARE: Where = Where("--smooth exp", |plan| matches!(plan.get(&SMOOTH), Smooth::Exponential(_)));
 
 /// Displacement still to be handed over.
 const LEFT: Reg = Reg::new("left", AS_NEEDED, "BLU that the interpolator has not handed over");
 /// The sum of the last k.
 const SUM: Reg = Reg::new("s", AS_NEEDED, "sum of the last k displacements").when(&BY_SUM);
 /// What its division left.
-const REMAINDER: Reg = Reg::new("rem", AS_NEEDED, "remainder of the sum divided by k").when(&DIVIDED);
+const REMAINDER: Reg = Reg::new("rem", AS_NEEDED, "remainder of the sum divided by k").when(&BY_SUM);
 /// What is still inside.
 const INSIDE: Reg = Reg::new("acc", AS_NEEDED, "displacement that has not come out").when(&BY_SHARE);
 /// Clock of the period.
@@ -85,7 +84,7 @@ pub static MODEL: Model = Model {
         &E.width(AS_NEEDED).about("pulses left of the block"),
         &CLOCK,
         &DISPLACEMENT.hidden(),
-        &SIGN.count(Plan::axes),
+        &SIGN,
         &POSITION,
     ],
     options: &[

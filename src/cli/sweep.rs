@@ -57,7 +57,7 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     \n\
     Rows. One a run: index (all points of the grid count, those without a curve too), geometry, choices,\n\
     ending (done, trapped, stalled, limit, refused), clocks, steps, pulses and end point of each axis,\n\
-    whether that is exact, error_max and error_mean (BLU, behind all steps), v_mean (mean speed over\n\
+    whether that is exact, error_max and error_mean (BLU, after all steps), v_mean (mean speed over\n\
     v_max, one BLU in each step that nothing delays), overflows and the first\n\
     overflow's component, spacing_min and spacing_max (clocks between two pulses of an axis), and the\n\
     reason of a refusal. Rows are the same, byte for byte, whatever the number of threads\n\

@@ -97,6 +97,9 @@ impl<W: Write> RunFile for PathPicture<W> {
         if let Some(event) = report.overflows.first() {
             self.plot.mark(&format!("overflow of {}", event.component()));
         }
+        if let Some(worst) = report.curve().and_then(|of| of.worst.as_ref()) {
+            self.plot.between_steps(worst.error);
+        }
         self.out.write_all(self.plot.svg(&report.headline()).as_bytes())?;
         self.out.flush()
     }

@@ -70,6 +70,8 @@ pub struct Plot {
     step_clocks: Option<f64>,
     /// The first step with the greatest magnitude of deviation, the position and the deviation.
     worst: Option<(u64, Vec<i64>, f64)>,
+    /// Greatest distance of all pulses from the curve, in BLU, where it is known.
+    between: Option<f64>,
     marks: Vec<(u64, Vec<i64>, String)>,
 }
 
@@ -91,6 +93,7 @@ impl Plot {
             track,
             step_clocks,
             worst: None,
+            between: None,
             marks: Vec::new(),
         }
     }
@@ -132,6 +135,11 @@ impl Plot {
         if self.marks.len() < MARK_LIMIT {
             self.marks.push((step, position, cut(&(first + label), LABEL_LIMIT)));
         }
+    }
+
+    /// Reports the greatest distance of all pulses from the curve, in BLU, also of those between two points.
+    pub fn between_steps(&mut self, error: f64) {
+        self.between = Some(error);
     }
 
     /// The picture of the points given so far, a complete SVG document.
@@ -178,7 +186,11 @@ impl Plot {
         let seen = center.filter(|&center| reaching(self.ranges, center) == self.ranges);
         symbols.extend(seen.map(|center| (center, CENTER.to_owned(), "centre".to_owned())));
         if let Some((step, position, deviation)) = &self.worst {
-            let text = format!("greatest deviation {deviation:.3} BLU, step {step} at {}", coordinates(position));
+            let mut text = format!("greatest deviation {deviation:.3} BLU, step {step} at {}", coordinates(position));
+            // A step of several pulses may go farther off than where it ends.
+            if let Some(error) = self.between.filter(|error| error - deviation.abs() > 5e-4) {
+                text = format!("{text}; between steps {error:.3} BLU");
+            }
             symbols.push((plane(position), WORST.to_owned(), text.replace('-', "\u{2212}")));
         }
         for (number, (step, position, label)) in (1..).zip(&self.marks) {

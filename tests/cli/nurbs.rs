@@ -136,3 +136,17 @@ fn compensation_does_not_end_on_a_chord_of_a_free_curve() {
     let ran = folder.run("program p.ngc --method mindev --blu 0.01mm --clock-hz 1e6 --tool 1=1mm");
     assert_eq!(ran.code, 0, "{ran:?}");
 }
+
+/// A period is a step of many pulses, which go farther off than where they lead.
+#[test]
+fn the_picture_has_the_error_between_steps() {
+    let folder = Folder::new();
+    folder.good(&format!("run sampled-spline {QUARTER} {SAMPLED} --plot p.svg"));
+    let picture = std::fs::read_to_string(folder.path("p.svg")).unwrap();
+    assert!(
+        picture.contains("greatest deviation 0.540 BLU, step 1 at (978, 206); between steps 5.975 BLU"),
+        "{picture}"
+    );
+    folder.good("run ppc-line --to 100,62 --plot q.svg");
+    assert!(!std::fs::read_to_string(folder.path("q.svg")).unwrap().contains("between steps"));
+}

@@ -28,6 +28,7 @@ mod curve;
 mod ends;
 mod error;
 mod exact;
+mod foot;
 mod gauge;
 mod helix;
 mod limit;

@@ -3,7 +3,6 @@
 use std::hash::{Hash, Hasher};
 
 use crate::GeometryError;
-use crate::curve::outline_points;
 use crate::limit::check_coordinates;
 
 mod check;
@@ -157,18 +156,7 @@ impl Nurbs {
     /// Points of the curve, in BLU, for drawing: `max_points`, but two at least; the first and the last are its ends.
     #[must_use]
     pub fn outline(&self, max_points: usize) -> Vec<[f64; 2]> {
-        let last = outline_points(max_points) - 1;
-        let at = |index: usize| {
-            if index == 0 || index == last {
-                return self.ends[usize::from(index > 0)].map(|c| c as f64);
-            }
-            let place = index as f64 / last as f64 * self.pieces.len() as f64;
-            // Not negative, and less than the number of pieces.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let piece = (place as usize).min(self.pieces.len() - 1);
-            self.pieces[piece].at(place - piece as f64)
-        };
-        (0..=last).map(at).collect()
+        crate::foot::outline(&self.ends, self.pieces.len(), max_points, |piece, u| self.pieces[piece].at(u))
     }
 
     /// All numbers that give it: degree and number of points, x, y and weight of each, and the knots.

@@ -1,12 +1,9 @@
 //! Free curves in the plane: Bézier curves, Hermite segments, and chains of cubic segments by points.
 
 use crate::GeometryError;
-use crate::curve::outline_points;
 use crate::limit::check_coordinates;
 
 mod distance;
-
-pub(crate) use distance::{Foot, HALVINGS, beyond, minima, nearest_first};
 
 /// What the points of a [`Spline`] mean.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -200,18 +197,7 @@ impl Spline {
     /// whole BLU.
     #[must_use]
     pub fn outline(&self, max_points: usize) -> Vec<[f64; 2]> {
-        let last = outline_points(max_points) - 1;
-        let at = |index: usize| {
-            if index == 0 || index == last {
-                return self.ends[usize::from(index > 0)].map(|c| c as f64);
-            }
-            let place = index as f64 / last as f64 * self.segments.len() as f64;
-            // Not negative, and less than the number of segments.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let segment = (place as usize).min(self.segments.len() - 1);
-            self.segments[segment].at(place - segment as f64)
-        };
-        (0..=last).map(at).collect()
+        crate::foot::outline(&self.ends, self.segments.len(), max_points, |segment, u| self.segments[segment].at(u))
     }
 }
 

@@ -260,7 +260,7 @@ options! {
             parse: |text| {
                 let speeds = PerRegister::parse("speed", text, |word| Quantity::parse(word, 1))?;
                 match speeds.single.keys().find(|name| !["vs", "vc", "ve"].contains(&name.as_str())) {
-                    Some(name) => Err(format!("there is no speed '{name}': give vs=, vc= or ve=")),
+                    Some(name) => Err(format!("unknown speed '{name}': give vs=, vc= or ve=")),
                     None if speeds.all.is_some() && speeds.single.contains_key("vc") => {
                         Err("the drive speed is given two times: leave one of them out".to_owned())
                     }

@@ -2,7 +2,7 @@
 
 use super::piece::{MOST, Piece};
 use super::{NURBS_DEGREE, Nurbs};
-use crate::spline::{Foot, HALVINGS, beyond, minima, nearest_first};
+use crate::foot::{Foot, beyond, nearest_first};
 
 /// Most coefficients of the polynomial whose roots are the feet: it has the degree 3p-1.
 const COEFFICIENTS: usize = 3 * NURBS_DEGREE;
@@ -33,11 +33,6 @@ impl Piece<2> {
         })
     }
 
-    fn foot_at(&self, u: f64, [x, y]: [f64; 2]) -> Foot {
-        let ([at_x, at_y], [dx, dy]) = (self.at(u), self.tangent(u));
-        Foot { distance: (x - at_x).hypot(y - at_y), side: dx * (y - at_y) - dy * (x - at_x) }
-    }
-
     /// What has the sign of the change of the distance along u, and its number of Bézier coefficients. With
     /// B = w·(C - position) that is the sum over the axes of B·(B'·w - B·w').
     fn growth(&self, position: [f64; 2]) -> ([f64; COEFFICIENTS], usize) {
@@ -60,29 +55,16 @@ impl Piece<2> {
 
     /// The place of the piece that is nearest.
     fn foot(&self, position: [f64; 2]) -> Foot {
-        let mut nearest = self.foot_at(0.0, position);
-        let mut take = |u: f64| {
-            let foot = self.foot_at(u, position);
-            if foot.distance < nearest.distance {
-                nearest = foot;
-            }
-        };
-        take(1.0);
-        let (growth, count) = self.growth(position);
-        minima(growth, count, [0.0, 1.0], HALVINGS, &mut take);
-        nearest
+        Foot::of_piece(position, |u| [self.at(u), self.tangent(u)], self.growth(position))
     }
 }
 
 impl Nurbs {
     fn foot(&self, position: [f64; 2]) -> Foot {
-        let mut nearest = Foot { distance: f64::INFINITY, side: 0.0 };
+        let mut nearest = Foot::NONE;
         let of_piece = |index: usize| beyond(self.pieces[index].bounds(), position);
         nearest_first(&mut nearest, self.pieces.len(), of_piece, |index, nearest| {
-            let foot = self.pieces[index].foot(position);
-            if foot.distance < nearest.distance {
-                *nearest = foot;
-            }
+            nearest.take(self.pieces[index].foot(position));
         });
         nearest
     }
@@ -106,7 +88,6 @@ impl Nurbs {
     #[must_use]
     pub fn signed_deviation(&self, position: &[i64]) -> f64 {
         let [x, y, ..] = *position else { return f64::NAN };
-        let foot = self.foot([x as f64, y as f64]);
-        if foot.side < 0.0 { -foot.distance } else { foot.distance }
+        self.foot([x as f64, y as f64]).signed()
     }
 }

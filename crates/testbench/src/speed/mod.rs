@@ -288,7 +288,7 @@ impl Observer for SpeedWatch {
     fn digest(&mut self, digest: &Digest, last: &[u64]) {
         for (sign, counter) in self.signs.iter_mut().zip(&mut self.counters) {
             let shown = to_signed(counter.port.width, last[counter.column]);
-            // All pulses lead the same way, as there is no digest otherwise.
+            // All pulses have one direction: else the digest was not taken.
             *sign = (shown - counter.shown).signum();
             counter.shown = shown;
         }
