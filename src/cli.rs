@@ -242,6 +242,14 @@ pub(crate) struct ExportArgs {
     /// Write a Verilog test bench that loads and runs the geometry as `run` does, or the program as `program` does
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Verilog]), group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) testbench: Option<PathBuf>,
+    /// Write a module with four pins around the Verilog, for place and route: inputs come from a shift register, outputs go
+    /// into a signature register
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Verilog]), group = "exports", help_heading = "Outputs (- is standard output)")]
+    #[arg(requires = "verilog")]
+    pub(crate) harness: Option<PathBuf>,
+    /// Leave the overflow flags out of the ports of the Verilog, so that synthesis leaves out what finds them
+    #[arg(long, requires = "verilog")]
+    pub(crate) no_flags: bool,
     /// Write the netlist and its properties as BTOR2, for model checkers
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Btor2]), groups = ["exports", "checked"], help_heading = "Outputs (- is standard output)")]
     pub(crate) btor2: Option<PathBuf>,

@@ -83,6 +83,7 @@ invalid_by!(
     crate::study::StudyError,
     crate::study::proof::ProofError,
     crate::study::proof::SolverError,
+    crate::study::synth::SynthError,
     crate::testbench::ObserverError,
     crate::testbench::SignalError,
     crate::trace::diverge::CompareError,

@@ -38,7 +38,7 @@ const TABLE: [Entry; 12] = [
     Entry(Format::Svg, "SVG", &["svg"], &["plot"]),
     Entry(Format::Png, "PNG", &["png"], &["plot"]),
     Entry(Format::Netlist, "a netlist", &["net"], &["output", "netlist"]),
-    Entry(Format::Verilog, "Verilog", &["v", "sv"], &["verilog", "testbench"]),
+    Entry(Format::Verilog, "Verilog", &["v", "sv"], &["verilog", "testbench", "harness"]),
     Entry(Format::Btor2, "BTOR2", &["btor2", "btor"], &["btor2"]),
     Entry(Format::SmtLib, "SMT-LIB", &["smt2"], &["smt2"]),
     Entry(Format::NcProgram, "an NC program", &["ngc", "nc", "tap", "gcode"], &[]),

@@ -1,6 +1,6 @@
 //! The command line of `machine`.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::names::model_name;
 use super::values::{parse_blu, parse_clock, parse_speed, parse_travel};
@@ -8,6 +8,13 @@ use super::values::{parse_blu, parse_clock, parse_speed, parse_travel};
 /// The axes of a machine, in mm.
 #[derive(Clone, Debug)]
 pub(crate) struct Travel(pub(crate) Vec<f64>);
+
+/// A family of devices that hardware is synthesized for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Family {
+    /// Lattice iCE40, by Yosys and nextpnr
+    Ice40,
+}
 
 #[derive(Debug, Args)]
 #[command(
@@ -18,9 +25,17 @@ pub(crate) struct Travel(pub(crate) Vec<f64>);
     Below the table every register, how its width is known, and the run that one bit less does not hold.\n\n\
     Widths are known as `stepwave widths` knows them over the box of the travel; where neither a proof nor all of its\n\
     geometries are to be had, they are those that the corners need: sampled.\n\n\
-    Data sampling has its feed by the displacement of a period, at the clock of --clock-hz.\n\n\
+    Data sampling has its feed by the displacement of a period, at the clock of --clock-hz; a higher clock leaves it.\n\n\
+    --synth ice40 takes the Verilog of `stepwave export --no-flags` at these widths. LUTs and flip-flops are those that\n\
+    `yosys synth_ice40` makes of it; load words are inputs, which nothing is counted for. The highest clock is that of\n\
+    nextpnr-ice40 in an hx8k, package ct256, seed 1, with `export --harness` around it, as the package has fewer pins than\n\
+    the machine has ports. Other seeds are some per cent off. Debian packages: yosys, nextpnr-ice40.\n\n\
+    --pareto leaves out what another row of the same curve beats: nowhere worse and somewhere better in the clock for the\n\
+    feed, the greatest error, and the bits of all registers; with --synth in the feed at the highest clock, the error,\n\
+    and LUTs and flip-flops together.\n\n\
     Examples:\n  \
     stepwave machine --travel 300mm,200mm --blu 1um --feed 2400mm/min\n  \
+    stepwave machine --travel 300mm,200mm --blu 1um --feed 2400mm/min --synth ice40 --pareto\n  \
     stepwave machine ppc-line dda-line --travel 100mm,100mm,50mm --blu 0.01mm --feed 600 --markdown"
 )]
 pub(crate) struct MachineArgs {
@@ -39,6 +54,13 @@ pub(crate) struct MachineArgs {
     /// Clock frequency in Hz of data sampling
     #[arg(long, value_name = "HZ", default_value = "1e6", value_parser = parse_clock)]
     pub(crate) clock_hz: f64,
+    /// What the hardware costs: LUTs, flip-flops and the highest clock, by the tools of the Debian packages yosys and
+    /// nextpnr-ice40
+    #[arg(long, value_name = "FAMILY")]
+    pub(crate) synth: Option<Family>,
+    /// Only rows that no other row beats, and which were left out
+    #[arg(long)]
+    pub(crate) pareto: bool,
     /// The table in Markdown
     #[arg(long, conflicts_with = "json")]
     pub(crate) markdown: bool,

@@ -38,10 +38,10 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
         return Err(Error::Invalid(format!("--program has the geometry: leave {option} out")));
     }
     let (title, stimulus, cut) = stimulus(&simulation, &bench)?;
-    let mut notes = moved.unwrap_or_default() + &summary(&bench) + &cut;
+    let outputs = if args.no_flags { bench.ports() } else { bench.outputs() };
+    let mut notes = moved.unwrap_or_default() + &summary(&bench, outputs.len()) + &cut;
     let version = env!("CARGO_PKG_VERSION");
     let comment = [title, format!("Written by stepwave {version}; the {widths_by} gives the widths.")];
-    let outputs = bench.outputs();
     let options = Options { comment: &comment, outputs: &outputs };
     let own = [args.bench.files(&args.model), args.bench.files_of(args.method.as_ref())].concat();
     let sources = source_files(bench.design());
@@ -51,6 +51,9 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
     }
     if let Some(path) = &args.verilog {
         files.write(path, &export::verilog(bench.design(), &options))?;
+    }
+    if let Some(path) = &args.harness {
+        files.write(path, &export::harness(bench.design(), &options))?;
     }
     if let Some(path) = &args.testbench {
         let dump = dump_name(path, &bench.design().netlist().scopes[0].name);
@@ -140,7 +143,7 @@ fn dump_name(testbench: &Path, design: &str) -> String {
     format!("{stem}.vcd")
 }
 
-fn summary(bench: &Testbench) -> String {
+fn summary(bench: &Testbench, outputs: usize) -> String {
     let design = bench.design();
     format!(
         "{}: {} registers of {} bits together, {} inputs, {} outputs\n",
@@ -148,6 +151,6 @@ fn summary(bench: &Testbench) -> String {
         design.registers().len(),
         design.register_bits(),
         design.inputs().len(),
-        bench.outputs().len()
+        outputs
     )
 }

@@ -1,23 +1,23 @@
 //! `stepwave machine`: what a machine of a given size takes by each method, side by side.
 
+mod json;
+mod pareto;
+mod text;
+
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 
 use rayon::prelude::*;
-use serde_json::json;
 
-use super::columns::{aligned, markdown};
+use self::pareto::Beaten;
 use super::progress::Progress;
-use super::widths::{evidence, one_bit_below, registers_json};
 use crate::Error;
 use crate::cli::{BenchArgs, MachineArgs};
 use crate::models::{Model, installed};
 use crate::nc::COORDINATE_LIMIT;
 use crate::output;
-use crate::report::run_command;
 use crate::study::machine::{Dimensions, dimensions, takes};
 use crate::study::proof::ProofError;
-use crate::testbench::Ending;
+use crate::study::synth::{Cost, Tools};
 
 /// A machine as it is asked for.
 struct Size {
@@ -35,10 +35,58 @@ impl Size {
     }
 }
 
+/// A machine by one method, with what it costs where that is asked for.
+struct Row {
+    found: Dimensions,
+    cost: Option<Cost>,
+}
+
+impl Row {
+    /// Least and greatest feed at the corners in mm/min with a clock; that of data sampling follows from its period and
+    /// not from the clock.
+    fn feeds(&self, size: &Size, clock_hz: f64) -> Option<[f64; 2]> {
+        let clock = self.found.sampled_at.unwrap_or(clock_hz);
+        Some(self.found.speeds()?.map(|speed| size.feed_of(speed * clock)))
+    }
+}
+
+/// What there is to say of a machine.
+struct Answer {
+    size: Size,
+    rows: Vec<Row>,
+    /// Methods that cannot be had, and why.
+    left_out: LeftOut,
+    /// What costs come from.
+    tools: Option<Tools>,
+    /// Rows that others beat, where they are left out.
+    beaten: Option<Vec<Beaten>>,
+}
+
 /// Prints a row for each method, and what its registers need.
 pub(crate) fn run(args: &MachineArgs) -> Result<(), Error> {
     let size = size(args)?;
     let models = models(args, &size.travel)?;
+    // Before the long work, for one of them may be missing.
+    let tools = args.synth.map(|_| Tools::find()).transpose()?;
+    let (found, left_out) = found(args, &size, models)?;
+    let costs = tools.as_ref().map(|tools| costs(tools, &found)).transpose()?;
+    let mut costs = costs.into_iter().flatten();
+    let rows = found.into_iter().map(|found| Row { cost: costs.next(), found }).collect();
+    let mut answer = Answer { size, rows, left_out, tools, beaten: None };
+    if args.pareto {
+        pareto::keep_unbeaten(&mut answer);
+    }
+    match args.json {
+        true => output::print_data(&json::all(&answer)),
+        false => output::print(&text::all(&answer, args.markdown)),
+    }
+}
+
+/// Methods that cannot be had, and why.
+type LeftOut = Vec<(&'static str, String)>;
+
+/// The dimensions of every method.
+fn found(args: &MachineArgs, size: &Size, models: Vec<&'static Model>) -> Result<(Vec<Dimensions>, LeftOut), Error> {
     let progress = Progress::new("geometries");
     let tick = |more| progress.add(more);
     let one = |model: &'static Model| (model, dimensions(model, &size.travel, size.feed, args.clock_hz, &tick));
@@ -52,22 +100,24 @@ pub(crate) fn run(args: &MachineArgs) -> Result<(), Error> {
         }
     }
     progress.finish();
-    if let (true, Some((_, reason))) = (rows.is_empty(), left_out.first()) {
-        return Err(Error::Invalid(format!("no method can be had for such a machine; the first: {reason}")));
+    match left_out.first().filter(|_| rows.is_empty()) {
+        Some((_, reason)) => {
+            Err(Error::Invalid(format!("no method can be had for such a machine; the first: {reason}")))
+        }
+        None => Ok((rows, left_out)),
     }
-    if args.json {
-        return output::print_data(&as_json(&size, &rows, &left_out));
-    }
-    let mut text = heading(&size) + "\n" + &table(&size, &rows, args.markdown);
-    for found in &rows {
-        text += "\n";
-        text += &registers(found, args.markdown);
-    }
-    for (_, reason) in left_out {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "\nleft out: {reason}");
-    }
-    output::print(&text)
+}
+
+/// What each of them costs. Tools take one core each: two of them at a time.
+fn costs(tools: &Tools, found: &[Dimensions]) -> Result<Vec<Cost>, Error> {
+    let progress = Progress::of(found.len() as u64, "methods placed");
+    let cost = |found: &Dimensions| {
+        let cost = tools.cost(found.model.name, &found.bench()?)?;
+        progress.add(1);
+        Ok(cost)
+    };
+    let two = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
+    two.install(|| found.par_iter().map(cost).collect())
 }
 
 /// The travel in whole BLU, rounded up, so that the machine is never too small.
@@ -110,130 +160,4 @@ fn models(args: &MachineArgs, travel: &[i64]) -> Result<Vec<&'static Model>, Err
         ))),
         None => Ok(named),
     }
-}
-
-fn heading(size: &Size) -> String {
-    let travel: Vec<String> = size.travel.iter().map(ToString::to_string).collect();
-    format!(
-        "travel ±{} BLU of {} mm, feed {} mm/min\n",
-        travel.join(", ±"),
-        size.blu_mm,
-        rounded(size.feed_of(size.feed))
-    )
-}
-
-/// Four digits or all of a whole number.
-fn rounded(number: f64) -> String {
-    if number >= 1000.0 {
-        format!("{number:.0}")
-    } else {
-        format!("{number:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
-    }
-}
-
-/// What is not known, as a run did not come to its end.
-fn unknown() -> String {
-    "-".to_owned()
-}
-
-/// A clock with its unit.
-fn frequency(hz: f64) -> String {
-    match hz {
-        hz if hz >= 1e6 => format!("{:.3} MHz", hz / 1e6),
-        hz if hz >= 1e3 => format!("{:.3} kHz", hz / 1e3),
-        hz => format!("{hz:.3} Hz"),
-    }
-}
-
-/// How the runs at the corners ended, if not all at their ends.
-fn unfinished(found: &Dimensions) -> usize {
-    found.corners.iter().filter(|corner| corner.ending != Ending::Done).count()
-}
-
-const HEADING: [&str; 5] =
-    ["method", "registers, bits", "clock", "feed at that clock, mm/min", "greatest error at the corners"];
-
-fn table(size: &Size, rows: &[Dimensions], is_markdown: bool) -> String {
-    let row = |found: &Dimensions| {
-        let bits: Vec<String> = found.registers.iter().map(|own| format!("{} {}", own.name, own.needed)).collect();
-        let clock = found.clock_hz(size.feed);
-        let feeds = found.speeds().zip(clock).map_or_else(unknown, |(speeds, clock)| {
-            let feeds = speeds.map(|speed| rounded(size.feed_of(speed * clock)));
-            if feeds[0] == feeds[1] { feeds[0].clone() } else { feeds.join(" to ") }
-        });
-        let error = found.worst().map_or(0.0, |worst| worst.error);
-        let error = format!("{error:.3} BLU, {} µm", rounded(error * size.blu_mm * 1000.0));
-        [
-            format!("{}{}", found.model.name, "*".repeat(unfinished(found).min(1))),
-            bits.join(", "),
-            clock.map_or_else(unknown, frequency),
-            feeds,
-            error,
-        ]
-    };
-    let mut all = vec![HEADING.map(str::to_owned)];
-    all.extend(rows.iter().map(row));
-    let mut text = if is_markdown { markdown(&all, &[2, 3, 4]) } else { aligned(&all, &[2, 3, 4]) };
-    if rows.iter().any(|found| unfinished(found) > 0) {
-        text += "\n* not all runs at the corners came to their end: clock and feed are not known\n";
-    }
-    text
-}
-
-/// Every register of a method, how its width is known, and what happens one bit below.
-fn registers(found: &Dimensions, is_markdown: bool) -> String {
-    let mut text = if is_markdown {
-        format!("### {}\n\n| register | bits | known | one bit below |\n|---|---:|---|---|\n", found.model.name)
-    } else {
-        format!("{}\n", found.model.name)
-    };
-    for own in &found.registers {
-        let (name, bits, known, below) = (&own.name, own.needed, evidence(own), one_bit_below(found.model, own));
-        // Writing to a string cannot fail.
-        let _ = match is_markdown {
-            true => writeln!(text, "| {name} | {bits} | {known} | {below} |"),
-            false => writeln!(text, "  {name:<8} {bits:>3}  {known:<11}  {below}"),
-        };
-    }
-    text
-}
-
-fn as_json(size: &Size, rows: &[Dimensions], left_out: &[(&str, String)]) -> String {
-    let row = |found: &Dimensions| {
-        let clock = found.clock_hz(size.feed);
-        let feed = |speed: f64| clock.map(|clock| size.feed_of(speed * clock));
-        let [least, greatest] = [0, 1].map(|end| found.speeds().and_then(|speeds| feed(speeds[end])));
-        let corners = found.corners.iter().map(|corner| {
-            json!({
-                "run": run_command(found.model, &corner.curve, &found.choices),
-                "done": corner.ending == Ending::Done,
-                "clocks": corner.clocks,
-                "length": corner.curve.length(),
-                "feed": feed(corner.speed()),
-                "path_error": corner.error,
-            })
-        });
-        json!({
-            "model": found.model.name,
-            "method": found.model.method,
-            "registers": registers_json(found.model, &found.registers),
-            "clock_hz": clock,
-            "feed": { "least": least, "greatest": greatest },
-            "path_error": {
-                "greatest": found.worst().map(|worst| worst.error),
-                "um": found.worst().map(|worst| worst.error * size.blu_mm * 1000.0),
-                "bound": found.bound,
-            },
-            "corners": corners.collect::<Vec<_>>(),
-        })
-    };
-    let reason = |(model, reason): &(&str, String)| json!({ "model": model, "reason": reason });
-    let all = json!({
-        "travel": size.travel,
-        "blu_mm": size.blu_mm,
-        "feed": size.feed_of(size.feed),
-        "machines": rows.iter().map(row).collect::<Vec<_>>(),
-        "left_out": left_out.iter().map(reason).collect::<Vec<_>>(),
-    });
-    format!("{all:#}\n")
 }

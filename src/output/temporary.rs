@@ -27,12 +27,12 @@ struct Present {
     searched: Vec<PathBuf>,
     /// What is kept, in words.
     kept: Option<String>,
-    /// A process that was started, with a group of its own.
-    started: Option<u32>,
+    /// Processes that were started, each with a group of its own.
+    started: Vec<u32>,
 }
 
 static PRESENT: Mutex<Present> =
-    Mutex::new(Present { temporary: Vec::new(), searched: Vec::new(), kept: None, started: None });
+    Mutex::new(Present { temporary: Vec::new(), searched: Vec::new(), kept: None, started: Vec::new() });
 
 fn present() -> MutexGuard<'static, Present> {
     PRESENT.lock().unwrap_or_else(PoisonError::into_inner)
@@ -50,11 +50,10 @@ pub(crate) fn keep(paths: &[PathBuf], what: Option<String>) {
     present.kept = what;
 }
 
-/// Starts or ends a process, which a signal waits for. What is given is the process that runs from then on: it ends
+/// Starts or ends a process, which a signal waits for. The change is made in the list of processes that run: each ends
 /// with ours, with all of its group.
-pub(crate) fn attend(change: &mut dyn FnMut() -> Option<u32>) {
-    let mut present = present();
-    present.started = change();
+pub(crate) fn attend(change: &mut dyn FnMut(&mut Vec<u32>)) {
+    change(&mut present().started);
 }
 
 /// What is kept, in words.
@@ -66,16 +65,17 @@ pub(crate) fn kept() -> Option<String> {
 /// kept.
 pub(crate) fn abandon(end: impl FnOnce(Option<&str>)) {
     let mut present = present();
+    // First, so that none writes into a folder that is being removed.
+    #[cfg(unix)]
+    for number in present.started.drain(..).filter_map(|number| i32::try_from(number).ok()) {
+        if let Some(group) = rustix::process::Pid::from_raw(number) {
+            // One that has gone needs no end.
+            let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+        }
+    }
     for path in present.temporary.drain(..) {
         // Nothing can be done about one that stays.
         let _ = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
-    }
-    #[cfg(unix)]
-    if let Some(number) = present.started.and_then(|number| i32::try_from(number).ok())
-        && let Some(group) = rustix::process::Pid::from_raw(number)
-    {
-        // One that has gone needs no end.
-        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
     }
     end(present.kept.as_deref());
 }

@@ -137,7 +137,17 @@ pub fn geometry_options(curve: &Curve) -> Vec<String> {
 /// The command that runs a curve on this hardware.
 #[must_use]
 pub fn run_command(model: &Model, curve: &Curve, choices: &Options) -> String {
-    let words = [vec![format!("stepwave run {}", model.name)], geometry_options(curve), choices.words()].concat();
+    command("run", model, curve, choices)
+}
+
+/// The command that exports this hardware, without a file to write.
+#[must_use]
+pub fn export_command(model: &Model, curve: &Curve, choices: &Options) -> String {
+    command("export", model, curve, choices)
+}
+
+fn command(verb: &str, model: &Model, curve: &Curve, choices: &Options) -> String {
+    let words = [vec![format!("stepwave {verb} {}", model.name)], geometry_options(curve), choices.words()].concat();
     words.join(" ")
 }
 

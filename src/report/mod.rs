@@ -26,7 +26,7 @@ use crate::testbench::{CUT_CLOCKS, Ending, Outcome, OverflowEvent, OverflowTally
 
 pub use curve::OfCurve;
 pub use file::{JsonFile, PathPicture, RunFile};
-pub use geometry::{geometry, geometry_options, run_command, title};
+pub use geometry::{export_command, geometry, geometry_options, run_command, title};
 pub use program::{MoveTable, OfProgram, TABLE_MOVES};
 pub use speed::RelativeSpeed;
 pub use table::{CsvTable, TEXTBOOK_STEPS, TextbookTable};

@@ -49,6 +49,11 @@ pub struct Dimensions {
     pub choices: Options,
     /// The runs.
     pub corners: Vec<Corner>,
+    /// Bits of all its registers together, those of signs, states and the coarse stage of data sampling too, at the corner
+    /// that has the most.
+    pub register_bits: u32,
+    /// The index of that corner.
+    largest: usize,
     /// Greatest path error in BLU that the method promises, if it promises one.
     pub bound: Option<f64>,
     /// The clock in Hz by which a period is divided, of data sampling: its feed does not follow from the clock.
@@ -72,6 +77,20 @@ impl Dimensions {
         }
         let speeds = self.corners.iter().map(Corner::speed);
         Some(speeds.fold([f64::INFINITY, 0.0], |[least, greatest], speed| [least.min(speed), greatest.max(speed)]))
+    }
+
+    /// The run whose hardware has the most bits of registers.
+    #[must_use]
+    pub fn largest(&self) -> &Corner {
+        &self.corners[self.largest]
+    }
+
+    /// That hardware.
+    ///
+    /// # Errors
+    /// It cannot be built: not where these dimensions come from runs.
+    pub fn bench(&self) -> Result<Testbench, ModelError> {
+        Testbench::new(self.model, &self.largest().curve, &self.choices)
     }
 
     /// The corner with the greatest path error.
@@ -160,7 +179,7 @@ pub fn dimensions(
         }
         _ => least,
     };
-    let (mut runs, mut bound) = (Vec::new(), None);
+    let (mut runs, mut bound, mut most) = (Vec::new(), None, (0, 0));
     for curve in curves {
         let bench = Testbench::new(model, &curve, &choices)?.limited(LIMIT);
         let mut path = PathWatch::new(&bench, &curve);
@@ -168,11 +187,17 @@ pub fn dimensions(
             bench.run(EngineKind::Compiled, &mut [&mut path]).map_err(|error| ProofError::Box(error.to_string()))?;
         let error = path.worst.map_or(0.0, |worst| worst.error);
         bound = bench.hardware().error_bound;
+        // The first of those that have as many.
+        most = most.max((bench.design().register_bits(), usize::MAX - runs.len()));
         tick(1);
         runs.push(Corner { ending: outcome.ending, clocks: outcome.clocks.saturating_sub(1), error, curve });
     }
+    if runs.is_empty() {
+        return Err(ProofError::Box("the travel has no corner: give each axis at least one BLU".to_owned()));
+    }
     let sampled_at = is_sampled.then_some(clock_hz);
-    Ok(Dimensions { model, registers: found, choices, corners: runs, bound, sampled_at })
+    let (register_bits, largest) = (most.0, usize::MAX - most.1);
+    Ok(Dimensions { model, registers: found, choices, corners: runs, register_bits, largest, bound, sampled_at })
 }
 
 fn extent(travel: &[i64]) -> Result<Extent, ProofError> {

@@ -51,6 +51,7 @@ mod space;
 mod stage;
 mod summary;
 mod sweep;
+pub mod synth;
 mod table;
 mod variants;
 pub mod widths;

@@ -106,7 +106,7 @@ fn tables_name_every_method_and_register() {
     assert!(text.contains("\nppc-line\n") && text.contains("--width 5,f=5"), "{text}");
     let markdown = good(&format!("{SMALL} ppc-line mindev-arc --markdown"));
     assert!(
-        markdown.contains("| method | registers, bits | clock |") && markdown.contains("### mindev-arc"),
+        markdown.contains("| method | registers, bits | bits of all | clock |") && markdown.contains("### mindev-arc"),
         "{markdown}"
     );
 }

@@ -27,6 +27,8 @@ mod stages;
 mod stepgen_bresenham;
 mod stops;
 mod sweep;
+#[cfg(unix)]
+mod synth;
 mod tables;
 mod terminal;
 mod tolerance;

@@ -15,6 +15,40 @@ fn module_and_bench_are_written_and_counted() {
 }
 
 #[test]
+fn a_harness_has_a_register_for_every_bit_of_the_ports_and_flags_can_be_left_out() {
+    let ports = |words: &str| {
+        let folder = Folder::new();
+        folder.good(&format!("export {words} --verilog m.v --harness h.v"));
+        let (module, harness) = (folder.read("m.v"), folder.read("h.v"));
+        let of = |text: &str, start: &str| -> u64 {
+            let lines = text.lines().skip_while(|line| !line.starts_with("module ")).map(str::trim);
+            let lines = lines.take_while(|line| *line != ");").filter(|line| line.starts_with(start));
+            let bits = |line: &str| {
+                line.split_once('[')
+                    .and_then(|(_, rest)| rest.split_once(':'))
+                    .map(|(top, _)| top.parse::<u64>().unwrap() + 1)
+            };
+            lines.map(|line| bits(line).unwrap_or(1)).sum()
+        };
+        // Clock and reset have pins of their own.
+        let (inputs, outputs) = (of(&module, "input") - 2, of(&module, "output"));
+        assert!(
+            harness.contains(&format!("    reg [{}:0] in;\n    wire [{}:0] out;\n", inputs - 1, outputs - 1)),
+            "{harness}"
+        );
+        assert_eq!((of(&harness, "input"), of(&harness, "output")), (3, 1), "{harness}");
+        let last = |word: &str, bits: u64| harness.contains(&format!("{word}[{}:", bits - 1));
+        assert!(last("(in", inputs) && last("(out", outputs), "{harness}");
+        (module.matches("_overflow").count(), outputs)
+    };
+    let arc = |more: &str| ports(&format!("{ARC}{more}"));
+    let ((all, with), (fewer, without)) = (arc(""), arc(" --no-flags"));
+    assert!(fewer < all && without < with, "{fewer} of {all}, {without} of {with}");
+    // Words of more than 64 bits are one port.
+    ports("sampled-spline --bezier 0,0,50,80,100,0 --step 20");
+}
+
+#[test]
 fn the_same_command_writes_the_same_bytes() {
     let text = |folder: Folder| {
         folder.good(&format!("export {ARC} --verilog a.v --testbench b.v --btor2 c.btor2 --smt2 d.smt2"));

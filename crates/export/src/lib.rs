@@ -1,6 +1,6 @@
-//! Designs for other tools: a design as Verilog, and a test bench that drives it as an engine would be driven; for
-//! model checkers and solvers as BTOR2 and as SMT-LIB 2, if need be with a loader that drives it in the test bench's
-//! stead.
+//! Designs for other tools: a design as Verilog, and a test bench that drives it as an engine would be driven, or a
+//! harness of four pins for place and route; for model checkers and solvers as BTOR2 and as SMT-LIB 2, if need be with
+//! a loader that drives it in the test bench's stead.
 //!
 //! ```
 //! use stepwave_export as export;
@@ -20,6 +20,7 @@
 
 mod btor2;
 mod driven;
+mod harness;
 mod keywords;
 mod smt2;
 mod testbench;
@@ -28,6 +29,7 @@ mod words;
 
 pub use btor2::btor2;
 pub use driven::{Driven, driven};
+pub use harness::harness;
 pub use smt2::{smt2, smt2_asking};
 pub use testbench::{Stall, Step, Stimulus, testbench};
 pub use verilog::verilog;

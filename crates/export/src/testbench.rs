@@ -169,27 +169,35 @@ fn declarations(bench: &Bench<'_>) -> String {
 }
 
 fn instance(bench: &Bench<'_>) -> String {
-    let mut ports = vec![format!(".{}({})", bench.names.clk, bench.clk), format!(".{}(1'b0)", bench.names.rst)];
-    let inside = bench.names.inputs.iter().chain(&bench.names.outputs);
-    let outside = bench.inputs.iter().chain(&bench.outputs);
-    let pairs: Vec<_> = inside.zip(outside).collect();
-    for (port, (_, name)) in &pairs {
+    let outside = bench.inputs.iter().chain(&bench.outputs).map(|(_, name)| name.as_str());
+    let ports = connections(&bench.names, [&bench.clk, "1'b0"], outside).join(",\n        ");
+    format!(
+        "    /* verilator tracing_on */\n    {} {} (\n        {ports}\n    );\n    /* verilator tracing_off */\n\n",
+        bench.names.module, bench.instance
+    )
+}
+
+/// The ports of an instance: clock and reset, then inputs and outputs in their order, each with what is joined to it.
+pub(super) fn connections<'a>(
+    names: &Names,
+    [clk, rst]: [&str; 2],
+    outside: impl Iterator<Item = &'a str>,
+) -> Vec<String> {
+    let mut ports = vec![format!(".{}({clk})", names.clk), format!(".{}({rst})", names.rst)];
+    let pairs: Vec<_> = names.inputs.iter().chain(&names.outputs).zip(outside).collect();
+    for (port, name) in &pairs {
         match &port.word {
             None => ports.push(format!(".{}({name})", port.name)),
             Some(word) if word.low > 0 => {}
             Some(word) => {
                 // The highest part first.
                 let of_word = |other: &Port| other.word.as_ref().is_some_and(|other| other.entry == word.entry);
-                let parts = pairs.iter().rev().filter(|(port, _)| of_word(port)).map(|(_, (_, name))| name.as_str());
+                let parts = pairs.iter().rev().filter(|(port, _)| of_word(port)).map(|(_, name)| *name);
                 ports.push(format!(".{}({{{}}})", word.name, parts.collect::<Vec<_>>().join(", ")));
             }
         }
     }
-    let ports = ports.join(",\n        ");
-    format!(
-        "    /* verilator tracing_on */\n    {} {} (\n        {ports}\n    );\n    /* verilator tracing_off */\n\n",
-        bench.names.module, bench.instance
-    )
+    ports
 }
 
 /// The inputs, step by step.

@@ -134,11 +134,17 @@ impl Testbench {
     /// properties.
     #[must_use]
     pub fn outputs(&self) -> Vec<Net> {
+        self.ports().into_iter().chain(self.properties()).collect()
+    }
+
+    /// The same without the flags of its properties.
+    #[must_use]
+    pub fn ports(&self) -> Vec<Net> {
         let machine = &self.machine;
         let strobes = [machine.done, machine.loaded, machine.stepped];
         let ports = strobes.iter().chain(&machine.pulses).chain(&machine.positions);
         let buffer = machine.buffer.into_iter().flat_map(|ports| [ports.call, ports.at_end]);
-        ports.map(|port| port.net).chain(buffer).chain(self.properties()).collect()
+        ports.map(|port| port.net).chain(buffer).collect()
     }
 
     fn properties(&self) -> Vec<Net> {

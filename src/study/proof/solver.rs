@@ -166,12 +166,12 @@ pub fn question(
     Ok(Question { script, geometries, clocks })
 }
 
-/// Does a change of the process that runs, which gives that process, so that a signal comes before it or after it.
-pub type Attend<'a> = &'a dyn Fn(&mut dyn FnMut() -> Option<u32>);
+/// Does a change of the processes that run, of which it has the list, so that a signal comes before it or after it.
+pub type Attend<'a> = &'a dyn Fn(&mut dyn FnMut(&mut Vec<u32>));
 
 /// Asks a solver: its command, whose words stand apart by blanks, gets the script on its input. After the `limit` it is
 /// killed with all that it has started, and gives no answer. `attend` does what starts and what ends it, each of which
-/// gives the process that runs from then on, so that what ends this process can end that one, too.
+/// changes the list of the processes that run, so that what ends this process can end that one, too.
 ///
 /// # Errors
 /// It cannot be run, or says neither `sat` nor `unsat`, or nothing in time.
@@ -185,9 +185,9 @@ pub fn ask(command: &str, script: &str, limit: Duration, attend: Attend<'_>) -> 
     #[cfg(unix)]
     std::os::unix::process::CommandExt::process_group(&mut asked, 0);
     let mut spawned = None;
-    attend(&mut || {
+    attend(&mut |running| {
         let child = spawned.insert(asked.spawn());
-        child.as_ref().ok().map(Child::id)
+        running.extend(child.as_ref().ok().map(Child::id));
     });
     let Some(mut child) = spawned.transpose().map_err(failed)? else {
         return Err(failed(std::io::ErrorKind::Interrupted.into()));
@@ -239,6 +239,6 @@ fn end(child: &mut Child, attend: Attend<'_>) -> std::io::Result<std::process::E
     }
     let killed = child.kill();
     // Once it was waited for, its number may be another's.
-    attend(&mut || None);
+    attend(&mut |running| running.retain(|number| *number != child.id()));
     killed.and_then(|()| child.wait())
 }

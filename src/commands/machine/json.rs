@@ -1,0 +1,74 @@
+//! The answer of `machine` as JSON.
+
+use serde_json::{Value, json};
+
+use super::{Answer, Row, Size};
+use crate::commands::widths::registers_json;
+use crate::report::{export_command, run_command};
+use crate::study::synth::{Cost, Tools};
+use crate::testbench::Ending;
+
+/// Everything that is printed.
+pub(super) fn all(answer: &Answer) -> String {
+    let Answer { size, rows, left_out, tools, beaten } = answer;
+    let mut all = json!({
+        "travel": size.travel,
+        "blu_mm": size.blu_mm,
+        "feed": size.feed_of(size.feed),
+        "machines": rows.iter().map(|row| machine(row, size)).collect::<Vec<_>>(),
+        "left_out": left_out.iter().map(|(model, reason)| json!({ "model": model, "reason": reason })).collect::<Vec<_>>(),
+    });
+    if let Some(Tools { yosys, nextpnr }) = tools {
+        all["synth"] = json!({ "device": Tools::device(), "yosys": yosys, "nextpnr": nextpnr });
+    }
+    if let Some(beaten) = beaten {
+        let row = |beaten: &super::Beaten| json!({ "model": beaten.model, "by": beaten.by });
+        all["beaten"] = beaten.iter().map(row).collect();
+    }
+    format!("{all:#}\n")
+}
+
+fn ends(feeds: Option<[f64; 2]>) -> Value {
+    json!({ "least": feeds.map(|feeds| feeds[0]), "greatest": feeds.map(|feeds| feeds[1]) })
+}
+
+fn machine(row: &Row, size: &Size) -> Value {
+    let found = &row.found;
+    let clock = found.clock_hz(size.feed);
+    let corners = found.corners.iter().map(|corner| {
+        json!({
+            "run": run_command(found.model, &corner.curve, &found.choices),
+            "done": corner.ending == Ending::Done,
+            "clocks": corner.clocks,
+            "length": corner.curve.length(),
+            "feed": clock.map(|clock| size.feed_of(corner.speed() * clock)),
+            "path_error": corner.error,
+        })
+    });
+    let mut all = json!({
+        "model": found.model.name,
+        "method": found.model.method,
+        "registers": registers_json(found.model, &found.registers),
+        "register_bits": found.register_bits,
+        "clock_hz": clock,
+        "feed": ends(clock.and_then(|clock| row.feeds(size, clock))),
+        "path_error": {
+            "greatest": found.worst().map(|worst| worst.error),
+            "um": found.worst().map(|worst| worst.error * size.blu_mm * 1000.0),
+            "bound": found.bound,
+        },
+        "corners": corners.collect::<Vec<_>>(),
+    });
+    if let Some(Cost { luts, flip_flops, carries, rams, clock_hz }) = row.cost {
+        all["cost"] = json!({
+            "export": export_command(found.model, &found.largest().curve, &found.choices) + " --no-flags",
+            "luts": luts,
+            "flip_flops": flip_flops,
+            "carries": carries,
+            "block_rams": rams,
+            "clock_hz": clock_hz,
+            "feed": ends(clock_hz.and_then(|clock| row.feeds(size, clock))),
+        });
+    }
+    all
+}

@@ -1,0 +1,153 @@
+//! The answer of `machine` as text and in Markdown.
+
+use std::fmt::Write as _;
+
+use super::{Answer, Row, Size};
+use crate::commands::columns::{aligned, markdown};
+use crate::commands::widths::{evidence, one_bit_below};
+use crate::study::machine::Dimensions;
+use crate::study::synth::Tools;
+use crate::testbench::Ending;
+
+/// Everything that is printed.
+pub(super) fn all(answer: &Answer, is_markdown: bool) -> String {
+    let mut text = heading(answer) + "\n" + &table(answer, is_markdown);
+    for row in &answer.rows {
+        text += "\n";
+        text += &registers(&row.found, is_markdown);
+    }
+    if let Some(beaten) = &answer.beaten {
+        let all = beaten.len() + answer.rows.len();
+        // Writing to a string cannot fail.
+        let _ = write!(text, "\nleft out by --pareto: {} of {all}", beaten.len());
+        let by = beaten.iter().map(|beaten| format!("{}, beaten by {}", beaten.model, beaten.by));
+        text += &by.map(|line| format!("\n  {line}")).collect::<String>();
+        text += "\n";
+    }
+    for (_, reason) in &answer.left_out {
+        let _ = writeln!(text, "\nleft out: {reason}");
+    }
+    text
+}
+
+fn heading(answer: &Answer) -> String {
+    let size = &answer.size;
+    let travel: Vec<String> = size.travel.iter().map(ToString::to_string).collect();
+    let mut text = format!(
+        "travel ±{} BLU of {} mm, feed {} mm/min\n",
+        travel.join(", ±"),
+        size.blu_mm,
+        rounded(size.feed_of(size.feed))
+    );
+    if let Some(Tools { yosys, nextpnr }) = &answer.tools {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "LUTs and flip-flops by Yosys {yosys}, highest clock by nextpnr {nextpnr} in an {}",
+            Tools::device()
+        );
+    }
+    text
+}
+
+/// Four digits or all of a whole number.
+fn rounded(number: f64) -> String {
+    if number >= 1000.0 {
+        format!("{number:.0}")
+    } else {
+        format!("{number:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
+    }
+}
+
+/// What is not known, as a run did not come to its end or the device does not hold the hardware.
+fn unknown() -> String {
+    "-".to_owned()
+}
+
+/// A clock with its unit.
+fn frequency(hz: f64) -> String {
+    match hz {
+        hz if hz >= 1e6 => format!("{:.3} MHz", hz / 1e6),
+        hz if hz >= 1e3 => format!("{:.3} kHz", hz / 1e3),
+        hz => format!("{hz:.3} Hz"),
+    }
+}
+
+/// How many runs at the corners did not come to their ends.
+fn unfinished(found: &Dimensions) -> usize {
+    found.corners.iter().filter(|corner| corner.ending != Ending::Done).count()
+}
+
+/// Feeds at a clock, if both are known.
+fn feeds(row: &Row, size: &Size, clock: Option<f64>) -> String {
+    let feeds = clock.and_then(|clock| row.feeds(size, clock)).map(|feeds| feeds.map(rounded));
+    feeds.map_or_else(unknown, |[least, most]| if least == most { least } else { format!("{least} to {most}") })
+}
+
+const HEADING: [&str; 6] = [
+    "method",
+    "registers, bits",
+    "bits of all",
+    "clock",
+    "feed at that clock, mm/min",
+    "greatest error at the corners",
+];
+/// With `--synth`.
+const COSTS: [&str; 4] = ["LUTs", "flip-flops", "highest clock", "feed at the highest clock, mm/min"];
+
+fn table(answer: &Answer, is_markdown: bool) -> String {
+    let size = &answer.size;
+    let row = |row: &Row| {
+        let found = &row.found;
+        let bits: Vec<String> = found.registers.iter().map(|own| format!("{} {}", own.name, own.needed)).collect();
+        let clock = found.clock_hz(size.feed);
+        let error = found.worst().map_or(0.0, |worst| worst.error);
+        let mut cells = vec![
+            format!("{}{}", found.model.name, "*".repeat(unfinished(found).min(1))),
+            bits.join(", "),
+            found.register_bits.to_string(),
+            clock.map_or_else(unknown, frequency),
+            feeds(row, size, clock),
+            format!("{error:.3} BLU, {} µm", rounded(error * size.blu_mm * 1000.0)),
+        ];
+        if let Some(cost) = &row.cost {
+            let clock = cost.clock_hz;
+            cells.extend([cost.luts.to_string(), cost.flip_flops.to_string()]);
+            cells.extend([clock.map_or_else(unknown, frequency), feeds(row, size, clock)]);
+        }
+        cells
+    };
+    let costs = if answer.tools.is_some() { &COSTS[..] } else { &[] };
+    let heading: Vec<String> = HEADING.iter().chain(costs).map(ToString::to_string).collect();
+    let right: Vec<usize> = (2..heading.len()).collect();
+    let all: Vec<Vec<String>> = std::iter::once(heading).chain(answer.rows.iter().map(row)).collect();
+    let mut text = if is_markdown { markdown(&all, &right) } else { aligned(&all, &right) };
+    if answer.rows.iter().any(|row| unfinished(&row.found) > 0) {
+        text += "\n* not all runs at the corners came to their end: clock and feed are not known\n";
+    }
+    let too_large = answer.rows.iter().filter(|row| row.cost.is_some_and(|cost| cost.clock_hz.is_none()));
+    for row in too_large {
+        // Writing to a string cannot fail.
+        let _ =
+            writeln!(text, "\n{} does not fit into the device: its highest clock is not known", row.found.model.name);
+    }
+    text
+}
+
+/// Every register of a method, how its width is known, and what happens one bit below.
+fn registers(found: &Dimensions, is_markdown: bool) -> String {
+    let mut text = if is_markdown {
+        format!("### {}\n\n| register | bits | known | one bit below |\n|---|---:|---|---|\n", found.model.name)
+    } else {
+        format!("{}\n", found.model.name)
+    };
+    for own in &found.registers {
+        let (name, bits, known, below) = (&own.name, own.needed, evidence(own), one_bit_below(found.model, own));
+        // Writing to a string cannot fail.
+        let _ = match is_markdown {
+            true => writeln!(text, "| {name} | {bits} | {known} | {below} |"),
+            false => writeln!(text, "  {name:<8} {bits:>3}  {known:<11}  {below}"),
+        };
+    }
+    text
+}
