@@ -125,6 +125,9 @@ pub(crate) struct CompareArgs {
     /// As a Markdown table
     #[arg(long)]
     pub(crate) markdown: bool,
+    /// Write a page that shows the path and the wave of every method, for a browser
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Html]), help_heading = "Outputs (- is standard output)")]
+    pub(crate) html: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]

@@ -17,6 +17,7 @@ use crate::models::{Model, Options};
 use crate::nc::Curve;
 use crate::output::{self, Outputs};
 use crate::program::Preparation;
+use crate::report::page::{self, Facts, RunRecord};
 use crate::report::{CsvTable, JsonFile, Report, RunFile, Subject};
 use crate::testbench::{Ending, Observer, OverflowEvent, Recording, Testbench};
 use crate::trace::timescale::ClockTime;
@@ -213,6 +214,12 @@ impl Simulation {
         self
     }
 
+    /// With a page for a browser in this file: path, wave and step table under one cursor.
+    pub fn html(mut self, path: impl Into<PathBuf>) -> Simulation {
+        self.waves.html = Some(path.into());
+        self
+    }
+
     /// With the step table as CSV in this file.
     pub fn steps(mut self, path: impl Into<PathBuf>) -> Simulation {
         self.files.steps = Some(path.into());
@@ -294,9 +301,9 @@ impl Simulation {
     /// A wave is to show the operands of the cell that stopped the run. Not where one of its files is a stream, which has
     /// gone out already, nor where the window leaves the clock of the overflow out.
     fn shows_trap(&self, event: &OverflowEvent) -> bool {
-        let WaveOptions { vcd, fst, from, to, .. } = &self.waves;
+        let WaveOptions { vcd, fst, html, from, to, .. } = &self.waves;
         let window = *from..=to.unwrap_or(u64::MAX);
-        let files = [vcd, fst, &self.files.steps, &self.files.json, &self.files.plot];
+        let files = [vcd, fst, html, &self.files.steps, &self.files.json, &self.files.plot];
         let streams = files.into_iter().flatten().any(|path| output::is_stream(path));
         self.checkpoints.is_none() && self.waves.wanted() && window.contains(&event.clock()) && !streams
     }
@@ -315,6 +322,7 @@ impl Simulation {
         let mut open = |path: &Option<PathBuf>| path.as_deref().map(|path| outputs.open(path)).transpose();
         let [steps, json, plot] = [open(&self.files.steps)?, open(&self.files.json)?, open(&self.files.plot)?];
         states.iter_mut().try_for_each(|states| states.open(outputs))?;
+        let page = page::open(&self.waves, outputs)?;
         let mut onlookers = onlookers(bench, outputs)?;
         let waves = sinks.map(|sinks| Waves::new(bench, &self.waves, sinks, time, &report.title())).transpose()?;
         let mut waves = waves.map(|waves| waves.beginning_with(self.source.leading()));
@@ -326,11 +334,17 @@ impl Simulation {
             files.push(Box::new(JsonFile::new(&report, sink)?));
         }
         files.extend(plot.map(|sink| report.picture(sink)));
+        let record = |out| {
+            let units = [self.clock_hz, self.blu_mm];
+            Ok::<_, Error>((out, RunRecord::of_bench(bench, &self.waves, units, page::ONE_RUN)?))
+        };
+        let mut page = page.map(record).transpose()?;
         let mut watches = Watches::new(bench, &self.source);
 
         let mut observers = watches.observers(&mut report.subject);
         observers.extend(onlookers.observers());
         observers.extend(waves.iter_mut().flat_map(Waves::observers));
+        observers.extend(page.iter_mut().map(|(_, record)| record as &mut dyn Observer));
         observers.extend(files.iter_mut().map(|file| &mut **file as &mut dyn Observer));
         let mut control = self.control(bench)?;
         let outcome = match (&mut states, &mut control) {
@@ -353,6 +367,9 @@ impl Simulation {
             waves.finish(&report.overflows, report.outcome.clocks, outputs)?;
         }
         files.iter_mut().try_for_each(|file| file.finish(&report))?;
+        if let Some((out, record)) = page {
+            page::write(out, record, &Facts::from(&report))?;
+        }
         Ok(Ran { report, onlookers, begun })
     }
 }

@@ -39,6 +39,9 @@ pub struct WaveOptions {
     /// name of the FST file (w.fst.gtkw beside w.gtkw)
     #[cfg_attr(feature = "cli", arg(long, value_name = "FILE", value_parser = file_of(&[FileFormat::Fst]), group = "wave"))]
     pub fst: Option<PathBuf>,
+    /// Write a page that shows path, wave and step table under one cursor, for a browser
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE", value_parser = file_of(&[FileFormat::Html]), group = "wave"))]
+    pub html: Option<PathBuf>,
     /// Dump only names that match (leaf name or dotted path; may be repeated)
     #[cfg_attr(feature = "cli", arg(id = "trace", long = "trace", requires = "wave", value_name = "GLOB"))]
     #[cfg_attr(feature = "cli", arg(value_parser = listed(StringValueParser::new(), all_registers()), hide_possible_values = true))]
@@ -84,17 +87,17 @@ pub struct WaveOptions {
 impl Default for WaveOptions {
     fn default() -> WaveOptions {
         let (signals, excluded) = (Vec::new(), Vec::new());
-        let (vcd, fst, depth, to, on) = (None, None, None, None, None);
+        let (vcd, fst, html, depth, to, on) = (None, None, None, None, None, None);
         let (clk, steps, every_clock, large) = (true, false, false, false);
-        WaveOptions { vcd, fst, signals, excluded, depth, from: 0, to, on, clk, steps, every_clock, large }
+        WaveOptions { vcd, fst, html, signals, excluded, depth, from: 0, to, on, clk, steps, every_clock, large }
     }
 }
 
 impl WaveOptions {
-    /// A wave is to be written.
+    /// A wave is to be written, as a file or in a page.
     #[must_use]
     pub fn wanted(&self) -> bool {
-        self.vcd.is_some() || self.fst.is_some()
+        self.vcd.is_some() || self.fst.is_some() || self.html.is_some()
     }
 }
 
@@ -164,12 +167,7 @@ impl<'a> Waves<'a> {
     ) -> Result<Waves<'a>, Error> {
         let shown = shown.into();
         let probes = probes(shown, args)?;
-        let trigger = match &args.on {
-            Some(name) => Trigger::Column(flag_column(shown, name)?),
-            None => Trigger::Immediately,
-        };
-        let steps = shown.steps.filter(|_| args.steps).map(|nets| nets.map(|net| shown.columns.index(net)));
-        let window = Window { from: args.from, to: args.to, trigger, steps };
+        let window = window(shown, args)?;
         let clk = args.clk && shown.running.is_none();
         let narrow = |probe: &Probe| match probe.columns[..] {
             [column] => Some((column, Width::new(u64::from(probe.width)).ok()?)),
@@ -290,15 +288,18 @@ impl<'a> Waves<'a> {
 }
 
 /// What a wave holds.
-struct Written {
+pub(crate) struct Written {
     /// First and last.
-    clocks: (u64, u64),
+    pub(crate) clocks: (u64, u64),
     /// What its curves took.
     taken: Vec<Taken>,
 }
 
 /// Ends a wave; returns what it holds.
-fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Error> {
+///
+/// # Errors
+/// It is empty, or its output cannot be written.
+pub(crate) fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Error> {
     writer.end(clocks)?;
     let Some(written) = writer.written else {
         return Err(Error::Invalid(format!(
@@ -307,6 +308,19 @@ fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Writte
     };
     let taken = std::mem::take(&mut writer.taken);
     Ok((Written { clocks: written, taken }, writer.finish()?))
+}
+
+/// The samples that the options choose.
+///
+/// # Errors
+/// They name no signal.
+pub(crate) fn window(shown: Shown<'_>, args: &WaveOptions) -> Result<Window, Error> {
+    let trigger = match &args.on {
+        Some(name) => Trigger::Column(flag_column(shown, name)?),
+        None => Trigger::Immediately,
+    };
+    let steps = shown.steps.filter(|_| args.steps).map(|nets| nets.map(|net| shown.columns.index(net)));
+    Ok(Window { from: args.from, to: args.to, trigger, steps })
 }
 
 /// The signals that the options choose.

@@ -18,6 +18,7 @@ pub(crate) enum Format {
     Parquet,
     Json,
     Svg,
+    Html,
     Png,
     Netlist,
     Verilog,
@@ -29,13 +30,14 @@ pub(crate) enum Format {
 /// A format: its name, the endings of its files, the one to propose first, and the options that write it.
 struct Entry(Format, &'static str, &'static [&'static str], &'static [&'static str]);
 
-const TABLE: [Entry; 12] = [
+const TABLE: [Entry; 13] = [
     Entry(Format::Vcd, "VCD", &["vcd"], &["vcd", "merged"]),
     Entry(Format::Fst, "FST", &["fst"], &["fst"]),
     Entry(Format::Csv, "CSV", &["csv"], &["steps", "csv", "stimulus-out"]),
     Entry(Format::Parquet, "Parquet", &["parquet"], &["parquet"]),
     Entry(Format::Json, "JSON", &["json"], &["json"]),
     Entry(Format::Svg, "SVG", &["svg"], &["plot"]),
+    Entry(Format::Html, "HTML", &["html", "htm"], &["html"]),
     Entry(Format::Png, "PNG", &["png"], &["plot"]),
     Entry(Format::Netlist, "a netlist", &["net"], &["output", "netlist"]),
     Entry(Format::Verilog, "Verilog", &["v", "sv"], &["verilog", "testbench", "harness"]),

@@ -11,6 +11,7 @@ use crate::netlist::cells::{Claim, Property};
 use crate::netlist::{Design, Netlist, elaborate};
 use crate::output::Outputs;
 use crate::report::json::{event, joined, tally as tally_json};
+use crate::report::page::{self, Facts, RunRecord};
 use crate::testbench::{CHUNK, Columns, Observer, ObserverError, OverflowEvent, OverflowTally, OverflowWatch};
 use crate::trace::timescale::ClockTime;
 use crate::waves::{Shown, Sinks, WaveOptions, Waves};
@@ -120,11 +121,15 @@ impl Sim {
         let json = self.json.as_deref().map(|path| outputs.open(path)).transpose()?;
         let title = format!("{}; {} clocks", self.design.netlist().scopes[0].name, self.clocks);
         let mut waves = sinks.map(|sinks| Waves::new(shown, &self.waves, sinks, time, &title)).transpose()?;
+        let page = page::open(&self.waves, outputs)?;
+        let record = |out| Ok::<_, Error>((out, RunRecord::of_design(shown, &self.waves, page::ONE_RUN)?));
+        let mut page = page.map(record).transpose()?;
         let mut overflow = OverflowWatch::of(self.design.netlist(), &columns);
         let mut firsts = Firsts::of(self.design.netlist(), &columns);
         let mut printed = Printed::of(self.design.netlist(), &columns, time, to);
         let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow, &mut firsts, &mut printed];
         observers.extend(waves.iter_mut().flat_map(Waves::observers));
+        observers.extend(page.iter_mut().map(|(_, record)| record as &mut dyn Observer));
         let Run { clocks, trap, last } = self.clocked(&columns, &mut observers)?;
         drop(observers);
         if let Some(waves) = waves {
@@ -136,7 +141,26 @@ impl Sim {
             writeln!(sink, "{:#}", self.report_json(&report))?;
             sink.flush()?;
         }
+        if let Some((out, record)) = page {
+            page::write(out, record, &self.facts(&report, title))?;
+        }
         Ok(report)
+    }
+
+    /// What a page says of the run.
+    fn facts(&self, report: &SimReport, title: String) -> Facts {
+        let sentences = |sentences: Vec<String>| sentences.iter().map(|of| format!("{of}\n")).collect::<String>();
+        Facts {
+            headline: self.design.netlist().scopes[0].name.clone(),
+            title,
+            summary: sentences(report.events()) + &sentences(report.notes()),
+            failures: report.failures(),
+            warnings: report.events(),
+            clock_hz: self.clock_hz,
+            clocks: report.clocks,
+            events: report.tallies.iter().map(|tally| tally.first.clone()).collect(),
+            ..Facts::default()
+        }
     }
 
     /// Properties that end the run.

@@ -5,7 +5,7 @@ mod file;
 mod geometry;
 pub mod heat;
 pub(crate) mod json;
-
+pub(crate) mod page;
 pub mod plot;
 mod png;
 mod program;

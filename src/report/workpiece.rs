@@ -62,27 +62,6 @@ impl<W> Workpiece<W> {
         self.axes.map(|axis| point[axis])
     }
 
-    /// The programmed segment of a move, as points.
-    fn outline(&self, of: &ToolMove) -> Vec<Pair> {
-        let segment = &of.programmed;
-        let SegmentShape::Arc { plane, center, direction } = segment.shape else {
-            return vec![self.shown(segment.from), self.shown(segment.to)];
-        };
-        let angle = swept(segment, plane, center, direction);
-        let angle = if direction == Direction::Clockwise { -angle } else { angle };
-        let [u, v, from] = plane.of(segment.from);
-        let [_, _, to] = plane.of(segment.to);
-        let (dx, dy) = (u - center[0], v - center[1]);
-        let points = 90;
-        let point = |index: i32| {
-            let part = f64::from(index) / f64::from(points);
-            let (sin, cos) = (angle * part).sin_cos();
-            let along = [center[0] + dx * cos - dy * sin, center[1] + dx * sin + dy * cos, from + (to - from) * part];
-            self.shown(plane.point(along))
-        };
-        (0..=points).map(point).collect()
-    }
-
     fn thin(&mut self) {
         self.stride *= 2;
         for (_, points) in &mut self.path {
@@ -138,6 +117,27 @@ impl<W> Workpiece<W> {
     }
 }
 
+/// The programmed segment of a move, as points.
+pub(super) fn outline(of: &ToolMove) -> Vec<[f64; 3]> {
+    let segment = &of.programmed;
+    let SegmentShape::Arc { plane, center, direction } = segment.shape else {
+        return vec![segment.from, segment.to];
+    };
+    let angle = swept(segment, plane, center, direction);
+    let angle = if direction == Direction::Clockwise { -angle } else { angle };
+    let [u, v, from] = plane.of(segment.from);
+    let [_, _, to] = plane.of(segment.to);
+    let (dx, dy) = (u - center[0], v - center[1]);
+    let points = 90;
+    let point = |index: i32| {
+        let part = f64::from(index) / f64::from(points);
+        let (sin, cos) = (angle * part).sin_cos();
+        let along = [center[0] + dx * cos - dy * sin, center[1] + dx * sin + dy * cos, from + (to - from) * part];
+        plane.point(along)
+    };
+    (0..=points).map(point).collect()
+}
+
 impl<W: Write> RunFile for Workpiece<W> {
     fn finish(&mut self, _: &Report) -> io::Result<()> {
         let svg = self.svg();
@@ -185,7 +185,7 @@ impl<W> Observer for Workpiece<W> {
             return Ok(());
         }
         if report.of.cause == Cause::Programmed && report.of.feed != stepwave_nc::Feed::Rapid {
-            let outline = self.outline(&report.of);
+            let outline: Vec<Pair> = outline(&report.of).into_iter().map(|point| self.shown(point)).collect();
             self.ranges = outline.iter().fold(self.ranges, |ranges, &point| reaching(ranges, point));
             self.contour.push(outline);
         }

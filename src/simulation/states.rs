@@ -26,9 +26,10 @@ impl<'a> Begin<'a> {
             let need = "states are kept of a run along a curve, not of a program";
             return Err(Error::Invalid(format!("--checkpoints: {need}: leave the option out")));
         }
-        if simulation.files.steps.is_some() || simulation.files.plot.is_some() {
-            let need = "the step table and the picture need every step, from the first";
-            return Err(Error::Invalid(format!("--checkpoints: {need}: leave out --steps and --plot")));
+        let files = [&simulation.files.steps, &simulation.files.plot, &simulation.waves.html];
+        if files.into_iter().any(Option::is_some) {
+            let need = "the step table, the picture and the page need every step, from the first";
+            return Err(Error::Invalid(format!("--checkpoints: {need}: leave out --steps, --plot and --html")));
         }
         let read = |what: &dyn std::fmt::Display| {
             let remedy = "name another file, or delete it";

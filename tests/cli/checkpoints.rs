@@ -86,7 +86,7 @@ fn states_of_another_run_and_what_is_none_are_refused() {
         (format!("{} --checkpoints none.json", LONG[0]), "it holds no states of a run"),
         (format!("{} --checkpoints cut.json", LONG[0]), "it holds no states of a run"),
         (format!("{} --checkpoints .", LONG[0]), "--checkpoints .: "),
-        (format!("{} --checkpoints new.json --steps s.csv", LONG[0]), "leave out --steps and --plot"),
+        (format!("{} --checkpoints new.json --steps s.csv", LONG[0]), "leave out --steps, --plot and --html"),
         (format!("{} --checkpoints no/new.json", LONG[0]), "no/new.json"),
     ] {
         let ran = folder.run(&format!("run {words}"));

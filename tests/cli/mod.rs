@@ -9,6 +9,7 @@ mod completions;
 mod endings;
 mod files;
 mod golden;
+mod html;
 mod inputs;
 mod machine;
 mod models;

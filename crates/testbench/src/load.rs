@@ -77,6 +77,12 @@ impl Testbench {
         self.blocks.len()
     }
 
+    /// Where the tool is before the first block, in BLU.
+    #[must_use]
+    pub fn start(&self) -> &[i64] {
+        &self.start
+    }
+
     /// The load words that did not fit in their registers.
     #[must_use]
     pub fn cut_words(&self) -> &[CutWord] {

@@ -6,6 +6,7 @@ use std::ops::Range;
 use stepwave_engine::Rows;
 use stepwave_netlist::Width;
 use stepwave_netlist::bits::to_signed;
+use stepwave_trace::changes::{Changes, Recorded};
 use stepwave_trace::fst::FstBody;
 use stepwave_trace::vcd::VcdBody;
 
@@ -93,6 +94,22 @@ impl<W: Write + Seek> WaveBody for FstBody<W> {
 
     fn finish(self) -> io::Result<W> {
         FstBody::finish(self)
+    }
+}
+
+impl WaveBody for Changes {
+    type Output = Recorded;
+
+    fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
+        Changes::rows(self, rows, range)
+    }
+
+    fn rest(&mut self, clock: u64) {
+        Changes::rest(self, clock);
+    }
+
+    fn finish(self) -> io::Result<Recorded> {
+        Ok(Changes::finish(self))
     }
 }
 

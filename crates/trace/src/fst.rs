@@ -9,7 +9,6 @@
 mod chain;
 mod header;
 mod lz4;
-mod numbers;
 mod section;
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,7 @@
 //! The changes of one signal in a section: each a step in the time table and the new value, packed as they come.
 
 use super::lz4::{Packed, Packer};
-use super::numbers;
+use crate::numbers;
 
 /// Bytes that the changes of 64 samples may touch, if a value has at most 64 bits: 13 bytes each, after any start.
 const SPAN_BYTES: usize = 1024;

@@ -8,7 +8,7 @@ use super::super::probe::Probe;
 use super::super::vcd::{has_range, variable_type};
 use super::FstHeader;
 use super::lz4;
-use super::numbers::{push, push_u64};
+use crate::numbers::{push, push_u64};
 
 /// Types of blocks.
 const HEADER: u8 = 0;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
 use super::chain::{Chain, Press};
-use super::numbers::{push, push_signed, push_u64};
+use crate::numbers::{push, push_signed, push_u64};
 
 /// Type of a block of changes in which a signal may refer to the changes of another.
 const CHANGES: u8 = 8;

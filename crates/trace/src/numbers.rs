@@ -1,7 +1,7 @@
 //! Numbers of variable length, seven bits a byte, the lowest first; all but the last byte have their highest bit set.
 
 /// Appends a number.
-pub(super) fn push(mut number: u64, out: &mut Vec<u8>) {
+pub fn push(mut number: u64, out: &mut Vec<u8>) {
     while number >= 0x80 {
         out.push(0x80 | number.to_le_bytes()[0]);
         number >>= 7;
@@ -10,7 +10,7 @@ pub(super) fn push(mut number: u64, out: &mut Vec<u8>) {
 }
 
 /// Appends a number of either sign: the last byte has the sign in its second highest bit.
-pub(super) fn push_signed(mut number: i64, out: &mut Vec<u8>) {
+pub fn push_signed(mut number: i64, out: &mut Vec<u8>) {
     while !(-0x40..0x40).contains(&number) {
         out.push(0x80 | number.to_le_bytes()[0]);
         number >>= 7;
@@ -19,13 +19,13 @@ pub(super) fn push_signed(mut number: i64, out: &mut Vec<u8>) {
 }
 
 /// Eight bytes, the highest first.
-pub(super) fn push_u64(number: u64, out: &mut Vec<u8>) {
+pub(crate) fn push_u64(number: u64, out: &mut Vec<u8>) {
     out.extend_from_slice(&number.to_be_bytes());
 }
 
 /// A number of at most 35 bits as the bytes of a word, the first the lowest, and how many there are.
 #[inline]
-pub(super) fn packed(mut number: u64) -> (u64, usize) {
+pub(crate) fn packed(mut number: u64) -> (u64, usize) {
     let (mut word, mut bytes) = (0, 0);
     while number >= 0x80 {
         word |= (0x80 | number & 0x7F) << (8 * bytes);

@@ -1,0 +1,285 @@
+// Opens pages in Chromium and compares what they show: see .ci/browser.
+import { createRequire } from 'node:module';
+import { existsSync, mkdtempSync, readFileSync, statSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import assert from 'node:assert/strict';
+
+const [folder, mode] = process.argv.slice(2);
+const { chromium } = createRequire(join(folder, 'x'))('playwright-core');
+const ARGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync'];
+
+/** A browser with a profile of its own, and what went wrong in it. */
+async function browser(options = {}) {
+  const profile = mkdtempSync(join(tmpdir(), 'page-'));
+  const context = await chromium.launchPersistentContext(profile, {
+    executablePath: '/usr/bin/chromium', headless: true, args: ARGS, viewport: { width: 1280, height: 800 }, locale: 'en-US', ...options,
+  });
+  const [page] = context.pages();
+  const wrong = [];
+  page.on('console', (message) => wrong.push(`${message.type()}: ${message.text()}`));
+  page.on('pageerror', (error) => wrong.push(String(error.stack)));
+  page.on('request', (request) => request.url().startsWith('file:') || wrong.push(`request: ${request.url()}`));
+  const open = async (file, hash = '') => {
+    await page.goto('about:blank');
+    await page.goto(`file://${join(folder, file)}${hash}`);
+    await page.waitForSelector('html[data-ready]', { timeout: 60_000 });
+  };
+  return { context, page, open, wrong };
+}
+
+/** A VCD: for each path its bits in time, and whether it is signed. */
+function readVcd(file) {
+  const text = readFileSync(file, 'utf8');
+  const [, hz] = /clock ([\d.e+]+) Hz/.exec(text);
+  const [, size, unit] = /\$timescale\s+(\d+)\s*(\w+)\s+\$end/.exec(text);
+  const ticks = 1 / Number(hz) / Number(size) / { s: 1, ms: 1e-3, us: 1e-6, ns: 1e-9, ps: 1e-12, fs: 1e-15 }[unit];
+  const scopes = [], names = [], changes = new Map();
+  let time = 0;
+  for (const line of text.split('\n')) {
+    const words = line.trim().split(/\s+/);
+    if (words[0] === '$scope') scopes.push(words[2]);
+    else if (words[0] === '$upscope') scopes.pop();
+    else if (words[0] === '$var') {
+      names.push({ path: [...scopes, words[4]].join('.'), kind: words[1], width: Number(words[2]), id: words[3] });
+      changes.set(words[3], changes.get(words[3]) ?? []);
+    } else if (/^#\d/.test(line)) time = Number(line.slice(1));
+    else if (/^[01]./.test(line)) changes.get(line.slice(1)).push([time, line[0]]);
+    else if (/^b/.test(line)) changes.get(words[1]).push([time, words[0].slice(1)]);
+  }
+  const at = ({ id }, clock) => {
+    const before = changes.get(id).filter(([when]) => when <= Math.round(clock * ticks));
+    return before.at(-1)[1];
+  };
+  return { names: names.filter(({ path }) => !path.endsWith('.clk')), at };
+}
+
+/** The number that bits of a variable mean. */
+function numberOf({ kind, width }, bits, isSigned) {
+  const word = BigInt(`0b${bits}`);
+  return kind === 'integer' || isSigned ? BigInt.asIntN(width, word) : word;
+}
+
+function readCsv(file) {
+  const [head, ...rows] = readFileSync(file, 'utf8').trim().split('\n').map((line) => line.split(','));
+  return { head, rows };
+}
+
+/** Ten clocks of a run: both ends, some in between, and where rows of the step table begin. */
+function clocksOf([first, last], rows, clock) {
+  const spread = [0, 1, 0.07, 0.21, 0.5, 0.77].map((part) => Math.round(first + part * (last - first)));
+  const steps = [0.1, 0.33, 0.6, 0.9].map((part) => Number(rows[Math.floor(part * rows.length)]?.[clock] ?? first + 1));
+  return [...spread, ...steps].map((at) => Math.min(last, Math.max(first, at)));
+}
+
+/** What a page shows at a clock: values of signals, the marked row and the heading of the step table, and the readout. */
+async function shownAt(page, clock, how) {
+  if (how === 'address') await page.evaluate((to) => { location.hash = `#clock=${to}`; }, clock);
+  else await page.evaluate((to) => stepwave.seek(to), clock);
+  await page.waitForFunction((to) => stepwave.clock === to, clock);
+  return page.evaluate(async () => {
+    stepwave.seek(stepwave.clock);
+    await new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); });
+    const texts = (selector) => [...document.querySelectorAll(selector)].map((element) => element.textContent);
+    const values = [...document.querySelectorAll('#values [data-name]')].map(({ dataset }) => [dataset.name, dataset.value]);
+    return {
+      values: Object.fromEntries(values), row: texts('#steps-tab [aria-current] [role=gridcell]'),
+      head: texts('#steps-tab [role=columnheader]'), readout: document.getElementById('readout').textContent,
+    };
+  });
+}
+
+/** A page shows at ten clocks what the wave and the step table of the same run hold. */
+async function compare({ page, open }, name, decimal = []) {
+  await open(`${name}/page.html`);
+  const vcd = readVcd(join(folder, name, 'wave.vcd'));
+  const csvFile = join(folder, name, 'steps.csv');
+  const csv = existsSync(csvFile) ? readCsv(csvFile) : { head: [], rows: [] };
+  const clock = csv.head.indexOf('clock');
+  const range = await page.evaluate(() => stepwave.clocks);
+  if (csv.rows.length) await page.click('#steps-button');
+  const clocks = clocksOf(range, csv.rows, clock);
+  assert.equal(clocks.length, 10);
+  for (const [index, at] of clocks.entries()) {
+    const shown = await shownAt(page, at, index % 2 ? 'address' : 'call');
+    assert.deepEqual(Object.keys(shown.values).sort(), vcd.names.map(({ path }) => path).sort(), name);
+    for (const variable of vcd.names) {
+      const bits = vcd.at(variable, at);
+      const leaf = variable.path.split('.').at(-1);
+      const wanted = decimal.includes(leaf) ? BigInt(BigInt(`0b${bits}`).toString(16)) : numberOf(variable, bits);
+      const shownValue = BigInt(shown.values[variable.path]);
+      const alike = variable.kind === 'parameter' ? BigInt.asUintN(variable.width, shownValue) === wanted : shownValue === wanted;
+      assert.ok(alike, `${name} at ${at}: ${variable.path} is ${wanted} in the wave, ${shownValue} in the page`);
+    }
+    const inWindow = csv.rows.filter((row) => row[clock] >= range[0] && row[clock] <= at).at(-1);
+    if (inWindow) {
+      assert.deepEqual(shown.head, csv.head, name);
+      assert.deepEqual(shown.row, inWindow, `${name} at ${at}`);
+    }
+    const place = /\(([^)]*)\)/.exec(shown.readout)?.[1].replaceAll('\u2212', '-').replaceAll('\u202f', '').split(', ');
+    for (const [axis, coordinate] of (place ?? []).entries()) {
+      const counter = vcd.names.find(({ path }) => path.endsWith(`.${'xyz'[axis]}`) && path.split('.').length === 3);
+      // At reset a counter is not yet where the machine is.
+      if (counter && at > 0) assert.equal(BigInt(coordinate), numberOf(counter, vcd.at(counter, at), true), `${name} at ${at}`);
+    }
+  }
+  console.log(`${name}: ${clocks.length} clocks, ${vcd.names.length} signals, ${csv.rows.length} rows: alike`);
+}
+
+/** Keys move the cursor, from wherever the focus is. */
+async function keys({ page, open }) {
+  const clock = () => page.evaluate(() => stepwave.clock);
+  const settled = () => page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
+  const press = async (key, wanted) => {
+    await page.keyboard.press(key);
+    assert.equal(await clock(), wanted, key);
+    await settled();
+  };
+  await open('trap/page.html');
+  await press('ArrowRight', 1);
+  await press('ArrowRight', 2);
+  await press('.', 5);
+  await press('.', 9);
+  await press('ArrowLeft', 8);
+  await press(',', 5);
+  await press('End', 15);
+  await press('Home', 0);
+  await press('o', 15);
+  await press('e', 5);
+  await page.focus('#time');
+  await press('ArrowRight', 6);
+  assert.match(await page.getAttribute('#time', 'aria-valuetext'), /^clock 6, 6 µs, step 1, \(1, 0\)$/);
+  await page.waitForFunction(() => document.getElementById('spoken').textContent.startsWith('clock 6, '));
+  await page.click('.alerts .bad');
+  assert.equal(await clock(), 15);
+  await page.click('.alerts .worst');
+  assert.equal(await clock(), 5);
+  await page.click('#values [data-name="ppc_line.f"]');
+  await press(']', 8);
+  await press('[', 4);
+  const value = () => page.textContent('#values [data-name="ppc_line.f"] .value');
+  assert.equal(await value(), '-4');
+  for (const wanted of ['4', '-4', '100', '4', '-4']) {
+    await page.keyboard.press('r');
+    assert.equal(await value(), wanted);
+  }
+  await page.selectOption('#radix', 'binary');
+  assert.equal(await value(), '100');
+  await page.keyboard.press('?');
+  await page.keyboard.press('Escape');
+  await page.evaluate(() => stepwave.seek(0));
+  await page.focus('#waves').catch(() => {});
+  await page.click('#play');
+  await page.waitForFunction(() => stepwave.clock > 1);
+  await page.click('#play');
+  await open('part/page.html');
+  const begun = await page.evaluate(() => stepwave.clock);
+  await page.keyboard.press('PageDown');
+  assert.ok(await clock() > begun, 'a block on');
+  await page.click('#program-tab [data-row="9"]');
+  await settled();
+  const line = await page.textContent('#program-tab [aria-current] span');
+  assert.equal(line, '10');
+  await open('compare.html');
+  for (const [row, model] of [[0, 'ppc-line'], [2, 'dda-line'], [7, 'mindev-line']]) {
+    await page.click(`#methods-tab [data-row="${row}"]`);
+    await page.waitForFunction((name) => document.getElementById('choices').textContent.startsWith(name), model);
+    await page.keyboard.press('End');
+    await settled();
+    assert.match(await page.textContent('#readout'), /\(100, 62\)$/);
+  }
+  console.log('keys, buttons, moves and methods: as they should');
+}
+
+/** Texts that have too little contrast with what is under them, by WCAG 2 AA. */
+function lowContrast() {
+  const channels = (colour) => colour.match(/[\d.]+/g).map(Number);
+  const over = ([r, g, b, a = 1], below) => [r, g, b].map((channel, at) => channel * a + below[at] * (1 - a));
+  const luminance = (colour) => colour.map((channel) => channel / 255)
+    .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, c, at) => sum + c * [0.2126, 0.7152, 0.0722][at], 0);
+  const ground = (element) => {
+    if (!element) return [255, 255, 255];
+    return over(channels(getComputedStyle(element).backgroundColor), ground(element.parentElement));
+  };
+  const texts = [...document.querySelectorAll('body *')].filter((element) => element.checkVisibility({ visibilityProperty: true })
+    && [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim()));
+  return texts.flatMap((element) => {
+    const below = ground(element);
+    const [a, b] = [luminance(over(channels(getComputedStyle(element).color), below)), luminance(below)];
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    return ratio < 4.5 ? [`${element.textContent.trim().slice(0, 30)}: ${ratio.toFixed(2)}`] : [];
+  });
+}
+
+/** Contrast in light and dark; both languages; nothing wider than a small screen. */
+async function looks({ page, open }) {
+  for (const name of ['trap/page', 'part/page', 'compare', 'own/page']) {
+    await open(`${name}.html`, '#clock=15');
+    for (const theme of ['light', 'dark']) {
+      await page.evaluate((to) => document.documentElement.dataset.theme === to || document.getElementById('theme').click(), theme);
+      for (const tab of await page.$$('#tabs [role=tab]:not([hidden])')) {
+        await tab.click();
+        await page.waitForTimeout(150);
+        assert.deepEqual(await page.evaluate(lowContrast), [], `${name} ${theme}`);
+      }
+    }
+    await page.click('#language');
+    assert.equal(await page.textContent('#wave-title'), '波形');
+    assert.equal(await page.evaluate(() => document.documentElement.lang), 'zh-CN');
+    await page.setViewportSize({ width: 400, height: 800 });
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= 400), `${name}: 400 pixels`);
+    await page.setViewportSize({ width: 1280, height: 800 });
+    const unnamed = await page.evaluate(() => [...document.querySelectorAll('button, select, input')]
+      .filter((element) => !element.hidden && !(element.getAttribute('aria-label') || element.textContent.trim() || element.labels?.length))
+      .map((element) => element.outerHTML));
+    assert.deepEqual(unnamed, []);
+  }
+  console.log('contrast, languages, a small screen: as they should');
+}
+
+async function check() {
+  const one = await browser();
+  const decimal = ['jvx', 'jvy', 'jrx', 'jry', 'jvx_in', 'jvy_in', 'jrx_in', 'jry_in'];
+  for (const name of ['line', 'arc', 'trap', 'wide', 'window', 'part', 'own']) await compare(one, name);
+  await compare(one, 'decimal', decimal);
+  await keys(one);
+  await looks(one);
+  await one.context.close();
+  assert.deepEqual(one.wrong, []);
+  console.log('no request, no message of the browser');
+}
+
+/** Sizes, load times, and frames a second while scrubbing: the cursor goes to another clock in every frame. */
+async function measure() {
+  for (const radius of [31, 3125, 31250]) {
+    const { context, page, open } = await browser();
+    const file = `circle${radius}.html`;
+    const begun = performance.now();
+    await open(file);
+    const load = performance.now() - begun;
+    const { rate, slow, clocks } = await page.evaluate(async () => {
+      const [first, last] = stepwave.clocks;
+      const frame = () => new Promise((done) => { requestAnimationFrame(done); });
+      const time = document.getElementById('time');
+      const count = 300, frames = [];
+      let before = await frame();
+      for (let at = 0; at < count; at++) {
+        time.value = String(first + Math.floor((at / count) * (last - first)));
+        time.dispatchEvent(new Event('input'));
+        const now = await frame();
+        frames.push(now - before);
+        before = now;
+      }
+      frames.sort((a, b) => a - b);
+      return { rate: count * 1000 / frames.reduce((a, b) => a + b), slow: frames[Math.floor(count * 0.95)], clocks: last - first };
+    });
+    const size = statSync(join(folder, file)).size;
+    const kilobytes = (size / 1000).toFixed(0);
+    console.log(`${clocks} clocks: ${kilobytes} kB, shown after ${load.toFixed(0)} ms, ${rate.toFixed(1)} frames/s, 95 % within ${slow.toFixed(1)} ms`);
+    await context.close();
+  }
+}
+
+await (mode === 'measure' ? measure() : check());

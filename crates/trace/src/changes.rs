@@ -1,0 +1,254 @@
+//! The changes of nets as streams of small numbers, net by net, for readers without a library: the page of a run.
+//!
+//! A net has two streams of [numbers](crate::numbers). The first has, for its value in the first sample and for each
+//! change after it, the clocks since the one before. The second has the differences of the values, modulo 2^width and read
+//! as two's complement, from 0; of a net of one bit, which can only alternate, its first value alone.
+
+use std::io;
+use std::ops::Range;
+
+use stepwave_netlist::{Rows, Width};
+
+use super::moves::{Moves, SPAN};
+use super::numbers::{push, push_signed};
+
+/// A net that is recorded.
+#[derive(Clone, Debug)]
+struct Stream {
+    column: usize,
+    width: Width,
+    /// Clock and value of its last change.
+    clock: u64,
+    value: u64,
+    times: Vec<u8>,
+    values: Vec<u8>,
+}
+
+/// Takes samples, one after another.
+pub struct Changes {
+    streams: Vec<Stream>,
+    moves: Moves,
+    /// First and last clock taken.
+    taken: Option<(u64, u64)>,
+    most: usize,
+}
+
+/// What was recorded.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Recorded {
+    /// First and last clock; `None` without a sample.
+    pub clocks: Option<(u64, u64)>,
+    /// The two streams of each net: clocks and differences.
+    pub streams: Vec<[Vec<u8>; 2]>,
+}
+
+impl Changes {
+    /// Of the nets in these columns, in this order, in at most this many bytes.
+    #[must_use]
+    pub fn new(columns: &[(usize, Width)], most: usize) -> Changes {
+        let stream = |&(column, width): &(usize, Width)| Stream {
+            column,
+            width,
+            clock: 0,
+            value: 0,
+            times: Vec::new(),
+            values: Vec::new(),
+        };
+        let moves = Moves::new(columns.iter().map(|(column, _)| *column).collect());
+        Changes { streams: columns.iter().map(stream).collect(), moves, taken: None, most }
+    }
+
+    /// Takes some rows of a block, which are later than those taken before. Samples in which no net changes may be missing.
+    ///
+    /// # Errors
+    /// What changes takes more bytes than are allowed; nothing is taken then.
+    pub fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
+        if range.is_empty() {
+            return Ok(());
+        }
+        let (first, last) = (rows.clock(range.start), rows.clock(range.end - 1));
+        if self.bytes() > self.most {
+            return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("at clock {first}")));
+        }
+        if self.taken.is_none() {
+            self.first(first, rows, range.start);
+            range.start += 1;
+        }
+        for start in range.clone().step_by(SPAN) {
+            self.span(rows, start..range.end.min(start + SPAN));
+        }
+        self.taken = Some((self.taken.map_or(first, |(first, _)| first), last));
+        Ok(())
+    }
+
+    /// Samples up to this clock, after the last row, are as that row.
+    pub fn rest(&mut self, clock: u64) {
+        self.taken = self.taken.map(|(first, _)| (first, clock));
+    }
+
+    /// What was recorded.
+    #[must_use]
+    pub fn finish(self) -> Recorded {
+        let streams = self.streams.into_iter().map(|stream| [stream.times, stream.values]).collect();
+        Recorded { clocks: self.taken, streams }
+    }
+
+    fn bytes(&self) -> usize {
+        self.streams.iter().map(|stream| stream.times.len() + stream.values.len()).sum()
+    }
+
+    fn first(&mut self, clock: u64, rows: &Rows, row: usize) {
+        self.moves.start(rows, row);
+        for stream in &mut self.streams {
+            stream.clock = clock;
+            stream.take(clock, rows.value(stream.column, row));
+        }
+    }
+
+    fn span(&mut self, rows: &Rows, range: Range<usize>) {
+        self.moves.scan_nets(rows, range.clone());
+        for (net, stream) in self.streams.iter_mut().enumerate() {
+            let mut changes = self.moves.net(net);
+            while changes != 0 {
+                let row = range.start + changes.trailing_zeros() as usize;
+                changes &= changes - 1;
+                stream.take(rows.clock(row), rows.value(stream.column, row));
+            }
+        }
+    }
+}
+
+impl Stream {
+    fn take(&mut self, clock: u64, value: u64) {
+        let first = self.times.is_empty();
+        push(clock - self.clock, &mut self.times);
+        if first || self.width.get() > 1 {
+            let unused = 64 - self.width.get();
+            let difference = (value.wrapping_sub(self.value) << unused).cast_signed() >> unused;
+            push_signed(difference, &mut self.values);
+        }
+        (self.clock, self.value) = (clock, value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Reads a number, and for a signed one extends its sign; written without the module that writes them.
+    fn read(bytes: &mut &[u8], signed: bool) -> u64 {
+        let (mut number, mut shift) = (0_u64, 0);
+        loop {
+            let byte = bytes[0];
+            *bytes = &bytes[1..];
+            number |= u64::from(byte & 0x7F).checked_shl(shift).unwrap_or(0);
+            shift += 7;
+            if byte & 0x80 == 0 {
+                let negative = signed && byte & 0x40 != 0 && shift < 64;
+                return if negative { number | u64::MAX << shift } else { number };
+            }
+        }
+    }
+
+    /// The value of a net at every clock of a recording.
+    fn decoded(recorded: &Recorded, net: usize, width: Width) -> Vec<u64> {
+        let (first, last) = recorded.clocks.unwrap();
+        let [mut times, mut values] = recorded.streams[net].each_ref().map(Vec::as_slice);
+        let mask = u64::MAX >> (64 - width.get());
+        let (mut clock, mut value, mut shown) = (first, 0_u64, Vec::new());
+        while !times.is_empty() {
+            clock += read(&mut times, false);
+            let before = value;
+            shown.resize(usize::try_from(clock - first).unwrap(), before);
+            value = match (width.get(), values.is_empty()) {
+                (1, true) => 1 - value,
+                _ => value.wrapping_add(read(&mut values, true)) & mask,
+            };
+        }
+        shown.resize(usize::try_from(last - first + 1).unwrap(), value);
+        assert!(values.is_empty());
+        shown
+    }
+
+    /// Samples of nets of these widths that rest, alternate, count, and jump.
+    fn samples(widths: &[u32], seeds: &[u64]) -> Vec<Vec<u64>> {
+        let column = |(net, &bits): (usize, &u32)| {
+            let mask = u64::MAX >> (64 - bits);
+            let value = |(clock, &seed): (usize, &u64)| match net % 4 {
+                0 => seed & mask,
+                1 => (clock as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) & mask,
+                2 => {
+                    if seed % 7 == 0 {
+                        seed & mask
+                    } else {
+                        mask
+                    }
+                }
+                _ => clock as u64 & mask,
+            };
+            seeds.iter().enumerate().map(value).collect()
+        };
+        widths.iter().enumerate().map(column).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_read_back_is_what_was_taken(
+            widths in prop::collection::vec(1..=64_u32, 1..80),
+            seeds in prop::collection::vec(any::<u64>(), 1..300),
+            from in 0..1000_u64,
+            block in 1..130_usize,
+        ) {
+            let columns = samples(&widths, &seeds);
+            let width = |bits: u32| Width::new(u64::from(bits)).unwrap();
+            let nets: Vec<(usize, Width)> = widths.iter().enumerate().map(|(net, &bits)| (net, width(bits))).collect();
+            let mut changes = Changes::new(&nets, usize::MAX);
+            let mut rows = Rows::new(widths.len(), block);
+            for start in (0..seeds.len()).step_by(block) {
+                rows.clear();
+                let end = seeds.len().min(start + block);
+                (start..end).for_each(|at| rows.push(from + at as u64, |net| columns[net][at]));
+                changes.rows(&rows, 0..rows.len()).unwrap();
+            }
+            let recorded = changes.finish();
+            prop_assert_eq!(recorded.clocks, Some((from, from + seeds.len() as u64 - 1)));
+            for (net, column) in columns.iter().enumerate() {
+                prop_assert_eq!(&decoded(&recorded, net, nets[net].1), column);
+            }
+        }
+    }
+
+    #[test]
+    fn an_accumulator_takes_two_bytes_a_change_and_a_flag_one() {
+        let width = |bits| Width::new(bits).unwrap();
+        let mut changes = Changes::new(&[(0, width(24)), (1, width(1))], usize::MAX);
+        let mut rows = Rows::new(2, 64);
+        for clock in 0..64_u64 {
+            rows.push(clock, |net| if net == 0 { (clock * 16_777_200) & 0xFF_FFFF } else { clock & 1 });
+        }
+        changes.rows(&rows, 0..64).unwrap();
+        let recorded = changes.finish();
+        assert_eq!(recorded.streams[0].each_ref().map(Vec::len), [64, 64]);
+        assert_eq!(recorded.streams[1].each_ref().map(Vec::len), [64, 1]);
+    }
+
+    #[test]
+    fn what_is_passed_over_keeps_its_clocks_and_what_is_too_much_is_refused() {
+        let width = Width::new(8).unwrap();
+        let mut changes = Changes::new(&[(0, width)], 5);
+        let mut rows = Rows::sparse(1, 8);
+        for (clock, value) in [(3, 7), (900, 8), (1000, 8), (70_000, 0)] {
+            rows.push(clock, |_| value);
+        }
+        changes.rows(&rows, 0..4).unwrap();
+        let full = changes.rows(&rows, 0..1).unwrap_err();
+        assert_eq!(full.kind(), io::ErrorKind::FileTooLarge);
+        changes.rest(80_000);
+        let recorded = changes.finish();
+        assert_eq!(recorded.clocks, Some((3, 80_000)));
+        assert_eq!(recorded.streams[0][1], [7, 1, 0x78]);
+        let shown = decoded(&recorded, 0, width);
+        assert_eq!([0, 896, 897, 69_996, 69_997, 79_997].map(|at| shown[at]), [7, 7, 8, 8, 0, 0]);
+    }
+}

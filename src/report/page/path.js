@@ -1,0 +1,331 @@
+// The path: the ideal curve, the pulses of the tool, and where it is at the cursor.
+
+/** Points in a piece of the path whose bounds are known. */
+const PIECE = 512;
+
+class PathView {
+  constructor(cursor) {
+    this.cursor = cursor;
+    this.element = $('path');
+    this.surface = new Surface(this.element, [(context) => this.drawBase(context), (context) => this.drawTool(context)]);
+    this.surface.resized = () => this.fitted && this.fit();
+    gestures(this.element, {
+      drag: ([dx, dy]) => this.pan(dx, dy),
+      pan: ([dx, dy]) => this.pan(dx, dy),
+      zoom: (factor, at) => this.zoom(factor, at),
+      tap: (at) => this.pick(at),
+      wheel: (event, at) => {
+        event.preventDefault();
+        this.zoom(wheelFactor(event), at);
+      },
+    });
+    $('path-tools').append(
+      button('zoom_in', '', () => this.zoom(1.5)), button('zoom_out', '', () => this.zoom(1 / 1.5)), button('fit', '', () => this.fit()),
+    );
+  }
+
+  /** Takes another run. */
+  show(run) {
+    this.run = run;
+    $('path-panel').hidden = !run.path;
+    if (!run.path) return;
+    const [xs, ys] = [run.path.axes[0], run.path.axes[1] ?? new Int32Array(run.path.axes[0].length)];
+    Object.assign(this, { xs, ys });
+    this.outlines = run.moves.length ? run.moves.filter((move) => move.kind !== 'rapid').map((move) => move.outline) : [run.outline];
+    this.pieces = [];
+    for (let from = 0; from < xs.length; from += PIECE) this.pieces.push(boundsOf(xs, ys, from, Math.min(xs.length, from + PIECE + 1)));
+    const points = this.outlines.flat();
+    this.bounds = [...this.pieces, ...points.map(([x, y]) => [x, y, x, y])].reduce(
+      (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[2], b[2]), Math.max(a[3], b[3])],
+      [Infinity, Infinity, -Infinity, -Infinity]);
+    this.rapids = run.moves.map((move) => move.kind === 'rapid');
+    this.legend();
+    this.fit();
+  }
+
+  legend() {
+    const kinds = ['ideal', 'pulses', ...(this.rapids.some(Boolean) ? ['rapid'] : []), 'tool', ...(worstOf(this.run) ? ['worst'] : [])];
+    $('legend').replaceChildren(...kinds.map((kind) => make('li', { className: kind }, make('span', { data: { word: kind }, textContent: word(kind) }))));
+  }
+
+  fit() {
+    const { width, height } = this.surface;
+    if (!this.run?.path || !width) return;
+    const [left, low, right, high] = this.bounds;
+    const margin = 30;
+    const scale = Math.min((width - 2 * margin - 16) / Math.max(right - left, 1), (height - 2 * margin) / Math.max(high - low, 1), 60);
+    this.scale = Math.max(scale, 1e-7);
+    this.origin = [width / 2 + 8 - this.scale * (left + right) / 2, height / 2 - 6 + this.scale * (low + high) / 2];
+    this.fitted = true;
+    this.changed();
+  }
+
+  pan(dx, dy) {
+    this.origin = [this.origin[0] + dx, this.origin[1] + dy];
+    this.fitted = false;
+    this.changed();
+  }
+
+  zoom(factor, [x, y] = [this.surface.width / 2, this.surface.height / 2]) {
+    const scale = Math.min(400, Math.max(1e-7, this.scale * factor));
+    const by = scale / this.scale;
+    this.origin = [x + (this.origin[0] - x) * by, y + (this.origin[1] - y) * by];
+    this.scale = scale;
+    this.fitted = false;
+    this.changed();
+  }
+
+  changed() {
+    this.line = null;
+    this.surface.redraw();
+  }
+
+  /** The cursor has moved. */
+  moved() {
+    if (!this.run?.path) return;
+    // In this very frame.
+    this.surface.layers[1].stale = true;
+    this.surface.draw();
+  }
+
+  /** Sets the cursor to where the tool is nearest to a place. */
+  pick([px, py]) {
+    const [x, y] = [(px - this.origin[0]) / this.scale, (this.origin[1] - py) / this.scale];
+    const { xs, ys } = this;
+    let best = Infinity, found = 0;
+    this.pieces.forEach(([left, low, right, high], piece) => {
+      const apart = Math.hypot(Math.max(left - x, 0, x - right), Math.max(low - y, 0, y - high));
+      if (apart >= best) return;
+      for (let at = piece * PIECE; at < Math.min(xs.length, (piece + 1) * PIECE); at++) {
+        const distance = Math.hypot(xs[at] - x, ys[at] - y);
+        if (distance < best) [best, found] = [distance, at];
+      }
+    });
+    this.cursor.seek(found ? this.run.path.clocks[found - 1] : this.run.first);
+  }
+
+  /** The points that show at this scale: places on the screen, and which point of the path each is; -1 where the line breaks. */
+  visible() {
+    if (this.line) return this.line;
+    const { xs, ys, scale, pieces, surface: { width, height } } = this;
+    const [left, top] = this.origin;
+    const line = { x: [], y: [], at: [] };
+    let lastX = NaN, lastY = NaN, broken = true;
+    pieces.forEach((bounds, piece) => {
+      const outside = left + bounds[2] * scale < -20 || left + bounds[0] * scale > width + 20
+        || top - bounds[1] * scale < -20 || top - bounds[3] * scale > height + 20;
+      if (outside) {
+        broken = true;
+        return;
+      }
+      const end = Math.min(xs.length, (piece + 1) * PIECE + 1);
+      for (let at = piece * PIECE; at < end; at++) {
+        const x = left + xs[at] * scale, y = top - ys[at] * scale;
+        if (!broken && Math.abs(x - lastX) + Math.abs(y - lastY) < 1 && at !== end - 1) continue;
+        line.x.push(x);
+        line.y.push(y);
+        line.at.push(broken ? -1 - at : at);
+        [lastX, lastY, broken] = [x, y, false];
+      }
+    });
+    this.line = line;
+    return line;
+  }
+
+  /** Draws the path from the first point up to one. */
+  stroke(context, upTo, style, width, rapid) {
+    const { x, y, at } = this.visible();
+    const { clocks } = this.run.path;
+    context.beginPath();
+    let block = -1, isRapid = false;
+    for (let index = 0; index < at.length; index++) {
+      const point = at[index] < 0 ? -1 - at[index] : at[index];
+      if (point > upTo) break;
+      if (this.rapids.length) {
+        const now = this.run.block(point ? clocks[point - 1] : this.run.first);
+        if (now !== block) [block, isRapid] = [now, this.rapids[now] ?? false];
+      }
+      if (at[index] < 0 || isRapid !== rapid) context.moveTo(x[index], y[index]); else context.lineTo(x[index], y[index]);
+    }
+    context.strokeStyle = style;
+    context.lineWidth = width;
+    context.setLineDash(rapid ? [5, 4] : []);
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  drawBase(context) {
+    if (!this.run?.path || !this.scale) return;
+    const { width, height } = this.surface;
+    this.drawGrid(context, width, height);
+    context.lineJoin = 'round';
+    context.strokeStyle = colours.ideal;
+    context.lineWidth = this.scale < 4 ? 4 : 1.6;
+    context.globalAlpha = this.scale < 4 ? 0.55 : 1;
+    for (const outline of this.outlines) {
+      context.beginPath();
+      outline.forEach(([x, y]) => context.lineTo(this.origin[0] + x * this.scale, this.origin[1] - y * this.scale));
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+    const all = this.xs.length;
+    this.stroke(context, all, colours.pale, 1.6, false);
+    if (this.rapids.some(Boolean)) this.stroke(context, all, colours.rapid, 1, true);
+    this.drawMarks(context);
+  }
+
+  drawGrid(context, width, height) {
+    const { scale, origin: [left, top] } = this;
+    const step = tickStep(scale, 56, 1);
+    const lines = (every, style) => {
+      context.strokeStyle = style;
+      context.lineWidth = 1;
+      context.beginPath();
+      for (let x = Math.ceil(-left / scale / every) * every; left + x * scale <= width; x += every) {
+        const at = Math.round(left + x * scale) + 0.5;
+        context.moveTo(at, 0);
+        context.lineTo(at, height);
+      }
+      for (let y = Math.ceil((top - height) / scale / every) * every; top - y * scale >= 0; y += every) {
+        const at = Math.round(top - y * scale) + 0.5;
+        context.moveTo(0, at);
+        context.lineTo(width, at);
+      }
+      context.stroke();
+    };
+    if (scale >= 9 && step > 1) lines(1, colours.grid);
+    lines(step, colours.line);
+    context.font = '11px ui-monospace, monospace';
+    const label = (text, x, y, align) => {
+      context.textAlign = align;
+      context.lineWidth = 3;
+      context.strokeStyle = colours.panel;
+      context.strokeText(text, x, y);
+      context.fillStyle = colours.muted;
+      context.fillText(text, x, y);
+    };
+    for (let x = Math.ceil(-left / scale / step) * step; left + x * scale <= width - 20; x += step) {
+      if (left + x * scale > 40) label(shown(x), left + x * scale, height - 5, 'center');
+    }
+    for (let y = Math.ceil((top - height) / scale / step) * step; top - y * scale >= 10; y += step) {
+      if (top - y * scale < height - 18) label(shown(y), 4, top - y * scale + 4, 'left');
+    }
+  }
+
+  /** Start, end, greatest error and overflows. */
+  drawMarks(context) {
+    const { run, xs, ys } = this;
+    const spot = (x, y) => [this.origin[0] + x * this.scale, this.origin[1] - y * this.scale];
+    const ring = ([x, y], radius, style, fill) => {
+      context.beginPath();
+      context.arc(x, y, radius, 0, 7);
+      context.lineWidth = 1.8;
+      context.strokeStyle = context.fillStyle = style;
+      if (fill) context.fill(); else context.stroke();
+    };
+    ring(spot(xs[0], ys[0]), 3.5, colours.ink, true);
+    const end = this.outlines.at(-1)?.at(-1);
+    if (end && !run.moves.length) ring(spot(...end), 7, colours.ink, false);
+    const worst = worstOf(run);
+    if (worst) {
+      const [x, y] = spot(...run.place(worst.clock));
+      context.beginPath();
+      context.moveTo(x, y - 9);
+      context.lineTo(x + 9, y);
+      context.lineTo(x, y + 9);
+      context.lineTo(x - 9, y);
+      context.closePath();
+      context.lineWidth = 2;
+      context.strokeStyle = colours.cursor;
+      context.stroke();
+    }
+    for (const event of run.events) {
+      const [x, y = 0] = run.place(event.clock);
+      ring(spot(x, y), 8, colours.bad, false);
+    }
+  }
+
+  drawTool(context) {
+    if (!this.run?.path || !this.scale) return;
+    const { clocks } = this.run.path;
+    const at = lastUpTo(clocks, this.cursor.clock) + 1;
+    context.lineJoin = 'round';
+    this.stroke(context, at, colours.accent, 2.2, false);
+    const dots = this.scale >= 7;
+    const spot = (point) => [this.origin[0] + this.xs[point] * this.scale, this.origin[1] - this.ys[point] * this.scale];
+    if (dots) {
+      context.fillStyle = colours.accent;
+      for (const index of this.visible().at) {
+        const point = index < 0 ? -1 - index : index;
+        if (point > at) break;
+        const [x, y] = spot(point);
+        context.fillRect(x - 2, y - 2, 4, 4);
+      }
+    }
+    const [x, y] = spot(at);
+    context.beginPath();
+    context.arc(x, y, 6, 0, 7);
+    context.fillStyle = colours.cursor;
+    context.fill();
+    context.lineWidth = 2;
+    context.strokeStyle = colours.panel;
+    context.stroke();
+  }
+}
+
+/** The least and greatest coordinates of points. */
+function boundsOf(xs, ys, from, to) {
+  let [left, low, right, high] = [Infinity, Infinity, -Infinity, -Infinity];
+  for (let at = from; at < to; at++) {
+    left = Math.min(left, xs[at]);
+    right = Math.max(right, xs[at]);
+    low = Math.min(low, ys[at]);
+    high = Math.max(high, ys[at]);
+  }
+  return [left, low, right, high];
+}
+
+/** Distance of a point from a line of points. */
+function distanceFrom([x, y], points) {
+  let best = Infinity;
+  for (let at = 0; at < points.length; at++) {
+    const [ax, ay] = points[at];
+    const [bx, by] = points[Math.min(at + 1, points.length - 1)];
+    const [dx, dy] = [bx - ax, by - ay];
+    const along = dx || dy ? Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy))) : 0;
+    best = Math.min(best, Math.hypot(x - ax - along * dx, y - ay - along * dy));
+  }
+  return best;
+}
+
+/** The greatest path error of a run, as its report gives it, and the clock at which the tool is there. */
+function worstOf(run) {
+  if (run.worstAt === undefined) run.worstAt = run.moves.length ? worstOfMoves(run) : worstOfCurve(run);
+  return run.worstAt;
+}
+
+function worstOfCurve(run) {
+  const { worst, steps, path } = run;
+  if (!worst || !path) return null;
+  const row = lastUpTo(steps.numbers, worst.step);
+  if (row < 0 || steps.numbers[row] !== worst.step) return null;
+  // A step of many pulses may be worse within than where it ends.
+  let at = lastUpTo(path.clocks, steps.clocks[row]);
+  const end = row + 1 < steps.clocks.length ? steps.clocks[row + 1] : run.last;
+  const is = (point) => worst.position.every((coordinate, axis) => path.axes[axis][point + 1] === coordinate);
+  while (!is(at)) if (++at >= path.clocks.length || path.clocks[at] > end) return null;
+  return { error: worst.error, clock: Math.max(steps.clocks[row], at < 0 ? run.first : path.clocks[at]) };
+}
+
+function worstOfMoves(run) {
+  const error = (move) => move.path_error.greatest;
+  const move = run.moves.reduce((worst, move) => (error(move) > error(worst) ? move : worst));
+  if (!(error(move) > 0) || !run.path || move.begun > run.last) return null;
+  const { clocks, axes } = run.path;
+  let found = { distance: -1, clock: move.begun };
+  for (let at = lastUpTo(clocks, move.begun) + 1; at < clocks.length && clocks[at] <= move.begun + move.clocks; at++) {
+    const distance = distanceFrom([axes[0][at + 1], axes[1][at + 1]], move.outline);
+    if (distance > found.distance) found = { distance, clock: clocks[at] };
+  }
+  return { error: error(move), clock: found.clock, line: move.line };
+}

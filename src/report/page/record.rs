@@ -1,0 +1,258 @@
+//! What a page keeps of a run while it lasts.
+
+use std::collections::HashMap;
+use std::io::ErrorKind;
+
+use serde_json::{Value, json};
+use stepwave_models::Port;
+use stepwave_netlist::bits::Reading;
+use stepwave_netlist::cells::Format;
+use stepwave_netlist::{Net, Rows, Width};
+use stepwave_trace::changes::Changes;
+use stepwave_trace::probe::{Probe, Role};
+
+use super::document::{Packed, Run};
+use super::facts::Facts;
+use super::track::{StepRows, Track};
+use crate::Error;
+use crate::report::program::{Units, move_json};
+use crate::report::workpiece;
+use crate::testbench::{BlockReport, Observer, ObserverError, Step, Testbench, WaveWriter};
+use crate::waves::{self, Shown, WaveOptions};
+
+/// Looks on for a page.
+pub(crate) struct RunRecord {
+    writer: WaveWriter<Changes>,
+    probes: Vec<Probe>,
+    /// The net of each stream, and its column.
+    nets: Vec<(Net, usize, Width)>,
+    interpolator: Option<Interpolator>,
+    window: (u64, u64),
+    limit: Limit,
+}
+
+/// Bytes that a page may hold before they are packed, and what to do where it becomes larger.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limit {
+    pub(crate) bytes: usize,
+    pub(crate) remedy: &'static str,
+}
+
+/// What an interpolator has besides signals.
+struct Interpolator {
+    head: Value,
+    track: Track,
+    steps: StepRows,
+    units: Units,
+    /// Moves of a program that have begun, and those that have ended.
+    begun: u64,
+    moves: Vec<Value>,
+}
+
+impl RunRecord {
+    /// Of hardware that does not interpolate.
+    ///
+    /// # Errors
+    /// The options name no signal.
+    pub(crate) fn of_design(shown: Shown<'_>, args: &WaveOptions, limit: Limit) -> Result<RunRecord, Error> {
+        RunRecord::new(shown, &[], args, limit)
+    }
+
+    /// Of a machine that interpolates, with a clock in Hz and a BLU in mm.
+    ///
+    /// # Errors
+    /// The options name no signal.
+    pub(crate) fn of_bench(
+        bench: &Testbench,
+        args: &WaveOptions,
+        [clock_hz, blu_mm]: [f64; 2],
+        limit: Limit,
+    ) -> Result<RunRecord, Error> {
+        let machine = bench.machine();
+        let table = machine.table.iter().map(|(_, port)| port);
+        let ports = table.chain(&machine.positions).chain([&machine.loaded]);
+        let ports: Vec<Net> = ports.map(|port| port.net).collect();
+        let mut record = RunRecord::new(bench.into(), &ports, args, limit)?;
+        let head = record.head(bench);
+        let (track, steps) = (Track::new(bench, record.window), StepRows::default());
+        let units = Units { clock_hz, blu_mm };
+        record.interpolator = Some(Interpolator { head, track, steps, units, begun: 0, moves: Vec::new() });
+        Ok(record)
+    }
+
+    fn new(shown: Shown<'_>, ports: &[Net], args: &WaveOptions, limit: Limit) -> Result<RunRecord, Error> {
+        let probes = waves::probes(shown, args)?;
+        let mut nets: Vec<(Net, usize, Width)> = Vec::new();
+        let of_probes = probes.iter().flat_map(|probe| &probe.columns).map(|&column| shown.columns.nets()[column]);
+        for net in of_probes.chain(ports.iter().copied()) {
+            if nets.iter().all(|(known, ..)| *known != net) {
+                nets.push((net, shown.columns.index(net), shown.design.netlist().width(net)));
+            }
+        }
+        let columns: Vec<(usize, Width)> = nets.iter().map(|&(_, column, width)| (column, width)).collect();
+        let writer = WaveWriter::new(Changes::new(&columns, limit.bytes), waves::window(shown, args)?);
+        let window = (args.from, args.to.unwrap_or(u64::MAX));
+        Ok(RunRecord { writer, probes, nets, interpolator: None, window, limit })
+    }
+
+    /// The streams of what a step table and a path show.
+    fn head(&self, bench: &Testbench) -> Value {
+        let (machine, letters) = (bench.machine(), bench.hardware().letters());
+        let streams: HashMap<Net, usize> = self.nets.iter().enumerate().map(|(at, (net, ..))| (*net, at)).collect();
+        let column = |name: &str, port: &Port| json!([name, streams.get(&port.net), reading(port.reading)]);
+        json!({
+            "axes": letters,
+            "table": machine.table.iter().map(|(name, port)| column(name, port)).collect::<Vec<_>>(),
+            "counters": letters.iter().zip(&machine.positions).map(|(name, port)| column(name, port)).collect::<Vec<_>>(),
+            "loaded": streams.get(&machine.loaded.net),
+            "program": bench.blocks() == 0,
+        })
+    }
+
+    /// The run, packed.
+    ///
+    /// # Errors
+    /// No sample is in the window.
+    pub(crate) fn finish(self, facts: &Facts) -> Result<Packed, Error> {
+        let (written, recorded) = waves::finish(self.writer, facts.clocks)?;
+        let mut run = Run::new(&facts.headline);
+        let nets = self.nets.iter().zip(&recorded.streams);
+        let nets = nets.map(|(&(net, _, width), [times, values])| {
+            json!([net.index(), width.get(), run.stream(times), run.stream(values)])
+        });
+        let nets: Vec<Value> = nets.collect();
+        let places: HashMap<usize, usize> = self.nets.iter().enumerate().map(|(at, net)| (net.1, at)).collect();
+        let mut meta = facts.json();
+        meta["first"] = json!(written.clocks.0);
+        meta["last"] = json!(written.clocks.1);
+        meta["nets"] = json!(nets);
+        meta["signals"] = self.probes.iter().map(|probe| signal(probe, &places)).collect();
+        if let Some(Interpolator { head, track, steps, moves, .. }) = self.interpolator {
+            meta["interpolator"] = head;
+            let pulses: Vec<usize> = track.pulses.iter().map(|pulses| run.stream(pulses)).collect();
+            meta["path"] = json!({
+                "start": track.start,
+                "count": track.count,
+                "clocks": run.stream(&track.clocks),
+                "pulses": pulses,
+            });
+            let pulses: Vec<usize> = steps.pulses.iter().map(|pulses| run.stream(pulses)).collect();
+            meta["steps"] = json!({
+                "pulses": pulses,
+                "count": steps.count,
+                "clocks": run.stream(&steps.clocks),
+                "numbers": run.stream(&steps.numbers),
+                "blocks": run.stream(&steps.blocks),
+            });
+            meta["moves"] = Value::Array(moves);
+        }
+        Ok(run.packed(meta))
+    }
+
+    /// Ends a run whose page becomes too large.
+    fn check(&self) -> Result<(), ObserverError> {
+        let Some(Interpolator { track, steps, .. }) = &self.interpolator else { return Ok(()) };
+        if track.bytes() + steps.bytes() > self.limit.bytes { Err(self.too_large("with its steps")) } else { Ok(()) }
+    }
+
+    fn too_large(&self, when: &str) -> ObserverError {
+        let megabytes = self.limit.bytes >> 20;
+        format!("the page has come to {megabytes} MB of changes {when}, and was given up: {}", self.limit.remedy).into()
+    }
+}
+
+fn reading(reading: Reading) -> &'static str {
+    match reading {
+        Reading::Unsigned => "unsigned",
+        Reading::Signed => "signed",
+        Reading::Decimal => "decimal",
+    }
+}
+
+/// A signal: its scopes and name, bits, reading, how it is drawn, what drives it, and its streams.
+fn signal(probe: &Probe, places: &HashMap<usize, usize>) -> Value {
+    let drawn = match (&probe.format, probe.role) {
+        (Format::Analog | Format::Level, _) => "curve",
+        (Format::Binary, _) => "binary",
+        _ => "bus",
+    };
+    let role = match probe.role {
+        Role::Register => "register",
+        Role::Input => "input",
+        Role::Wire => "wire",
+        Role::Flag => "flag",
+        Role::Constant => "constant",
+    };
+    let states: Vec<Value> = match &probe.format {
+        Format::States(names) => names.iter().map(|(value, name)| json!([value.to_string(), name])).collect(),
+        _ => Vec::new(),
+    };
+    let streams: Vec<Option<&usize>> = probe.columns.iter().map(|column| places.get(column)).collect();
+    json!({
+        "scopes": probe.scopes,
+        "name": probe.name,
+        "width": probe.width,
+        "reading": reading(probe.format.reading()),
+        "drawn": drawn,
+        "role": role,
+        "states": states,
+        "nets": streams,
+    })
+}
+
+impl Observer for RunRecord {
+    fn wants_steps(&self) -> bool {
+        self.interpolator.is_some()
+    }
+
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        if let Some(Interpolator { track, .. }) = &mut self.interpolator {
+            track.samples(rows);
+        }
+        self.check()?;
+        self.writer.samples(rows).map_err(|error| match error.downcast_ref::<std::io::Error>() {
+            Some(full) if full.kind() == ErrorKind::FileTooLarge => self.too_large(&full.to_string()),
+            _ => error,
+        })
+    }
+
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        let (first, last) = self.window;
+        if let Some(Interpolator { steps, begun, .. }) = &mut self.interpolator
+            && (first..=last).contains(&step.clock)
+        {
+            steps.push(step, begun.saturating_sub(1));
+        }
+        Ok(())
+    }
+
+    fn block_begun(&mut self, _: &BlockReport) -> Result<(), ObserverError> {
+        self.interpolator.iter_mut().for_each(|of| of.begun += 1);
+        Ok(())
+    }
+
+    fn block_ended(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
+        if let Some(Interpolator { moves, units, .. }) = &mut self.interpolator {
+            moves.push(page_move(block, *units));
+        }
+        Ok(())
+    }
+}
+
+/// A move: what the report says of it, and its programmed contour in x and y.
+fn page_move(block: &BlockReport, units: Units) -> Value {
+    let mut report = move_json(block, units);
+    let mut field = |name: &str| report[name].take();
+    let mut of_page = json!({});
+    for name in ["line", "n", "kind", "begun", "clocks", "steps", "end_point", "path_error", "feed"] {
+        of_page[name] = field(name);
+    }
+    let points = workpiece::outline(&block.of).into_iter().map(|[x, y, _]| [rounded(x), rounded(y)]);
+    of_page["outline"] = points.collect();
+    of_page
+}
+
+/// A coordinate in BLU as it is drawn.
+pub(super) fn rounded(coordinate: f64) -> f64 {
+    (coordinate * 1e4).round() / 1e4
+}

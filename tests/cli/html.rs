@@ -1,0 +1,147 @@
+//! `--html`: a page is one file that needs nothing else, and holds what the other outputs hold. What a browser makes of it
+//! is looked at by `.ci/browser`.
+
+use base64::Engine as _;
+use serde_json::{Value, json};
+
+use super::{Folder, engines, good, refused};
+
+/// The description of each run in a page.
+fn runs(page: &str) -> Vec<Value> {
+    let texts = page.split("class=\"run\"").skip(1).map(|rest| rest.split(['>', '<']).nth(1).unwrap());
+    let run = |text: &str| {
+        let packed = base64::engine::general_purpose::STANDARD.decode(text).unwrap();
+        let all = miniz_oxide::inflate::decompress_to_vec_zlib(&packed).unwrap();
+        let (length, rest) = all.split_first_chunk().unwrap();
+        serde_json::from_slice(&rest[..u32::from_le_bytes(*length) as usize]).unwrap()
+    };
+    texts.map(run).collect()
+}
+
+/// Dotted paths of the signals of a run.
+fn paths(run: &Value) -> Vec<String> {
+    let path = |signal: &Value| {
+        let scopes = signal["scopes"].as_array().unwrap().iter();
+        let names: Vec<&str> = scopes.chain([&signal["name"]]).map(|name| name.as_str().unwrap()).collect();
+        names.join(".")
+    };
+    run["signals"].as_array().unwrap().iter().map(path).collect()
+}
+
+#[test]
+fn a_page_refers_to_nothing_outside_of_it_and_is_small() {
+    let folder = Folder::new();
+    folder.good("run dda-line --to 8,6 --width 4 --html line.html");
+    let page = folder.read("line.html");
+    assert!(page.len() < 120_000, "{} bytes", page.len());
+    for reference in ["http:", "https:", "//www", "src=", "@import", "url(", "fetch(", "XMLHttp", "import("] {
+        assert!(!page.contains(reference), "{reference}");
+    }
+    let policy = page.split("content=\"default-src").nth(1).unwrap().split('"').next().unwrap();
+    assert!(policy.starts_with(" 'none'; script-src 'sha256-") && !policy.contains("unsafe"), "{policy}");
+    assert!(page.ends_with("</html>\n"));
+}
+
+#[test]
+fn a_page_names_the_run_its_signals_and_what_is_wrong_as_the_other_outputs_do() {
+    let folder = Folder::new();
+    let ran = folder.run("run ppc-line --to 6,4 --width f=3 --html trap.html --vcd trap.vcd --json trap.json");
+    assert_eq!(ran.code, 1);
+    let [run] = &runs(&folder.read("trap.html"))[..] else { panic!("one run") };
+    let report: Value = serde_json::from_str(&folder.read("trap.json")).unwrap();
+    assert_eq!((&run["first"], &run["last"], &run["clocks"]), (&json!(0), &json!(15), &report["clocks"]));
+    assert_eq!(run["events"][0]["clock"], report["overflow"]["events"][0]["clock"]);
+    assert_eq!(run["worst"]["error"], report["path_error"]["greatest"]);
+    assert_eq!(run["failures"], report["failures"]);
+    assert!(ran.out.contains(run["summary"].as_str().unwrap()), "{}", run["summary"]);
+    assert_eq!(run["steps"]["count"], 4);
+    // The operands of the cell that stopped the run are shown, as in the wave.
+    let vcd = folder.read("trap.vcd");
+    let declared = vcd.lines().filter(|line| line.starts_with("$var") && !line.contains(" clk ")).count();
+    let paths = paths(run);
+    assert_eq!(paths.len(), declared);
+    assert!(paths.contains(&"ppc_line.trap.exact".to_owned()), "{paths:?}");
+}
+
+#[test]
+fn a_page_is_the_same_from_every_engine_and_next_to_every_wave() {
+    let folder = Folder::new();
+    let words = "run ppc-arc --from 40,9 --to -9,40 --ccw --html page.html --engine";
+    let pages: Vec<String> = engines()
+        .map(|engine| {
+            folder.good(&format!("{words} {engine} --vcd wave.vcd"));
+            let page = folder.read("page.html");
+            folder.good(&format!("{words} {engine}"));
+            assert!(page == folder.read("page.html"), "{engine}");
+            page
+        })
+        .collect();
+    assert!(pages.len() > 2 && pages.iter().all(|page| *page == pages[0]));
+}
+
+#[test]
+fn a_page_shows_the_signals_and_the_window_that_are_asked_for() {
+    let folder = Folder::new();
+    folder.good("run dda-line --to 8,6 --html page.html --trace jr* --trace-from 4 --trace-to 9");
+    let [run] = &runs(&folder.read("page.html"))[..] else { panic!("one run") };
+    assert_eq!((&run["first"], &run["last"]), (&json!(4), &json!(9)));
+    // Load words are inputs of these names.
+    let expected = ["block.jrx_in", "block.jry_in", "axis_x.jrx", "axis_y.jry"].map(|path| format!("dda_line.{path}"));
+    assert_eq!(paths(run), expected);
+    // Row 3 of the step table is at clock 4, whose pulse is the first that the page has.
+    assert_eq!((&run["steps"]["count"], &run["path"]["start"]), (&json!(6), &json!([1, 0])));
+    refused("run dda-line --to 8,6 --html none.html --trace-from 400", &["the wave would be empty"]);
+}
+
+#[test]
+fn a_page_of_a_program_has_its_text_and_its_moves() {
+    let folder = Folder::new();
+    std::fs::write(
+        folder.path("part.ngc"),
+        "G21 G90 (a </script> of lines)\nN7 G1 X0.3 Y0.09 F300\nG2 X0.5 Y0.29 I0 J0.2\n",
+    )
+    .unwrap();
+    folder.good("program part.ngc --method ppc --blu 0.01mm --html part.html --json part.json");
+    let page = folder.read("part.html");
+    let [run] = &runs(&page)[..] else { panic!("one run") };
+    let report: Value = serde_json::from_str(&folder.read("part.json")).unwrap();
+    assert_eq!(run["text"][0], "G21 G90 (a </script> of lines)");
+    let fields = |of: &Value, name: &str| of.as_array().unwrap().iter().map(|of| of[name].clone()).collect::<Vec<_>>();
+    for name in ["line", "n", "kind", "begun", "clocks", "end_point", "path_error", "feed"] {
+        assert_eq!(fields(&run["moves"], name), fields(&report["blocks"], name), "{name}");
+    }
+    assert_eq!(page.matches("</script>").count(), 3, "the comparison, the run, and the programs of the page");
+}
+
+#[test]
+fn a_page_of_several_methods_has_each_of_them_and_the_table() {
+    let folder = Folder::new();
+    let out = folder.good("compare ppc-line dda-line --to 30,-17 --html both.html");
+    let page = folder.read("both.html");
+    let runs = runs(&page);
+    let names: Vec<&str> = runs.iter().map(|run| run["headline"].as_str().unwrap()).collect();
+    assert!(names.len() > 4 && names[0] == "ppc-line" && names.contains(&"dda-line --radix 10"), "{names:?}");
+    let table: Vec<&str> = out.lines().skip(1).collect();
+    assert_eq!(table.len(), names.len());
+    for (run, line) in runs.iter().zip(table) {
+        assert!(line.starts_with(run["headline"].as_str().unwrap()), "{line}");
+        let clocks = run["clocks"].to_string();
+        assert!(line.split_whitespace().any(|word| word == clocks), "{line}");
+    }
+    assert!(page.contains("\"title\":\"line (0, 0) to (30, -17)\""));
+}
+
+#[test]
+fn a_page_goes_to_standard_output_alone_and_not_where_it_does_not_belong() {
+    let page = good("run dda-line --to 8,6 --html -");
+    assert!(page.starts_with("<!doctype html>") && page.ends_with("</html>\n"));
+    for (words, says) in [
+        ("run dda-line --to 8,6 --html wave.vcd", "give --vcd wave.vcd, or wave.html"),
+        ("run dda-line --to 8,6 --vcd page.html", "give --html page.html, or page.vcd"),
+        ("run dda-line --to 8,6 --html p.html --checkpoints s.json", "leave out --steps, --plot and --html"),
+        ("run dda-line --to 8,6 --html - --steps -", "two outputs"),
+        ("compare dda-line --to 8,6 --html none/p.html", "the folder none does not exist"),
+    ] {
+        refused(words, &[says]);
+    }
+}
