@@ -30,12 +30,17 @@ pub(crate) enum Family {
     `yosys synth_ice40` makes of it; load words are inputs, which nothing is counted for. The highest clock is that of\n\
     nextpnr-ice40 in an hx8k, package ct256, seed 1, with `export --harness` around it, as the package has fewer pins than\n\
     the machine has ports. Other seeds are some per cent off. Debian packages: yosys, nextpnr-ice40.\n\n\
+    --accel runs one move as `stepwave program --accel` does at --clock-hz: a line from the origin to the end of the travel,\n\
+    or of an arc a quarter of the greatest circle. Shown are the registers of the ramp, the greatest feed along the path,\n\
+    time and length from the start to the end of the ramp up and from the ramp down to the last step, and the time of the\n\
+    move. Families that take F along an axis are slower along a path between the axes. Costs of --synth are without the ramp.\n\n\
     --pareto leaves out what another row of the same curve beats: nowhere worse and somewhere better in the clock for the\n\
     feed, the greatest error, and the bits of all registers; with --synth in the feed at the highest clock, the error,\n\
     and LUTs and flip-flops together.\n\n\
     Examples:\n  \
     stepwave machine --travel 300mm,200mm --blu 1um --feed 2400mm/min\n  \
     stepwave machine --travel 300mm,200mm --blu 1um --feed 2400mm/min --synth ice40 --pareto\n  \
+    stepwave machine dda-line ppc-arc --travel 300mm,200mm --feed 2400mm/min --accel 500mm/s2 --jerk 20000mm/s3\n  \
     stepwave machine ppc-line dda-line --travel 100mm,100mm,50mm --blu 0.01mm --feed 600 --markdown"
 )]
 pub(crate) struct MachineArgs {
@@ -51,9 +56,16 @@ pub(crate) struct MachineArgs {
     /// Feed along the path that every corner must reach: 2400mm/min, 40mm/s; in mm/min without a unit
     #[arg(long, value_name = "SPEED", value_parser = parse_speed)]
     pub(crate) feed: f64,
-    /// Clock frequency in Hz of data sampling
+    /// Clock frequency in Hz of data sampling, and of the ramps of --accel
     #[arg(long, value_name = "HZ", default_value = "1e6", value_parser = parse_clock)]
     pub(crate) clock_hz: f64,
+    /// Acceleration along the path, or A,D with a deceleration of its own: 500mm/s2; adds the ramp of every method that runs
+    /// programs, and one move across the travel with it
+    #[arg(long, value_name = "A[,D]")]
+    pub(crate) accel: Option<String>,
+    /// Jerk, for ramps along an S: 20000mm/s3
+    #[arg(long, value_name = "J", requires = "accel")]
+    pub(crate) jerk: Option<String>,
     /// What the hardware costs: LUTs, flip-flops and the highest clock, by the tools of the Debian packages yosys and
     /// nextpnr-ice40
     #[arg(long, value_name = "FAMILY")]

@@ -2,6 +2,7 @@
 
 mod json;
 mod pareto;
+mod ramp;
 mod text;
 
 use std::collections::BTreeSet;
@@ -9,10 +10,11 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use self::pareto::Beaten;
+use self::ramp::{Ramped, ramped};
 use super::progress::Progress;
 use crate::Error;
 use crate::cli::{BenchArgs, MachineArgs};
-use crate::models::{Model, installed};
+use crate::models::{Model, Options, installed};
 use crate::nc::COORDINATE_LIMIT;
 use crate::output;
 use crate::study::machine::{Dimensions, dimensions, takes};
@@ -39,6 +41,8 @@ impl Size {
 struct Row {
     found: Dimensions,
     cost: Option<Cost>,
+    /// Of methods that run programs.
+    ramp: Option<Ramped>,
 }
 
 impl Row {
@@ -56,6 +60,8 @@ struct Answer {
     rows: Vec<Row>,
     /// Methods that cannot be had, and why.
     left_out: LeftOut,
+    /// Acceleration and jerk as they were given, and the clock in Hz of the ramps.
+    accelerates: Option<(String, f64)>,
     /// What costs come from.
     tools: Option<Tools>,
     /// Rows that others beat, where they are left out.
@@ -69,10 +75,15 @@ pub(crate) fn run(args: &MachineArgs) -> Result<(), Error> {
     // Before the long work, for one of them may be missing.
     let tools = args.synth.map(|_| Tools::find()).transpose()?;
     let (found, left_out) = found(args, &size, models)?;
+    let ramps = ramp_options(args)?.map(|options| ramps(args, &size, &options, &found)).transpose()?;
     let costs = tools.as_ref().map(|tools| costs(tools, &found)).transpose()?;
-    let mut costs = costs.into_iter().flatten();
-    let rows = found.into_iter().map(|found| Row { cost: costs.next(), found }).collect();
-    let mut answer = Answer { size, rows, left_out, tools, beaten: None };
+    let (mut costs, mut ramps) = (costs.into_iter().flatten(), ramps.into_iter().flatten());
+    let rows = found.into_iter().map(|found| Row { cost: costs.next(), ramp: ramps.next().flatten(), found }).collect();
+    let accelerates = args.accel.as_ref().map(|accel| {
+        let jerk = args.jerk.as_ref().map_or_else(String::new, |jerk| format!(" --jerk {jerk}"));
+        (format!("--accel {accel}{jerk}"), args.clock_hz)
+    });
+    let mut answer = Answer { size, rows, left_out, accelerates, tools, beaten: None };
     if args.pareto {
         pareto::keep_unbeaten(&mut answer);
     }
@@ -106,6 +117,30 @@ fn found(args: &MachineArgs, size: &Size, models: Vec<&'static Model>) -> Result
         }
         None => Ok((rows, left_out)),
     }
+}
+
+/// The options of a machine that accelerates, if it does.
+fn ramp_options(args: &MachineArgs) -> Result<Option<Options>, Error> {
+    let Some(accel) = &args.accel else { return Ok(None) };
+    let jerk = args.jerk.iter().flat_map(|jerk| ["--jerk", jerk]);
+    let options = Options::parse(["--accel", accel].into_iter().chain(jerk));
+    Ok(Some(options.map_err(|error| Error::Invalid(error.to_string()))?))
+}
+
+/// A move by each of them, run as a program; one after another on each core.
+fn ramps(
+    args: &MachineArgs,
+    size: &Size,
+    options: &Options,
+    found: &[Dimensions],
+) -> Result<Vec<Option<Ramped>>, Error> {
+    let progress = Progress::of(found.len() as u64, "moves");
+    let ramp = |found: &Dimensions| {
+        let ramp = ramped(found, size, options, args.clock_hz)?;
+        progress.add(1);
+        Ok(ramp)
+    };
+    found.par_iter().map(ramp).collect()
 }
 
 /// What each of them costs. Tools take one core each: two of them at a time.

@@ -128,3 +128,77 @@ fn what_is_no_machine_is_refused() {
     refused(&with("1mm,1mm --clock-hz 0"), &["--clock-hz 0", "1e6"]);
     refused("machine sampled-arc --travel 0.1mm,0.1mm --feed 2400", &["no method", "sampled-arc", "radius 100.000"]);
 }
+
+/// The least whole number of pulses and the ticks of a ramp between two speeds, in BLU and seconds.
+fn ramp(start: f64, feed: f64, gain: f64, jerk: Option<f64>) -> [f64; 2] {
+    let difference = feed - start;
+    let seconds = match jerk {
+        None => difference / gain,
+        Some(jerk) if difference >= gain * gain / jerk => difference / gain + gain / jerk,
+        Some(jerk) => 2.0 * (difference / jerk).sqrt(),
+    };
+    [seconds, seconds * (start + feed) / 2.0]
+}
+
+#[test]
+fn ramps_are_those_of_programs_and_of_the_data_sheets() {
+    let size = "machine dda-line ppc-line cim-line bresenham mindev-line dda-arc ppc-arc vector-line --travel 4mm,3mm --blu 10um";
+    for (jerk, name) in [(None, ""), (Some(20_000.0 * 100.0), " --jerk 20000mm/s3")] {
+        let all = json(&format!("{size} --feed 1200mm/min --accel 500mm/s2,800mm/s2 --clock-hz 2e5 --json"));
+        let all = if jerk.is_some() {
+            json(&format!("{size} --feed 1200mm/min --accel 500mm/s2{name} --clock-hz 2e5 --json"))
+        } else {
+            all
+        };
+        for machine in all["machines"].as_array().unwrap() {
+            let (model, ramp_of) = (machine["model"].as_str().unwrap(), &machine["ramp"]);
+            assert_eq!(ramp_of.is_null(), model.starts_with("vector"), "{machine}");
+            if ramp_of.is_null() {
+                continue;
+            }
+            // The same program by itself.
+            let folder = Folder::new();
+            folder.write("move.ngc", ramp_of["program"].as_str().unwrap());
+            let command =
+                ramp_of["run"].as_str().unwrap().strip_prefix("stepwave ").unwrap().replace("FILE", "move.ngc");
+            let ran: Value = serde_json::from_str(&folder.good(&format!("{command} --json -"))).unwrap();
+            assert_eq!(ran["blocks"][0]["clocks"], ramp_of["clocks"], "{model} {}", ran["blocks"][0]);
+            // Registers as that program has them.
+            let verilog = folder.good(&format!("export --{} --verilog -", command.replace("move.ngc", "move.ngc ")));
+            let (_, source) = verilog.split_once("begin : pulse_source\n").unwrap();
+            let registers = ramp_of["registers"].as_array().unwrap();
+            assert_eq!(registers.len(), if jerk.is_some() { 7 } else { 4 }, "{registers:?}");
+            for own in registers {
+                let bits = own["bits"].as_u64().unwrap();
+                let declared = format!("reg [{}:0] {};\n", bits - 1, own["name"].as_str().unwrap());
+                assert!(source.contains(&declared), "{model} {declared}");
+            }
+            // Pulses of the source set the ramp: a BLU each along an axis, or along the path.
+            let feed = ramp_of["feed"].as_f64().unwrap() / 60.0 / 0.01;
+            let source = if model.starts_with("dda") || model == "bresenham" { feed } else { 2000.0 };
+            let down = if jerk.is_some() { 50_000.0 } else { 80_000.0 };
+            let start = f64::sqrt(down);
+            assert!((feed / 2000.0 - 1.0).abs() < 0.005 || source == 2000.0, "{model}: {feed}");
+            let share = feed / source;
+            for (part, gain) in [("up", 50_000.0), ("down", down)] {
+                let wanted = ramp(start, source, gain, jerk);
+                let seconds = ramp_of[part]["seconds"].as_f64().unwrap();
+                let length = ramp_of[part]["mm"].as_f64().unwrap() / 0.01;
+                // Some pulses at the start speed, and what the count of pulses of an arc is off.
+                let pulses = if model.ends_with("arc") { 6.0 } else { 3.0 };
+                let near = |seen: f64, wanted: f64, off: f64| (seen - wanted).abs() < 0.01 * wanted + off;
+                assert!(near(seconds, wanted[0], pulses / start), "{model} {part} {seconds} {wanted:?}");
+                // Along an arc by pulses the share is that of the direction.
+                let length_is_known = model != "ppc-arc";
+                assert!(
+                    !length_is_known || near(length, wanted[1] * share, pulses),
+                    "{model} {part} {length} {wanted:?}"
+                );
+            }
+        }
+        let text = good(&format!("{size} --feed 1200mm/min --accel 500mm/s2{name} --clock-hz 2e5"));
+        let heading =
+            format!("one move across the travel by `stepwave program --accel 500mm/s2{name}` at 200.000 kHz\n");
+        assert!(text.contains(&heading), "{text}");
+    }
+}

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::{Answer, Row, Size};
+use super::ramp::{Part, Ramped};
+use super::{Answer, Row};
 use crate::commands::widths::registers_json;
 use crate::report::{export_command, run_command};
 use crate::study::synth::{Cost, Tools};
@@ -10,14 +11,17 @@ use crate::testbench::Ending;
 
 /// Everything that is printed.
 pub(super) fn all(answer: &Answer) -> String {
-    let Answer { size, rows, left_out, tools, beaten } = answer;
+    let Answer { size, rows, left_out, accelerates, tools, beaten } = answer;
     let mut all = json!({
         "travel": size.travel,
         "blu_mm": size.blu_mm,
         "feed": size.feed_of(size.feed),
-        "machines": rows.iter().map(|row| machine(row, size)).collect::<Vec<_>>(),
+        "machines": rows.iter().map(|row| machine(row, answer)).collect::<Vec<_>>(),
         "left_out": left_out.iter().map(|(model, reason)| json!({ "model": model, "reason": reason })).collect::<Vec<_>>(),
     });
+    if let Some((options, clock_hz)) = accelerates {
+        all["accelerates"] = json!({ "options": options, "clock_hz": clock_hz });
+    }
     if let Some(Tools { yosys, nextpnr }) = tools {
         all["synth"] = json!({ "device": Tools::device(), "yosys": yosys, "nextpnr": nextpnr });
     }
@@ -32,8 +36,27 @@ fn ends(feeds: Option<[f64; 2]>) -> Value {
     json!({ "least": feeds.map(|feeds| feeds[0]), "greatest": feeds.map(|feeds| feeds[1]) })
 }
 
-fn machine(row: &Row, size: &Size) -> Value {
-    let found = &row.found;
+/// What a ramp was seen to do; null of a method that does not run programs.
+fn ramp(ramp: &Ramped, answer: &Answer) -> Value {
+    let part = |part: Part| json!({ "seconds": part.seconds, "mm": part.mm });
+    let options = answer.accelerates.as_ref().map_or("", |(options, _)| options);
+    let hz = answer.accelerates.as_ref().map_or(0.0, |(_, hz)| *hz);
+    let Ramped { family, program, registers, feed, is_short, ramps: [up, down], clocks, seconds } = ramp;
+    json!({
+        "program": program,
+        "run": format!("stepwave program FILE --method {family} {options} --blu {}mm --clock-hz {hz}", answer.size.blu_mm),
+        "registers": registers.iter().map(|(name, bits)| json!({ "name": name, "bits": bits })).collect::<Vec<_>>(),
+        "feed": feed,
+        "too_short": is_short,
+        "up": part(*up),
+        "down": part(*down),
+        "clocks": clocks,
+        "seconds": seconds,
+    })
+}
+
+fn machine(row: &Row, answer: &Answer) -> Value {
+    let (found, size) = (&row.found, &answer.size);
     let clock = found.clock_hz(size.feed);
     let corners = found.corners.iter().map(|corner| {
         json!({
@@ -59,6 +82,9 @@ fn machine(row: &Row, size: &Size) -> Value {
         },
         "corners": corners.collect::<Vec<_>>(),
     });
+    if answer.accelerates.is_some() {
+        all["ramp"] = json!(row.ramp.as_ref().map(|own| ramp(own, answer)));
+    }
     if let Some(Cost { luts, flip_flops, carries, rams, clock_hz }) = row.cost {
         all["cost"] = json!({
             "export": export_command(found.model, &found.largest().curve, &found.choices) + " --no-flags",

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::ramp::Part;
 use super::{Answer, Row, Size};
 use crate::commands::columns::{aligned, markdown};
 use crate::commands::widths::{evidence, one_bit_below};
@@ -46,6 +47,9 @@ fn heading(answer: &Answer) -> String {
             "LUTs and flip-flops by Yosys {yosys}, highest clock by nextpnr {nextpnr} in an {}",
             Tools::device()
         );
+    }
+    if let Some((options, hz)) = &answer.accelerates {
+        let _ = writeln!(text, "one move across the travel by `stepwave program {options}` at {}", frequency(*hz));
     }
     text
 }
@@ -95,6 +99,19 @@ const HEADING: [&str; 6] = [
 /// With `--synth`.
 const COSTS: [&str; 4] = ["LUTs", "flip-flops", "highest clock", "feed at the highest clock, mm/min"];
 
+/// With `--accel`.
+const RAMPS: [&str; 5] = ["ramp, bits", "greatest feed, mm/min", "ramp up", "ramp down", "move"];
+
+/// What they say of a row.
+fn ramp(row: &Row) -> [String; 5] {
+    let Some(ramp) = &row.ramp else { return std::array::from_fn(|_| unknown()) };
+    let bits: Vec<String> = ramp.registers.iter().map(|(name, bits)| format!("{name} {bits}")).collect();
+    let part = |part: Part| format!("{:.3} ms, {:.3} mm", part.seconds * 1000.0, part.mm);
+    let [up, down] = ramp.ramps.map(part);
+    let short = if ramp.is_short { ", too short for more" } else { "" };
+    [bits.join(", "), rounded(ramp.feed) + short, up, down, format!("{:.6} s", ramp.seconds)]
+}
+
 fn table(answer: &Answer, is_markdown: bool) -> String {
     let size = &answer.size;
     let row = |row: &Row| {
@@ -110,6 +127,9 @@ fn table(answer: &Answer, is_markdown: bool) -> String {
             feeds(row, size, clock),
             format!("{error:.3} BLU, {} µm", rounded(error * size.blu_mm * 1000.0)),
         ];
+        if answer.accelerates.is_some() {
+            cells.extend(ramp(row));
+        }
         if let Some(cost) = &row.cost {
             let clock = cost.clock_hz;
             cells.extend([cost.luts.to_string(), cost.flip_flops.to_string()]);
@@ -118,8 +138,9 @@ fn table(answer: &Answer, is_markdown: bool) -> String {
         cells
     };
     let costs = if answer.tools.is_some() { &COSTS[..] } else { &[] };
-    let heading: Vec<String> = HEADING.iter().chain(costs).map(ToString::to_string).collect();
-    let right: Vec<usize> = (2..heading.len()).collect();
+    let ramps = if answer.accelerates.is_some() { &RAMPS[..] } else { &[] };
+    let heading: Vec<String> = HEADING.iter().chain(ramps).chain(costs).map(ToString::to_string).collect();
+    let right: Vec<usize> = (2..heading.len()).filter(|&column| heading[column] != RAMPS[0]).collect();
     let all: Vec<Vec<String>> = std::iter::once(heading).chain(answer.rows.iter().map(row)).collect();
     let mut text = if is_markdown { markdown(&all, &right) } else { aligned(&all, &right) };
     if answer.rows.iter().any(|row| unfinished(&row.found) > 0) {
