@@ -335,7 +335,8 @@ impl Simulation {
         }
         files.extend(plot.map(|sink| report.picture(sink)));
         let record = |out| {
-            let units = [self.clock_hz, self.blu_mm];
+            let degrees = report.program().map_or(0.0, |program| program.blu_degrees);
+            let units = [self.clock_hz, self.blu_mm, degrees];
             Ok::<_, Error>((out, RunRecord::of_bench(bench, &self.waves, units, page::ONE_RUN)?))
         };
         let mut page = page.map(record).transpose()?;

@@ -126,10 +126,15 @@ fn tried(model: &'static Model) -> Result<Vec<Options>, ModelError> {
 fn check(model: &'static Model) -> Result<(), ModelError> {
     let Ok(curves) = model.curve().samples() else { return Ok(()) };
     let axes = curves.iter().map(Curve::axes).max().unwrap_or(0);
-    let mut missing = BTreeSet::new();
-    for name in model.rows().flat_map(|row| row.names(axes)) {
-        if !missing.insert(*name) {
-            return Err(ModelError::defect(model.name, format!("it lists the register {name} twice")));
+    let (mut missing, mut always) = (BTreeSet::new(), BTreeSet::new());
+    for row in model.rows() {
+        // Two that are never in one hardware may have one name.
+        let conditional = !row.declaration.when.words(model.options).is_empty();
+        for name in row.names(axes) {
+            missing.insert(*name);
+            if !conditional && !always.insert(*name) {
+                return Err(ModelError::defect(model.name, format!("it lists the register {name} twice")));
+            }
         }
     }
     for curve in &curves {

@@ -10,6 +10,7 @@ use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::plan::Plan;
 use crate::program::Paced;
+use crate::registers::AXES;
 
 /// What a model interpolates.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -31,7 +32,7 @@ pub enum CurveKind {
     Spline,
     /// Rational B-splines in the plane.
     Nurbs,
-    /// What a program is made of: lines of 2 or 3 axes, circular arcs in the plane, and helices.
+    /// What a program is made of: lines of 2 to 9 axes, circular arcs in the plane, and helices.
     Move,
 }
 
@@ -76,7 +77,12 @@ impl CurveKind {
                 takes: match max_axes {
                     2 => "lines of 2 axes (--from X,Y --to X,Y)",
                     3 => "lines of 2 or 3 axes (--from X,Y[,Z] --to X,Y[,Z])",
-                    _ => "lines of 2 to 6 axes (--from X,Y,… --to X,Y,…)",
+                    4 => "lines of 2 to 4 axes (--from X,Y,… --to X,Y,…)",
+                    5 => "lines of 2 to 5 axes (--from X,Y,… --to X,Y,…)",
+                    6 => "lines of 2 to 6 axes (--from X,Y,… --to X,Y,…)",
+                    7 => "lines of 2 to 7 axes (--from X,Y,… --to X,Y,…)",
+                    8 => "lines of 2 to 8 axes (--from X,Y,… --to X,Y,…)",
+                    _ => "lines of 2 to 9 axes (--from X,Y,… --to X,Y,…)",
                 },
                 in_box: "lines from the origin",
                 axes: [2, max_axes],
@@ -119,9 +125,9 @@ impl CurveKind {
             },
             CurveKind::Move => Traits {
                 name: "move",
-                takes: "lines of 2 or 3 axes, arcs and helices (--from X,Y[,Z] --to X,Y[,Z], of arcs --center X,Y --cw|--ccw)",
+                takes: "lines of 2 to 9 axes, arcs and helices (--from X,Y,… --to X,Y,…, of arcs --center X,Y --cw|--ccw)",
                 in_box: "lines from the origin, and arcs about it inside a quadrant with both ends on the circle",
-                axes: [2, 3],
+                axes: [2, AXES.len()],
                 drawn: &[Drawn::Line, Drawn::Arc, Drawn::Helix],
             },
         }
@@ -180,7 +186,11 @@ impl CurveKind {
                 let space = Line::new(vec![0; 3], vec![8, 6, 3])?.into();
                 return Ok(vec![Line::new(vec![0, 0], vec![8, 6])?.into(), space]);
             }
-            CurveKind::Arc | CurveKind::Move => Arc::new([5, 0], [0, 5], [0, 0], turn)?.into(),
+            CurveKind::Arc => Arc::new([5, 0], [0, 5], [0, 0], turn)?.into(),
+            CurveKind::Move => {
+                let space = Line::new(vec![0; 5], vec![8, 6, 3, 1, 2])?.into();
+                return Ok(vec![Arc::new([5, 0], [0, 5], [0, 0], turn)?.into(), space]);
+            }
             CurveKind::Conic => Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], turn)?.into(),
             CurveKind::Helix => Helix::new([5, 0, 0], [0, 5, 3], [0, 0], turn)?.into(),
             CurveKind::Spline => Spline::new(SplineForm::Bezier, &[[0, 0], [4, 0], [8, 4], [8, 8]])?.into(),
@@ -255,7 +265,7 @@ impl Interpolates {
             Interpolates::Splines(method) => (CurveKind::Spline, Some(method)),
             Interpolates::Nurbs(method) => (CurveKind::Nurbs, Some(method)),
             Interpolates::Moves(moves) if moves.arcs.is_some() => (CurveKind::Move, None),
-            Interpolates::Moves(_) => (CurveKind::Line { max_axes: 3 }, None),
+            Interpolates::Moves(_) => (CurveKind::Line { max_axes: AXES.len() }, None),
             Interpolates::Described(described) => (described.curve(), None),
         }
     }

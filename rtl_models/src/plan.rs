@@ -141,7 +141,7 @@ impl Plan {
     /// The position counters, each for the positions of its axis that must fit. They get one bit more, so that an
     /// erring path stays visible.
     pub fn positions(&mut self, axes: impl IntoIterator<Item = impl IntoIterator<Item = i64>>) -> &mut Self {
-        for (axis, positions) in (0..AXES.len()).zip(axes) {
+        for (axis, positions) in (0..self.axes).zip(axes) {
             let needed = positions.into_iter().map(|position| Width::needed_signed(i128::from(position)));
             self.set(POSITION.of(axis), needed.max().unwrap_or(1) + 1);
         }

@@ -20,8 +20,8 @@ use stepwave_netlist::formula::{Formula, name};
 use crate::options::{OptionDef, Takes, Values};
 use crate::plan::Plan;
 
-/// Letters of up to six axes.
-pub const AXES: [&str; 6] = crate::per_axis!("");
+/// Letters of up to nine axes.
+pub const AXES: [&str; 9] = crate::per_axis!("");
 
 /// The names of what every axis has one of: the letter of the axis between these two texts.
 #[macro_export]
@@ -37,6 +37,9 @@ macro_rules! per_axis {
             concat!($before, "a", $after),
             concat!($before, "b", $after),
             concat!($before, "c", $after),
+            concat!($before, "u", $after),
+            concat!($before, "v", $after),
+            concat!($before, "w", $after),
         ]
     };
 }
@@ -156,7 +159,7 @@ pub struct Declaration {
     pub follows: fn(&Plan) -> bool,
 }
 
-/// A register, or K registers that are declared together; 6 are those of each [axis](PerAxis).
+/// A register, or K registers that are declared together; 9 are those of each [axis](PerAxis).
 #[derive(Clone, Copy)]
 pub struct Reg<const K: usize = 1> {
     names: [&'static str; K],
@@ -165,7 +168,7 @@ pub struct Reg<const K: usize = 1> {
 }
 
 /// A register for each axis.
-pub type PerAxis = Reg<6>;
+pub type PerAxis = Reg<9>;
 
 impl Reg {
     /// One register, unsigned and in the step table.
@@ -305,10 +308,10 @@ impl PartialEq for Reg {
 
 impl Eq for Reg {}
 
-/// `"jrx"`
-impl fmt::Debug for Reg {
+/// `"jrx"`, or of several `["jrx", "jry"]`
+impl<const K: usize> fmt::Debug for Reg<K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Debug::fmt(self.name(), f)
+        if let [name] = &self.names[..] { fmt::Debug::fmt(name, f) } else { fmt::Debug::fmt(&self.names, f) }
     }
 }
 

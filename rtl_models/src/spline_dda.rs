@@ -66,7 +66,7 @@ const REMAINDER: PerAxis = Reg::each(
     "remainder of each axis, from half a BLU beyond the start",
 )
 .follows(|_| true);
-const JR_NAMES: [&str; 6] = per_axis!("jr");
+const JR_NAMES: [&str; 9] = per_axis!("jr");
 /// First differences.
 const P: PerAxis = Reg::each(per_axis!("p"), N, "first difference of each axis in 1/M BLU").signed();
 /// Second differences.

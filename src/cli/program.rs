@@ -59,6 +59,13 @@ fn parse_length(text: &str) -> Option<f64> {
     Some(if size.is_some() { -length } else { length })
 }
 
+/// An angle in degrees, more than 0.
+fn parse_angle(text: &str) -> Result<f64, String> {
+    let number = text.trim_end_matches("deg").trim_end_matches('°').trim().parse();
+    let angle = number.ok().filter(|angle: &f64| angle.is_finite() && *angle > 0.0);
+    angle.ok_or_else(|| format!("invalid angle '{text}': give degrees, such as 0.001deg"))
+}
+
 fn parse_feed(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|feed: &f64| feed.is_finite() && *feed > 0.0);
     number.ok_or_else(|| format!("invalid feed '{text}': give mm/min, such as 3000"))
@@ -109,6 +116,9 @@ pub(crate) struct TextArgs {
     /// Radius of the tool with a D number: 1=4mm (may be repeated)
     #[arg(long, requires = "program", value_name = "D=RADIUS", value_parser = parse_tool)]
     pub(crate) tool: Vec<Tool>,
+    /// One pulse of a rotary axis (A, B, C), such as 0.001deg
+    #[arg(long, requires = "program", value_name = "ANGLE", default_value = "0.001deg", value_parser = parse_angle)]
+    pub(crate) blu_rotary: f64,
     /// Tool radius compensation: B, each block alone, or C, with a look at the next block
     #[arg(long, requires = "program", value_name = "SCHEME", default_value = "C", value_parser = one_of(&[("B", Scheme::B), ("C", Scheme::C)]))]
     pub(crate) compensation: Scheme,

@@ -137,7 +137,7 @@ fn row(
     let mut path = PathWatch::new(&bench, curve);
     let mut deadline = Deadline { begun: Instant::now(), seconds: args.max_seconds, clocks: 0, steps: 0 };
     let mut speed = SpeedWatch::new(&bench);
-    let recorded = || RunRecord::of_bench(&bench, &WaveOptions::default(), [1e6, 1e-3], OF_SEVERAL);
+    let recorded = || RunRecord::of_bench(&bench, &WaveOptions::default(), [1e6, 1e-3, 1e-3], OF_SEVERAL);
     let mut record = args.html.as_ref().map(|_| recorded()).transpose()?;
     let mut overflow = OverflowWatch::new(&bench);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut path, &mut speed, &mut deadline];

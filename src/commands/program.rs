@@ -51,7 +51,14 @@ pub(super) fn simulation(
 ) -> Result<Simulation, Error> {
     let default = Preparation::default();
     let (tools, home) = (tools(&text.tool)?, text.home.0);
-    let reading = Reading { integers: text.integers, tools, home, chords: text.chords, ..default.reading };
+    let reading = Reading {
+        integers: text.integers,
+        degrees: text.blu_rotary,
+        tools,
+        home,
+        chords: text.chords,
+        ..default.reading
+    };
     let preparation = Preparation { reading, scheme: text.compensation, corner: text.corner };
     let simulation = Simulation::program(model, file).preparation(preparation).rapid(text.rapid).jump(text.jump);
     Ok(simulation.options(hardware.choices()).clock_hz(clock_hz).blu_mm(hardware.blu))
@@ -88,7 +95,7 @@ pub(crate) fn simulate(args: &ProgramArgs, outputs: &mut Outputs) -> Result<Fini
         }
     }
     let ran = simulation.run_on(bench, outputs, |_, _| {
-        let table = MoveTable::new(args.clock.clock_hz, args.hardware.blu);
+        let table = MoveTable::new(args.clock.clock_hz, args.hardware.blu, args.text.blu_rotary);
         Ok(Terminal { table, progress: RunProgress::of_moves(moves) })
     })?;
     let table = ran.onlookers.table.render();

@@ -62,7 +62,7 @@ impl<'a, R: BufRead> Control<'a, R> {
         let (index, chords) = (self.moves, self.stream.chord_limit());
         let (machine, hardware) = (self.machine, self.bench.hardware());
         self.planner.push(&of, blocks, |pacer, block, is_first| Part {
-            length: if is_first { block.curve.length() } else { 0.0 },
+            length: if is_first { block.length() } else { 0.0 },
             commanded: pacer.speed,
             promise: machine.promise(hardware, block),
             chords,

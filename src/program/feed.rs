@@ -3,7 +3,7 @@
 use stepwave_models::Hardware;
 use stepwave_models::parts::{FASTEST_RATE, PULSE_RATE, RATE_BITS};
 use stepwave_models::program::{Acceleration, FASTEST_SPEED, HardwareBlock, Moves, PROGRAM_WORDS, Pacing};
-use stepwave_nc::{Cause, Feed, PulseBlock};
+use stepwave_nc::{Cause, Feed, FeedAxes, PulseBlock};
 
 use super::ProgramFailure;
 
@@ -14,6 +14,8 @@ pub struct Pace {
     pub clock_hz: f64,
     /// One BLU in millimetres.
     pub blu_mm: f64,
+    /// One BLU of a rotary axis in degrees.
+    pub blu_degrees: f64,
     /// Rapid feed in mm/min; `None` for as fast as the pulse source runs.
     pub rapid: Option<f64>,
     /// Speed in mm/min at which an axis of a machine that accelerates can start and stop, and by which it can change at
@@ -39,7 +41,8 @@ impl Pace {
     /// The commanded speed of a move of this length, in BLU per second; `None` where it is as fast as the machine runs.
     /// `before` is that of the move before, which one inserted by compensation keeps.
     fn commanded(self, block: &PulseBlock, length: f64, before: Option<f64>) -> Option<f64> {
-        let per_second = |feed: f64| feed / (60.0 * self.blu_mm);
+        let blu = if block.of.feed_axes() == FeedAxes::Rotary { self.blu_degrees } else { self.blu_mm };
+        let per_second = |feed: f64| feed / (60.0 * blu);
         match block.feed() {
             Feed::Rapid => self.rapid.map(per_second),
             Feed::PerMinute(feed) => Some(per_second(feed)),
@@ -93,7 +96,7 @@ impl<'a> Pacer<'a> {
 
     /// Begins a move of these blocks.
     pub(super) fn begin(&mut self, blocks: &[PulseBlock]) {
-        let length = blocks.iter().map(|block| block.curve.length()).sum();
+        let length = blocks.iter().map(|block| block.length()).sum();
         if let Some(first) = blocks.first() {
             self.speed = self.pace.commanded(first, length, self.speed);
         }
@@ -120,9 +123,10 @@ impl<'a> Pacer<'a> {
     /// A block at the speed of our pulse source.
     ///
     /// f_g = v where the machine takes F as it is (60·δ·f_g is the feed along an axis), but with G93 and for feed rate
-    /// numbers f_g = v · steps / length, so that the block takes the time that is wanted.
+    /// numbers f_g = v · steps / length, so that the block takes the time that is wanted; so too where axes move that F is
+    /// not along.
     fn by_source(&self, block: &PulseBlock, part: HardwareBlock, takes_feed: bool) -> Paced {
-        let timed = !takes_feed || matches!(block.feed(), Feed::Inverse(_));
+        let timed = !takes_feed || matches!(block.feed(), Feed::Inverse(_)) || block.carries_others();
         let pulses_per_blu = if timed { part.steps / part.length } else { 1.0 };
         let hertz = |speed| speed * pulses_per_blu;
         let fastest = Rate { word: FASTEST_RATE, limited: false };

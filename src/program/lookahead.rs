@@ -8,7 +8,7 @@
 use std::collections::VecDeque;
 
 use stepwave_models::program::Acceleration;
-use stepwave_nc::{PathControl, Point};
+use stepwave_nc::{AXES_MAX, FeedAxes, PathControl};
 
 /// Most blocks that wait. With more of them so short a stop is assumed after the last.
 const MOST: usize = 4096;
@@ -59,8 +59,9 @@ impl<T> Lookahead<T> {
         (self.by.gains[0].min(self.by.gains[1]) * radius).sqrt().max(self.jump)
     }
 
-    /// The greatest speed at which a corner between two directions may be passed.
-    pub(super) fn joint(&self, path: PathControl, [before, after]: [Point; 2]) -> f64 {
+    /// The greatest speed at which a corner between two directions may be passed, along these axes; others turn as much as they
+    /// must.
+    pub(super) fn joint(&self, path: PathControl, along: FeedAxes, [before, after]: [[f64; AXES_MAX]; 2]) -> f64 {
         let changes = before.into_iter().zip(after).map(|(before, after)| (after - before).abs());
         // What rounding leaves of two equal directions is none.
         let by_axis =
@@ -69,7 +70,7 @@ impl<T> Lookahead<T> {
             PathControl::Exact => 0.0,
             PathControl::Continuous => by_axis,
             PathControl::Within(off) => {
-                let along: f64 = before.into_iter().zip(after).map(|(before, after)| before * after).sum();
+                let along: f64 = along.axes().map(|axis| before[axis] * after[axis]).sum();
                 // Of the angle between both legs, of which a straight path has 180 degrees.
                 let sine = ((1.0 + along) / 2.0).max(0.0).sqrt();
                 let limit = self.by.gains[0].min(self.by.gains[1]) * off * sine / (1.0 - sine);

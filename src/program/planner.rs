@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use stepwave_models::Hardware;
 use stepwave_models::program::{Acceleration, HardwareBlock, Moves, Profile};
-use stepwave_nc::{Cause, PathControl, Point, PulseBlock, ToolMove};
+use stepwave_nc::{AXES_MAX, Cause, FeedAxes, PathControl, PulseBlock, ToolMove};
 
 use super::ProgramFailure;
 use super::feed::{Pace, Paced, Pacer};
@@ -39,7 +39,7 @@ struct Ahead<T> {
     by: Acceleration,
     queue: Lookahead<(Paced, T)>,
     /// How the move before ends, unless the machine stops there.
-    end: Option<(PathControl, Point)>,
+    end: Option<(PathControl, FeedAxes, [f64; AXES_MAX])>,
     /// Pulses of a BLU in the part before.
     scale: Option<f64>,
 }
@@ -109,11 +109,12 @@ impl<T> Ahead<T> {
     /// The greatest speed at the start of a move.
     fn joint(&mut self, of: &ToolMove) -> f64 {
         let jump = self.queue.jump();
-        let Some([start, end]) = of.segment.tangents() else { return jump };
-        let before = self.end.replace((of.path, end));
+        let Some([start, end]) = of.directions() else { return jump };
+        // A speed along other axes is none to compare with.
+        let before = self.end.replace((of.path, of.feed_axes(), end)).filter(|before| before.1 == of.feed_axes());
         // What compensation puts in belongs to the block before it.
-        let path = |(path, _): (PathControl, Point)| if of.cause == Cause::Inserted { of.path } else { path };
-        before.map_or(jump, |before| self.queue.joint(path(before), [before.1, start]))
+        let path = |path: PathControl| if of.cause == Cause::Inserted { of.path } else { path };
+        before.map_or(jump, |before| self.queue.joint(path(before.0), of.feed_axes(), [before.2, start]))
     }
 
     fn push(&mut self, of: &ToolMove, paced: Paced, speed: Option<f64>, joint: f64, what: T) {

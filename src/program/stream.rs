@@ -26,7 +26,7 @@ pub struct Preparation {
 impl Default for Preparation {
     fn default() -> Preparation {
         let (integers, tools, home) = (Integers::Units, BTreeMap::new(), Some([0.0; 3]));
-        let reading = Reading { blu: 1e-3, integers, tools, tolerance: 0.0, chords: 0.5, home };
+        let reading = Reading { blu: 1e-3, degrees: 1e-3, integers, tools, tolerance: 0.0, chords: 0.5, home };
         Preparation { reading, scheme: Scheme::C, corner: Corner::Straight }
     }
 }

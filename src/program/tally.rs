@@ -34,7 +34,7 @@ pub struct Totals {
     /// Steps of the interpolator.
     pub steps: u64,
     /// Pulses of each axis.
-    pub pulses: [u64; 3],
+    pub pulses: Vec<u64>,
     /// Moves that did not end at their end point.
     pub missed: u64,
     /// Moves whose path error, or distance from the compensated contour, was beyond what is promised.
@@ -119,7 +119,8 @@ impl Totals {
         self.moves += 1;
         self.clocks += report.clocks;
         self.steps += report.steps;
-        for (all, pulses) in self.pulses.iter_mut().zip(report.pulses) {
+        self.pulses.resize(report.pulses.len(), 0);
+        for (all, pulses) in self.pulses.iter_mut().zip(&report.pulses) {
             *all += pulses;
         }
         self.error.take(report.error, line);
@@ -168,6 +169,7 @@ mod tests {
     fn a_tool_beyond_what_is_promised_of_its_contour_fails() {
         let reading = Reading {
             blu: 0.01,
+            degrees: 0.01,
             integers: Integers::Units,
             tools: BTreeMap::new(),
             tolerance: 0.0,
@@ -180,7 +182,7 @@ mod tests {
         let mut stream = Stream::new(text, moves, &preparation).expect("a program");
         let Some(Ok(Item::Move(of, _))) = stream.next() else { panic!("no move") };
         let mut totals = Totals::default();
-        let mut report = BlockReport::new(of, 0, [0; 3]);
+        let mut report = BlockReport::new(of, 0, &[0; 3]);
         (report.contour_bound, report.off_compensated) = (Some(1.5), 1.5);
         totals.add(&report);
         assert_eq!((totals.beyond, totals.failures.len()), (0, 0));

@@ -37,7 +37,7 @@ impl<W: Write> JsonFile<W> {
             write_fields(&mut out, &report.json_head())?;
             write!(out, "  \"blocks\": [")?;
         }
-        let units = Units { clock_hz: report.clock_hz, blu_mm: report.blu_mm };
+        let units = Units::of(report);
         Ok(JsonFile { out, units, moves: 0 })
     }
 }

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use stepwave_models::Promise;
 use stepwave_models::program::Pacing;
-use stepwave_nc::Side;
+use stepwave_models::{AXES, Promise};
+use stepwave_nc::{FeedAxes, Side, ToolMove};
 
 use super::json::cut_words;
 use super::speed::ripple;
@@ -24,6 +24,8 @@ pub const TABLE_MOVES: usize = 64;
 pub struct OfProgram {
     /// Path of the file.
     pub file: String,
+    /// One BLU of a rotary axis in degrees.
+    pub blu_degrees: f64,
     /// The account of all moves.
     pub totals: Totals,
     /// Moves to which standing still was nearer than any pulse.
@@ -32,8 +34,9 @@ pub struct OfProgram {
 
 impl OfProgram {
     /// Before its run.
-    pub(crate) fn new(file: &Path) -> OfProgram {
-        OfProgram { file: file.display().to_string(), totals: Totals::default(), left_out: LeftOut::default() }
+    pub(crate) fn new(file: &Path, blu_degrees: f64) -> OfProgram {
+        let (totals, left_out) = (Totals::default(), LeftOut::default());
+        OfProgram { file: file.display().to_string(), blu_degrees, totals, left_out }
     }
 
     /// Of the file the name alone, so that a wave is the same wherever its program lies.
@@ -60,6 +63,9 @@ impl OfProgram {
             "clock_hz": report.clock_hz,
             "blu_mm": report.blu_mm,
         });
+        if report.hardware.axes > 3 {
+            head["blu_degrees"] = json!(self.blu_degrees);
+        }
         if let Some(by) = pacing(report) {
             head["feed"] = json!(by);
         }
@@ -79,7 +85,7 @@ impl OfProgram {
             "seconds": outcome.clocks as f64 / report.clock_hz,
             "idle_clocks": outcome.clocks.saturating_sub(totals.clocks),
             "steps": totals.steps,
-            "pulses": of_axes(totals.pulses),
+            "pulses": of_axes(&totals.pulses),
             "reached": outcome.reached,
             "position_counters": outcome.counters,
             "missed_end_points": totals.missed,
@@ -97,10 +103,11 @@ impl OfProgram {
     /// What the summary says first: how far it came, and how well.
     pub(super) fn summary(&self, report: &Report) -> String {
         let (totals, clocks) = (&self.totals, report.outcome.clocks);
-        let [x, y, z] = totals.pulses;
+        let pulses = AXES.iter().zip(&totals.pulses).map(|(axis, pulses)| format!("{axis} {pulses}"));
+        let pulses = pulses.collect::<Vec<_>>().join(", ");
         let seconds = clocks as f64 / report.clock_hz;
         let mut text = format!(
-            "{} by {}: {} moves, {} steps in {clocks} clocks ({seconds:.3} s); pulses x {x}, y {y}, z {z}\n",
+            "{} by {}: {} moves, {} steps in {clocks} clocks ({seconds:.3} s); pulses {pulses}\n",
             self.file,
             report.model.method_name(),
             totals.moves,
@@ -188,21 +195,28 @@ fn pacing(report: &Report) -> Option<&'static str> {
     }
 }
 
-fn of_axes(pulses: [u64; 3]) -> Value {
-    json!({ "x": pulses[0], "y": pulses[1], "z": pulses[2] })
+fn of_axes(pulses: &[u64]) -> Value {
+    AXES.iter().zip(pulses).map(|(axis, pulses)| ((*axis).to_owned(), json!(pulses))).collect()
 }
 
-/// The units of a move: clock in Hz and one BLU in mm.
+/// The units of a move: clock in Hz, one BLU in mm, and of a rotary axis in degrees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Units {
     pub(super) clock_hz: f64,
     pub(super) blu_mm: f64,
+    pub(super) blu_degrees: f64,
 }
 
 impl Units {
-    /// mm/min of a speed in BLU per second.
-    fn feed(self, speed: f64) -> f64 {
-        60.0 * speed * self.blu_mm
+    /// Those of a run; without rotary axes, where it runs no program.
+    pub(super) fn of(report: &Report) -> Units {
+        let blu_degrees = report.program().map_or(0.0, |program| program.blu_degrees);
+        Units { clock_hz: report.clock_hz, blu_mm: report.blu_mm, blu_degrees }
+    }
+
+    /// mm/min of a speed in BLU per second, or degrees a minute where rotary axes move alone.
+    fn feed(self, of: &ToolMove, speed: f64) -> f64 {
+        60.0 * speed * if of.feed_axes() == FeedAxes::Rotary { self.blu_degrees } else { self.blu_mm }
     }
 }
 
@@ -217,7 +231,7 @@ pub(super) fn move_json(block: &BlockReport, units: Units) -> Value {
         "clocks": block.clocks,
         "seconds": block.clocks as f64 / clock_hz,
         "steps": block.steps,
-        "pulses": of_axes(block.pulses),
+        "pulses": of_axes(&block.pulses),
         "end_point": { "wanted": block.wanted, "reached": block.reached, "exact": block.end_exact() },
         "length": block.length,
         "compensation": match block.of.side {
@@ -230,13 +244,15 @@ pub(super) fn move_json(block: &BlockReport, units: Units) -> Value {
         "compensated_contour_bound": block.contour_bound,
         "programmed_contour_error": block.off_programmed,
         "feed": {
-            "commanded_mm_per_min": block.commanded.map(|speed| units.feed(speed)),
-            "reached_mm_per_min": block.reached_feed(clock_hz).map(|speed| units.feed(speed)),
             "source_hz": block.source_hz,
             "limited": block.limited,
             "ripple": move_ripple(block),
         },
     });
+    let unit = if block.of.feed_axes() == FeedAxes::Rotary { "degrees_per_min" } else { "mm_per_min" };
+    for (what, speed) in [("commanded", block.commanded), ("reached", block.reached_feed(clock_hz))] {
+        report["feed"][format!("{what}_{unit}")] = json!(speed.map(|speed| units.feed(&block.of, speed)));
+    }
     RelativeSpeed::put(relative_speed(block, clock_hz), &mut report["feed"]);
     report
 }
@@ -261,12 +277,16 @@ pub struct MoveTable {
 }
 
 impl MoveTable {
-    /// Without rows; for a clock in Hz and a BLU in mm.
+    /// Without rows; for a clock in Hz, a BLU in mm, and one of rotary axes in degrees.
     #[must_use]
-    pub fn new(clock_hz: f64, blu_mm: f64) -> MoveTable {
+    pub fn new(clock_hz: f64, blu_mm: f64, blu_degrees: f64) -> MoveTable {
         let heads =
             ["line", "kind", "clocks", "ms", "pulses", "end", "error", "off contour", "feed F → reached", "ripple"];
-        MoveTable { units: Units { clock_hz, blu_mm }, rows: vec![heads.map(str::to_owned).to_vec()], moves: 0 }
+        MoveTable {
+            units: Units { clock_hz, blu_mm, blu_degrees },
+            rows: vec![heads.map(str::to_owned).to_vec()],
+            moves: 0,
+        }
     }
 
     /// The table, or `None` if there were more than [`TABLE_MOVES`] moves.
@@ -287,18 +307,25 @@ impl Observer for MoveTable {
             return Ok(());
         }
         let (units, clock_hz) = (self.units, self.units.clock_hz);
-        let feed = report.commanded.map_or_else(|| "rapid".to_owned(), |speed| format!("{:.1}", units.feed(speed)));
-        let reached =
-            report.reached_feed(clock_hz).map_or_else(|| "-".to_owned(), |speed| format!("{:.1}", units.feed(speed)));
-        let [x, y, z] = report.reached;
+        let feed = report
+            .commanded
+            .map_or_else(|| "rapid".to_owned(), |speed| format!("{:.1}", units.feed(&report.of, speed)));
+        let reached = report
+            .reached_feed(clock_hz)
+            .map_or_else(|| "-".to_owned(), |speed| format!("{:.1}", units.feed(&report.of, speed)));
+        let numbers = |of: &mut dyn Iterator<Item = String>, between| of.collect::<Vec<_>>().join(between);
         let place = report.of.place;
         self.rows.push(vec![
             place.number.map_or_else(|| place.line.to_string(), |number| format!("N{number}")),
             report.kind().to_owned(),
             report.clocks.to_string(),
             format!("{:.3}", report.clocks as f64 / clock_hz * 1000.0),
-            report.pulses.map(|count| count.to_string()).join("/"),
-            format!("({x}, {y}, {z}){}", if report.end_exact() { "" } else { " missed" }),
+            numbers(&mut report.pulses.iter().map(u64::to_string), "/"),
+            format!(
+                "({}){}",
+                numbers(&mut report.reached.iter().map(i64::to_string), ", "),
+                if report.end_exact() { "" } else { " missed" }
+            ),
             format!("{:.3}", report.error),
             report.off_programmed.map_or_else(|| "-".to_owned(), |off| format!("{off:.3}")),
             format!("{feed} → {reached}{}", if report.limited { " limited" } else { "" }),

@@ -5,7 +5,7 @@
 use std::collections::VecDeque;
 use std::io::{self, Write};
 
-use stepwave_nc::{Cause, Direction, SegmentShape, Side, ToolMove, swept};
+use stepwave_nc::{Cause, Direction, Point, SegmentShape, Side, ToolMove, swept};
 
 use super::plot::{FONT, HEAD, Page, Pair, TITLE_FONT, View, cut, escaped, reaching, text_width};
 use super::{Report, RunFile};
@@ -58,7 +58,7 @@ impl<W> Workpiece<W> {
         }
     }
 
-    fn shown<T: Copy>(&self, point: [T; 3]) -> [T; 2] {
+    fn shown(&self, point: Point) -> Pair {
         self.axes.map(|axis| point[axis])
     }
 
@@ -174,7 +174,7 @@ impl<W> Observer for Workpiece<W> {
     }
 
     fn block_ended(&mut self, report: &BlockReport) -> Result<(), ObserverError> {
-        let end = self.shown(report.reached).map(|c| c as f64);
+        let end = self.axes.map(|axis| report.reached.get(axis).map_or(0.0, |&c| c as f64));
         if let Some((_, points)) = self.path.last_mut()
             && points.last() != Some(&end)
         {

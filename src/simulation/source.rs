@@ -100,7 +100,9 @@ impl NcProgram {
     }
 
     fn pace(&self, simulation: &Simulation) -> Pace {
-        Pace { clock_hz: simulation.clock_hz, blu_mm: simulation.blu_mm, rapid: self.rapid, jump: self.jump }
+        let &Simulation { clock_hz, blu_mm, .. } = simulation;
+        let &NcProgram { rapid, jump, .. } = self;
+        Pace { clock_hz, blu_mm, blu_degrees: self.preparation.reading.degrees, rapid, jump }
     }
 }
 
@@ -178,7 +180,9 @@ impl Simulation {
     pub(crate) fn report(&self, bench: &Testbench) -> Report {
         let subject = match &self.source {
             Source::Curve(curve) => Subject::Curve(Box::new(OfCurve::new(curve.clone(), bench.blocks()))),
-            Source::Program(program) => Subject::Program(Box::new(OfProgram::new(&program.file))),
+            Source::Program(program) => {
+                Subject::Program(Box::new(OfProgram::new(&program.file, program.preparation.reading.degrees)))
+            }
         };
         let Simulation { model, engine, clock_hz, blu_mm, .. } = *self;
         let cut = CutWords::of_curve(bench.cut_words());

@@ -57,7 +57,8 @@ fn a_missing_end_point_is_asked_for_in_the_models_own_terms() {
 #[test]
 fn too_few_or_too_many_axes_are_counted() {
     run_refused("ppc-line --to 5", &["lines of 2 to 6 axes", "a displacement of one axis was given"]);
-    run_refused("dda-line --to 1,2,3,4,5,6,7", &["1 to 6 axes, not 7"]);
+    run_refused("dda-line --to 1,2,3,4,5,6,7", &["lines of 2 to 6 axes", "a line of 7 axes was given"]);
+    run_refused("dda-line --to 1,2,3,4,5,6,7,8,9,10", &["1 to 9 axes, not 10"]);
     run_refused("vector-line --to 1,2,3", &["vector-line interpolates lines of 2 axes", "a line of 3 axes was given"]);
 }
 

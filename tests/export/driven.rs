@@ -72,6 +72,7 @@ fn a_machine_of_a_program_with_a_loader_runs_as_on_the_bench() {
             .as_bytes();
     let reading = Reading {
         blu: 0.01,
+        degrees: 0.01,
         integers: Integers::Units,
         tools: BTreeMap::new(),
         tolerance: 0.0,
@@ -79,7 +80,7 @@ fn a_machine_of_a_program_with_a_loader_runs_as_on_the_bench() {
         home: None,
     };
     let preparation = Preparation { reading, scheme: Scheme::C, corner: Corner::Straight };
-    let pace = Pace { clock_hz: 20_000.0, blu_mm: 0.01, rapid: None, jump: None };
+    let pace = Pace { clock_hz: 20_000.0, blu_mm: 0.01, blu_degrees: 0.01, rapid: None, jump: None };
     // Own hardware has no buffer, and takes arcs as chords.
     let line = Line::new(vec![0; 3], vec![127; 3]).unwrap().into();
     let folder = Folder::new();

@@ -12,7 +12,9 @@ use stepwave::study::{Dimension, Variants};
 use stepwave_models::options::AnyOption;
 use stepwave_models::program::Size;
 use stepwave_models::{CurveKind, Model, catalogue};
-use stepwave_nc::{Arc, Conic, ControlPoint, Curve, Direction, Helix, Line, NURBS_UNIT, Nurbs, Spline, SplineForm};
+use stepwave_nc::{
+    AXES_MAX, Arc, Conic, ControlPoint, Curve, Direction, Helix, Line, NURBS_UNIT, Nurbs, Spline, SplineForm,
+};
 use stepwave_netlist::text;
 
 /// Values of each option, of which at least one is refused where there can be one.
@@ -152,7 +154,9 @@ fn all() -> String {
         writeln!(text, "program {}", model.method_name()).unwrap();
         let options = model.options.iter().map(|takes| takes.option());
         let given = options.flat_map(|option| values(option).iter().map(move |text| (option, text)));
-        let size = Size { magnitude: 300, positions: [[-20, 300], [0, 200], [-5, 0]] };
+        let mut positions = [[0; 2]; AXES_MAX];
+        positions[..3].copy_from_slice(&[[-20, 300], [0, 200], [-5, 0]]);
+        let size = Size { magnitude: 300, positions, axes: 3 };
         for (option, value) in given {
             let variants = Variants(vec![Dimension::parse(option, value).unwrap()]);
             let netlist = model.plan_program(&size, &variants.at(0).0).and_then(|hardware| {

@@ -107,8 +107,8 @@ fn a_proof_for_every_width_is_refused_with_what_there_is_instead() {
 fn a_curve_that_a_machine_does_not_take_is_refused() {
     let folder = Folder::new();
     for (words, hint) in [
-        ("run dpm-machine --from 5,0 --to 0,5 --ccw", "dpm-machine interpolates lines of 2 or 3 axes"),
-        ("run ppc-machine --to 1,2,3,4", "ppc-machine interpolates lines of 2 or 3 axes, arcs and helices"),
+        ("run dpm-machine --from 5,0 --to 0,5 --ccw", "dpm-machine interpolates lines of 2 to 9 axes"),
+        ("run ppc-machine --to 1", "ppc-machine interpolates lines of 2 to 9 axes, arcs and helices"),
         ("run ppc-machine --ellipse 5,3 --from 5,0 --to 0,3 --ccw", "no --ellipse: leave it out"),
         ("run ppc-machine --from 5,0,0 --to 0,5,30 --ccw", "z climbs more than half as many pulses"),
         ("run ppc-machine", "the end point is missing"),

@@ -11,14 +11,14 @@ use stepwave_models::parts::PULSE_RATE;
 use stepwave_models::program::{FASTEST_SPEED, Moves, Size};
 use stepwave_models::{Hardware, Model, OnOverflow, Options, Preset, Promise, Words, catalogue};
 use stepwave_nc::{
-    Arc, Cause, Curve, Direction, Feed, Line, PathControl, Place, Plane, PulseBlock, Rounder, Segment, SegmentShape,
-    Side, ToolMove,
+    Arc, Cause, Curve, Direction, Feed, Line, Others, PathControl, Place, Plane, Position, PulseBlock, Rounder,
+    Segment, SegmentShape, Side, ToolMove,
 };
 
 use crate::reference::{self, EndPoint, Form, cim_arc, cim_line, dpm_line, mindev_arc, mindev_line, ppc_arc, ppc_line};
 
 /// A move of the tool without compensation.
-fn tool_move(from: [f64; 3], to: [f64; 3], shape: SegmentShape) -> ToolMove {
+pub(super) fn tool_move(from: [f64; 3], to: [f64; 3], shape: SegmentShape) -> ToolMove {
     let segment = Segment { from, to, shape };
     let (place, cause) = (Place { line: 1, number: None }, Cause::Programmed);
     ToolMove {
@@ -29,15 +29,27 @@ fn tool_move(from: [f64; 3], to: [f64; 3], shape: SegmentShape) -> ToolMove {
         programmed: segment,
         side: Side::On,
         path: PathControl::default(),
+        others: Others::default(),
     }
 }
 
+/// A place of the largest machine.
+fn position([x, y, z]: [i64; 3]) -> Position {
+    [x, y, z, 0, 0, 0, 0, 0, 0]
+}
+
 /// Gives the machine its blocks, each with this rate of the pulse source and as a block of its own.
-struct Control<'a> {
+pub(super) struct Control<'a> {
     bench: &'a Testbench,
     blocks: std::vec::IntoIter<(PulseBlock, Words)>,
     rate: i128,
     given: u64,
+}
+
+impl Control<'_> {
+    pub(super) fn new(bench: &Testbench, blocks: Vec<(PulseBlock, Words)>, rate: i128) -> Control<'_> {
+        Control { bench, blocks: blocks.into_iter(), rate, given: 0 }
+    }
 }
 
 impl Feeder for Control<'_> {
@@ -75,7 +87,7 @@ impl Observer for Keep {
 }
 
 /// The blocks of the machine for these of a program.
-fn of_machine(moves: &dyn Moves, hardware: &Hardware, blocks: &[PulseBlock]) -> Vec<(PulseBlock, Words)> {
+pub(super) fn of_machine(moves: &dyn Moves, hardware: &Hardware, blocks: &[PulseBlock]) -> Vec<(PulseBlock, Words)> {
     let parts = |block: &PulseBlock| {
         moves
             .words(hardware, block, FASTEST_SPEED)
@@ -143,7 +155,7 @@ fn stepgen_path(from: [i64; 2], to: [i64; 2], accumulations: usize) -> Vec<[i64;
 
 /// The path of a block by the recurrences of the method, without its start.
 pub(super) fn reference(family: &str, block: &PulseBlock, bits: u32, normalize: bool, steps: usize) -> Vec<[i64; 2]> {
-    let [from, to] = [block.from, block.to].map(|[x, y, _]| [x, y]);
+    let [from, to] = [block.from, block.to].map(|[x, y, ..]| [x, y]);
     let half = [1 << (bits - 1); 2];
     let table = match &block.curve {
         Curve::Line(_) => match family {
@@ -322,7 +334,7 @@ proptest! {
             let reached: Vec<f64> = ran.outcome.reached.iter().map(|&c| c as f64).collect();
             prop_assert_eq!(reached, end.to_vec(), "{}", model.method_name());
             for (block, path) in ran.blocks.iter().zip(&ran.paths) {
-                let worst = path.iter().map(|&at| block.deviation(at)).fold(0.0, f64::max);
+                let worst = path.iter().map(|&at| block.deviation(&position(at))).fold(0.0, f64::max);
                 let bound = model.moves().unwrap().promise(&ran.hardware, block).map_or(2.5, Promise::bound);
                 prop_assert!(worst <= bound, "{}: {} off {:?}", model.method_name(), worst, block.curve);
             }
@@ -337,7 +349,8 @@ fn an_integrator_that_would_be_off_an_axis_steps_at_once() {
     let line = Line::new(vec![0, 0, 0], vec![3, 14, 0]).unwrap();
     let block = |curve: Curve, from, to| {
         let of = tool_move([0.0; 3], [0.0; 3], SegmentShape::Line);
-        PulseBlock { of, plane: Plane::Xy, curve, from, to }
+        let (axes, from, to) = (vec![0, 1], position(from), position(to));
+        PulseBlock { of, axes, curve, from, to }
     };
     let blocks =
         [block(Curve::Line(line), [0; 3], [3, 14, 0]), block(Curve::Arc(arc), [3, 14, 0], [15, 0, 0])].to_vec();

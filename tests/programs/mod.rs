@@ -2,6 +2,7 @@
 
 mod acceleration;
 mod alone;
+mod axes;
 mod command;
 mod curves;
 mod field;

@@ -20,7 +20,7 @@ use super::{AXES, EndPoint, Form, Table, counter_columns, per_axis_columns};
 /// When the slices differ in length.
 pub(crate) fn bresenham(from: &[i64], to: &[i64], form: Form, strictly_greater: bool) -> Table {
     let axes = from.len();
-    assert!((2..=AXES.len()).contains(&axes) && to.len() == axes, "2 to 6 axes");
+    assert!((2..=AXES.len()).contains(&axes) && to.len() == axes, "2 to 9 axes");
     let d: Vec<i64> = (0..axes).map(|axis| to[axis] - from[axis]).collect();
     let longest = d.iter().map(|d| d.abs()).max().expect("at least two axes");
 

@@ -72,8 +72,8 @@ pub(crate) use space_lines::{cim_space_line, mindev_space_line, ppc_space_line};
 pub(crate) use spline::{Basis, Segment, spline_dda, spline_dda_fraction, spline_owes};
 pub(crate) use stepgen::{StepOutput, Timing, stepgen, stepgen_clocks};
 
-/// The names of up to six axes, in the order of the columns.
-pub(crate) const AXES: [&str; 6] = ["x", "y", "z", "a", "b", "c"];
+/// The names of up to nine axes, in the order of the columns.
+pub(crate) const AXES: [&str; 9] = ["x", "y", "z", "a", "b", "c", "u", "v", "w"];
 
 /// How a block knows that it is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -121,6 +121,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let theirs = of_linuxcnc(BufReader::new(File::open(calls)?))?;
     let reading = Reading {
         blu: BLU,
+        degrees: BLU,
         integers: Integers::Units,
         tools: BTreeMap::new(),
         tolerance: 0.0,

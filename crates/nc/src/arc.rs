@@ -169,6 +169,16 @@ impl Arc {
         sector::split(self, crossing)
     }
 
+    /// The part of its whole turn after which each [sector](Self::sectors) on the rounded radius ends; 1 for the last.
+    #[must_use]
+    pub fn parts(&self) -> Vec<f64> {
+        let (turn, angle) = (self.turn(), self.sweep());
+        let reached = |sector: Sector| Turn { end: sector.end, ..turn }.angle() / angle;
+        let mut parts: Vec<f64> = self.sectors(Crossing::RoundedRadius).into_iter().map(reached).collect();
+        parts.last_mut().into_iter().for_each(|last| *last = 1.0);
+        parts
+    }
+
     /// The angle through which the arc turns, in radians: more than 0, and 2π for a full circle.
     #[must_use]
     pub fn sweep(&self) -> f64 {

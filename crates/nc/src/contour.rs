@@ -1,10 +1,89 @@
 //! The tool path that an NC program describes, in real numbers: segments of a contour, before they are rounded to
 //! pulses.
 
-use crate::Direction;
+use crate::{AXES_MAX, Direction};
 
 /// A point in x, y and z, in BLU; not yet rounded.
 pub type Point = [f64; 3];
+
+/// A place of a machine in whole BLU: x, y, z, a, b, c, u, v, w.
+pub type Position = [i64; AXES_MAX];
+
+/// How many axes there are other than x, y and z.
+pub const OTHERS: usize = AXES_MAX - 3;
+
+/// Where the axes other than x, y and z are at both ends of a move, in BLU: a, b, c, u, v, w. They go evenly with its path.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Others {
+    /// At the start.
+    pub from: [f64; OTHERS],
+    /// At the end.
+    pub to: [f64; OTHERS],
+}
+
+impl Others {
+    /// At rest.
+    #[must_use]
+    pub fn at(place: [f64; OTHERS]) -> Others {
+        Others { from: place, to: place }
+    }
+
+    /// None of them moves.
+    #[must_use]
+    pub fn rest(&self) -> bool {
+        self.from == self.to
+    }
+
+    /// The greatest travel of one of them, in BLU.
+    #[must_use]
+    pub fn farthest(&self) -> f64 {
+        self.from.iter().zip(self.to).map(|(from, to)| (to - from).abs()).fold(0.0, f64::max)
+    }
+
+    /// Where they are at this part of the path, from 0 to 1.
+    #[must_use]
+    pub fn after(&self, part: f64) -> [f64; OTHERS] {
+        let mut at = self.to;
+        if part < 1.0 {
+            at.iter_mut().zip(self.from).for_each(|(at, from)| *at = from + (*at - from) * part);
+        }
+        at
+    }
+}
+
+/// The axes along which the feed of a move is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum FeedAxes {
+    /// x, y and z, where one of them moves: others go as fast as they must to arrive together.
+    Linear,
+    /// u, v and w, where one of them moves and x, y and z do not.
+    Parallel,
+    /// a, b and c, where no other axis moves: a feed is in degrees per minute.
+    Rotary,
+}
+
+impl FeedAxes {
+    /// Those of a move; of one without travel x, y and z.
+    pub(crate) fn of(segment: &Segment, others: &Others) -> FeedAxes {
+        let moves = |axes: std::ops::Range<usize>| axes.into_iter().any(|axis| others.from[axis] != others.to[axis]);
+        let linear = segment.from != segment.to || segment.shape != SegmentShape::Line;
+        match (linear, moves(3..6), moves(0..3)) {
+            (false, true, _) => FeedAxes::Parallel,
+            (false, false, true) => FeedAxes::Rotary,
+            _ => FeedAxes::Linear,
+        }
+    }
+
+    /// Their indices among the axes of a machine.
+    #[must_use]
+    pub fn axes(self) -> std::ops::Range<usize> {
+        match self {
+            FeedAxes::Linear => 0..3,
+            FeedAxes::Rotary => 3..6,
+            FeedAxes::Parallel => 6..9,
+        }
+    }
+}
 
 /// The plane of an arc and of tool radius compensation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -133,6 +212,8 @@ pub struct Move {
     pub side: Side,
     /// How its end is passed.
     pub path: PathControl,
+    /// The axes other than x, y and z.
+    pub others: Others,
 }
 
 /// Why the tool moves.
@@ -165,4 +246,14 @@ pub struct ToolMove {
     pub side: Side,
     /// How its end is passed.
     pub path: PathControl,
+    /// The axes other than x, y and z.
+    pub others: Others,
+}
+
+impl ToolMove {
+    /// The axes that its feed is along.
+    #[must_use]
+    pub fn feed_axes(&self) -> FeedAxes {
+        FeedAxes::of(&self.segment, &self.others)
+    }
 }

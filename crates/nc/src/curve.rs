@@ -22,7 +22,7 @@ pub(crate) fn outline_points(max_points: usize) -> usize {
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Curve {
-    /// A straight line in one to six axes.
+    /// A straight line in one to nine axes.
     Line(Line),
     /// A circular arc in x and y.
     Arc(Arc),

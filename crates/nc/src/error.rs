@@ -18,8 +18,8 @@ fn most(form: SplineForm) -> String {
 /// Why a geometry cannot be built; every message names the value, the limit and the remedy.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum GeometryError {
-    /// A line has no axis or more than six.
-    #[error("a line has {AXES_MIN} to {AXES_MAX} axes, not {axes}: give x at least, and at most x,y,z,a,b,c")]
+    /// A line has no axis or more than nine.
+    #[error("a line has {AXES_MIN} to {AXES_MAX} axes, not {axes}: give x at least, and at most x,y,z,a,b,c,u,v,w")]
     AxisCount {
         /// The number of axes given.
         axes: usize,

@@ -3,7 +3,6 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use crate::limit::check_coordinates;
-use crate::turn::Turn;
 use crate::{Arc, Crossing, Direction, GeometryError, Sector};
 
 /// A helix: an [`Arc`] in x and y during which z moves evenly from start to end.
@@ -114,15 +113,9 @@ impl Helix {
     /// ```
     #[must_use]
     pub fn sectors(&self) -> Vec<HelixSector> {
-        let (turn, angle, travel) = (self.arc.turn(), self.angle(), self.z_travel().abs());
-        let planes = self.arc.sectors(Crossing::RoundedRadius);
-        let last = planes.len().saturating_sub(1);
-        let sector = |(place, plane): (usize, Sector)| {
-            let reached = Turn { end: plane.end, ..turn }.angle();
-            let z_steps = if place == last { travel } else { share(travel, reached / angle) };
-            HelixSector { plane, z_steps }
-        };
-        planes.into_iter().enumerate().map(sector).collect()
+        let travel = self.z_travel().abs();
+        let sectors = self.arc.sectors(Crossing::RoundedRadius).into_iter().zip(self.arc.parts());
+        sectors.map(|(plane, part)| HelixSector { plane, z_steps: share(travel, part) }).collect()
     }
 
     /// The distance of a position from the ideal helix, in BLU: √(r² + (dz·cos β)²).
@@ -181,8 +174,9 @@ impl Helix {
     }
 }
 
-/// A part of a whole number of steps, to the nearest.
-fn share(travel: i64, part: f64) -> i64 {
+/// A part, from 0 to 1, of a whole number of steps of at least 0, to the nearest.
+#[must_use]
+pub fn share(travel: i64, part: f64) -> i64 {
     // At most 2^53, which f64 holds exactly; a cast saturates.
     #[expect(clippy::cast_possible_truncation, reason = "rounded, and no more than `travel`")]
     let steps = (travel as f64 * part).round() as i64;

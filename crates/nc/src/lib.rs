@@ -45,11 +45,14 @@ mod turn;
 pub use arc::Arc;
 pub use compensation::{CompensationError, CompensationErrorKind, Compensator, Corner, Scheme, WAITING_LIMIT};
 pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
-pub use contour::{Cause, Feed, Move, PathControl, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove};
+pub use contour::{
+    Cause, Feed, FeedAxes, Move, OTHERS, Others, PathControl, Place, Plane, Point, Position, Segment, SegmentShape,
+    Side, ToolMove,
+};
 pub use curve::{Curve, CurveType, Description, Drawn, OUTLINE_LIMIT};
 pub use error::{End, GeometryError};
 pub use gauge::{BatchGauge, Gauge};
-pub use helix::{Helix, HelixSector};
+pub use helix::{Helix, HelixSector, share};
 pub use limit::{AXES_MAX, AXES_MIN, AXIS_LETTERS, CONIC_LIMIT, COORDINATE_LIMIT, PARABOLA_LIMIT};
 pub use line::Line;
 pub use nurbs::{ControlPoint, KnotFault, NURBS_DEGREE, NURBS_MOST, NURBS_POINTS, NURBS_UNIT, Nurbs};

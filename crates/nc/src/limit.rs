@@ -21,12 +21,13 @@ pub const PARABOLA_LIMIT: i64 = 1 << 40;
 pub const AXES_MIN: usize = 1;
 
 /// The greatest number of axes of a line.
-pub const AXES_MAX: usize = 6;
+pub const AXES_MAX: usize = 9;
 
-/// The letters of the axes in the order of a point's coordinates.
-pub const AXIS_LETTERS: [char; AXES_MAX] = ['x', 'y', 'z', 'a', 'b', 'c'];
+/// The letters of the axes in the order of a point's coordinates: x, y and z; a, b and c, which turn about them; u, v and w, which
+/// are parallel to them.
+pub const AXIS_LETTERS: [char; AXES_MAX] = ['x', 'y', 'z', 'a', 'b', 'c', 'u', 'v', 'w'];
 
-/// Checks that every coordinate of a point of at most six axes lies within [`COORDINATE_LIMIT`].
+/// Checks that every coordinate of a point of at most nine axes lies within [`COORDINATE_LIMIT`].
 pub(crate) fn check_coordinates(point: &[i64]) -> Result<(), GeometryError> {
     for (&value, axis) in point.iter().zip(AXIS_LETTERS) {
         if value.unsigned_abs() > COORDINATE_LIMIT.unsigned_abs() {

@@ -1,10 +1,10 @@
-//! Straight lines in one to six axes.
+//! Straight lines in one to nine axes.
 
 use crate::exact::cross;
 use crate::limit::check_coordinates;
 use crate::{AXES_MAX, AXES_MIN, GeometryError};
 
-/// A straight line from one point to another, in one to six axes.
+/// A straight line from one point to another, in one to nine axes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Line {
     from: Vec<i64>,
@@ -12,10 +12,10 @@ pub struct Line {
 }
 
 impl Line {
-    /// The line between two points, coordinates in BLU and in the order x, y, z, a, b, c.
+    /// The line between two points, coordinates in BLU and in the order x, y, z, a, b, c, u, v, w.
     ///
     /// # Errors
-    /// If the points have different numbers of axes, none or more than six, if a coordinate is beyond
+    /// If the points have different numbers of axes, none or more than nine, if a coordinate is beyond
     /// [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT), or if both points are the same.
     ///
     /// ```
@@ -59,7 +59,7 @@ impl Line {
         self.to.iter().zip(&self.from).map(|(to, from)| to - from).collect()
     }
 
-    /// The number of axes, 1 to 6.
+    /// The number of axes, 1 to 9.
     #[must_use]
     pub fn axes(&self) -> usize {
         self.from.len()

@@ -6,8 +6,8 @@ use bow::Bow;
 use nearest::{Nearest, nearest};
 
 use crate::{
-    Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, PathControl, Place, Plane, Point, Segment,
-    SegmentShape, Side, ToolMove,
+    AXES_MAX, Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, OTHERS, Others, PathControl, Place,
+    Plane, Point, Position, Segment, SegmentShape, Side, ToolMove,
 };
 
 /// The largest distance between the curve that a machine gets and the move in real numbers, in BLU, in both directions:
@@ -20,35 +20,36 @@ pub const ROUNDING_LIMIT: f64 = 1.5;
 pub struct PulseBlock {
     /// The move that it comes from.
     pub of: ToolMove,
-    /// The plane that the machine interpolates in.
-    pub plane: Plane,
-    /// The curve, in the order of the plane's [`axes`](Plane::axes): a line or a helix of three axes, or an arc of two.
+    /// The axes of the machine that the curve has, in its order: first the two that the machine interpolates, whose pulses all
+    /// others follow. Of an arc they are those of its [plane](Plane::axes), of a line the two that travel farthest.
+    pub axes: Vec<usize>,
+    /// The curve: a line, a helix of three axes, or an arc of two.
     pub curve: Curve,
     /// Where it starts, in BLU.
-    pub from: [i64; 3],
+    pub from: Position,
     /// Where it ends, in BLU.
-    pub to: [i64; 3],
+    pub to: Position,
 }
 
 impl PulseBlock {
-    /// The block of a curve by itself, as fast as a machine can run it: a line of 2 or 3 axes, an arc or a helix; `None` for
-    /// any other curve.
+    /// The block of a curve by itself, as fast as a machine can run it: a line, an arc or a helix; `None` for any other curve.
     #[must_use]
     pub fn alone(curve: &Curve) -> Option<PulseBlock> {
-        let place = |point: &[i64]| [0, 1, 2].map(|axis| point.get(axis).copied().unwrap_or(0));
-        let [from, to] = [curve.from(), curve.to()].map(place);
-        let (plane, curve) = match curve {
-            Curve::Line(line) if line.axes() <= 3 => straight(from, to).ok()?,
-            _ => curve.arc().map(|_| (Plane::Xy, curve.clone()))?,
+        let place = |point: &[i64]| std::array::from_fn(|axis| point.get(axis).copied().unwrap_or(0));
+        let [from, to]: [Position; 2] = [curve.from(), curve.to()].map(place);
+        let (axes, curve) = match curve {
+            Curve::Line(_) => straight(from, to).ok()?,
+            _ => curve.arc().map(|_| (in_plane(Plane::Xy, curve), curve.clone()))?,
         };
         // Within 2^53, as every coordinate is.
         let shape = curve.arc().map_or(SegmentShape::Line, |arc| SegmentShape::Arc {
-            plane,
+            plane: Plane::Xy,
             center: arc.center().map(|c| c as f64),
             direction: arc.direction(),
         });
         let [start, end] = [from, to].map(|point| point.map(|c| c as f64));
-        let segment = Segment { from: start, to: end, shape };
+        let [(from_point, from_others), (to_point, to_others)] = [start, end].map(split);
+        let segment = Segment { from: from_point, to: to_point, shape };
         let (place, cause) = (Place { line: 1, number: None }, Cause::Programmed);
         let of = ToolMove {
             place,
@@ -58,8 +59,9 @@ impl PulseBlock {
             programmed: segment,
             side: Side::On,
             path: PathControl::default(),
+            others: Others { from: from_others, to: to_others },
         };
-        Some(PulseBlock { of, plane, curve, from, to })
+        Some(PulseBlock { of, axes, curve, from, to })
     }
 
     /// The place of the block in its program.
@@ -80,20 +82,60 @@ impl PulseBlock {
         self.of.cause
     }
 
-    /// The distance of a position in x, y and z from the curve commanded to the machine, in BLU.
+    /// The length of the path that the feed is along, in BLU: that of [these axes](ToolMove::feed_axes). Where rounding has
+    /// left none of it, the length along all axes.
     #[must_use]
-    pub fn deviation(&self, position: [i64; 3]) -> f64 {
-        self.curve.deviation(&self.plane.axes().map(|axis| position[axis]))
+    pub fn length(&self) -> f64 {
+        if let Curve::Line(_) = self.curve {
+            let along = |axes: std::ops::Range<usize>| {
+                let travels = axes.map(|axis| self.from[axis].abs_diff(self.to[axis]));
+                let squared: u128 = travels.map(|travel| u128::from(travel).pow(2)).sum();
+                (squared as f64).sqrt()
+            };
+            let length = along(self.of.feed_axes().axes());
+            return if length > 0.0 { length } else { along(0..AXES_MAX) };
+        }
+        self.curve.length()
+    }
+
+    /// How far an axis travels, with its sign, in BLU.
+    #[must_use]
+    pub fn travel(&self, axis: usize) -> i64 {
+        // Both are within 2^52.
+        self.to[axis] - self.from[axis]
+    }
+
+    /// An axis other than x, y and z moves.
+    #[must_use]
+    pub fn moves_others(&self) -> bool {
+        self.from[3..] != self.to[3..]
+    }
+
+    /// An axis moves that the feed is not along.
+    #[must_use]
+    pub fn carries_others(&self) -> bool {
+        let along = self.of.feed_axes().axes();
+        (0..AXES_MAX).any(|axis| !along.contains(&axis) && self.travel(axis) != 0)
+    }
+
+    /// The distance of a position from the curve commanded to the machine, in BLU; the axes of the machine that the curve has
+    /// not are passed over.
+    #[must_use]
+    pub fn deviation(&self, position: &Position) -> f64 {
+        let mut along = [0; AXES_MAX];
+        along.iter_mut().zip(&self.axes).for_each(|(along, &axis)| *along = position[axis]);
+        self.curve.deviation(&along[..self.axes.len()])
     }
 
     /// The positions of each axis of the machine between which the block runs, in BLU: of an arc the whole circle.
     #[must_use]
-    pub fn reach(&self) -> [[i64; 2]; 3] {
-        let mut reach = [0, 1, 2].map(|axis| [self.from[axis].min(self.to[axis]), self.from[axis].max(self.to[axis])]);
+    pub fn reach(&self) -> [[i64; 2]; AXES_MAX] {
+        let ends = |axis: usize| [self.from[axis].min(self.to[axis]), self.from[axis].max(self.to[axis])];
+        let mut reach = std::array::from_fn(ends);
         if let Some(arc) = self.curve.arc() {
             #[allow(clippy::cast_possible_truncation)]
             let radius = arc.radius().ceil() as i64 + 1;
-            for (axis, center) in self.plane.axes().into_iter().zip(arc.center()) {
+            for (&axis, center) in self.axes.iter().zip(arc.center()) {
                 let [low, high] = reach[axis];
                 reach[axis] = [low.min(center - radius), high.max(center + radius)];
             }
@@ -105,7 +147,7 @@ impl PulseBlock {
 /// Rounds moves to pulses, one after the other: each starts where the one before it ends, so that no rounding adds up.
 #[derive(Debug, Clone)]
 pub struct Rounder {
-    at: [i64; 3],
+    at: Position,
     /// Arcs become chords that are at most this many BLU off them.
     chords: Option<f64>,
 }
@@ -114,7 +156,7 @@ impl Rounder {
     /// From the origin; with `chords` arcs become lines that are at most this many BLU off them.
     #[must_use]
     pub fn new(chords: Option<f64>) -> Rounder {
-        Rounder { at: [0; 3], chords }
+        Rounder { at: [0; AXES_MAX], chords }
     }
 
     /// The blocks of a move, none where no pulse is nearest to it; and how far they and the move are apart, in BLU: the
@@ -124,27 +166,29 @@ impl Rounder {
     /// A coordinate is beyond [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT).
     pub fn blocks(&mut self, of: &ToolMove, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
         let SegmentShape::Arc { plane, center, direction } = of.segment.shape else {
-            return self.line(of, of.segment.to, out);
+            return self.line(of, join(of.segment.to, of.others.to), out);
         };
         if let Some(tolerance) = self.chords {
             return self.chords(of, tolerance, out);
         }
         let angle = swept(&of.segment, plane, center, direction);
         let climb = plane.of(of.segment.to)[2] - plane.of(of.segment.from)[2];
-        let parts = pieces(angle, climb);
+        let parts = pieces(angle, climb.abs().max(of.others.farthest()));
         let (mut from, mut apart) = (of.segment.from, 0.0_f64);
         for part in 1..=parts {
             let to = on_arc(&of.segment, plane, center, direction, [part, parts]);
             let segment = Segment { from, to, shape: of.segment.shape };
-            let ends = [self.at, rounded(to)?];
-            let (curve, off) = arc(&segment, plane, center, direction, ends);
+            let end = join(to, of.others.after(part as f64 / parts as f64));
+            let ends = [self.at, rounded(end)?];
+            let (curve, off) = arc(&segment, plane, center, direction, ends.map(|end| [end[0], end[1], end[2]]));
             apart = apart.max(off);
             match curve {
                 Some(curve) => {
-                    out.push(PulseBlock { of: *of, plane, curve, from: ends[0], to: ends[1] });
+                    let axes = in_plane(plane, &curve);
+                    out.push(PulseBlock { of: *of, axes, curve, from: ends[0], to: ends[1] });
                     self.at = ends[1];
                 }
-                None => apart = apart.max(self.line(of, to, out)?),
+                None => apart = apart.max(self.line(of, end, out)?),
             }
             from = to;
         }
@@ -158,40 +202,66 @@ impl Rounder {
     /// As [`blocks`](Self::blocks).
     pub fn chords(&mut self, of: &ToolMove, tolerance: f64, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
         let SegmentShape::Arc { plane, center, direction } = of.segment.shape else {
-            return self.line(of, of.segment.to, out);
+            return self.line(of, join(of.segment.to, of.others.to), out);
         };
         let mut apart = 0.0_f64;
-        for point in chords(&of.segment, plane, center, direction, tolerance) {
-            apart = apart.max(self.line(of, point, out)?);
+        let points = chords(&of.segment, plane, center, direction, tolerance);
+        let parts = points.len() as f64;
+        for (part, point) in (1_u32..).zip(points) {
+            apart = apart.max(self.line(of, join(point, of.others.after(f64::from(part) / parts)), out)?);
         }
         Ok(apart)
     }
 
     /// A straight block; also returns how far its end is off the wanted one.
-    fn line(&mut self, of: &ToolMove, end: Point, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
+    fn line(&mut self, of: &ToolMove, end: Place9, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
         let (from, to) = (self.at, rounded(end)?);
-        let off = [0, 1, 2].map(|axis| (end[axis] - to[axis] as f64).powi(2)).iter().sum::<f64>().sqrt();
+        let off = end.iter().zip(to).map(|(end, to)| (end - to as f64).powi(2)).sum::<f64>().sqrt();
         if from == to {
             return Ok(off);
         }
-        let (plane, curve) = straight(from, to)?;
-        out.push(PulseBlock { of: *of, plane, curve, from, to });
+        let (axes, curve) = straight(from, to)?;
+        out.push(PulseBlock { of: *of, axes, curve, from, to });
         self.at = to;
         Ok(off)
     }
 }
 
-/// A line, in the plane of its two longest travels, which the third axis follows.
-fn straight(from: [i64; 3], to: [i64; 3]) -> Result<(Plane, Curve), GeometryError> {
-    let travel = |axis: usize| from[axis].abs_diff(to[axis]);
-    let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
-    let plane = planes.into_iter().min_by_key(|plane| travel(plane.axes()[2])).unwrap_or_default();
-    let along = |point: [i64; 3]| plane.axes().map(|axis| point[axis]).to_vec();
-    Ok((plane, Curve::Line(Line::new(along(from), along(to))?)))
+/// A place of the machine, before it is rounded.
+type Place9 = [f64; AXES_MAX];
+
+fn join([x, y, z]: Point, [a, b, c, u, v, w]: [f64; OTHERS]) -> Place9 {
+    [x, y, z, a, b, c, u, v, w]
+}
+
+fn split([x, y, z, a, b, c, u, v, w]: Place9) -> (Point, [f64; OTHERS]) {
+    ([x, y, z], [a, b, c, u, v, w])
+}
+
+/// A line through x, y, z and the other axes that move, those two first that travel farthest.
+fn straight(from: Position, to: Position) -> Result<(Vec<usize>, Curve), GeometryError> {
+    let travel = |axis: &usize| from[*axis].abs_diff(to[*axis]);
+    let mut axes: Vec<usize> = (0..AXES_MAX).filter(|axis| *axis < 3 || travel(axis) > 0).collect();
+    axes.sort_by_key(|axis| std::cmp::Reverse(travel(axis)));
+    axes[..2].sort_unstable();
+    axes[2..].sort_unstable();
+    if axes[..2] == [0, 2] {
+        // As in the plane of G18.
+        axes[..2].reverse();
+    }
+    let along = |point: Position| axes.iter().map(|axis| point[*axis]).collect();
+    let line = Line::new(along(from), along(to))?;
+    Ok((axes, Curve::Line(line)))
+}
+
+/// The axes of an arc or a helix in a plane.
+fn in_plane(plane: Plane, curve: &Curve) -> Vec<usize> {
+    let axes = plane.axes();
+    if let Curve::Arc(_) = curve { axes[..2].to_vec() } else { axes.to_vec() }
 }
 
 /// The nearest whole point.
-fn rounded(point: Point) -> Result<[i64; 3], GeometryError> {
+fn rounded(point: Place9) -> Result<Position, GeometryError> {
     // Beyond the limit if it is not finite or does not fit: the cast saturates.
     #[allow(clippy::cast_possible_truncation)]
     let whole = point.map(|c| if c.is_nan() { i64::MAX } else { c.round() as i64 });

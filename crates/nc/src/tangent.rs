@@ -1,7 +1,7 @@
 //! Directions and bends of segments.
 
 use crate::pulses::swept;
-use crate::{Direction, Point, Segment, SegmentShape};
+use crate::{AXES_MAX, Direction, FeedAxes, Point, Segment, SegmentShape, ToolMove};
 
 impl Segment {
     /// The unit vectors along the segment at its start and its end, in x, y and z; none of a segment of no length.
@@ -31,6 +31,20 @@ impl Segment {
         Some([at(self.from)?, at(self.to)?])
     }
 
+    /// The length, in BLU; of an arc whose radius changes evenly that of its mean radius.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        let SegmentShape::Arc { plane, center, direction } = self.shape else {
+            return [0, 1, 2].map(|axis| self.to[axis] - self.from[axis]).into_iter().fold(0.0, f64::hypot);
+        };
+        let radii = [self.from, self.to].map(|point| {
+            let [u, v, _] = plane.of(point);
+            f64::hypot(u - center[0], v - center[1])
+        });
+        let climb = plane.of(self.to)[2] - plane.of(self.from)[2];
+        f64::hypot(f64::midpoint(radii[0], radii[1]) * swept(self, plane, center, direction), climb)
+    }
+
     /// The radius of curvature, in BLU; `None` of a line.
     #[must_use]
     pub fn bend(&self) -> Option<f64> {
@@ -39,6 +53,33 @@ impl Segment {
         let radius = f64::hypot(u - center[0], v - center[1]);
         let climb = (plane.of(self.to)[2] - third) / swept(self, plane, center, direction);
         Some(radius + climb * climb / radius)
+    }
+}
+
+impl ToolMove {
+    /// How far each axis goes for a BLU of the path that the feed is along, at the start and at the end; none of a move of no
+    /// length.
+    #[must_use]
+    pub fn directions(&self) -> Option<[[f64; AXES_MAX]; 2]> {
+        let travels: [f64; AXES_MAX] = std::array::from_fn(|axis| match axis.checked_sub(3) {
+            None => self.segment.to[axis] - self.segment.from[axis],
+            Some(other) => self.others.to[other] - self.others.from[other],
+        });
+        let along = self.feed_axes();
+        let length = match along {
+            FeedAxes::Linear => self.segment.length(),
+            _ => travels[along.axes()].iter().copied().fold(0.0, f64::hypot),
+        };
+        let even = travels.map(|travel| travel / length);
+        if along != FeedAxes::Linear {
+            return Some([even; 2]);
+        }
+        let tool = self.segment.tangents()?;
+        Some(tool.map(|[x, y, z]| {
+            let mut directions = even;
+            directions[..3].copy_from_slice(&[x, y, z]);
+            directions
+        }))
     }
 }
 

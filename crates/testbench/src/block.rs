@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use stepwave_engine::Rows;
 use stepwave_models::Promise;
-use stepwave_nc::{Cause, Curve, Feed, PulseBlock, ROUNDING_LIMIT, SegmentShape, ToolMove};
+use stepwave_nc::{Cause, Curve, Feed, Position, PulseBlock, ROUNDING_LIMIT, SegmentShape, ToolMove};
 
 use super::contour;
 use super::speed::{Speed, Windows};
@@ -52,11 +52,11 @@ pub struct BlockReport {
     /// Steps of the interpolator.
     pub steps: u64,
     /// Pulses of each axis.
-    pub pulses: [u64; 3],
+    pub pulses: Vec<u64>,
     /// End point wanted, in BLU.
-    pub wanted: [i64; 3],
+    pub wanted: Vec<i64>,
     /// End point reached, in BLU.
-    pub reached: [i64; 3],
+    pub reached: Vec<i64>,
     /// Length of the path in whole BLU.
     pub length: f64,
     /// Commanded feed in BLU per second; `None` where the machine runs as fast as it can.
@@ -84,15 +84,15 @@ pub struct BlockReport {
 impl BlockReport {
     /// Before its first step.
     #[must_use]
-    pub fn new(of: ToolMove, begun: u64, from: [i64; 3]) -> BlockReport {
+    pub fn new(of: ToolMove, begun: u64, from: &[i64]) -> BlockReport {
         BlockReport {
             of,
             begun,
             clocks: 0,
             steps: 0,
-            pulses: [0; 3],
-            wanted: from,
-            reached: from,
+            pulses: vec![0; from.len()],
+            wanted: from.to_vec(),
+            reached: from.to_vec(),
             length: 0.0,
             commanded: None,
             source_hz: None,
@@ -103,27 +103,26 @@ impl BlockReport {
             contour_bound: None,
             free: false,
             off_programmed: None,
-            windows: Windows::begun(&from, begun),
+            windows: Windows::begun(along(&of, &place_of(from)), begun),
         }
     }
 
     /// A step that ended at a place.
     fn step(&mut self, block: &PulseBlock, step: &Step) {
-        let (clock, pulses, position) = (step.clock, of_axes(&step.pulses), of_axes(&step.position));
+        let (clock, position) = (step.clock, place_of(&step.position));
         self.steps += 1;
-        self.windows.row(&position, clock);
+        self.windows.row(along(&self.of, &position), clock);
         self.clocks = clock - self.begun;
-        self.reached = position;
-        let count: u64 = pulses.iter().map(|pulse| pulse.unsigned_abs()).sum();
-        if count == 0 {
+        self.reached.copy_from_slice(&step.position);
+        if step.pulses.iter().all(|pulse| *pulse == 0) {
             return;
         }
-        for (all, pulse) in self.pulses.iter_mut().zip(pulses) {
+        for (all, pulse) in self.pulses.iter_mut().zip(&step.pulses) {
             *all += pulse.unsigned_abs();
         }
-        self.error = self.error.max(block.deviation(position));
+        self.error = self.error.max(block.deviation(&position));
         // Within 2^52, as every position of a block is.
-        let at = position.map(|c| c as f64);
+        let at = [0, 1, 2].map(|axis| position[axis] as f64);
         self.off_compensated = self.off_compensated.max(contour::off_segment(&self.of.segment, at));
         self.off_programmed = match (self.off_programmed, contour::off_programmed(&self.of, at)) {
             (Some(most), Some(off)) => Some(most.max(off)),
@@ -134,7 +133,7 @@ impl BlockReport {
     /// It ended where it should; a closed curve without a pulse was not run at all.
     #[must_use]
     pub fn end_exact(&self) -> bool {
-        self.reached == self.wanted && (self.length == 0.0 || self.pulses != [0; 3])
+        self.reached == self.wanted && (self.length == 0.0 || self.pulses.iter().any(|pulses| *pulses > 0))
     }
 
     /// The method kept what it promises.
@@ -151,7 +150,7 @@ impl BlockReport {
 
     /// Takes in what is known of a part before it runs.
     fn take(&mut self, part: &Part) {
-        self.wanted = part.block.to;
+        self.wanted.copy_from_slice(&part.block.to[..self.reached.len()]);
         self.length += part.length;
         self.commanded = part.commanded;
         self.source_hz = part.source_hz.map(|source| self.source_hz.map_or(source, |before| before.max(source)));
@@ -201,9 +200,14 @@ impl BlockReport {
     }
 }
 
-/// Numbers of x, y and z; 0 for an axis that there is not.
-fn of_axes(values: &[i64]) -> [i64; 3] {
-    [0, 1, 2].map(|axis| values.get(axis).copied().unwrap_or(0))
+/// A place, 0 along an axis that the machine has not.
+fn place_of(values: &[i64]) -> Position {
+    std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(0))
+}
+
+/// Where it is along the axes that the feed of the move is along.
+fn along<'a>(of: &ToolMove, place: &'a Position) -> &'a [i64] {
+    &place[of.feed_axes().axes()]
 }
 
 /// The parts that the machine was given, and the account of the block that runs.
@@ -239,7 +243,7 @@ impl Account {
             return Ok(false);
         }
         self.end(observers)?;
-        let mut report = BlockReport::new(part.block.of, rows.clock(row), of_axes(steps.position()));
+        let mut report = BlockReport::new(part.block.of, rows.clock(row), steps.position());
         report.take(&part);
         observers.iter_mut().try_for_each(|observer| observer.block_begun(&report))?;
         self.running = Some((part, report));

@@ -38,7 +38,7 @@ pub struct Change<'m> {
 /// - What [`Weighing`] has.
 pub fn comparison_integral<'m>(m: Scope<'m>, block: Block<'m>, hardware: &Hardware, sides: [Side<'m>; 2]) {
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
-    let weighing = Weighing::new(m, hardware);
+    let weighing = Weighing::new(m, hardware, A_B);
     let end = EndCounters::new(m, &block, hardware);
 
     // Judge.
@@ -68,21 +68,22 @@ pub struct Weighing<'m> {
     m: Scope<'m>,
     f: DeviationAccumulator<'m>,
     weights: [Register<'m>; 2],
+    names: Reg<2>,
     base: Register<'m>,
 }
 
 impl<'m> Weighing<'m> {
-    /// The registers.
+    /// The registers, with these names of the weights.
     #[must_use]
-    pub fn new(m: Scope<'m>, hardware: &Hardware) -> Weighing<'m> {
+    pub fn new(m: Scope<'m>, hardware: &Hardware, names: Reg<2>) -> Weighing<'m> {
         let f = DeviationAccumulator::new(m, hardware.bits(F));
-        let weights = [0, 1].map(|axis| hardware.reg(m, A_B.of(axis)));
-        let names = vec![(0, "X".to_owned()), (1, "Y".to_owned())];
-        let base = hardware.reg(m, BASE).shown(Format::States(names));
-        let [a, b] = [0, 1].map(|axis| move || A_B.of(axis).value());
+        let weights = [0, 1].map(|axis| hardware.reg(m, names.of(axis)));
+        let states = vec![(0, "X".to_owned()), (1, "Y".to_owned())];
+        let base = hardware.reg(m, BASE).shown(Format::States(states));
+        let [a, b] = [0, 1].map(|axis| move || names.of(axis).value());
         m.between_steps("x_is_base", [b() - a(), BASE.value() - 1]);
         m.between_steps("y_is_base", [a() - b(), -BASE.value()]);
-        Weighing { m, f, weights, base }
+        Weighing { m, f, weights, names, base }
     }
 
     /// 1 bit each: x and y step, but for the end point.
@@ -100,12 +101,13 @@ impl<'m> Weighing<'m> {
         taken: [Signal<'m>; 2],
         changes: [Option<Change<'m>>; 2],
     ) {
-        let Weighing { m, f, weights: [a, b], base } = self;
+        let Weighing { m, f, weights: [a, b], names, base } = self;
         let base_x = !base.q;
         let bits = |register: Register<'m>| register.q.bits();
         // The weights after the pulses, and F with the weight that the rule selects.
         let wide = bits(a).max(bits(b)) + 3;
-        let [word_a, word_b] = [(0, a), (1, b)].map(|(axis, register)| block.word(A_B.of(axis).name(), bits(register)));
+        let [word_a, word_b] =
+            [(0, a), (1, b)].map(|(axis, register)| block.word(names.of(axis).name(), bits(register)));
         let intervals = [(a, word_a, taken[0], changes[0]), (b, word_b, taken[1], changes[1])];
         let [(a_after, a_weight), (b_after, b_weight)] = intervals.map(|(register, word, taken, change)| {
             let after = moved(block, compute, register, taken, change);

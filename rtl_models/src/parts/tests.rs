@@ -23,3 +23,4 @@ mod rate_multiplier;
 mod serial;
 mod sign;
 mod step_output;
+mod wide;

@@ -10,6 +10,7 @@ use crate::parts::{
 };
 use crate::plan::Plan;
 use crate::ramping::{MOST_BITS, SBlock, SRamp, Scale, bits, rounded};
+use crate::registers::AXES;
 
 /// Bits of the phase.
 const BITS: &str = "ramp bits";
@@ -81,6 +82,12 @@ pub(super) fn plan(plan: &mut Plan, [most, per_blu]: [u64; 2]) -> Result<(), Mod
             }),
         };
     };
+    if AXES[..plan.axes()].contains(&V.name()) {
+        return Err(ModelError::Widths(format!(
+            "{model}: with --accel the register v is a speed, and the program moves an axis V or W: leave --accel or these \
+             axes out"
+        )));
+    }
     for gain in gains.both() {
         physical(model, ACCEL.name, gain, "500mm/s2")?;
     }

@@ -63,5 +63,5 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
     let delta = &delta(block)[..hardware.axes];
     let steps = crate::sizes::longest_of(delta) as f64;
-    vec![HardwareBlock { words: bresenham::words(delta, &[], hardware), steps, length: block.curve.length() }]
+    vec![HardwareBlock { words: bresenham::words(delta, &[], hardware), steps, length: block.length() }]
 }

@@ -23,10 +23,21 @@ use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{ACCEL, JERK, ON_OVERFLOW, WIDTH, Weights};
 use crate::parts::{A_B, BASE, Change, END, F, PLANE, POSITION, QUAD, WHOLE, Weighing};
+use crate::registers::{N, Reg, Where};
 use crate::words;
 
 /// Where arcs are split.
 const CROSSING: Crossing = Crossing::RoundedRadius;
+
+/// The weights where axes of the machine are called a and b.
+const NEXT_TO_AXES: Reg<2> = Reg::each(["wa", "wb"], N, "interval weights A of an X, B of a Y pulse")
+    .when(&Where("axes other than x, y and z", |plan| plan.axes() > 3));
+/// The machine has no axes but x, y and z.
+static IN_SPACE: Where = Where("axes x, y and z alone", |plan| plan.axes() <= 3);
+
+fn weights(axes: usize) -> Reg<2> {
+    if axes > 3 { NEXT_TO_AXES } else { A_B }
+}
 
 /// Comparison-integral: a machine that runs whole programs.
 pub static MODEL: Model = Model {
@@ -34,7 +45,7 @@ pub static MODEL: Model = Model {
     title: "Comparison-integral",
     method: cim_line::MODEL.method,
     source: cim_line::MODEL.source,
-    registers: &[&MODE, &PLANE, &QUAD, &F, &A_B, &BASE, &END.pair(), &WHOLE, &POSITION],
+    registers: &[&MODE, &PLANE, &QUAD, &F, &A_B.when(&IN_SPACE), &NEXT_TO_AXES, &BASE, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW, &ACCEL, &JERK],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: planar::judging(CROSSING, load, |_, block| Some(planar::bound(block, 1.0))),
@@ -43,7 +54,7 @@ pub static MODEL: Model = Model {
 
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let frame = super::frame::plain(m, hardware);
-    let weighing = Weighing::new(m, hardware);
+    let weighing = Weighing::new(m, hardware, weights(hardware.axes));
 
     // Judge.
     let [take_x, take_y] = frame.redirected(weighing.judged());
@@ -56,12 +67,12 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, taken);
 }
 
-fn load(block: &PulseBlock, _: &Hardware) -> Vec<HardwareBlock> {
-    planar::blocks(CROSSING, block, |at| {
+fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
+    planar::blocks(CROSSING, hardware, block, |at| {
         let (f, weights) = match block.curve {
             Curve::Line(_) => (0, [at.pulses[1], at.pulses[0]]),
             _ => (words::weighed(Weights::Mid, at.start, at.x_grows, at.deviation), at.start),
         };
-        (Words::new().set(F, f).set_each(A_B, weights), planar::longest_steps(at))
+        (Words::new().set(F, f).set_each(self::weights(hardware.axes), weights), planar::longest_steps(at))
     })
 }

@@ -146,7 +146,7 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
 fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
     let bits = hardware.bits(JV.of(0));
-    planar::blocks(CROSSING, block, |at| {
+    planar::blocks(CROSSING, hardware, block, |at| {
         let arc = !matches!(block.curve, Curve::Line(_));
         let [x, y] = if arc { [at.start[1], at.start[0]] } else { at.pulses };
         let mut words = words::integrators(hardware, [x, y]);

@@ -1,4 +1,4 @@
-//! The machine of the digital pulse multiplier (数字脉冲乘法器): one counter, a coefficient for each of three axes.
+//! The machine of the digital pulse multiplier (数字脉冲乘法器): one counter, a coefficient for each axis.
 //!
 //! ```text
 //!   host ──► next block ──► block
@@ -9,7 +9,7 @@
 //!
 //! A pulse multiplier draws lines: the control gives it the chords of an arc.
 
-use stepwave_nc::PulseBlock;
+use stepwave_nc::{AXES_MAX, PulseBlock};
 use stepwave_netlist::dsl::Scope;
 
 use super::frame::program_words;
@@ -24,6 +24,7 @@ use crate::model::Model;
 use crate::options::{ACCEL, END_POINT, EndPoint, JERK, ON_OVERFLOW, Radix, WIDTH};
 use crate::parts::{Buffer, COEFFICIENT, POSITION, Q, RateMultiplier, SIGN, Units, axis_scope, pulse_source};
 use crate::plan::Plan;
+use crate::registers::Reg;
 
 /// Digital pulse multiplier: a machine that runs whole programs.
 pub static MODEL: Model = Model {
@@ -41,7 +42,7 @@ pub static MODEL: Model = Model {
         most_steps: |_, plan| [power(plan.bits(Q)); 2],
         load,
         error_bound: |hardware, block| {
-            let moving = (0..3).filter(|&axis| block.from[axis] != block.to[axis]);
+            let moving = (0..AXES_MAX).filter(|&axis| block.travel(axis) != 0);
             let off = crate::dpm_line::rate_bound(Radix::Binary, hardware.bits(Q));
             Some(moving.fold(0.0, |sum, _| f64::hypot(sum, off)))
         },
@@ -53,8 +54,8 @@ fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
     plan.n = plan.magnitude_bits(size.magnitude);
     plan.positions(size.positions);
     plan.fix(&END_POINT, EndPoint::Iterations);
-    let registers = [Q, COEFFICIENT.of(0), COEFFICIENT.of(1), COEFFICIENT.of(2)];
-    planar::one_scale(plan, &registers[..=plan.axes()], true)?;
+    let registers: Vec<Reg> = std::iter::once(Q).chain((0..plan.axes()).map(|axis| COEFFICIENT.of(axis))).collect();
+    planar::one_scale(plan, &registers, true)?;
     plan.stall_clocks = planar::stall_clocks(plan.bits(Q));
     Ok(())
 }
@@ -78,10 +79,10 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 }
 
 fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
-    let travel = |axis: usize| i128::from(block.to[axis]) - i128::from(block.from[axis]);
+    let travel = |axis: usize| i128::from(block.travel(axis));
     let words = (0..hardware.axes).fold(Words::new(), |words, axis| {
         words.set(COEFFICIENT.of(axis), travel(axis).abs()).set(SIGN.of(axis), travel(axis) < 0)
     });
     let steps = 2f64.powi(hardware.bits(Q).cast_signed());
-    vec![HardwareBlock { words, steps, length: block.curve.length() }]
+    vec![HardwareBlock { words, steps, length: block.length() }]
 }

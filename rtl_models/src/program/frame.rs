@@ -1,21 +1,19 @@
 //! What every machine that runs whole programs has around its interpolator.
 
-use stepwave_nc::PulseBlock;
+use stepwave_nc::{Position, PulseBlock};
 use stepwave_netlist::cells::Format;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::PROGRAM_WORDS;
 use crate::hardware::Hardware;
 use crate::parts::{
-    ArcKind, Block, Buffer, CCW, DownCounter, END, Motion, QUAD, WHOLE, count_coordinates, distributor, follower,
-    handed_over, pulse_source, quadrant_register,
+    ArcKind, Block, Buffer, CCW, DownCounter, END, FOLLOWER_SIGN, Motion, QUAD, WHOLE, count_coordinates, distributor,
+    followers, followers_of, handed_over, pulse_source, quadrant_register,
 };
 use crate::registers::{Reg, Rule};
 
 /// What a block is.
 pub(super) const MODE: Reg = Reg::new("mode", Rule::Bits(2), "mode, LINE = 1, ARC = 2");
-/// Direction of the third axis: 1 is negative.
-pub(super) const THIRD_SIGN: Reg = Reg::new("sw", Rule::Bits(1), "direction of the third axis, 1 is negative");
 
 /// Block buffer, pulse source, mode and quadrant of a machine that interpolates in a plane.
 ///
@@ -84,10 +82,13 @@ impl<'m> Frame<'m> {
     /// Closes feed, end counters and block: a step gives the axes taken (1 bit each) a pulse.
     pub(super) fn close(self, hardware: &Hardware, taken: [Signal<'m>; 2]) {
         let Frame { m, block, step, negative, end: [ex, ey], .. } = self;
-        let third = follower(m, &block, hardware.bits(WHOLE), step, taken);
-        let third_negative = hardware.held(m, &block, THIRD_SIGN);
-        let [first, second] = [0, 1].map(|axis| Motion { pulse: step & taken[axis], negative: negative[axis] });
-        distributor(m, &block, hardware, [first, second, Motion { pulse: third, negative: third_negative }]);
+        let size = (followers_of(hardware.axes), hardware.bits(WHOLE));
+        let following = followers(m, &block, size, step, taken)
+            .into_iter()
+            .enumerate()
+            .map(|(index, pulse)| Motion { pulse, negative: hardware.held(m, &block, FOLLOWER_SIGN.of(index)) });
+        let in_plane = [0, 1].map(|axis| Motion { pulse: step & taken[axis], negative: negative[axis] });
+        distributor(m, &block, hardware, &in_plane.into_iter().chain(following).collect::<Vec<_>>());
         let last = ex.count(step & taken[0]) & ey.count(step & taken[1]);
         block.close(block.load, step, last);
     }
@@ -110,6 +111,6 @@ pub(super) fn plain<'m>(m: Scope<'m>, hardware: &Hardware) -> Frame<'m> {
 }
 
 /// The displacement of each axis in a block, in BLU.
-pub(super) fn delta(block: &PulseBlock) -> [i64; 3] {
-    [0, 1, 2].map(|axis| block.to[axis].saturating_sub(block.from[axis]))
+pub(super) fn delta(block: &PulseBlock) -> Position {
+    std::array::from_fn(|axis| block.travel(axis))
 }

@@ -68,8 +68,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, taken);
 }
 
-fn load(block: &PulseBlock, _: &Hardware) -> Vec<HardwareBlock> {
-    planar::blocks(CROSSING, block, |at| {
+fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
+    planar::blocks(CROSSING, hardware, block, |at| {
         let [x, y] = at.pulses;
         let (f, point) = match block.curve {
             Curve::Line(_) => (2 * x.min(y) - x.max(y), at.pulses),

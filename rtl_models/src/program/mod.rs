@@ -21,7 +21,7 @@ pub use acceleration::{Acceleration, Profile};
 
 use std::fmt;
 
-use stepwave_nc::{Crossing, Curve, PulseBlock};
+use stepwave_nc::{AXES_MAX, Crossing, Curve, PulseBlock};
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
@@ -29,7 +29,7 @@ use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{Options, chosen};
-use crate::parts::{FASTEST_RATE, POSITION, PULSE_RATE, RATE_BITS, SHARE, WHOLE};
+use crate::parts::{FASTEST_RATE, POSITION, PULSE_RATE, RATE_BITS};
 use crate::plan::Plan;
 use crate::promise::Promise;
 use crate::registers::{Reg, Rule};
@@ -48,7 +48,9 @@ pub struct Size {
     /// end lies off its circle, in BLU.
     pub magnitude: u64,
     /// Least and greatest position of each axis, in BLU.
-    pub positions: [[i64; 2]; 3],
+    pub positions: [[i64; 2]; AXES_MAX],
+    /// Axes that the blocks need: x, y, z, and all up to the last that moves.
+    pub axes: usize,
 }
 
 impl Size {
@@ -59,16 +61,18 @@ impl Size {
             *all = [all[0].min(low), all[1].max(high)];
         }
         self.magnitude = self.magnitude.max(own.magnitude);
+        self.axes = self.axes.max(own.axes);
     }
 
     /// Of one block alone.
     fn of(crossing: Crossing, block: &PulseBlock) -> Size {
         let arc = block.curve.arc();
-        let travels = (0..3).map(|axis| block.from[axis].abs_diff(block.to[axis]));
+        let travels = (0..AXES_MAX).map(|axis| block.travel(axis).unsigned_abs());
         let sectors = arc.map(|arc| arc.sectors(crossing)).unwrap_or_default();
         let radius = arc.map_or(0, crate::sizes::off_circle_radius);
         let magnitude = crate::sizes::largest_coordinate(&sectors).max(radius).max(travels.max().unwrap_or(0));
-        Size { magnitude, positions: block.reach() }
+        let axes = (3..AXES_MAX).filter(|axis| block.travel(*axis) != 0).max().map_or(3, |last| last + 1);
+        Size { magnitude, positions: block.reach(), axes }
     }
 }
 
@@ -81,12 +85,6 @@ pub struct HardwareBlock {
     pub steps: f64,
     /// The path length of the tool, in BLU.
     pub length: f64,
-}
-
-impl HardwareBlock {
-    fn has_pulses(&self) -> bool {
-        self.words.get(WHOLE).is_some_and(|pulses| pulses > 0)
-    }
 }
 
 /// 2^bits.
@@ -131,9 +129,9 @@ pub trait Moves: fmt::Debug + Sync {
     /// Where arcs are split.
     fn crossing(&self) -> Crossing;
 
-    /// Axes of the machine, at most 3.
-    fn axes(&self) -> usize {
-        3
+    /// Axes of a machine for blocks of this size.
+    fn axes(&self, size: &Size) -> usize {
+        size.axes.max(3)
     }
 
     /// What sets its feed.
@@ -208,13 +206,15 @@ impl Moves for Paced {
 }
 
 impl Paced {
-    /// Whether a helix is so steep that its third axis cannot follow: in one of its sectors it has more than half as many
-    /// pulses as the plane.
+    /// Whether an arc is so steep that an axis cannot follow: in one of its sectors it has more than half as many pulses as the
+    /// plane.
     fn too_steep(&self, block: &PulseBlock) -> bool {
-        let Curve::Helix(_) = block.curve else { return false };
-        let word = |sector: &HardwareBlock, wanted| sector.words.get(wanted).unwrap_or(0);
-        let sectors = planar::blocks(self.crossing(), block, |_| (Words::new(), 0.0));
-        sectors.iter().any(|sector| 2 * word(sector, SHARE) > word(sector, WHOLE))
+        let follows = block.axes.len() > 2 || block.moves_others();
+        let Some(arc) = block.curve.arc().filter(|_| self.arcs.is_some() && follows) else { return false };
+        planar::pieces(self.crossing(), block, arc).iter().any(|sector| {
+            let whole: i64 = sector.pulses.iter().sum();
+            sector.travels.iter().any(|travel| 2 * travel.abs() > whole)
+        })
     }
 
     /// The block of a curve that the machine runs alone; `None` of one that it does not interpolate.
@@ -282,7 +282,7 @@ impl Model {
     pub fn plan_program(&self, size: &Size, options: &Options) -> Result<Hardware, ModelError> {
         let name = self.method_name();
         let moves = self.moves()?;
-        let mut plan = Plan::new(name, moves.axes(), self.registers, chosen(name, self.options, options)?);
+        let mut plan = Plan::new(name, moves.axes(size), self.registers, chosen(name, self.options, options)?);
         moves.plan(size, &mut plan)?;
         plan.finish()
     }

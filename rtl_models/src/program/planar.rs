@@ -1,15 +1,17 @@
 //! What is loaded into every machine that interpolates in a plane.
 
-use stepwave_nc::{Arc, Crossing, Curve, Direction, Plane, PulseBlock, Sector};
+use stepwave_nc::{AXES_MAX, Arc, Crossing, Curve, Direction, PulseBlock, Sector, share};
 
-use super::frame::{MODE, THIRD_SIGN};
+use super::frame::MODE;
 use super::{HardwareBlock, Paced, Size};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::options::{END_POINT, EndPoint, Preset};
-use crate::parts::{CCW, END, F, PLANE, POSITION, QUAD, REST, SHARE, WHOLE, XI_YI};
+use crate::parts::{
+    CCW, END, F, FOLLOWER_SIGN, PLANE, POSITION, QUAD, REST, SHARE, WHOLE, XI_YI, followers_of, plane_bits, plane_index,
+};
 use crate::plan::Plan;
 use crate::registers::{Reg, Registers};
 
@@ -30,6 +32,7 @@ pub(super) struct Start {
 /// Plans end point, third axis and positions.
 pub(super) fn common_plan(plan: &mut Plan, size: &Size) {
     plan.positions(size.positions);
+    plan.set(PLANE, plane_bits(plan.axes()));
     plan.fix(&END_POINT, EndPoint::PerAxis);
     plan.usual_preset(Preset::Half);
 }
@@ -94,13 +97,15 @@ pub(super) fn one_scale(plan: &Plan, registers: &[Reg], fixed: bool) -> Result<(
 /// words of the method, and the steps that the interpolator takes.
 pub(super) fn blocks(
     crossing: Crossing,
+    hardware: &Hardware,
     block: &PulseBlock,
     own: impl Fn(&Start) -> (Words, f64),
 ) -> Vec<HardwareBlock> {
-    match &block.curve {
-        Curve::Line(line) => {
-            let delta: Vec<i128> = line.delta().into_iter().map(i128::from).collect();
-            let [dx, dy, third] = [0, 1, 2].map(|axis| delta.get(axis).copied().unwrap_or(0));
+    let common = |mode, pulses, travels: &[i64]| common(hardware, block, mode, pulses, travels);
+    match (&block.curve, block.curve.arc()) {
+        (Curve::Line(_), _) => {
+            let mut travels = block.axes[..2].iter().map(|&axis| i128::from(block.travel(axis)));
+            let [dx, dy] = [(); 2].map(|()| travels.next().unwrap_or(0));
             let start = Start { pulses: [dx.abs(), dy.abs()], start: [0; 2], deviation: 0, x_grows: false, angle: 0.0 };
             let quad = match (dx < 0, dy < 0) {
                 (false, false) => 0,
@@ -109,20 +114,12 @@ pub(super) fn blocks(
                 (false, true) => 3,
             };
             let (words, steps) = own(&start);
-            let common = common(block, Words::new().set(MODE, 1).set(QUAD, quad).set(CCW, false), start.pulses, third);
-            vec![HardwareBlock { words: words.and(common), steps, length: line.length() }]
+            let mode = Words::new().set(MODE, 1).set(QUAD, quad).set(CCW, false);
+            let common =
+                common(mode, start.pulses, &followers(block).map(|axis| block.travel(axis)).collect::<Vec<_>>());
+            vec![HardwareBlock { words: words.and(common), steps, length: block.length() }]
         }
-        Curve::Arc(arc) => sectors(crossing, block, arc, |_, _| 0, &own),
-        Curve::Helix(helix) => {
-            let all = helix.sectors();
-            let sign = helix.z_travel().signum();
-            let third = |index: usize, _: &Sector| {
-                let after = all.get(index).map_or(0, |sector| sector.z_steps);
-                let before = index.checked_sub(1).and_then(|index| all.get(index)).map_or(0, |sector| sector.z_steps);
-                i128::from(sign * (after - before))
-            };
-            sectors(crossing, block, helix.arc(), third, &own)
-        }
+        (_, Some(arc)) => sectors(crossing, block, arc, own, common),
         _ => Vec::new(),
     }
 }
@@ -131,18 +128,17 @@ fn sectors(
     crossing: Crossing,
     block: &PulseBlock,
     arc: &Arc,
-    third: impl Fn(usize, &Sector) -> i128,
-    own: &impl Fn(&Start) -> (Words, f64),
+    own: impl Fn(&Start) -> (Words, f64),
+    common: impl Fn(Words, [i128; 2], &[i64]) -> Words,
 ) -> Vec<HardwareBlock> {
-    let all = arc.sectors(crossing);
-    let travels: Vec<i128> = all.iter().enumerate().map(|(index, sector)| third(index, sector)).collect();
-    let begin = |(sector, third): (&Sector, i128)| {
+    let third = block.axes.get(2).copied();
+    let begin = |Piece { sector, pulses, travels }: Piece| {
         let [x, y] = sector.start.map(i128::from);
         let [start, end] = [sector.start, sector.end].map(|point| point.map(|c| c as f64));
         let turn = start[0] * end[1] - start[1] * end[0];
         let angle = turn.abs().atan2(start[0] * end[0] + start[1] * end[1]);
         let at = Start {
-            pulses: sector.steps().map(i128::from),
+            pulses: pulses.map(i128::from),
             start: [x.abs(), y.abs()],
             deviation: x * x + y * y - arc.radius_squared(),
             x_grows: sector.quadrant.growing_axis(arc.direction()) == 0,
@@ -151,28 +147,60 @@ fn sectors(
         let ccw = arc.direction() == Direction::CounterClockwise;
         let mode = Words::new().set(MODE, 2).set(QUAD, sector.quadrant.index()).set(CCW, ccw);
         let (words, steps) = own(&at);
-        let length = f64::hypot(arc.radius() * angle, third as f64);
-        HardwareBlock { words: words.and(common(block, mode, at.pulses, third)), steps, length }
+        let climb =
+            followers(block).zip(&travels).find(|(axis, _)| Some(*axis) == third).map_or(0, |(_, travel)| *travel);
+        let length = f64::hypot(arc.radius() * angle, climb as f64);
+        HardwareBlock { words: words.and(common(mode, at.pulses, &travels)), steps, length }
     };
-    all.iter().zip(travels).map(begin).filter(|block| block.has_pulses()).collect()
+    pieces(crossing, block, arc).into_iter().filter(|piece| piece.pulses != [0; 2]).map(begin).collect()
 }
 
-/// Words that every machine in a plane has.
-fn common(block: &PulseBlock, mode: Words, [ex, ey]: [i128; 2], third: i128) -> Words {
-    let plane = match block.plane {
-        Plane::Xy => 0,
-        Plane::Zx => 1,
-        Plane::Yz => 2,
+/// A sector of an arc, with the axes that follow it.
+pub(super) struct Piece {
+    sector: Sector,
+    /// Pulses of the two axes of the plane.
+    pub(super) pulses: [i64; 2],
+    /// Signed travels of the [followers].
+    pub(super) travels: Vec<i64>,
+}
+
+/// The sectors of an arc: each axis that follows goes evenly with the angle, to the nearest pulse at the end of each.
+pub(super) fn pieces(crossing: Crossing, block: &PulseBlock, arc: &Arc) -> Vec<Piece> {
+    let (mut gone, parts) = ([0; AXES_MAX], arc.parts());
+    let piece = |(index, sector): (usize, Sector)| {
+        let part = parts.get(index).copied().unwrap_or(1.0);
+        let travel = |axis: usize| {
+            let all = block.travel(axis);
+            let to = all.signum() * share(all.abs(), part);
+            to - std::mem::replace(&mut gone[axis], to)
+        };
+        Piece { sector, pulses: sector.steps(), travels: followers(block).map(travel).collect() }
     };
+    arc.sectors(crossing).into_iter().enumerate().map(piece).collect()
+}
+
+/// The axes of the largest machine that follow those of the plane, in the order of the followers of the hardware.
+fn followers(block: &PulseBlock) -> impl Iterator<Item = usize> {
+    let plane = [block.axes[0], block.axes[1]];
+    (0..AXES_MAX).filter(move |axis| !plane.contains(axis))
+}
+
+/// Words that every machine in a plane has. `travels` are those of the [followers].
+fn common(hardware: &Hardware, block: &PulseBlock, mode: Words, [ex, ey]: [i128; 2], travels: &[i64]) -> Words {
     let whole = ex + ey;
-    let words = mode.set(PLANE, plane).set_each(END.pair(), [ex, ey]).set(WHOLE, whole);
-    words.set(SHARE, third.abs()).set(REST, whole / 2).set(THIRD_SIGN, third < 0)
+    let plane = plane_index([block.axes[0], block.axes[1]]);
+    let words = mode.set(PLANE, plane as i128).set_each(END.pair(), [ex, ey]).set(WHOLE, whole);
+    let all = (0..followers_of(hardware.axes)).zip(travels);
+    all.fold(words, |words, (index, &travel)| {
+        let words = words.set(SHARE.of(index), travel.abs()).set(REST.of(index), whole / 2);
+        words.set(FOLLOWER_SIGN.of(index), travel < 0)
+    })
 }
 
-/// Greatest distance from a curve in BLU, where it is `plane` in the plane and a third axis follows within a pulse.
+/// Greatest distance from a curve in BLU, where it is `plane` in the plane and every other axis follows within a pulse.
 pub(super) fn bound(block: &PulseBlock, plane: f64) -> f64 {
-    let third = block.plane.axes()[2];
-    if block.from[third] == block.to[third] { plane } else { plane + 1.0 }
+    let following = block.axes[2..].iter().filter(|axis| block.travel(**axis) != 0).count();
+    plane + (following as f64).sqrt()
 }
 
 /// Steps of a motion that always moves its faster axis: of a sector, ∫ max(|cos|, |sin|) R dφ.

@@ -59,9 +59,9 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, taken);
 }
 
-fn load(block: &PulseBlock, _: &Hardware) -> Vec<HardwareBlock> {
+fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
     let pulses = |[a, b]: [i128; 2]| (a + b) as f64;
-    planar::blocks(CROSSING, block, |at| {
+    planar::blocks(CROSSING, hardware, block, |at| {
         let (f, point) = if let Curve::Line(_) = block.curve { (0, at.pulses) } else { (at.deviation, at.start) };
         (Words::new().set(F, f).set_each(XI_YI, point), pulses(at.pulses))
     })

@@ -65,5 +65,5 @@ fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
     let delta = &delta(block)[..hardware.axes];
     let k = stepgen::least_accumulations(delta, hardware);
     let steps = 2f64.powi(k.cast_signed());
-    vec![HardwareBlock { words: stepgen::words(delta, &[], hardware, k), steps, length: block.curve.length() }]
+    vec![HardwareBlock { words: stepgen::words(delta, &[], hardware, k), steps, length: block.length() }]
 }

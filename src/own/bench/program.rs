@@ -4,7 +4,7 @@ use super::geometry::Piece;
 use super::{Bench, Pulses};
 use crate::models::program::{HardwareBlock, Moves, Pacing, Size};
 use crate::models::{AXES, CurveKind, Hardware, ModelError, Plan, Promise};
-use crate::nc::{Crossing, Curve, Line, Plane, PulseBlock};
+use crate::nc::{AXES_MAX, Crossing, Curve, Line, PulseBlock};
 
 impl Bench {
     /// A block that it does not run: what is wrong, and the remedy.
@@ -22,7 +22,7 @@ impl Moves for Bench {
     fn takes(&self, block: &PulseBlock) -> bool {
         match &block.curve {
             Curve::Line(_) => true,
-            Curve::Arc(_) => self.arcs() && block.plane == Plane::Xy,
+            Curve::Arc(_) => self.arcs() && block.axes == [0, 1] && !block.moves_others(),
             _ => false,
         }
     }
@@ -35,9 +35,9 @@ impl Moves for Bench {
             );
         }
         let pulses = |axis: usize| self.axes.get(axis).is_some_and(|pulses| !matches!(pulses, Pulses::Still));
-        let missing = (0..3).find(|&axis| !pulses(axis) && block.from[axis] != block.to[axis]);
+        let missing = (0..AXES_MAX).find(|&axis| !pulses(axis) && block.travel(axis) != 0);
         missing.map_or(Ok(()), |axis| {
-            let known: Vec<&str> = (0..3).filter(|&axis| pulses(axis)).map(|axis| AXES[axis]).collect();
+            let known: Vec<&str> = (0..AXES_MAX).filter(|&axis| pulses(axis)).map(|axis| AXES[axis]).collect();
             let (letter, known) = (AXES[axis], known.join(" and "));
             self.refused(&format!(
                 "it says how {known} pulse, and this move goes along {letter}: add [axis.{letter}] if the hardware has one, or \
@@ -50,8 +50,8 @@ impl Moves for Bench {
         Crossing::RoundedRadius
     }
 
-    fn axes(&self) -> usize {
-        self.axes.len().min(3)
+    fn axes(&self, _: &Size) -> usize {
+        self.axes.len()
     }
 
     fn pacing(&self) -> Pacing {
@@ -59,11 +59,11 @@ impl Moves for Bench {
     }
 
     fn plan(&self, size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
-        self.planned(plan, size.positions.into_iter().take(self.axes()).map(Vec::from))
+        self.planned(plan, size.positions.into_iter().take(self.axes.len()).map(Vec::from))
     }
 
     fn words(&self, hardware: &Hardware, block: &PulseBlock, speed: u64) -> Result<Vec<HardwareBlock>, ModelError> {
-        let [from, to] = [block.from, block.to].map(|place| place[..self.axes()].to_vec());
+        let [from, to] = [block.from, block.to].map(|place| place[..self.axes.len()].to_vec());
         let line;
         let curve = match &block.curve {
             Curve::Line(_) => {
@@ -76,7 +76,7 @@ impl Moves for Bench {
         };
         let remedy = "divide the move, choose a larger --blu, or give another expression";
         let all = self.loaded(hardware, Piece { from, to, ..Piece::whole(curve) }, speed, remedy)?;
-        let length = curve.length();
+        let length = block.length();
         Ok(all.into_iter().map(|words| HardwareBlock { words, steps: 0.0, length }).collect())
     }
 

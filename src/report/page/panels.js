@@ -92,12 +92,16 @@ class Panels {
     }
     this.rowOfMove = new Map(rows.map(({ move }, row) => [move, row]));
     const longest = Math.max(8, ...rows.map(({ text }) => text.length));
-    const speed = (feed) => (feed === null ? '' : real(feed, 1));
+    const speed = (feed, what) => {
+      const turns = feed[`${what}_degrees_per_min`];
+      const number = turns ?? feed[`${what}_mm_per_min`] ?? null;
+      return number === null ? '' : `${real(number, 1)}${turns === undefined ? '' : '°'}`;
+    };
     const cells = ({ line, text, move }) => {
       if (move === null) return [line, text, '', '', '', ''];
       const { kind, clocks, path_error, feed, end_point } = run.moves[move];
-      const reached = speed(feed.reached_mm_per_min);
-      const feeds = kind === 'rapid' ? reached : `${speed(feed.commanded_mm_per_min)} → ${reached}`;
+      const reached = speed(feed, 'reached');
+      const feeds = kind === 'rapid' ? reached : `${speed(feed, 'commanded')} → ${reached}`;
       return [line, text, end_point.exact ? kind : `${kind} ✗`, shown(clocks), path_error.greatest.toFixed(3), feeds];
     };
     return new Table($('program-tab'), {

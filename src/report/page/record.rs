@@ -58,14 +58,14 @@ impl RunRecord {
         RunRecord::new(shown, &[], args, limit)
     }
 
-    /// Of a machine that interpolates, with a clock in Hz and a BLU in mm.
+    /// Of a machine that interpolates, with a clock in Hz, a BLU in mm, and one of rotary axes in degrees.
     ///
     /// # Errors
     /// The options name no signal.
     pub(crate) fn of_bench(
         bench: &Testbench,
         args: &WaveOptions,
-        [clock_hz, blu_mm]: [f64; 2],
+        [clock_hz, blu_mm, blu_degrees]: [f64; 3],
         limit: Limit,
     ) -> Result<RunRecord, Error> {
         let machine = bench.machine();
@@ -75,7 +75,7 @@ impl RunRecord {
         let mut record = RunRecord::new(bench.into(), &ports, args, limit)?;
         let head = record.head(bench);
         let (track, steps) = (Track::new(bench, record.window), StepRows::default());
-        let units = Units { clock_hz, blu_mm };
+        let units = Units { clock_hz, blu_mm, blu_degrees };
         record.interpolator = Some(Interpolator { head, track, steps, units, begun: 0, moves: Vec::new() });
         Ok(record)
     }

@@ -10,7 +10,7 @@ fn a_page_that_becomes_too_large_says_at_which_clock_and_what_to_do() {
     let bench = Testbench::new(find("dda-line").expect("a model"), &line, &Options::default()).expect("a bench");
     let limit = |bytes| Limit { bytes, ..ONE_RUN };
     let run = |bytes| {
-        let record = RunRecord::of_bench(&bench, &WaveOptions::default(), [1e6, 1e-3], limit(bytes));
+        let record = RunRecord::of_bench(&bench, &WaveOptions::default(), [1e6, 1e-3, 1e-3], limit(bytes));
         let mut record = record.expect("signals");
         bench.run(EngineKind::Word, &mut [&mut record]).map_err(|error| error.to_string())
     };

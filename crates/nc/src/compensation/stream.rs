@@ -5,7 +5,9 @@ use std::f64::consts::TAU;
 use super::corner::{Between, Joint, joint, joint_after_stop};
 use super::geometry::{Bend, Edge, LEAST, Vector, length, sub};
 use super::{CompensationError, CompensationErrorKind as Kind, Corner, Scheme, WAITING_LIMIT};
-use crate::{COORDINATE_LIMIT, Cause, Direction, Move, Place, Point, Segment, SegmentShape, Side, ToolMove};
+use crate::{
+    COORDINATE_LIMIT, Cause, Direction, Move, OTHERS, Others, Place, Point, Segment, SegmentShape, Side, ToolMove,
+};
 
 /// A move shorter than this along every axis is left out, in BLU.
 const NOTHING: f64 = 1e-9;
@@ -19,7 +21,7 @@ const GAP: f64 = 1e-3;
 /// A call that returns an error has put out nothing and changed nothing.
 ///
 /// ```
-/// use stepwave_nc::{Compensator, Corner, Feed, Move, PathControl, Place, Plane, Scheme, Segment, Side, SegmentShape};
+/// use stepwave_nc::{Compensator, Corner, Feed, Move, Others, PathControl, Place, Plane, Scheme, Segment, Side, SegmentShape};
 ///
 /// let line = |line, from, to, side| Move {
 ///     place: Place { line, number: None },
@@ -28,6 +30,7 @@ const GAP: f64 = 1e-3;
 ///     plane: Plane::Xy,
 ///     side,
 ///     path: PathControl::Continuous,
+///     others: Others::default(),
 /// };
 /// let mut compensator = Compensator::new(Scheme::C, Corner::Straight);
 /// let mut out = Vec::new();
@@ -48,6 +51,8 @@ pub struct Compensator {
     waiting: Vec<Move>,
     /// The tool's centre after the last move put out; of use while compensation is on.
     position: Point,
+    /// The axes other than x, y and z then.
+    others: [f64; OTHERS],
 }
 
 /// The end of the contour so far.
@@ -93,7 +98,7 @@ impl Compensator {
     /// A compensator of a scheme, compensation off.
     #[must_use]
     pub fn new(scheme: Scheme, corner: Corner) -> Self {
-        Compensator { scheme, corner, tail: Tail::Off, waiting: Vec::new(), position: [0.0; 3] }
+        Compensator { scheme, corner, tail: Tail::Off, waiting: Vec::new(), position: [0.0; 3], others: [0.0; OTHERS] }
     }
 
     /// Takes the next block and puts out what is known by then. With compensation off a block passes as it is.
@@ -159,9 +164,10 @@ impl Compensator {
     /// A block while compensation is off.
     fn start(&mut self, block: Move, edge: Edge, out: &mut Vec<ToolMove>) -> Result<(), Kind> {
         let Some((side, radius)) = sided(block.side)?.filter(|_| edge.moves()) else {
-            let Move { place, segment, feed, path, .. } = block;
+            let Move { place, segment, feed, path, others, .. } = block;
             let (cause, side) = (Cause::Programmed, Side::On);
-            out.push(ToolMove { place, segment, feed, cause, programmed: segment, side, path });
+            self.others = others.to;
+            out.push(ToolMove { place, segment, feed, cause, programmed: segment, side, path, others });
             return Ok(());
         };
         let length = edge.length();
@@ -270,11 +276,9 @@ impl Compensator {
             let [_, _, third] = source.plane.of(source.segment.to);
             let to = source.plane.point([u, v, third]);
             let segment = Segment { from: self.position, to, shape: SegmentShape::Line };
-            let Move { place, feed, segment: programmed, path, .. } = source;
-            self.send(
-                ToolMove { place, segment, feed, cause: Cause::Programmed, programmed, side: before.source.side, path },
-                out,
-            );
+            let Move { place, feed, segment: programmed, path, others, .. } = source;
+            let (cause, side) = (Cause::Programmed, before.source.side);
+            self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others }, out);
         }
     }
 
@@ -296,7 +300,8 @@ impl Compensator {
             let segment = Segment { from: self.position, to: plane.point([u, v, third]), shape };
             let programmed = Segment { from: corner, to: corner, shape: SegmentShape::Line };
             let Move { place, feed, side, path, .. } = before.source;
-            self.send(ToolMove { place, segment, feed, cause: Cause::Inserted, programmed, side, path }, out);
+            let (cause, others) = (Cause::Inserted, Others::at(self.others));
+            self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others }, out);
         }
     }
 
@@ -310,15 +315,16 @@ impl Compensator {
         let [u, v] = if closed { [u, v] } else { path.to };
         let segment = Segment { from: self.position, to: plane.point([u, v, third]), shape: path.shape };
         let cause = path.cause;
-        let Move { place, feed, side, segment: programmed, path, .. } = block.source;
-        self.send(ToolMove { place, segment, feed, cause, programmed, side, path }, out);
+        let Move { place, feed, side, segment: programmed, path, others, .. } = block.source;
+        self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others }, out);
     }
 
     fn send(&mut self, tool: ToolMove, out: &mut Vec<ToolMove>) {
         let Segment { from, to, shape } = tool.segment;
         let still = from.iter().zip(to).all(|(from, to)| (from - to).abs() <= NOTHING);
-        if !still || shape != SegmentShape::Line {
+        if !still || shape != SegmentShape::Line || !tool.others.rest() {
             self.position = to;
+            self.others = tool.others.to;
             out.push(tool);
         }
     }

@@ -1,7 +1,9 @@
 use std::f64::consts::{SQRT_2, TAU};
 
 use super::*;
-use crate::{Cause, Direction, Feed, Move, PathControl, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove};
+use crate::{
+    Cause, Direction, Feed, Move, Others, PathControl, Place, Plane, Point, Segment, SegmentShape, Side, ToolMove,
+};
 
 mod corners;
 mod errors;
@@ -31,7 +33,15 @@ fn assert_near(found: Vector, expected: Vector, tolerance: f64) {
 fn block(line: u64, from: Vector, to: Vector, shape: SegmentShape, side: Side) -> Move {
     let segment = Segment { from: [from[0], from[1], 0.0], to: [to[0], to[1], 0.0], shape };
     let place = Place { line, number: Some(10 * line) };
-    Move { place, segment, feed: Feed::PerMinute(100.0), plane: Plane::Xy, side, path: PathControl::default() }
+    Move {
+        place,
+        segment,
+        feed: Feed::PerMinute(100.0),
+        plane: Plane::Xy,
+        side,
+        path: PathControl::default(),
+        others: Others::default(),
+    }
 }
 
 fn arc(center: Vector, direction: Direction) -> SegmentShape {

@@ -60,9 +60,9 @@ pub(super) fn center(
 /// What P may belong to.
 pub(super) const TURNS_OWNER: &str = "G02, G03, G04 or G64";
 
-/// The turns of an arc as segments, each with its share of the whole path: full circles, and the arc itself after them.
-/// The third axis moves evenly over all. A line is one segment.
-pub(super) fn turns(segment: Segment, turns: u64) -> impl Iterator<Item = (Segment, f64)> {
+/// The turns of an arc as segments, each with the parts of the whole path at which it starts and ends: full circles, and the
+/// arc itself after them. The third axis moves evenly over all. A line is one segment.
+pub(super) fn turns(segment: Segment, turns: u64) -> impl Iterator<Item = (Segment, [f64; 2])> {
     let (angle, plane) = match segment.shape {
         SegmentShape::Arc { plane, center, direction } => (swept(&segment, plane, center, direction), plane),
         SegmentShape::Line => (TAU, crate::Plane::Xy),
@@ -72,9 +72,12 @@ pub(super) fn turns(segment: Segment, turns: u64) -> impl Iterator<Item = (Segme
     // A program says at most 10,000 turns.
     let full = turns.saturating_sub(1);
     let whole = full as f64 * TAU + angle;
-    let after = move |turn: u64| plane.point([u, v, low + (high - low) * (turn as f64 * TAU / whole)]);
-    let circle =
-        move |turn: u64| (Segment { from: after(turn), to: after(turn + 1), shape: segment.shape }, TAU / whole);
+    let part = move |turn: u64| turn as f64 * TAU / whole;
+    let after = move |turn: u64| plane.point([u, v, low + (high - low) * part(turn)]);
+    let circle = move |turn: u64| {
+        let circle = Segment { from: after(turn), to: after(turn + 1), shape: segment.shape };
+        (circle, [part(turn), part(turn + 1)])
+    };
     let last = Segment { from: if full == 0 { segment.from } else { after(full) }, ..segment };
-    (0..full).map(circle).chain([(last, angle / whole)])
+    (0..full).map(circle).chain([(last, [part(full), 1.0])])
 }

@@ -123,7 +123,7 @@ impl<'l> BlockWords<'l> {
                 'O' => return Err(word.fault(|word| ProgramErrorKind::FlowControl { word })),
                 'G' => block.g(word)?,
                 'M' => block.m(word)?,
-                'D' | 'F' | 'H' | 'I' | 'J' | 'K' | 'L' | 'P' | 'Q' | 'R' | 'S' | 'T' | 'X' | 'Y' | 'Z' => {
+                'A'..='D' | 'F' | 'H'..='L' | 'P'..='Z' => {
                     let slot = &mut block.letters[place(word.letter)];
                     if let Some(first) = slot {
                         let first = first.name();

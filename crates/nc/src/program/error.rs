@@ -426,6 +426,12 @@ pub enum ReadingError {
         /// The BLU given, in mm.
         blu: f64,
     },
+    /// The BLU of rotary axes is not an angle.
+    #[error("invalid BLU of {degrees} degrees: give more than 0, such as 0.001")]
+    Degrees {
+        /// The BLU given, in degrees.
+        degrees: f64,
+    },
     /// The tolerance of radii is not a length.
     #[error("a tolerance of {tolerance} BLU is invalid: give at least 0")]
     Tolerance {

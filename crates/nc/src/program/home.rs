@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 
 use super::block::{BlockWords, Distance, Motion};
 use super::error::{Fault, ProgramErrorKind};
-use super::modal::{AXES, Modal, within};
+use super::modal::{AXES, Modal, OTHER_AXES};
 use super::words::Word;
 use super::{Event, Reading};
-use crate::{Feed, Move, Place, Segment, SegmentShape, Side};
+use crate::{Feed, Others, Place, Segment, SegmentShape, Side};
 
 impl Modal {
     /// What a coordinate counts from, in BLU.
@@ -50,36 +50,28 @@ impl Modal {
         if let Some(other) = block.any(others) {
             return Err(other.fault(|word| ProgramErrorKind::Unused { word, owner: "G02 or G03" }));
         }
-        let all = block.any("XYZ").is_none();
-        let (mut over, mut home) = (self.position, self.position);
-        for (axis, letter) in AXES.into_iter().enumerate() {
+        let all = block.any("XYZABCUVW").is_none();
+        let (mut over, mut home) = ((self.position, self.others), (self.position, self.others));
+        let places = over.0.iter_mut().zip(&mut home.0).chain(over.1.iter_mut().zip(&mut home.1));
+        let letters = AXES.into_iter().chain(OTHER_AXES);
+        for ((over, home), (axis, letter)) in places.zip(letters.enumerate()) {
             let word = block.word(letter);
             if let Some(word) = word {
-                let length = self.length(word, reading)?;
-                let to = self.origin(block, letter, over[axis], reading) + length;
-                over[axis] = within(to, word.column, || letter.to_string())?;
-                home[axis] = over[axis];
+                *over = self.coordinate(block, word, *over, reading)?;
+                *home = *over;
             }
             if all || word.is_some() {
-                home[axis] = zero(reading)[axis];
+                *home = zero(reading).get(axis).copied().unwrap_or(0.0);
             }
         }
         if reading.home.is_none() {
             return Ok(());
         }
         for to in [over, home] {
-            if to != self.position {
-                let segment = Segment { from: self.position, to, shape: SegmentShape::Line };
-                events.push_back(Event::Move(Move {
-                    place,
-                    segment,
-                    feed: Feed::Rapid,
-                    plane: self.plane,
-                    side: self.side,
-                    path: self.path,
-                }));
-                self.position = to;
-            }
+            let segment = Segment { from: self.position, to: to.0, shape: SegmentShape::Line };
+            let others = Others { from: self.others, to: to.1 };
+            (self.position, self.others) = to;
+            self.moves((segment, others), 1, Feed::Rapid, place, events);
         }
         Ok(())
     }

@@ -23,6 +23,8 @@
 //! | G90.1, G91.1 | centres (I J K) are absolute, or relative to the start of the arc |
 //! | G93, G94 | F is the inverse of the block's time in minutes, or a feed in units per minute; a change clears F |
 //! | F, S, T, N | feed, spindle speed, tool, number of the block (the first word of it) |
+//! | A B C | end point of the rotary axes, in degrees (G20 too) |
+//! | U V W | end point of the axes parallel to X, Y and Z |
 //! | X Y Z, I J K, R | end point, centre of an arc, radius of an arc (negative: more than half a turn) |
 //! | P of an arc | turns of which the last may be a part, 1 without it; each is a move of its own |
 //! | M00, M01 | stop, optional stop |
@@ -55,6 +57,9 @@
 //! (what rounding to 0.001 mm or 0.0001 inch makes) or 0.1 % of its radius, whichever is most, the last at most 0.5 mm;
 //! but never by more than half of its radius; [`Reading::tolerance`] allows more. Such an R makes half a turn about the
 //! middle of the chord. The third of the words I, J and K may be given as 0.
+//!
+//! F of G94 is along the path of x, y and z where one of them moves, else along that of u, v and w, else, where only rotary axes
+//! move, in degrees per minute; all other axes arrive at the same time.
 //!
 //! A free curve becomes chords, no farther off it than [`Reading::chords`]; each is a move of the same block. G05 and G05.1 are
 //! in the plane XY, a NURBS is in the plane that is chosen. Under G91 a control point counts from where the tool is, as the
@@ -110,6 +115,8 @@ pub enum Integers {
 pub struct Reading {
     /// The BLU in mm, more than 0.
     pub blu: f64,
+    /// One BLU of a rotary axis (A, B, C) in degrees, more than 0.
+    pub degrees: f64,
     /// What a coordinate without decimal point means.
     pub integers: Integers,
     /// The radius of the tool of every D number, in mm, at least 0. Tool tables of RS-274 machines hold the diameter,
@@ -162,6 +169,7 @@ pub enum Auxiliary {
 
 /// What a program does next.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(clippy::large_enum_variant)] // nearly all are moves
 pub enum Event {
     /// The tool moves.
     Move(Move),
@@ -200,7 +208,7 @@ pub enum Event {
 /// ```
 /// use stepwave_nc::{Event, Integers, Program, Reading};
 ///
-/// let reading = Reading { blu: 0.001, integers: Integers::Units, tools: Default::default(), tolerance: 0.0, home: None,
+/// let reading = Reading { blu: 0.001, degrees: 0.001, integers: Integers::Units, tools: Default::default(), tolerance: 0.0, home: None,
 /// chords: 0.5 }; let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?; let
 /// Some(Ok(Event::Move(first))) = program.next() else { panic!() }; assert_eq!(first.segment.to, [1500.0, 0.0, 0.0]);
 /// let Some(Err(error)) = program.next() else { panic!() }; assert_eq!(
@@ -230,11 +238,15 @@ impl<R: BufRead> Program<R> {
     ///
     /// # Errors
     ///
-    /// If the BLU, the tolerance, the distance of chords or the radius of a tool is not a length, or the home is beyond all coordinates.
+    /// If a BLU, the tolerance, the distance of chords or the radius of a tool is not a length, or the home is beyond all coordinates.
     pub fn new(text: R, reading: Reading) -> Result<Program<R>, ReadingError> {
         let blu = reading.blu;
         if !(blu.is_finite() && blu > 0.0) {
             return Err(ReadingError::Blu { blu });
+        }
+        let degrees = reading.degrees;
+        if !(degrees.is_finite() && degrees > 0.0) {
+            return Err(ReadingError::Degrees { degrees });
         }
         if let Some((&number, &radius)) =
             reading.tools.iter().find(|&(_, &radius)| !(radius.is_finite() && radius >= 0.0))

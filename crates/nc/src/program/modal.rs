@@ -8,20 +8,24 @@ use super::error::{Fault, ProgramErrorKind};
 use super::spline::Curves;
 use super::words::Word;
 use super::{Auxiliary, Event, Integers, PROGRAM_LIMIT, Reading};
-use crate::{Direction, Feed, Move, PathControl, Place, Plane, Point, Segment, SegmentShape, Side};
+use crate::{
+    Direction, Feed, FeedAxes, Move, OTHERS, Others, PathControl, Place, Plane, Point, Segment, SegmentShape, Side,
+};
 
 /// The words that stay in force, and where the tool is.
 #[derive(Debug)]
 pub(super) struct Modal {
     pub(super) position: Point,
+    /// The axes other than x, y and z.
+    pub(super) others: [f64; OTHERS],
     pub(super) plane: Plane,
     /// Millimetres in a unit.
     unit: f64,
     pub(super) distance: Distance,
     centers: Distance,
     feed_mode: FeedMode,
-    /// In mm/min; none under G93.
-    feed: Option<f64>,
+    /// F as it was given, and millimetres in its unit; none under G93.
+    feed: Option<(f64, f64)>,
     pub(super) side: Side,
     /// The move before is compensated, so that the next one ends that.
     pub(super) compensated: bool,
@@ -35,6 +39,7 @@ impl Default for Modal {
     fn default() -> Modal {
         Modal {
             position: [0.0; 3],
+            others: [0.0; OTHERS],
             plane: Plane::Xy,
             unit: 1.0,
             distance: Distance::Absolute,
@@ -50,8 +55,13 @@ impl Default for Modal {
     }
 }
 
+/// The words of a move.
+const MOVING: &str = "XYZABCUVWIJKR";
 /// The letters of axes and of the centre, axis by axis.
 pub(super) const AXES: [char; 3] = ['X', 'Y', 'Z'];
+pub(super) const OTHER_AXES: [char; OTHERS] = ['A', 'B', 'C', 'U', 'V', 'W'];
+/// Those of them that turn.
+const ROTARY: usize = 3;
 const CENTERS: [char; 3] = ['I', 'J', 'K'];
 
 /// Ends that are no further apart along the axes are one point: rounding of increments and inches has parted
@@ -116,12 +126,12 @@ impl Modal {
             self.go_home(block, place, reading, events)?;
         } else if self.curve(block, place, feed, reading, events)? {
             // It has made its moves.
-        } else if let Some(segment) = self.segment(block, reading)? {
+        } else if let Some((segment, others)) = self.segment(block, reading)? {
             let turns = self.turns(block)?;
-            let feed = self.feed_of_move(block, feed)?;
+            let feed = self.feed_of_move(block, feed, FeedAxes::of(&segment, &others))?;
             if block.machine.is_none() || reading.home.is_some() {
-                self.position = segment.to;
-                self.moves(segment, turns, feed, place, events);
+                (self.position, self.others) = (segment.to, others.to);
+                self.moves((segment, others), turns, feed, place, events);
             }
         } else if let Some(word) = block.word('P').filter(|_| !block.times()) {
             return Err(word.fault(|word| ProgramErrorKind::Unused { word, owner: arc::TURNS_OWNER }));
@@ -149,13 +159,21 @@ impl Modal {
     }
 
     /// The moves of a segment: one, but of an arc of several turns each turn is one.
-    fn moves(&mut self, segment: Segment, turns: u64, feed: Feed, place: Place, events: &mut VecDeque<Event>) {
-        if segment.from == segment.to && segment.shape == SegmentShape::Line {
+    pub(super) fn moves(
+        &mut self,
+        (segment, others): (Segment, Others),
+        turns: u64,
+        feed: Feed,
+        place: Place,
+        events: &mut VecDeque<Event>,
+    ) {
+        if segment.from == segment.to && segment.shape == SegmentShape::Line && others.rest() {
             return;
         }
-        let of = |(segment, share): (Segment, f64)| {
-            let feed = if let Feed::Inverse(number) = feed { Feed::Inverse(number / share) } else { feed };
-            Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side, path: self.path })
+        let of = |(segment, [from, to]): (Segment, [f64; 2])| {
+            let feed = if let Feed::Inverse(number) = feed { Feed::Inverse(number / (to - from)) } else { feed };
+            let others = Others { from: others.after(from), to: others.after(to) };
+            Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side, path: self.path, others })
         };
         events.extend(arc::turns(segment, turns).map(of));
         self.compensated = self.side != Side::On;
@@ -177,19 +195,26 @@ impl Modal {
             return Err(word.fault(|word| ProgramErrorKind::FeedNotPositive { word }));
         }
         if self.feed_mode == FeedMode::PerMinute {
-            self.feed = Some(number * self.unit);
+            self.feed = Some((number, self.unit));
         }
         Ok(Some(number))
     }
 
-    /// The feed of a block that moves, whose own F number is known.
-    pub(super) fn feed_of_move(&self, block: &BlockWords<'_>, number: Option<f64>) -> Result<Feed, Fault> {
+    /// The feed of a block that moves along these axes, whose own F number is known.
+    pub(super) fn feed_of_move(
+        &self,
+        block: &BlockWords<'_>,
+        number: Option<f64>,
+        along: FeedAxes,
+    ) -> Result<Feed, Fault> {
+        // Degrees are not scaled.
+        let per_minute = |(feed, unit): (f64, f64)| if along == FeedAxes::Rotary { feed } else { feed * unit };
         let (feed, missing) = match (self.motion, self.feed_mode) {
             (Some(Motion::Rapid), _) => return Ok(Feed::Rapid),
-            (_, FeedMode::PerMinute) => (self.feed.map(Feed::PerMinute), ProgramErrorKind::NoFeed),
+            (_, FeedMode::PerMinute) => (self.feed.map(per_minute).map(Feed::PerMinute), ProgramErrorKind::NoFeed),
             (_, FeedMode::InverseTime) => (number.map(Feed::Inverse), ProgramErrorKind::NoInverseTime),
         };
-        let column = || block.motion.map(|(_, word)| word).or(block.any("XYZIJKR")).map_or(1, |word| word.column);
+        let column = || block.motion.map(|(_, word)| word).or(block.any(MOVING)).map_or(1, |word| word.column);
         feed.ok_or_else(|| Fault { column: column(), kind: missing })
     }
 
@@ -237,18 +262,43 @@ impl Modal {
         })
     }
 
-    /// A length word in BLU.
+    /// A length word in BLU, or the angle of a rotary axis.
     pub(super) fn length(&self, word: Word<'_>, reading: &Reading) -> Result<f64, Fault> {
         let value = match reading.integers {
             Integers::Pulses if word.integer => word.value,
+            _ if OTHER_AXES[..ROTARY].contains(&word.letter) => word.value / reading.degrees,
             _ => word.value * self.unit / reading.blu,
         };
         within(value, word.column, || word.letter.to_string())
     }
 
-    /// The segment of the block, of any length; nothing where it has no word that moves.
-    fn segment(&self, block: &BlockWords<'_>, reading: &Reading) -> Result<Option<Segment>, Fault> {
-        let Some(first) = block.any("XYZIJKR") else {
+    /// Where a coordinate word leads, of an axis that is here now, in BLU.
+    pub(super) fn coordinate(
+        &self,
+        block: &BlockWords<'_>,
+        word: Word<'_>,
+        at: f64,
+        reading: &Reading,
+    ) -> Result<f64, Fault> {
+        let length = self.length(word, reading)?;
+        within(self.origin(block, word.letter, at, reading) + length, word.column, || word.letter.to_string())
+    }
+
+    /// Where the axes other than x, y and z go; one that hardly moves rests.
+    fn others(&self, block: &BlockWords<'_>, reading: &Reading) -> Result<Others, Fault> {
+        let mut others = Others::at(self.others);
+        for (to, letter) in others.to.iter_mut().zip(OTHER_AXES) {
+            if let Some(word) = block.word(letter) {
+                let wanted = self.coordinate(block, word, *to, reading)?;
+                *to = if (wanted - *to).abs() <= SAME_POINT { *to } else { wanted };
+            }
+        }
+        Ok(others)
+    }
+
+    /// The segment of the block, of any length, and the other axes; nothing where it has no word that moves.
+    fn segment(&self, block: &BlockWords<'_>, reading: &Reading) -> Result<Option<(Segment, Others)>, Fault> {
+        let Some(first) = block.any(MOVING) else {
             return Ok(None);
         };
         let Some(motion) = self.motion else {
@@ -261,11 +311,10 @@ impl Modal {
         let mut to = from;
         for (coordinate, letter) in to.iter_mut().zip(AXES) {
             if let Some(word) = block.word(letter) {
-                let length = self.length(word, reading)?;
-                let start = self.origin(block, letter, *coordinate, reading);
-                *coordinate = within(start + length, word.column, || letter.to_string())?;
+                *coordinate = self.coordinate(block, word, *coordinate, reading)?;
             }
         }
+        let others = self.others(block, reading)?;
         let mut still = [0, 1, 2].map(|axis| (to[axis] - from[axis]).abs() <= SAME_POINT);
         match motion {
             Motion::Arc(_) => {
@@ -284,7 +333,7 @@ impl Modal {
             (_, None) => SegmentShape::Line,
             (_, Some(word)) => return Err(word.fault(|word| ProgramErrorKind::Unused { word, owner: "G02 or G03" })),
         };
-        Ok(Some(Segment { from, to, shape }))
+        Ok(Some((Segment { from, to, shape }, others)))
     }
 
     fn arc(
@@ -305,7 +354,7 @@ impl Modal {
             return Err(word.fault(|word| ProgramErrorKind::CenterOffPlane { word, plane: name, words }));
         }
         // Where the arc as a whole is wrong: the first word that says so.
-        let column = block.any("RIJK").or(block.motion.map(|(_, word)| word)).or(block.any("XYZ"));
+        let column = block.any("RIJK").or(block.motion.map(|(_, word)| word)).or(block.any(MOVING));
         let column = column.map_or(1, |word| word.column);
         let fault = |kind| Fault { column, kind };
         let given = [first, second].map(|axis| block.word(CENTERS[axis]));

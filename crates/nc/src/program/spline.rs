@@ -8,7 +8,7 @@ use super::modal::{AXES, Modal, within};
 use super::words::Word;
 use super::{Event, Reading};
 use crate::nurbs::{NURBS_DEGREE, NURBS_POINTS, Piece, pieces};
-use crate::{Feed, Move, Place, Plane, Point, Segment, SegmentShape, Side, nurbs};
+use crate::{Feed, FeedAxes, Move, Others, Place, Plane, Point, Segment, SegmentShape, Side, nurbs};
 
 /// The order of a NURBS without L, and the least one.
 const USUAL_ORDER: usize = 3;
@@ -71,6 +71,10 @@ impl Modal {
         reading: &Reading,
         events: &mut VecDeque<Event>,
     ) -> Result<bool, Fault> {
+        let free = matches!(self.motion, Some(Motion::Nurbs | Motion::Cubic | Motion::Quadratic));
+        if let (true, Some(word)) = (free || block.nurbs_end.is_some(), block.any("ABCUVW")) {
+            return Err(word.fault(|word| ProgramErrorKind::Unused { word, owner: "G00 to G03" }));
+        }
         let pieces = match (block.nurbs_end, self.motion) {
             (Some(((), word)), _) => self.nurbs_end(block, word)?,
             (None, Some(Motion::Nurbs)) => {
@@ -102,7 +106,7 @@ impl Modal {
                 return Ok(false);
             }
         };
-        let feed = self.feed_of_move(block, feed)?;
+        let feed = self.feed_of_move(block, feed, FeedAxes::Linear)?;
         let column = block.nurbs_end.map(|slot| slot.1).or(block.motion.map(|slot| slot.1)).or(block.any("XYPQ"));
         let column = column.map_or(1, |word| word.column);
         let ends = self.ends_of_chords(&pieces, column, reading)?;
@@ -271,6 +275,7 @@ impl Modal {
                 plane: self.plane,
                 side: Side::On,
                 path: self.path,
+                others: Others::at(self.others),
             }));
         }
         self.position = ends.last().copied().unwrap_or(self.position);

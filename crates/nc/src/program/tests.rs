@@ -13,6 +13,7 @@ mod splines;
 fn reading() -> Reading {
     Reading {
         blu: 0.01,
+        degrees: 0.01,
         integers: Integers::Units,
         tools: BTreeMap::from([(1, 4.0), (2, 2.5)]),
         tolerance: 0.0,
