@@ -1,4 +1,4 @@
-//! Five small programs to read first. Each is a file of `examples/`, which the tests run.
+//! Six small programs to read first. Each is a file of `examples/`, which the tests run.
 
 macro_rules! page {
     ($(#[$about:meta])* $name:ident) => {
@@ -30,4 +30,8 @@ page!(
 page!(
     /// Many geometries and forms of the hardware.
     sweep
+);
+page!(
+    /// A network of integrators for curves that the catalogue has not: an Archimedean spiral, and the involute of a circle.
+    spiral
 );

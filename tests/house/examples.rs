@@ -11,7 +11,7 @@ fn code_lines(text: &str) -> usize {
 #[test]
 fn examples_for_users_of_the_crates_are_at_most_60_lines_of_code() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-    for name in ["first_wave", "own_model", "own_netlist", "regression_test", "sweep"] {
+    for name in ["first_wave", "own_model", "own_netlist", "regression_test", "spiral", "sweep"] {
         let text = std::fs::read_to_string(folder.join(name).with_extension("rs")).unwrap();
         assert!(code_lines(&text) <= 60, "{name}: {} lines", code_lines(&text));
         assert!(
@@ -107,4 +107,33 @@ fn sweep_names_its_slowest_and_its_worst_run() {
     let text = printed("sweep", folder.path());
     // 31 times 32 lines in three widths and two forms; the longest line has 62 steps of four beats, and the load.
     assert!(text.starts_with("5952 runs\n") && text.contains(",249,"), "{text}");
+}
+
+#[test]
+fn spiral_and_involute_stay_near_their_curves_and_are_simulated_by_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = Command::new(example("spiral")).arg("spiral.net").current_dir(&folder).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    // 19 radians; no count has overflowed, or it would have ended.
+    assert_eq!(text, "311296 clocks; spiral 0.118 BLU off, involute 0.119 BLU off\n");
+    let ran = Command::new(env!("CARGO_BIN_EXE_stepwave"))
+        .args(["sim", "spiral.net", "--clocks", "311296", "--vcd", "spiral.vcd", "--trace", "x", "--trace", "y"])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    assert!(ran.status.success(), "{ran:?}");
+    // The involute after 19 radians: 10·(cos θ + θ·sin θ), 10·(sin θ - θ·cos θ) BLU.
+    let (sin, cos) = 19.0_f64.sin_cos();
+    let wave = std::fs::read_to_string(folder.path().join("spiral.vcd")).unwrap();
+    let last = |name: &str| {
+        let head = wave.lines().find(|line| line.starts_with("$var") && line.contains(&format!(" {name}"))).unwrap();
+        let code = head.split_whitespace().nth(3).unwrap();
+        let bits =
+            wave.lines().rev().find_map(|line| line.strip_suffix(&format!(" {code}"))?.strip_prefix('b')).unwrap();
+        let number = i64::from_str_radix(bits, 2).unwrap();
+        (if number >= 1 << 14 { number - (1 << 15) } else { number }) as f64 / 64.0
+    };
+    for (name, exact) in [("x", 10.0 * (cos + 19.0 * sin)), ("y", 10.0 * (sin - 19.0 * cos))] {
+        assert!((last(name) - exact).abs() < 0.12, "{name}: {} for {exact}", last(name));
+    }
 }
