@@ -337,7 +337,8 @@ impl Simulation {
         let record = |out| {
             let degrees = report.program().map_or(0.0, |program| program.blu_degrees);
             let units = [self.clock_hz, self.blu_mm, degrees];
-            Ok::<_, Error>((out, RunRecord::of_bench(bench, &self.waves, units, page::ONE_RUN)?))
+            let record = RunRecord::of_bench(bench, &self.waves, units, page::ONE_RUN)?;
+            Ok::<_, Error>((out, record.beginning_with(self.source.leading())))
         };
         let mut page = page.map(record).transpose()?;
         let mut watches = Watches::new(bench, &self.source);

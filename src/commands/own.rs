@@ -88,21 +88,8 @@ pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
     let report = sim.staged(&mut outputs, &mut screen)?;
     screen.flush()?;
     outputs.commit()?;
-    let events = report.events();
     if !quiet {
-        let mut text = format!("{} clocks", report.clocks);
-        text += &match events.len() {
-            0 => "; no property was violated\n".to_owned(),
-            1 => "; 1 property was violated\n".to_owned(),
-            count => format!("; {count} properties were violated\n"),
-        };
-        for event in &events {
-            text += &format!("warning: {event}\n");
-        }
-        for note in report.notes() {
-            text += &format!("note: {note}\n");
-        }
-        output::print(&text)?;
+        output::print(&report.summary())?;
     }
     let failures = report.failures();
     if failures.is_empty() { Ok(()) } else { Err(Error::Check(failures)) }

@@ -149,11 +149,10 @@ impl Sim {
 
     /// What a page says of the run.
     fn facts(&self, report: &SimReport, title: String) -> Facts {
-        let sentences = |sentences: Vec<String>| sentences.iter().map(|of| format!("{of}\n")).collect::<String>();
         Facts {
             headline: self.design.netlist().scopes[0].name.clone(),
             title,
-            summary: sentences(report.events()) + &sentences(report.notes()),
+            summary: report.summary(),
             failures: report.failures(),
             warnings: report.events(),
             clock_hz: self.clock_hz,
@@ -306,6 +305,23 @@ fn drain(rows: &mut Rows, observers: &mut [&mut dyn Observer]) -> Result<(), Err
 }
 
 impl SimReport {
+    /// How long it ran and what was violated, as a terminal shows it.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let mut text = match self.tallies.len() {
+            0 => format!("{} clocks; no property was violated\n", self.clocks),
+            1 => format!("{} clocks; 1 property was violated\n", self.clocks),
+            count => format!("{} clocks; {count} properties were violated\n", self.clocks),
+        };
+        for event in self.events() {
+            text += &format!("warning: {event}\n");
+        }
+        for note in self.notes() {
+            text += &format!("note: {note}\n");
+        }
+        text
+    }
+
     /// Sentences about what the hardware did wrong: properties that were violated.
     #[must_use]
     pub fn events(&self) -> Vec<String> {

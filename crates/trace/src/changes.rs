@@ -3,6 +3,9 @@
 //! A net has two streams of [numbers](crate::numbers). The first has, for its value in the first sample and for each
 //! change after it, the clocks since the one before. The second has the differences of the values, modulo 2^width and read
 //! as two's complement, from 0; of a net of one bit, which can only alternate, its first value alone.
+//!
+//! An accumulator changes by the same number again and again, and one that adds what another one holds by numbers that
+//! change so. Where differences of differences take fewer bytes they are kept instead, up to the fourth [order](Net::order).
 
 use std::io;
 use std::ops::Range;
@@ -10,7 +13,7 @@ use std::ops::Range;
 use stepwave_netlist::{Rows, Width};
 
 use super::moves::{Moves, SPAN};
-use super::numbers::{push, push_signed};
+use super::numbers::{pull_signed, push, push_signed};
 
 /// A net that is recorded.
 #[derive(Clone, Debug)]
@@ -38,9 +41,23 @@ pub struct Changes {
 pub struct Recorded {
     /// First and last clock; `None` without a sample.
     pub clocks: Option<(u64, u64)>,
-    /// The two streams of each net: clocks and differences.
-    pub streams: Vec<[Vec<u8>; 2]>,
+    /// The nets, in their order.
+    pub nets: Vec<Net>,
 }
+
+/// A net that was recorded.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Net {
+    /// Clocks between changes.
+    pub times: Vec<u8>,
+    /// Differences of its values.
+    pub values: Vec<u8>,
+    /// How often sums of these, modulo 2^width, give its values: 1 to [`MOST_ORDER`].
+    pub order: u32,
+}
+
+/// The highest order of differences.
+pub const MOST_ORDER: u32 = 4;
 
 impl Changes {
     /// Of the nets in these columns, in this order, in at most this many bytes.
@@ -89,8 +106,7 @@ impl Changes {
     /// What was recorded.
     #[must_use]
     pub fn finish(self) -> Recorded {
-        let streams = self.streams.into_iter().map(|stream| [stream.times, stream.values]).collect();
-        Recorded { clocks: self.taken, streams }
+        Recorded { clocks: self.taken, nets: self.streams.into_iter().map(Stream::finish).collect() }
     }
 
     fn bytes(&self) -> usize {
@@ -129,6 +145,32 @@ impl Stream {
         }
         (self.clock, self.value) = (clock, value);
     }
+
+    /// Takes the order of differences that needs the fewest bytes; a higher one only where it saves a twentieth.
+    fn finish(self) -> Net {
+        let (mut best, mut order) = (self.values, 1);
+        if self.width.get() > 1 {
+            let mut last = best.clone();
+            for higher in 2..=MOST_ORDER {
+                last = differences(&last, self.width);
+                if last.len() * 20 < best.len() * 19 {
+                    (best, order) = (last.clone(), higher);
+                }
+            }
+        }
+        Net { times: self.times, values: best, order }
+    }
+}
+
+/// The differences of numbers, from 0, modulo 2^width and read as two's complement.
+fn differences(mut numbers: &[u8], width: Width) -> Vec<u8> {
+    let (mut before, mut out) = (0_i64, Vec::with_capacity(numbers.len()));
+    let unused = 64 - width.get();
+    while let Some(number) = pull_signed(&mut numbers) {
+        push_signed(number.wrapping_sub(before) << unused >> unused, &mut out);
+        before = number;
+    }
+    out
 }
 
 #[cfg(test)]
@@ -154,16 +196,25 @@ mod tests {
     /// The value of a net at every clock of a recording.
     fn decoded(recorded: &Recorded, net: usize, width: Width) -> Vec<u64> {
         let (first, last) = recorded.clocks.unwrap();
-        let [mut times, mut values] = recorded.streams[net].each_ref().map(Vec::as_slice);
+        let Net { times, values, order } = &recorded.nets[net];
+        let (mut times, mut values) = (&times[..], &values[..]);
         let mask = u64::MAX >> (64 - width.get());
         let (mut clock, mut value, mut shown) = (first, 0_u64, Vec::new());
+        let mut sums = [0_u64; MOST_ORDER as usize];
         while !times.is_empty() {
             clock += read(&mut times, false);
             let before = value;
             shown.resize(usize::try_from(clock - first).unwrap(), before);
             value = match (width.get(), values.is_empty()) {
                 (1, true) => 1 - value,
-                _ => value.wrapping_add(read(&mut values, true)) & mask,
+                _ => {
+                    let mut sum = read(&mut values, true);
+                    for total in &mut sums[..*order as usize] {
+                        sum = total.wrapping_add(sum);
+                        *total = sum;
+                    }
+                    sum & mask
+                }
             };
         }
         shown.resize(usize::try_from(last - first + 1).unwrap(), value);
@@ -175,7 +226,8 @@ mod tests {
     fn samples(widths: &[u32], seeds: &[u64]) -> Vec<Vec<u64>> {
         let column = |(net, &bits): (usize, &u32)| {
             let mask = u64::MAX >> (64 - bits);
-            let value = |(clock, &seed): (usize, &u64)| match net % 4 {
+            let value = |(clock, &seed): (usize, &u64)| match net % 5 {
+                4 => (clock as u64).wrapping_pow(3).wrapping_mul(0x0123_4567) & mask,
                 0 => seed & mask,
                 1 => (clock as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) & mask,
                 2 => {
@@ -229,8 +281,22 @@ mod tests {
         }
         changes.rows(&rows, 0..64).unwrap();
         let recorded = changes.finish();
-        assert_eq!(recorded.streams[0].each_ref().map(Vec::len), [64, 64]);
-        assert_eq!(recorded.streams[1].each_ref().map(Vec::len), [64, 1]);
+        let bytes = |net: &Net| [net.times.len(), net.values.len()];
+        assert_eq!((bytes(&recorded.nets[0]), recorded.nets[0].order), ([64, 64], 1));
+        assert_eq!(bytes(&recorded.nets[1]), [64, 1]);
+    }
+
+    #[test]
+    fn what_grows_as_a_cubic_takes_a_byte_a_change_by_its_fourth_differences() {
+        let width = Width::new(60).unwrap();
+        let mut changes = Changes::new(&[(0, width)], usize::MAX);
+        let mut rows = Rows::new(1, 1000);
+        (0..1000_u64).for_each(|clock| rows.push(clock, |_| clock.pow(3) * 0x0123_4567));
+        changes.rows(&rows, 0..1000).unwrap();
+        let recorded = changes.finish();
+        assert_eq!(recorded.nets[0].order, 4);
+        assert!(recorded.nets[0].values.len() < 1030, "{} bytes", recorded.nets[0].values.len());
+        assert_eq!(decoded(&recorded, 0, width)[777], 777_u64.pow(3) * 0x0123_4567);
     }
 
     #[test]
@@ -247,7 +313,7 @@ mod tests {
         changes.rest(80_000);
         let recorded = changes.finish();
         assert_eq!(recorded.clocks, Some((3, 80_000)));
-        assert_eq!(recorded.streams[0][1], [7, 1, 0x78]);
+        assert_eq!(recorded.nets[0].values, [7, 1, 0x78]);
         let shown = decoded(&recorded, 0, width);
         assert_eq!([0, 896, 897, 69_996, 69_997, 79_997].map(|at| shown[at]), [7, 7, 8, 8, 0, 0]);
     }

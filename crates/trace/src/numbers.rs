@@ -18,6 +18,22 @@ pub fn push_signed(mut number: i64, out: &mut Vec<u8>) {
     out.push(0x7F & number.to_le_bytes()[0]);
 }
 
+/// Takes a number of either sign from the start of the bytes; `None` where they end before it does.
+pub fn pull_signed(bytes: &mut &[u8]) -> Option<i64> {
+    let (mut number, mut shift) = (0_i64, 0);
+    loop {
+        let (&byte, rest) = bytes.split_first()?;
+        *bytes = rest;
+        if shift < 64 {
+            number |= i64::from(byte & 0x7F) << shift;
+        }
+        shift += 7;
+        if byte & 0x80 == 0 {
+            return Some(if byte & 0x40 != 0 && shift < 64 { number | (-1 << shift) } else { number });
+        }
+    }
+}
+
 /// Eight bytes, the highest first.
 pub(crate) fn push_u64(number: u64, out: &mut Vec<u8>) {
     out.extend_from_slice(&number.to_be_bytes());
@@ -69,5 +85,10 @@ mod tests {
         assert_eq!(of(-1), [0x7F]);
         assert_eq!(of(-64), [0x40]);
         assert_eq!(of(-65), [0xBF, 0x7F]);
+        for number in [0, 63, 64, -64, -65, 1 << 40, -(1 << 40), i64::MAX, i64::MIN] {
+            let (bytes, mut rest) = (of(number), &of(number)[..]);
+            assert_eq!((pull_signed(&mut rest), rest.len()), (Some(number), 0));
+            assert_eq!(pull_signed(&mut &bytes[..bytes.len() - 1]), None, "{number}");
+        }
     }
 }

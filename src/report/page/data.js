@@ -71,10 +71,15 @@ function signedSums(bytes, sums, mask) {
   return sums;
 }
 
-/** The same of a net of more than 32 bits. */
-function wideSums(bytes, count, width) {
+/** Sums of these once more. */
+function sumAgain(sums, mask) {
+  for (let sum = 0, index = 0; index < sums.length; index++) sums[index] = sum = (sum + sums[index]) & mask;
+}
+
+/** The same of a net of more than 32 bits: sums of sums as often as the order says. */
+function wideSums(bytes, count, width, order) {
   const sums = new BigUint64Array(count);
-  let sum = 0n;
+  const totals = new BigUint64Array(order);
   for (let at = 0, index = 0; index < count; index++) {
     let number = 0n, shift = 0n, byte;
     do {
@@ -83,8 +88,12 @@ function wideSums(bytes, count, width) {
       shift += 7n;
     } while (byte & 128);
     if (byte & 64) number -= 1n << shift;
-    sum = BigInt.asUintN(width, sum + number);
-    sums[index] = sum;
+    // Elements of the array count modulo 2^64.
+    for (let level = 0; level < order; level++) {
+      totals[level] += number;
+      number = totals[level];
+    }
+    sums[index] = BigInt.asUintN(width, number);
   }
   return sums;
 }
@@ -116,8 +125,8 @@ function lastUpToNear(numbers, limit, from) {
 
 /** A net: the clocks of its changes, and its values. */
 class Net {
-  constructor(run, [index, width, times, values]) {
-    Object.assign(this, { run, index, width, times, stream: values });
+  constructor(run, [index, width, times, values, order]) {
+    Object.assign(this, { run, index, width, times, stream: values, order });
   }
 
   // Decoded when they are first asked for; the values then take the place of these two.
@@ -130,7 +139,7 @@ class Net {
   }
 
   decode() {
-    const { run, width } = this;
+    const { run, width, order } = this;
     const clocks = sumsOf(run.stream(this.times), run.first, run.last);
     const bytes = run.stream(this.stream);
     let values;
@@ -138,9 +147,11 @@ class Net {
       values = new Uint8Array(clocks.length);
       for (let at = 0, value = bytes[0] & 1; at < values.length; at++, value ^= 1) values[at] = value;
     } else if (width <= 32) {
-      values = signedSums(bytes, new Uint32Array(clocks.length), width === 32 ? -1 : 2 ** width - 1);
+      const mask = width === 32 ? -1 : 2 ** width - 1;
+      values = signedSums(bytes, new Uint32Array(clocks.length), mask);
+      for (let again = 1; again < order; again++) sumAgain(values, mask);
     } else {
-      values = wideSums(bytes, clocks.length, width);
+      values = wideSums(bytes, clocks.length, width, order);
     }
     Object.defineProperty(this, 'clocks', { value: clocks });
     Object.defineProperty(this, 'values', { value: values });

@@ -42,23 +42,27 @@ Object.assign(WaveView.prototype, {
     for (let clock = Math.ceil(this.from / step) * step; clock < this.to; clock += step) {
       context.fillRect(Math.round(this.x(clock)), 0, 1, height);
     }
-    if (this.run.starts.length < 2) return;
+    const { starts } = this.run;
+    const [first, end] = [Math.max(0, this.run.block(this.from)), this.run.block(this.to) + 1];
+    // Where blocks are shorter than some pixels, their lines would be a grey field.
+    if (starts.length < 2 || end - first > width / 10) return;
     context.fillStyle = colours.line;
-    let last = -4;
-    for (let at = Math.max(0, this.run.block(this.from)); at < this.run.starts.length && this.run.starts[at] < this.to; at++) {
-      const x = Math.round(this.x(this.run.starts[at]));
-      if (x - last >= 4) context.fillRect(last = x, 0, 1, height);
-    }
+    for (const start of starts.slice(first, end)) context.fillRect(Math.round(this.x(start)), 0, 1, height);
   },
 
-  /** Goes along the changes in view: `one` takes a value from place to place, `many` places where there is more than one a pixel. */
-  walk(signal, width, one, many) {
+  /**
+   * Goes along the changes in view: `one` takes a value from place to place, `many` places where values take less than some pixels: each pixel, or all
+   * of them next to each other where these are joined.
+   */
+  walk(signal, width, { least, joins }, one, many) {
     const { clocks } = signal;
+    const last = clocks.length - 1;
+    const short = (at) => at < last && (clocks[at + 1] - clocks[at]) * this.scale < least;
     let at = Math.max(0, lastUpTo(clocks, this.from));
-    while (at < clocks.length && clocks[at] < this.to) {
+    while (at <= last && clocks[at] < this.to) {
       const from = this.x(clocks[at]);
-      const to = at + 1 < clocks.length ? this.x(clocks[at + 1]) : this.x(this.run.last + 1);
-      if (to - from >= 1.5 || from < 0) {
+      if (!short(at)) {
+        const to = this.x(at < last ? clocks[at + 1] : this.run.last + 1);
         one(Math.max(from, -4), Math.min(to, width + 4), at);
         at++;
         continue;
@@ -66,11 +70,11 @@ Object.assign(WaveView.prototype, {
       const first = at;
       let end = from;
       do {
-        end = Math.floor(end) + 1.5;
-        at = lastUpToNear(clocks, this.from + end / this.scale, at);
-      } while (at + 1 < clocks.length && end < width && this.x(clocks[at + 1]) - end < 1.5 && this.x(clocks[at + 1]) - this.x(clocks[at]) < 1.5);
-      many(from, Math.max(end, this.x(clocks[at])), first, at);
-      if (at === first) at++;
+        // A pixel on, or where the next change is: never less than one change.
+        end = Math.max(Math.floor(end) + 1.5, this.x(clocks[at + 1]));
+        at = Math.max(at + 1, lastUpToNear(clocks, this.from + end / this.scale, at));
+      } while (joins && end < width && short(at));
+      many(Math.max(from, -4), this.x(clocks[at]), first, at);
     }
   },
 
@@ -82,7 +86,7 @@ Object.assign(WaveView.prototype, {
     context.beginPath();
     const dense = [], filled = [];
     let before = null;
-    this.walk(signal, width, (from, to, at) => {
+    this.walk(signal, width, { least: 1.5, joins: true }, (from, to, at) => {
       const y = values[at] ? high : low;
       if (before === null) context.moveTo(from, y); else context.lineTo(from, before);
       context.lineTo(from, y);
@@ -110,7 +114,7 @@ Object.assign(WaveView.prototype, {
     context.lineWidth = 1.1;
     context.beginPath();
     const dense = [];
-    this.walk(signal, width, (from, to, at) => {
+    this.walk(signal, width, { least: 4, joins: true }, (from, to, at) => {
       const slope = Math.min(3, (to - from) / 2);
       context.moveTo(from, middle);
       context.lineTo(from + slope, high);
@@ -153,7 +157,7 @@ Object.assign(WaveView.prototype, {
     context.lineWidth = 1.4;
     context.beginPath();
     let started = false;
-    this.walk(signal, width, (from, to, at) => {
+    this.walk(signal, width, { least: 1.5, joins: false }, (from, to, at) => {
       const place = y(heights.number(at));
       if (started) context.lineTo(from, place); else context.moveTo(from, place);
       context.lineTo(to, place);

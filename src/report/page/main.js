@@ -23,11 +23,6 @@ async function showRun(index) {
   $('choices').title = run.title;
   const time = $('time');
   [time.min, time.max] = [run.first, run.last];
-  // As wide as it may become, so that the slider keeps its length.
-  const { clock } = cursor;
-  cursor.clock = run.last;
-  $('readout').style.setProperty('--chars', `${readout('  ·  ').length + 3}ch`);
-  cursor.clock = clock;
   path.show(run);
   panels.show(run, comparison, index);
   document.body.classList.toggle('without-path', !run.path);

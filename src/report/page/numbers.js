@@ -57,6 +57,11 @@ class Signal {
   }
 }
 
+/** The greatest of numbers of things; 0 of none. */
+function greatest(things, number) {
+  return things.reduce((most, thing) => Math.max(most, number(thing)), 0);
+}
+
 /** Bits as two's complement. */
 function signedOf(bits, width) {
   if (typeof bits === 'bigint') return BigInt.asIntN(width, bits);

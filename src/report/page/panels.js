@@ -91,7 +91,7 @@ class Panels {
       moves.forEach((move, at) => rows.push({ line: at ? '' : String(line), text: at ? '' : text, move }));
     }
     this.rowOfMove = new Map(rows.map(({ move }, row) => [move, row]));
-    const longest = Math.max(8, ...rows.map(({ text }) => text.length));
+    const longest = Math.max(8, greatest(rows, ({ text }) => text.length));
     const speed = (feed, what) => {
       const turns = feed[`${what}_degrees_per_min`];
       const number = turns ?? feed[`${what}_mm_per_min`] ?? null;
@@ -100,16 +100,17 @@ class Panels {
     const cells = ({ line, text, move }) => {
       if (move === null) return [line, text, '', '', '', ''];
       const { kind, clocks, path_error, feed, end_point } = run.moves[move];
+      const name = kindOf(run.moves[move]);
       const reached = speed(feed, 'reached');
       const feeds = kind === 'rapid' ? reached : `${speed(feed, 'commanded')} → ${reached}`;
-      return [line, text, end_point.exact ? kind : `${kind} ✗`, shown(clocks), path_error.greatest.toFixed(3), feeds];
+      return [line, text, end_point.exact ? name : `${name} ✗`, shown(clocks), path_error.greatest.toFixed(3), feeds];
     };
     return new Table($('program-tab'), {
       name: 'program_of', count: rows.length, row: (at) => cells(rows[at]),
       columns: [
         { title: word('line'), chars: Math.max(4, String(rows.length).length) },
         { title: word('text'), chars: Math.min(24, longest), align: 'left', grows: true },
-        { title: word('kind'), chars: 9, align: 'left' }, { title: word('clocks'), chars: 8 },
+        { title: word('kind'), chars: greatest(run.moves, ({ kind }) => kind.length) + 1, align: 'left' }, { title: word('clocks'), chars: 8 },
         { title: word('error'), chars: 6 }, { title: word('feed'), chars: 15 },
       ],
       pick: (row) => rows[row].move !== null && this.cursor.seek(run.moves[rows[row].move].begun),

@@ -34,10 +34,9 @@ class PathView {
     this.outlines = run.moves.length ? run.moves.filter((move) => move.kind !== 'rapid').map((move) => move.outline) : [run.outline];
     this.pieces = [];
     for (let from = 0; from < xs.length; from += PIECE) this.pieces.push(boundsOf(xs, ys, from, Math.min(xs.length, from + PIECE + 1)));
-    const points = this.outlines.flat();
-    this.bounds = [...this.pieces, ...points.map(([x, y]) => [x, y, x, y])].reduce(
-      (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[2], b[2]), Math.max(a[3], b[3])],
-      [Infinity, Infinity, -Infinity, -Infinity]);
+    const joined = (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[2], b[2]), Math.max(a[3], b[3])];
+    const whole = this.pieces.reduce(joined);
+    this.bounds = this.outlines.reduce((all, points) => points.reduce((all, [x, y]) => joined(all, [x, y, x, y]), all), whole);
     this.rapids = run.moves.map((move) => move.kind === 'rapid');
     this.legend();
     this.fit();
@@ -162,16 +161,25 @@ class PathView {
     context.strokeStyle = colours.ideal;
     context.lineWidth = this.scale < 4 ? 4 : 1.6;
     context.globalAlpha = this.scale < 4 ? 0.55 : 1;
-    for (const outline of this.outlines) {
-      context.beginPath();
-      outline.forEach(([x, y]) => context.lineTo(this.origin[0] + x * this.scale, this.origin[1] - y * this.scale));
-      context.stroke();
-    }
+    context.beginPath();
+    for (const outline of this.outlines) this.trace(context, outline);
+    context.stroke();
     context.globalAlpha = 1;
     const all = this.xs.length;
     this.stroke(context, all, colours.pale, 1.6, false);
     if (this.rapids.some(Boolean)) this.stroke(context, all, colours.rapid, 1, true);
     this.drawMarks(context);
+  }
+
+  /** Adds a line of points to what is drawn, without those less than a pixel apart. */
+  trace(context, points) {
+    let [lastX, lastY] = [NaN, NaN];
+    points.forEach(([px, py], at) => {
+      const [x, y] = [this.origin[0] + px * this.scale, this.origin[1] - py * this.scale];
+      if (at && at < points.length - 1 && Math.abs(x - lastX) + Math.abs(y - lastY) < 1) return;
+      if (at) context.lineTo(x, y); else context.moveTo(x, y);
+      [lastX, lastY] = [x, y];
+    });
   }
 
   drawGrid(context, width, height) {

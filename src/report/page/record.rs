@@ -27,6 +27,8 @@ pub(crate) struct RunRecord {
     /// The net of each stream, and its column.
     nets: Vec<(Net, usize, Width)>,
     interpolator: Option<Interpolator>,
+    /// Paths without the design's name of the signals that come first.
+    leading: &'static [&'static str],
     window: (u64, u64),
     limit: Limit,
 }
@@ -92,7 +94,12 @@ impl RunRecord {
         let columns: Vec<(usize, Width)> = nets.iter().map(|&(_, column, width)| (column, width)).collect();
         let writer = WaveWriter::new(Changes::new(&columns, limit.bytes), waves::window(shown, args)?);
         let window = (args.from, args.to.unwrap_or(u64::MAX));
-        Ok(RunRecord { writer, probes, nets, interpolator: None, window, limit })
+        Ok(RunRecord { writer, probes, nets, interpolator: None, leading: &[], window, limit })
+    }
+
+    /// The same with signals that come first: their paths without the design's name.
+    pub(crate) fn beginning_with(self, leading: &'static [&'static str]) -> RunRecord {
+        RunRecord { leading, ..self }
     }
 
     /// The streams of what a step table and a path show.
@@ -116,9 +123,9 @@ impl RunRecord {
     pub(crate) fn finish(self, facts: &Facts) -> Result<Packed, Error> {
         let (written, recorded) = waves::finish(self.writer, facts.clocks)?;
         let mut run = Run::new(&facts.headline);
-        let nets = self.nets.iter().zip(&recorded.streams);
-        let nets = nets.map(|(&(net, _, width), [times, values])| {
-            json!([net.index(), width.get(), run.stream(times), run.stream(values)])
+        let nets = self.nets.iter().zip(&recorded.nets);
+        let nets = nets.map(|(&(net, _, width), of)| {
+            json!([net.index(), width.get(), run.stream(&of.times), run.stream(&of.values), of.order])
         });
         let nets: Vec<Value> = nets.collect();
         let places: HashMap<usize, usize> = self.nets.iter().enumerate().map(|(at, net)| (net.1, at)).collect();
@@ -126,6 +133,7 @@ impl RunRecord {
         meta["first"] = json!(written.clocks.0);
         meta["last"] = json!(written.clocks.1);
         meta["nets"] = json!(nets);
+        meta["leading"] = json!(self.leading);
         meta["signals"] = self.probes.iter().map(|probe| signal(probe, &places)).collect();
         if let Some(Interpolator { head, track, steps, moves, .. }) = self.interpolator {
             meta["interpolator"] = head;

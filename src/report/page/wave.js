@@ -51,12 +51,14 @@ class WaveView {
     const flags = run.signals.filter(({ role }) => role === 'flag');
     const [raised, down] = [flags.filter(rises), flags.filter((flag) => !rises(flag))];
     if (raised.length) this.addScope([word('raised')], raised);
-    for (const [scopes, signals] of scopesOf(run)) this.addScope(scopes, signals);
+    const leading = run.leading.map((path) => run.byPath.get(`${run.signals[0].scopes[0]}.${path}`)).filter(Boolean);
+    if (leading.length) this.addScope([word('leading')], leading);
+    for (const [scopes, signals] of scopesOf(run, leading)) this.addScope(scopes, signals);
     if (down.length) this.addScope([word('flags')], down, true);
     this.list.replaceChildren(...this.items.map(({ element }) => element));
     this.list.firstChild?.setAttribute('tabindex', '0');
-    const longest = Math.max(...run.signals.map(({ name, scopes }) => name.length + 2 * scopes.length));
-    const widest = Math.max(...run.signals.map((signal) => Math.min(24, this.digits(signal))));
+    const longest = greatest(run.signals, ({ name, scopes }) => name.length + 2 * scopes.length);
+    const widest = Math.min(24, greatest(run.signals, (signal) => this.digits(signal)));
     $('wave').style.setProperty('--names', `calc(${Math.min(44, longest + widest) + 4}ch + 20px)`);
     this.arrange();
     this.fit();
@@ -69,6 +71,8 @@ class WaveView {
     sign.setAttribute('aria-hidden', 'true');
     const group = make('li', { role: 'treeitem', className: 'scope', data: { scope: path } }, sign, make('span', { textContent: scopes.at(-1) }));
     group.setAttribute('aria-level', level);
+    group.style.setProperty('--level', level);
+    group.tabIndex = -1;
     group.setAttribute('aria-expanded', String(!shut));
     if (shut) this.closed.add(path);
     this.items.push({ element: group, scope: path, height: ROW });
@@ -77,13 +81,12 @@ class WaveView {
       const name = make('span', { className: 'name', textContent: signal.name });
       const element = make('li', { role: 'treeitem', className: signal.role, title: `${signal.path}, ${signal.width} bit` , data: { name: signal.path } }, name, value);
       element.setAttribute('aria-level', level + 1);
+      element.style.setProperty('--level', level + 1);
       element.tabIndex = -1;
-      group.tabIndex = -1;
       const height = signal.drawn === 'curve' ? CURVE : ROW;
       if (height === CURVE) element.classList.add('curve');
       this.items.push({ element, signal, value, height, within: path, flagged: signal.role === 'flag' });
     }
-    for (const item of this.items) item.element.style.setProperty('--level', Number(item.element.getAttribute('aria-level')));
   }
 
   /** Characters that the values of a signal take. */
@@ -94,14 +97,15 @@ class WaveView {
   /** Which items are shown, and where. */
   arrange() {
     const sought = $('filter').value.trim().toLowerCase();
-    const isIn = (path, scope) => path === scope || path.startsWith(`${scope}.`);
-    const fits = ({ signal }) => signal && signal.path.toLowerCase().includes(sought);
-    const visible = (item) => {
-      const path = item.scope ?? item.within;
-      const parents = [...this.closed].filter((closed) => isIn(path, closed) && !(item.scope === closed));
-      if (item.signal) return fits(item) && (sought !== '' || !parents.length);
-      const holds = this.items.some((other) => fits(other) && isIn(other.within, item.scope));
-      return holds && (sought !== '' || !parents.length);
+    const fits = ({ signal }) => signal.path.toLowerCase().includes(sought);
+    // A scope with all that it is in, beginning with itself.
+    const around = (path) => path.split('.').map((_, depth, parts) => parts.slice(0, parts.length - depth).join('.'));
+    const found = this.items.filter((item) => item.signal && fits(item));
+    const holding = new Set(found.flatMap(({ within }) => around(within)));
+    const isOpen = (path) => sought !== '' || !around(path).some((scope) => this.closed.has(scope));
+    const visible = ({ signal, scope, within }) => {
+      if (signal) return (sought === '' || fits({ signal })) && isOpen(within);
+      return holding.has(scope) && isOpen(scope.split('.').slice(0, -1).join('.'));
     };
     let top = 0;
     this.shown = this.items.filter((item) => {
@@ -251,15 +255,15 @@ function rises({ nets: [net] }) {
   return net.values.includes(1);
 }
 
-/** The scopes of a run with their signals but flags: those that hold inputs last, as the test bench's side of the machine. */
-function scopesOf(run) {
+/** The scopes of a run with their signals, but flags and those that lead: those that hold inputs last, as the test bench's side of the machine. */
+function scopesOf(run, leading) {
   const scopes = new Map();
   for (const signal of run.signals) {
     for (let depth = 1; depth <= signal.scopes.length; depth++) {
       const path = signal.scopes.slice(0, depth).join('\0');
       if (!scopes.has(path)) scopes.set(path, []);
     }
-    if (signal.role !== 'flag') scopes.get(signal.scopes.join('\0')).push(signal);
+    if (signal.role !== 'flag' && !leading.includes(signal)) scopes.get(signal.scopes.join('\0')).push(signal);
   }
   const all = [...scopes].map(([path, signals]) => [path.split('\0'), signals]);
   const isBench = ([path, signals]) => path.length > 1 && signals.some(({ role }) => role === 'input');

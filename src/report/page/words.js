@@ -12,7 +12,7 @@ const WORDS = {
     next_clock: 'Next clock', speed: 'Speed', time: 'Clock', fit: 'Fit', zoom_in: 'Zoom in', zoom_out: 'Zoom out',
     ideal: 'ideal curve', pulses: 'pulses', rapid: 'rapid', tool: 'tool', worst: 'greatest error', overflow: 'overflow',
     violated: 'violated', end: 'end', start: 'start', close: 'Close', no_moves: 'no moves', of: 'of',
-    flags: 'flags that stay 0', raised: 'flags that rise', signals_of: 'Signals and their values at the cursor', steps_of: 'Step table', program_of: 'Moves of the program',
+    leading: 'motion', flags: 'flags that stay 0', raised: 'flags that rise', signals_of: 'Signals and their values at the cursor', steps_of: 'Step table', program_of: 'Moves of the program',
     methods_of: 'Methods compared', path_of: 'Path of the tool over the ideal curve', waves_of: 'Waves of the signals above',
     transport: 'Time', no_stream: 'This browser cannot unpack the data of this page: it has no DecompressionStream.',
     key_clock: 'clock before, next clock', key_step: 'step before, next step', key_block: 'block before, next block',
@@ -24,6 +24,7 @@ const WORDS = {
       + 'Drag the path to pan, turn the wheel to zoom, click to set the cursor where the tool is next to that place.',
   },
   zh: {
+    'rapid ': '快速', 'line ': '直线', 'arc ': '圆弧', 'start-up ': '起刀', 'cancel ': '撤刀', 'inserted line ': '插入直线', 'inserted arc ': '插入圆弧',
     method: '方法', numbers: '数制', as_declared: '按声明', unsigned: '无符号', signed: '有符号', binary: '二进制',
     hex: '十六进制', keys: '按键', path: '轨迹', wave: '波形', filter: '只显示名称中含有此文字的信号', filter_short: '筛选信号', signal: '信号', value: '值',
     steps: '插补计算过程', program: '程序', methods: '方法比较', diagram: '框图', report: '报告', step: '步', clock: '时钟',
@@ -32,7 +33,7 @@ const WORDS = {
     next_block: '下一程序段', before_step: '上一步', next_step: '下一步', before_clock: '上一时钟', next_clock: '下一时钟',
     speed: '速度', time: '时钟', fit: '全部', zoom_in: '放大', zoom_out: '缩小', ideal: '理想轮廓', pulses: '进给脉冲', rapid: '快速',
     tool: '刀具', worst: '最大误差', overflow: '溢出', violated: '违反', end: '终点', start: '起点', close: '关闭',
-    no_moves: '无运动', of: '/', flags: '始终为 0 的标志', raised: '出现 1 的标志', signals_of: '信号及其在光标处的值', steps_of: '插补计算过程表', program_of: '程序的各段运动',
+    no_moves: '无运动', of: '/', leading: '运动', flags: '始终为 0 的标志', raised: '出现 1 的标志', signals_of: '信号及其在光标处的值', steps_of: '插补计算过程表', program_of: '程序的各段运动',
     methods_of: '各方法比较', path_of: '刀具轨迹与理想轮廓', waves_of: '上列信号的波形', transport: '时间',
     no_stream: '此浏览器没有 DecompressionStream，无法解开本页的数据。',
     key_clock: '上一时钟、下一时钟', key_step: '上一步、下一步', key_block: '上一程序段、下一程序段',
@@ -48,6 +49,11 @@ let language = 'en';
 /** A word in the language of the page. */
 function word(key) {
   return WORDS[language][key];
+}
+
+/** What kind of move one is; the report has it in English. */
+function kindOf(move) {
+  return WORDS[language][`${move.kind} `] ?? move.kind;
 }
 
 /** Puts the words into everything that has `data-word`; a title where it has `data-title`. */
