@@ -29,7 +29,7 @@ pub(crate) enum Family {
     --synth ice40 takes the Verilog of `stepwave export --no-flags` at these widths. LUTs and flip-flops are those that\n\
     `yosys synth_ice40` makes of it; load words are inputs, which nothing is counted for. The highest clock is that of\n\
     nextpnr-ice40 in an hx8k, package ct256, seed 1, with `export --harness` around it, as the package has fewer pins than\n\
-    the machine has ports. Other seeds are some per cent off. Debian packages: yosys, nextpnr-ice40.\n\n\
+    the machine has ports. Other seeds are some per cent off; one is taken where the router comes to no end. Debian packages: yosys, nextpnr-ice40.\n\n\
     --accel runs one move as `stepwave program --accel` does at --clock-hz: a line from the origin to the end of the travel,\n\
     or of an arc a quarter of the greatest circle. Shown are the registers of the ramp, the greatest feed along the path,\n\
     time and length from the start to the end of the ramp up and from the ramp down to the last step, and the time of the\n\

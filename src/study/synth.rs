@@ -1,13 +1,14 @@
 //! What hardware costs in an FPGA: lookup tables and flip-flops by Yosys, the highest clock by nextpnr, both from the
 //! exported Verilog.
 //!
-//! One device and one seed for all, so that numbers can be compared; other seeds place otherwise and come some per cent
-//! above or below.
+//! One device and, where that can be routed, one seed for all, so that numbers can be compared; other seeds place otherwise
+//! and come some per cent above or below. The router of nextpnr goes round in circles for some placements (issues 179 and
+//! 1341 of its project): such a run is ended by what it prints, not by a time, and the next seed is taken.
 
 use std::collections::BTreeMap;
-use std::io::Read as _;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 
 use serde_json::Value;
 
@@ -19,8 +20,12 @@ use crate::testbench::Testbench;
 const DEVICE: [&str; 3] = ["--hx8k", "--package", "ct256"];
 /// Its logic cells, each a lookup table of four inputs with a carry and a flip-flop.
 const LOGIC_CELLS: u64 = 7680;
-/// The seed of the placement.
-const SEED: &str = "1";
+/// The seed of the placement, and the last that is tried.
+const SEEDS: std::ops::RangeInclusive<u64> = 1..=16;
+/// Lines of the router's table, of 1000 arcs each, without progress after which it is given up.
+const CIRCLES: usize = 12;
+/// Time between two looks at a tool.
+const INTERVAL: Duration = Duration::from_millis(20);
 /// Lines of a tool that fails which are shown.
 const LAST: usize = 4;
 
@@ -92,8 +97,11 @@ pub struct Cost {
     pub carries: u64,
     /// Block memories (`SB_RAM40_4K`).
     pub rams: u64,
-    /// The highest clock in Hz between registers, those of the harness too; `None` where the device does not hold it, or
-    /// where there is nothing between registers.
+    /// The device holds it.
+    pub fits: bool,
+    /// The seed with which it could be routed: 1, or where that does not lead to an end the next that does, up to 16.
+    pub seed: Option<u64>,
+    /// The highest clock in Hz between registers, those of the harness too; `None` where it was not routed.
     pub clock_hz: Option<f64>,
 }
 
@@ -117,7 +125,7 @@ impl Tools {
     /// Device, package and seed in words.
     #[must_use]
     pub fn device() -> String {
-        format!("iCE40 {} {}, seed {SEED}", DEVICE[0].trim_start_matches('-'), DEVICE[2])
+        format!("iCE40 {} {}, seed {}", DEVICE[0].trim_start_matches('-'), DEVICE[2], SEEDS.start())
     }
 
     /// What the machine of a model, in a bench, costs, without the flags of its properties: they are for the simulator, and widths that
@@ -133,7 +141,7 @@ impl Tools {
         std::fs::write(at("machine.v"), export::verilog(bench.design(), &options))?;
         std::fs::write(at("harness.v"), export::harness(bench.design(), &options))?;
         std::fs::write(at("script.ys"), SCRIPT)?;
-        run(YOSYS, &["-q", "-s", "script.ys"], model, folder.path())?;
+        run(YOSYS, &["-q", "-s", "script.ys"], model, folder.path(), |_| false)?;
         let unread = |tool, what| SynthError::Unread { tool, model: model.to_owned(), what };
         let read = |tool, name: &str| {
             let text = std::fs::read_to_string(at(name)).map_err(|error| unread(tool, error.to_string()))?;
@@ -145,12 +153,37 @@ impl Tools {
             return Err(unread(YOSYS, "there is no lookup table in it".to_owned()));
         }
         if [whole.luts, whole.flip_flops, whole.carries].iter().any(|count| *count > LOGIC_CELLS) {
-            return Ok(cost);
+            return Ok(Cost { fits: false, ..cost });
         }
-        let place = [&DEVICE[..], &["--seed", SEED, "--json", "harness.json", "--report", "report.json"]].concat();
-        run(NEXTPNR, &[&place[..], &["--timing-allow-fail", "-q"]].concat(), model, folder.path())?;
-        Ok(Cost { clock_hz: highest(&read(NEXTPNR, "report.json")?), ..cost })
+        for seed in SEEDS {
+            let seed_word = seed.to_string();
+            let place =
+                ["--seed", &seed_word, "--json", "harness.json", "--report", "report.json", "--timing-allow-fail"];
+            if run(NEXTPNR, &[&DEVICE[..], &place[..]].concat(), model, folder.path(), goes_round)? {
+                let clock_hz = highest(&read(NEXTPNR, "report.json")?);
+                return Ok(Cost { clock_hz, seed: Some(seed), ..cost });
+            }
+        }
+        Ok(cost)
     }
+}
+
+/// The router does what it has done before: in many lines of its table in a row no arc was added without another being
+/// torn out, and as many remain.
+fn goes_round(log: &str) -> bool {
+    // Iterations; arcs with and without such; those of them in this line; remaining; and times.
+    let line = |line: &str| -> Option<(bool, u64)> {
+        let mut fields = line.strip_prefix("Info:")?.split('|').skip(2);
+        let without = fields.next()?.split_whitespace().nth(1)?.parse::<u64>().ok()?;
+        Some((without == 0, fields.next()?.trim().parse().ok()?))
+    };
+    let (mut longest, mut length, mut before) = (0, 0, None);
+    for (stays, remaining) in log.lines().filter_map(line) {
+        length = if stays && before == Some(remaining) { length + 1 } else { 0 };
+        longest = longest.max(length);
+        before = Some(remaining);
+    }
+    longest >= CIRCLES
 }
 
 /// The version that a tool says: the word after `Yosys`, or what follows `Version`.
@@ -177,6 +210,8 @@ fn counted(netlist: &Value) -> Cost {
         flip_flops: of("SB_DFF"),
         carries: of("SB_CARRY"),
         rams: of("SB_RAM40"),
+        fits: true,
+        seed: None,
         clock_hz: None,
     }
 }
@@ -188,8 +223,15 @@ fn highest(report: &Value) -> Option<f64> {
     achieved.map(|mhz| mhz * 1e6)
 }
 
-/// Runs a tool to its end in a folder; nothing of what it prints is kept unless it fails.
-fn run(tool: &'static str, words: &[&str], model: &str, folder: &Path) -> Result<(), SynthError> {
+/// Runs a tool to its end in a folder, true, or until what it has printed is such that it is given up, false; nothing of
+/// that is kept unless it fails.
+fn run(
+    tool: &'static str,
+    words: &[&str],
+    model: &str,
+    folder: &Path,
+    is_given_up: impl Fn(&str) -> bool,
+) -> Result<bool, SynthError> {
     let log = folder.join("log");
     let out = std::fs::File::create(&log)?;
     let mut command = Command::new(tool);
@@ -200,33 +242,44 @@ fn run(tool: &'static str, words: &[&str], model: &str, folder: &Path) -> Result
     let mut spawned = None;
     temporary::attend(&mut |running| {
         let child = spawned.insert(command.spawn());
-        running.extend(child.as_ref().ok().map(std::process::Child::id));
+        running.extend(child.as_ref().ok().map(Child::id));
     });
     let started = spawned.unwrap_or_else(|| Err(std::io::ErrorKind::Interrupted.into()));
     let mut child = started.map_err(|error| SynthError::NoTool { tool, error })?;
-    ended(&child);
-    temporary::attend(&mut |running| running.retain(|number| *number != child.id()));
-    if child.wait()?.success() {
-        return Ok(());
+    let said = || std::fs::read(&log).map(|said| String::from_utf8_lossy(&said).into_owned());
+    while !is_over(&mut child) {
+        std::thread::sleep(INTERVAL);
+        if said().is_ok_and(|said| is_given_up(&said)) {
+            // One that has gone needs no end.
+            let _ = child.kill();
+        }
     }
-    let mut said = Vec::new();
-    std::fs::File::open(&log)?.read_to_end(&mut said)?;
-    Err(SynthError::Failed { tool, model: model.to_owned(), last: last(&String::from_utf8_lossy(&said)) })
+    temporary::attend(&mut |running| running.retain(|number| *number != child.id()));
+    let (status, said) = (child.wait()?, said()?);
+    // Whether it was given up does not depend on when that was looked at.
+    match is_given_up(&said) {
+        true => Ok(false),
+        false if status.success() => Ok(true),
+        false => Err(SynthError::Failed { tool, model: model.to_owned(), last: last(&said) }),
+    }
 }
 
-/// Waits until a process has ended, and keeps its number from others: once it was waited for, that may be another's.
+/// A process has ended. Its number is kept from others: once it was waited for, that may be another's.
 #[cfg(unix)]
-fn ended(child: &std::process::Child) {
+fn is_over(child: &mut Child) -> bool {
     use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
     let number = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
-    if let Some(number) = number {
-        let asked = || waitid(WaitId::Pid(number), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
-        while matches!(asked(), Err(rustix::io::Errno::INTR)) {}
-    }
+    let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+    number.is_none_or(|number| match waitid(WaitId::Pid(number), options) {
+        Ok(status) => status.is_some(),
+        Err(error) => error != rustix::io::Errno::INTR,
+    })
 }
 
 #[cfg(not(unix))]
-fn ended(_: &std::process::Child) {}
+fn is_over(child: &mut Child) -> bool {
+    !matches!(child.try_wait(), Ok(None))
+}
 
 /// The last lines that are not empty, in one.
 fn last(said: &str) -> String {
@@ -260,7 +313,7 @@ mod tests {
                 "e": cell("SB_LUT4"), "f": cell("SB_CARRY"), "g": cell("SB_RAM40_4K"), "h": cell("SB_DFF"),
             } },
         } });
-        let wanted = Cost { luts: 3, flip_flops: 3, carries: 1, rams: 1, clock_hz: None };
+        let wanted = Cost { luts: 3, flip_flops: 3, carries: 1, rams: 1, fits: true, seed: None, clock_hz: None };
         assert_eq!(counted(&netlist), wanted);
     }
 
@@ -270,6 +323,19 @@ mod tests {
             "utilization": {"ICESTORM_LC": {"available": 7680, "used": 612}}}"#;
         assert_eq!(highest(&serde_json::from_str(report).unwrap()), Some(102.5e6));
         assert_eq!(highest(&serde_json::json!({ "fmax": {} })), None);
+    }
+
+    #[test]
+    fn a_router_that_goes_round_is_seen_in_its_table() {
+        let head = "Info:            |   (re-)routed arcs  |   delta    | remaining|       time spent     |\n\
+                    Info:    IterCnt |  w/ripup   wo/ripup |  w/r  wo/r |      arcs| batch(sec) total(sec)|\n\
+                    Info:       1000 |       26        973 |   26   973 |      2103|       0.50       0.50|\n";
+        let round = "Info:       2000 |     1026        973 | 1000     0 |      2103|       0.53       1.03|\n";
+        let on = "Info:       3000 |     1926       1073 |  900   100 |      2003|       0.53       1.03|\n";
+        assert!(!goes_round(head) && !goes_round(&(head.to_owned() + &round.repeat(CIRCLES - 1))));
+        assert!(goes_round(&(head.to_owned() + &round.repeat(CIRCLES))));
+        assert!(goes_round(&(head.to_owned() + &round.repeat(CIRCLES) + on)));
+        assert!(!goes_round(&(head.to_owned() + &(round.repeat(CIRCLES - 1) + on).repeat(9))));
     }
 
     #[test]

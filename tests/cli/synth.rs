@@ -104,6 +104,25 @@ fn what_the_device_does_not_hold_has_no_clock() {
 }
 
 #[test]
+fn where_the_router_goes_round_the_next_seed_is_taken() {
+    // For ever with seed 1; with seed 2 it ends, but after as many lines without progress; seed 3 is good.
+    let script = r#"case "$1" in --version) exit;; esac
+case "$*" in *"--seed 3 "*) exec /bin/sh ../../good;; esac
+line() { echo "Info:  2000 |  1026   973 | 1000   0 |   2103|   0.53   1.03|"; }
+for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do line; done
+case "$*" in *"--seed 2 "*) exec /bin/sh ../../good;; esac
+exec sleep 300"#;
+    let folder = tools(&[("yosys", YOSYS), ("nextpnr-ice40", script)]);
+    folder.write("good", r#"echo '{"fmax": {"clk": {"achieved": 50.0, "constraint": 12.0}}}' >report.json"#);
+    let words = "machine ppc-line --travel 0.02mm,0.015mm --feed 30 --synth ice40";
+    let all: Value = serde_json::from_str(&ran(&folder, &format!("{words} --json")).out).unwrap();
+    let cost = &all["machines"][0]["cost"];
+    assert_eq!((cost["seed"].as_u64(), cost["clock_hz"].as_f64()), (Some(3), Some(50e6)), "{cost}");
+    let text = ran(&folder, words).out;
+    assert!(text.contains("\nppc-line is placed with seed 3: before it the router comes to no end\n"), "{text}");
+}
+
+#[test]
 fn without_the_tools_the_packages_are_named_before_any_work() {
     let begun = Instant::now();
     let words = "machine --travel 300mm,200mm --blu 1um --feed 2400mm/min --synth ice40";

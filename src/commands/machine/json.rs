@@ -85,13 +85,15 @@ fn machine(row: &Row, answer: &Answer) -> Value {
     if answer.accelerates.is_some() {
         all["ramp"] = json!(row.ramp.as_ref().map(|own| ramp(own, answer)));
     }
-    if let Some(Cost { luts, flip_flops, carries, rams, clock_hz }) = row.cost {
+    if let Some(Cost { luts, flip_flops, carries, rams, fits, seed, clock_hz }) = row.cost {
         all["cost"] = json!({
             "export": export_command(found.model, &found.largest().curve, &found.choices) + " --no-flags",
             "luts": luts,
             "flip_flops": flip_flops,
             "carries": carries,
             "block_rams": rams,
+            "fits": fits,
+            "seed": seed,
             "clock_hz": clock_hz,
             "feed": ends(clock_hz.and_then(|clock| row.feeds(size, clock))),
         });

@@ -7,7 +7,7 @@ use super::{Answer, Row, Size};
 use crate::commands::columns::{aligned, markdown};
 use crate::commands::widths::{evidence, one_bit_below};
 use crate::study::machine::Dimensions;
-use crate::study::synth::Tools;
+use crate::study::synth::{Cost, Tools};
 use crate::testbench::Ending;
 
 /// Everything that is printed.
@@ -146,11 +146,15 @@ fn table(answer: &Answer, is_markdown: bool) -> String {
     if answer.rows.iter().any(|row| unfinished(&row.found) > 0) {
         text += "\n* not all runs at the corners came to their end: clock and feed are not known\n";
     }
-    let too_large = answer.rows.iter().filter(|row| row.cost.is_some_and(|cost| cost.clock_hz.is_none()));
-    for row in too_large {
+    for (name, Cost { fits, seed, .. }) in answer.rows.iter().filter_map(|row| Some((row.found.model.name, row.cost?)))
+    {
         // Writing to a string cannot fail.
-        let _ =
-            writeln!(text, "\n{} does not fit into the device: its highest clock is not known", row.found.model.name);
+        let _ = match seed {
+            Some(1) => Ok(()),
+            Some(seed) => writeln!(text, "\n{name} is placed with seed {seed}: before it the router comes to no end"),
+            None if fits => writeln!(text, "\n{name} is not routed: its highest clock is not known"),
+            None => writeln!(text, "\n{name} does not fit into the device: its highest clock is not known"),
+        };
     }
     text
 }
