@@ -188,6 +188,9 @@ pub(crate) struct RunArgs {
     pub(crate) simulation: SimulationArgs,
     #[command(flatten)]
     pub(crate) trace: WaveOptions,
+    /// Add to the wave testbench.speed_e4, a row that is not of the hardware: v/v_max over the last 32 steps, in 10^-4
+    #[arg(long, requires = "wave", help_heading = "Wave")]
+    pub(crate) trace_speed: bool,
     #[command(flatten)]
     pub(crate) outputs: FileOptions,
     /// Show registers in binary in the printed table

@@ -19,7 +19,7 @@ use crate::output::{self, Outputs};
 use crate::program::Preparation;
 use crate::report::page::{self, Facts, RunRecord};
 use crate::report::{CsvTable, JsonFile, Report, RunFile, Subject};
-use crate::testbench::{Ending, Observer, OverflowEvent, Recording, Testbench};
+use crate::testbench::{Ending, Observer, OverflowEvent, Recording, SpeedRow, Testbench};
 use crate::trace::timescale::ClockTime;
 use crate::waves::{Sinks, WaveOptions, Waves};
 use crate::{Error, Trace};
@@ -308,12 +308,28 @@ impl Simulation {
         self.checkpoints.is_none() && self.waves.wanted() && window.contains(&event.clock()) && !streams
     }
 
+    /// Refuses a row with the speed where it would be another one, or none.
+    fn check_speed(&self) -> Result<(), Error> {
+        let WaveOptions { vcd, fst, speed, .. } = &self.waves;
+        let reason = match &self.source {
+            _ if !speed => return Ok(()),
+            Source::Program(_) => "is of runs along a curve: in a program look at pulse_source.v and at --plot",
+            Source::Curve(_) if vcd.is_none() && fst.is_none() => "is a row of a wave file: give --vcd or --fst",
+            Source::Curve(_) if self.checkpoints.is_some() => {
+                "needs the steps from the beginning, which --checkpoints leaves out: leave one of both out"
+            }
+            Source::Curve(_) => return Ok(()),
+        };
+        Err(Error::Invalid(format!("--trace-speed {reason}")))
+    }
+
     fn once<L: Onlookers>(
         &self,
         bench: &Testbench,
         outputs: &mut Outputs,
         onlookers: impl Fn(&Testbench, &Outputs) -> Result<L, Error>,
     ) -> Result<Ran<L>, Error> {
+        self.check_speed()?;
         let time = ClockTime::from_hz(self.clock_hz)?;
         let mut report = self.report(bench);
         let mut states = Begin::of(self, bench)?;
@@ -324,7 +340,9 @@ impl Simulation {
         states.iter_mut().try_for_each(|states| states.open(outputs))?;
         let page = page::open(&self.waves, outputs)?;
         let mut onlookers = onlookers(bench, outputs)?;
-        let waves = sinks.map(|sinks| Waves::new(bench, &self.waves, sinks, time, &report.title())).transpose()?;
+        let speed = self.waves.speed.then(|| SpeedRow::new(bench));
+        let waves = |sinks| Waves::new(bench, &self.waves, sinks, time, &report.title(), speed);
+        let waves = sinks.map(waves).transpose()?;
         let mut waves = waves.map(|waves| waves.beginning_with(self.source.leading()));
         let mut files: Vec<Box<dyn RunFile>> = Vec::new();
         if let Some(sink) = steps {

@@ -11,7 +11,8 @@ use clap::builder::StringValueParser;
 use crate::netlist::cells::Format;
 use crate::netlist::{Design, Net, Width};
 use crate::testbench::{
-    Columns, Observer, OverflowEvent, Running, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window, net_named,
+    Columns, Observer, OverflowEvent, Running, SpeedRow, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window,
+    net_named,
 };
 use crate::trace::fst::{FstBody, FstHeader};
 use crate::trace::gtkw::{View, side_files};
@@ -79,6 +80,9 @@ pub struct WaveOptions {
     /// Of a program, dump also what changes at every clock: `clk`, and the phase of the pulse source
     #[cfg_attr(feature = "cli", arg(skip))]
     pub every_clock: bool,
+    /// Along a curve, add a row that is not of the hardware: the speed over v_max.
+    #[cfg_attr(feature = "cli", arg(skip))]
+    pub speed: bool,
     /// Write a wave of more than 1 GB
     #[cfg_attr(feature = "cli", arg(long, requires = "wave"))]
     pub large: bool,
@@ -88,8 +92,8 @@ impl Default for WaveOptions {
     fn default() -> WaveOptions {
         let (signals, excluded) = (Vec::new(), Vec::new());
         let (vcd, fst, html, depth, to, on) = (None, None, None, None, None, None);
-        let (clk, steps, every_clock, large) = (true, false, false, false);
-        WaveOptions { vcd, fst, html, signals, excluded, depth, from: 0, to, on, clk, steps, every_clock, large }
+        let (clk, steps, every_clock, speed, large) = (true, false, false, false, false);
+        WaveOptions { vcd, fst, html, signals, excluded, depth, from: 0, to, on, clk, steps, every_clock, speed, large }
     }
 }
 
@@ -154,7 +158,7 @@ struct Wave<'a, B> {
 }
 
 impl<'a> Waves<'a> {
-    /// Writes the headers.
+    /// Writes the headers. With `speed` that row is the last.
     ///
     /// # Errors
     /// The options name no signal, or an output cannot be written.
@@ -164,9 +168,12 @@ impl<'a> Waves<'a> {
         sinks: Sinks<'a>,
         time: ClockTime,
         title: &str,
+        speed: Option<SpeedRow>,
     ) -> Result<Waves<'a>, Error> {
         let shown = shown.into();
-        let probes = probes(shown, args)?;
+        let mut probes = probes(shown, args)?;
+        let design = &shown.design.netlist().scopes[0].name;
+        probes.extend(speed.iter().map(|_| SpeedRow::probe(design, shown.columns.nets().len())));
         let window = window(shown, args)?;
         let clk = args.clk && shown.running.is_none();
         let narrow = |probe: &Probe| match probe.columns[..] {
@@ -176,17 +183,21 @@ impl<'a> Waves<'a> {
         let curves = probes.iter().filter(|probe| probe.format == Format::Analog).filter_map(narrow);
         let curves: Vec<(usize, Width)> = curves.collect();
         let without = without(shown, &probes)?;
-        let comment = match without.join(", ") {
+        let mut comment = match without.join(", ") {
             none if none.is_empty() => title.to_owned(),
             names => format!("{title}; without {names}, which --every-clock shows"),
         };
+        if speed.is_some() {
+            comment += &format!("; {} is of the test bench: v/v_max over 32 steps in 10^-4", SpeedRow::NAME.join("."));
+        }
         let vcd = match sinks.vcd {
             Some((path, sink)) => {
                 let header = VcdHeader { comment: &comment, probes: &probes, time, clk };
                 Some(Wave {
                     path,
                     writer: WaveWriter::new(header.write(Background::new(Limited::new(sink, args.large)))?, window)
-                        .looking_at(curves.clone()),
+                        .looking_at(curves.clone())
+                        .with_speed(speed.clone()),
                 })
             }
             None => None,
@@ -196,7 +207,9 @@ impl<'a> Waves<'a> {
                 let header = FstHeader { probes: &probes, time, clk };
                 Some(Wave {
                     path,
-                    writer: WaveWriter::new(header.write(Limited::new(sink, args.large))?, window).looking_at(curves),
+                    writer: WaveWriter::new(header.write(Limited::new(sink, args.large))?, window)
+                        .looking_at(curves)
+                        .with_speed(speed),
                 })
             }
             None => None,

@@ -10,6 +10,7 @@ use super::progress::RunProgress;
 use crate::Error;
 use crate::cli::RunArgs;
 use crate::output::{self, Outputs};
+use crate::waves::WaveOptions;
 
 /// Models of which textbooks print the integrands that a step used.
 const TEXTBOOK_MODELS: [&str; 3] = ["dda-arc", "dda-conic", "dda-helix"];
@@ -78,7 +79,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
         .events(args.simulation.event.clone())
         .clock_hz(args.clock.clock_hz)
         .blu_mm(args.hardware.blu)
-        .waves(args.trace.clone())
+        .waves(WaveOptions { speed: args.trace_speed, ..args.trace.clone() })
         .files(args.outputs.clone(), args.checkpoints.clone());
     // A clock that is not possible is refused as such, before a model finds it too slow.
     ClockTime::from_hz(args.clock.clock_hz)?;

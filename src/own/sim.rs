@@ -120,7 +120,7 @@ impl Sim {
         let sinks = Sinks::open(&self.waves, outputs)?;
         let json = self.json.as_deref().map(|path| outputs.open(path)).transpose()?;
         let title = format!("{}; {} clocks", self.design.netlist().scopes[0].name, self.clocks);
-        let mut waves = sinks.map(|sinks| Waves::new(shown, &self.waves, sinks, time, &title)).transpose()?;
+        let mut waves = sinks.map(|sinks| Waves::new(shown, &self.waves, sinks, time, &title, None)).transpose()?;
         let page = page::open(&self.waves, outputs)?;
         let record = |out| Ok::<_, Error>((out, RunRecord::of_design(shown, &self.waves, page::ONE_RUN)?));
         let mut page = page.map(record).transpose()?;

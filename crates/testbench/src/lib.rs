@@ -48,7 +48,7 @@ pub use recording::{Recording, Trace};
 use run::Run;
 pub use running::Running;
 pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
-pub use speed::{Speed, SpeedTrack, SpeedWatch, Window as SpeedWindow};
+pub use speed::{Speed, SpeedRow, SpeedTrack, SpeedWatch, Window as SpeedWindow};
 pub use steps::Step;
 use steps::StepColumns;
 pub use wave::{Taken, Trigger, WaveBody, WaveWriter, Window};

@@ -10,7 +10,7 @@ use stepwave_trace::changes::{Changes, Recorded};
 use stepwave_trace::fst::FstBody;
 use stepwave_trace::vcd::VcdBody;
 
-use super::{Observer, ObserverError};
+use super::{Observer, ObserverError, SpeedRow};
 
 /// When a window opens.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -159,6 +159,8 @@ pub struct WaveWriter<B> {
     sparse: bool,
     /// The row before the window, as the sample of its first clock, while nothing is written.
     held: Option<Rows>,
+    /// Adds a column with the speed.
+    speed: Option<Box<SpeedRow>>,
     /// What the columns took that are looked at.
     pub taken: Vec<Taken>,
     /// First and last clock written.
@@ -170,7 +172,7 @@ impl<B: WaveBody> WaveWriter<B> {
     #[must_use]
     pub fn new(body: B, window: Window) -> WaveWriter<B> {
         let open = window.trigger == Trigger::Immediately;
-        WaveWriter { body, window, open, sparse: false, held: None, taken: Vec::new(), written: None }
+        WaveWriter { body, window, open, sparse: false, held: None, speed: None, taken: Vec::new(), written: None }
     }
 
     /// Looks at what these columns take, too.
@@ -178,6 +180,12 @@ impl<B: WaveBody> WaveWriter<B> {
     pub fn looking_at(self, columns: impl IntoIterator<Item = (usize, Width)>) -> WaveWriter<B> {
         let taken = columns.into_iter().map(|(column, width)| Taken::nothing(column, width)).collect();
         WaveWriter { taken, ..self }
+    }
+
+    /// With the speed in the column after those of the samples; of a run in which none is passed over.
+    #[must_use]
+    pub fn with_speed(self, speed: Option<SpeedRow>) -> WaveWriter<B> {
+        WaveWriter { speed: speed.map(Box::new), ..self }
     }
 
     fn write(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
@@ -244,6 +252,16 @@ impl<B: WaveBody> Observer for WaveWriter<B> {
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        let Some(mut speed) = self.speed.take() else { return self.take(rows) };
+        let taken = self.take(speed.widened(rows));
+        self.speed = Some(speed);
+        taken
+    }
+}
+
+impl<B: WaveBody> WaveWriter<B> {
+    /// Takes samples.
+    fn take(&mut self, rows: &Rows) -> Result<(), ObserverError> {
         self.sparse = rows.is_sparse();
         if self.sparse && self.written.is_none() {
             self.begin(rows)?;

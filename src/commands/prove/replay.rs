@@ -87,7 +87,7 @@ pub(super) fn not_inductive(
     let time = ClockTime::from_hz(CLOCK_HZ)?;
     let wave = wave(args);
     let sinks = Sinks::open(&wave, &mut outputs)?;
-    let mut waves = sinks.map(|sinks| Waves::new(&bench, &wave, sinks, time, &title)).transpose()?;
+    let mut waves = sinks.map(|sinks| Waves::new(&bench, &wave, sinks, time, &title, None)).transpose()?;
     let mut overflow = OverflowWatch::new(&bench);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut overflow];
     observers.extend(waves.iter_mut().flat_map(Waves::observers));

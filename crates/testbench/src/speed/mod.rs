@@ -6,6 +6,7 @@
 
 mod even;
 mod kernel;
+mod row;
 mod stream;
 mod windows;
 
@@ -21,6 +22,7 @@ use super::ahead::{StepTrains, count};
 use super::checkpoint::{Memory, recalled};
 use super::tool::signed;
 use super::{Observer, ObserverError, StepColumns, Testbench};
+pub use row::SpeedRow;
 use stream::{Many, Span, Stream};
 pub(crate) use windows::Windows;
 
