@@ -1,8 +1,9 @@
 // Opens pages in Chromium and compares what they show: see .ci/browser.
 import { createRequire } from 'node:module';
-import { existsSync, mkdtempSync, readFileSync, statSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { deflateSync, inflateSync } from 'node:zlib';
 import assert from 'node:assert/strict';
 
 const [folder, mode] = process.argv.slice(2);
@@ -214,6 +215,67 @@ function lowContrast() {
   });
 }
 
+/** Zoom and pan: keys, wheel, two fingers. */
+async function zoom({ context, page, open }) {
+  const view = () => page.evaluate(() => stepwave.view);
+  const length = async () => { const [from, to] = await view(); return to - from; };
+  await open('part/page.html');
+  const whole = await length();
+  await page.keyboard.press('+');
+  assert.ok(await length() < whole / 1.5);
+  await page.keyboard.press('0');
+  assert.equal(await length(), whole);
+  const box = await (await page.$('#waves')).boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.keyboard.down('Control');
+  await page.mouse.wheel(0, -300);
+  await page.keyboard.up('Control');
+  await page.waitForFunction((before) => stepwave.view[1] - stepwave.view[0] < before * 0.8, whole);
+  const [from] = await view();
+  await page.keyboard.down('Shift');
+  await page.mouse.wheel(0, 120);
+  await page.keyboard.up('Shift');
+  await page.waitForFunction((before) => stepwave.view[0] > before, from);
+  const near = await length();
+  const session = await context.newCDPSession(page);
+  const touch = (type, apart) => session.send('Input.dispatchTouchEvent', {
+    type, touchPoints: apart ? [{ x: x - apart, y, id: 1 }, { x: x + apart, y, id: 2 }] : [],
+  });
+  await touch('touchStart', 40);
+  for (const apart of [60, 90, 120]) await touch('touchMove', apart);
+  await touch('touchEnd', 0);
+  await page.waitForFunction((before) => stepwave.view[1] - stepwave.view[0] < before / 2, near);
+  await page.selectOption('#plane', { label: 'XZ' });
+  console.log('zoom and pan by keys, wheel and fingers: as they should');
+}
+
+/** A block diagram in a page: texts and elements with the index of a net follow the cursor. */
+async function diagram({ page, open }) {
+  const text = readFileSync(join(folder, 'trap/page.html'), 'utf8');
+  const packed = /class="run"[^>]*>([^<]*)</.exec(text)[1];
+  const all = inflateSync(Buffer.from(packed, 'base64'));
+  const length = all.readUInt32LE(0);
+  const meta = JSON.parse(all.subarray(4, 4 + length));
+  const net = (name) => meta.nets[meta.signals.find((signal) => signal.name === name).nets[0]][0];
+  meta.diagram = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 60"><g data-component="ppc_line.f"><rect width="60" height="40"/></g>`
+    + `<text id="of-f" y="20" data-net="${net('f')}"/><path id="of-x" d="M0 0h9" data-net="${net('take_x')}"/></svg>`;
+  const json = Buffer.from(JSON.stringify(meta));
+  const head = Buffer.alloc(4);
+  head.writeUInt32LE(json.length);
+  const again = deflateSync(Buffer.concat([head, json, all.subarray(4 + length)])).toString('base64');
+  writeFileSync(join(folder, 'diagram.html'), text.replace(packed, again));
+  await open('diagram.html');
+  await page.click('#diagram-button');
+  for (const [clock, f, x, raised] of [[4, '-4', '1', false], [8, '2', '0', false], [15, '-2', '0', true]]) {
+    await shownAt(page, clock, 'call');
+    assert.equal(await page.textContent('#of-f'), f);
+    assert.equal(await page.getAttribute('#of-x', 'data-value'), x);
+    assert.equal(await page.evaluate(() => document.querySelector('[data-component]').classList.contains('raised')), raised);
+  }
+  console.log('a block diagram follows the cursor');
+}
+
 /** Contrast in light and dark; both languages; nothing wider than a small screen. */
 async function looks({ page, open }) {
   for (const name of ['trap/page', 'part/page', 'compare', 'own/page']) {
@@ -246,6 +308,8 @@ async function check() {
   for (const name of ['line', 'arc', 'trap', 'data', 'spline', 'nurbs', 'window', 'part', 'own']) await compare(one, name);
   await compare(one, 'decimal', decimal);
   await keys(one);
+  await zoom(one);
+  await diagram(one);
   await looks(one);
   await one.context.close();
   assert.deepEqual(one.wrong, []);

@@ -101,7 +101,7 @@ fn a_page_of_a_program_has_its_text_and_its_moves() {
         "G21 G90 (a </script> of lines)\nN7 G1 X0.3 Y0.09 F300\nG2 X0.5 Y0.29 I0 J0.2\n",
     )
     .unwrap();
-    folder.good("program part.ngc --method ppc --blu 0.01mm --html part.html --json part.json");
+    folder.good("program part.ngc --method ppc --blu 0.01mm --html part.html --json part.json --steps part.csv");
     let page = folder.read("part.html");
     let [run] = &runs(&page)[..] else { panic!("one run") };
     let report: Value = serde_json::from_str(&folder.read("part.json")).unwrap();
@@ -110,6 +110,16 @@ fn a_page_of_a_program_has_its_text_and_its_moves() {
     for name in ["line", "n", "kind", "begun", "clocks", "end_point", "path_error", "feed"] {
         assert_eq!(fields(&run["moves"], name), fields(&report["blocks"], name), "{name}");
     }
+    // The first row of block 7 that is farthest from the line to (30, 9).
+    let steps = folder.read("part.csv");
+    let rows =
+        steps.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<i64>>());
+    let of_line = rows.filter(|row| row[0] == 7).map(|row| {
+        let [.., x, y, _] = row[..] else { panic!("{row:?}") };
+        ((9 * x - 30 * y).abs(), row[2])
+    });
+    let worst = of_line.reduce(|worst, row| if row.0 > worst.0 { row } else { worst }).unwrap();
+    assert_eq!(run["moves"][0]["worst_clock"], worst.1);
     assert_eq!(page.matches("</script>").count(), 3, "the comparison, the run, and the programs of the page");
 }
 

@@ -67,6 +67,8 @@ pub struct BlockReport {
     pub limited: bool,
     /// Greatest distance from the commanded curve, in BLU.
     pub error: f64,
+    /// Clock of the step after which that was seen first; 0 where it is 0.
+    pub error_clock: u64,
     /// What its method promises of it.
     pub promise: Option<Promise>,
     /// Greatest distance of the tool's centre from the compensated contour, in BLU.
@@ -98,6 +100,7 @@ impl BlockReport {
             source_hz: None,
             limited: false,
             error: 0.0,
+            error_clock: 0,
             promise: None,
             off_compensated: 0.0,
             contour_bound: None,
@@ -120,7 +123,10 @@ impl BlockReport {
         for (all, pulse) in self.pulses.iter_mut().zip(&step.pulses) {
             *all += pulse.unsigned_abs();
         }
-        self.error = self.error.max(block.deviation(&position));
+        let error = block.deviation(&position);
+        if error > self.error {
+            (self.error, self.error_clock) = (error, step.clock);
+        }
         // Within 2^52, as every position of a block is.
         let at = [0, 1, 2].map(|axis| position[axis] as f64);
         self.off_compensated = self.off_compensated.max(contour::off_segment(&self.of.segment, at));

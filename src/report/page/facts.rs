@@ -35,8 +35,8 @@ pub(crate) struct Facts {
     pub(crate) events: Vec<OverflowEvent>,
     /// The greatest path error of a curve.
     pub(crate) worst: Option<WorstError>,
-    /// Points of the ideal curve, and the end that is wanted.
-    pub(crate) outline: Vec<[f64; 2]>,
+    /// Points of the ideal curve: two coordinates, or all of a line.
+    pub(crate) outline: Vec<Vec<f64>>,
     /// Text of the program.
     pub(crate) text: Option<String>,
     /// The block diagram: an SVG whose elements have the index of their net in `data-net`.
@@ -45,8 +45,12 @@ pub(crate) struct Facts {
 
 impl Facts {
     /// The ideal curve of a run along one.
-    pub(crate) fn of_curve(curve: &Curve) -> Vec<[f64; 2]> {
-        curve.outline(OUTLINE_POINTS).into_iter().map(|point| point.map(rounded)).collect()
+    pub(crate) fn of_curve(curve: &Curve) -> Vec<Vec<f64>> {
+        if let Curve::Line(line) = curve {
+            // Within 2^52.
+            return [line.from(), line.to()].map(|end| end.iter().map(|&place| place as f64).collect()).to_vec();
+        }
+        curve.outline(OUTLINE_POINTS).into_iter().map(|point| point.map(rounded).to_vec()).collect()
     }
 
     pub(super) fn json(&self) -> Value {

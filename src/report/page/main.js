@@ -93,8 +93,9 @@ function moved() {
   }, 250);
 }
 
-function addressed(name) {
-  const number = Number(new URLSearchParams(location.hash.slice(1)).get(name) ?? NaN);
+/** A number in the address. */
+function addressed(name, hash = location.hash) {
+  const number = Number(new URLSearchParams(hash.slice(1)).get(name) ?? NaN);
   return Number.isInteger(number) && number >= 0 ? number : undefined;
 }
 
@@ -223,7 +224,11 @@ function listen() {
   $('run').addEventListener('change', () => showRun(Number($('run').value)));
   $('run-choice').hidden = runs.length < 2;
   addEventListener('keydown', onKey);
-  addEventListener('hashchange', () => addressed('clock') !== undefined && cursor.seek(addressed('clock')));
+  // The address as it was given: a move of the cursor may have written another since.
+  addEventListener('hashchange', ({ newURL }) => {
+    const clock = addressed('clock', new URL(newURL).hash);
+    if (clock !== undefined) cursor.seek(clock);
+  });
   cursor.followers.push(moved);
   setTheme(dark.matches ? 'dark' : 'light');
 }
@@ -266,6 +271,8 @@ window.stepwave = {
     return row < 0 ? null : panels.cells(row);
   },
   show: showRun,
+  /** The clocks between which the wave is in view. */
+  get view() { return [wave.from, wave.to]; },
   get clock() { return cursor.clock; },
   get clocks() { return [cursor.run.first, cursor.run.last]; },
 };

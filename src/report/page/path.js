@@ -19,7 +19,12 @@ class PathView {
         this.zoom(wheelFactor(event), at);
       },
     });
+    const plane = make('select', { id: 'plane', data: { title: 'plane' }, onchange: () => {
+      this.plane = this.planes[Number(plane.value)];
+      this.project();
+    } });
     $('path-tools').append(
+      plane,
       button('zoom_in', '', () => this.zoom(1.5)), button('zoom_out', '', () => this.zoom(1 / 1.5)), button('fit', '', () => this.fit()),
     );
   }
@@ -29,9 +34,32 @@ class PathView {
     this.run = run;
     $('path-panel').hidden = !run.path;
     if (!run.path) return;
-    const [xs, ys] = [run.path.axes[0], run.path.axes[1] ?? new Int32Array(run.path.axes[0].length)];
+    this.choosePlanes();
+    this.project();
+  }
+
+  /** The planes of x, y and z that there are. */
+  choosePlanes() {
+    const axes = this.run.interpolator.axes.slice(0, 3);
+    const planes = axes.flatMap((right, a) => axes.slice(a + 1).map((up, b) => [a, a + 1 + b, `${right}${up}`.toUpperCase()]));
+    this.planes = planes.length ? planes : [[0, 1, '']];
+    this.plane = this.planes[0];
+    const choice = $('plane');
+    choice.hidden = planes.length < 2;
+    choice.replaceChildren(...planes.map(([, , name], index) => make('option', { value: String(index), textContent: name })));
+  }
+
+  /** Takes the coordinates of the plane. */
+  project() {
+    const { run, plane: [right, up] } = this;
+    const { axes } = run.path;
+    const [xs, ys] = [axes[right], axes[up] ?? new Int32Array(axes[right].length)];
     Object.assign(this, { xs, ys });
-    this.outlines = run.moves.length ? run.moves.filter((move) => move.kind !== 'rapid').map((move) => move.outline) : [run.outline];
+    // Of some curves the outline is known in x and y alone.
+    const flat = (points) => points.filter((point) => point[right] !== undefined && (point[up] !== undefined || !axes[up]))
+      .map((point) => [point[right], point[up] ?? 0]);
+    const outlines = run.moves.length ? run.moves.filter((move) => move.kind !== 'rapid').map((move) => move.outline) : [run.outline];
+    this.outlines = outlines.map(flat);
     this.pieces = [];
     for (let from = 0; from < xs.length; from += PIECE) this.pieces.push(boundsOf(xs, ys, from, Math.min(xs.length, from + PIECE + 1)));
     const joined = (a, b) => [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[2], b[2]), Math.max(a[3], b[3])];
@@ -220,6 +248,12 @@ class PathView {
     }
   }
 
+  /** Where the tool is after a clock, in the plane. */
+  flat(clock) {
+    const place = this.run.place(clock);
+    return [place[this.plane[0]], place[this.plane[1]] ?? 0];
+  }
+
   /** Start, end, greatest error and overflows. */
   drawMarks(context) {
     const { run, xs, ys } = this;
@@ -236,7 +270,7 @@ class PathView {
     if (end && !run.moves.length) ring(spot(...end), 7, colours.ink, false);
     const worst = worstOf(run);
     if (worst) {
-      const [x, y] = spot(...run.place(worst.clock));
+      const [x, y] = spot(...this.flat(worst.clock));
       context.beginPath();
       context.moveTo(x, y - 9);
       context.lineTo(x + 9, y);
@@ -248,8 +282,7 @@ class PathView {
       context.stroke();
     }
     for (const event of run.events) {
-      const [x, y = 0] = run.place(event.clock);
-      ring(spot(x, y), 8, colours.bad, false);
+      ring(spot(...this.flat(event.clock)), 8, colours.bad, false);
     }
   }
 
@@ -293,19 +326,6 @@ function boundsOf(xs, ys, from, to) {
   return [left, low, right, high];
 }
 
-/** Distance of a point from a line of points. */
-function distanceFrom([x, y], points) {
-  let best = Infinity;
-  for (let at = 0; at < points.length; at++) {
-    const [ax, ay] = points[at];
-    const [bx, by] = points[Math.min(at + 1, points.length - 1)];
-    const [dx, dy] = [bx - ax, by - ay];
-    const along = dx || dy ? Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy))) : 0;
-    best = Math.min(best, Math.hypot(x - ax - along * dx, y - ay - along * dy));
-  }
-  return best;
-}
-
 /** The greatest path error of a run, as its report gives it, and the clock at which the tool is there. */
 function worstOf(run) {
   if (run.worstAt === undefined) run.worstAt = run.moves.length ? worstOfMoves(run) : worstOfCurve(run);
@@ -328,12 +348,6 @@ function worstOfCurve(run) {
 function worstOfMoves(run) {
   const error = (move) => move.path_error.greatest;
   const move = run.moves.reduce((worst, move) => (error(move) > error(worst) ? move : worst));
-  if (!(error(move) > 0) || !run.path || move.begun > run.last) return null;
-  const { clocks, axes } = run.path;
-  let found = { distance: -1, clock: move.begun };
-  for (let at = lastUpTo(clocks, move.begun) + 1; at < clocks.length && clocks[at] <= move.begun + move.clocks; at++) {
-    const distance = distanceFrom([axes[0][at + 1], axes[1][at + 1]], move.outline);
-    if (distance > found.distance) found = { distance, clock: clocks[at] };
-  }
-  return { error: error(move), clock: found.clock, line: move.line };
+  if (!(error(move) > 0) || move.worst_clock < run.first || move.worst_clock > run.last) return null;
+  return { error: error(move), clock: move.worst_clock, line: move.line };
 }

@@ -247,7 +247,7 @@ impl Observer for RunRecord {
     }
 }
 
-/// A move: what the report says of it, and its programmed contour in x and y.
+/// A move: what the report says of it, where its path error is greatest, and its programmed contour in x, y and z.
 fn page_move(block: &BlockReport, units: Units) -> Value {
     let mut report = move_json(block, units);
     let mut field = |name: &str| report[name].take();
@@ -255,8 +255,8 @@ fn page_move(block: &BlockReport, units: Units) -> Value {
     for name in ["line", "n", "kind", "begun", "clocks", "steps", "end_point", "path_error", "feed"] {
         of_page[name] = field(name);
     }
-    let points = workpiece::outline(&block.of).into_iter().map(|[x, y, _]| [rounded(x), rounded(y)]);
-    of_page["outline"] = points.collect();
+    of_page["worst_clock"] = json!(block.error_clock);
+    of_page["outline"] = workpiece::outline(&block.of).into_iter().map(|point| point.map(rounded)).collect();
     of_page
 }
 
