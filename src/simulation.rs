@@ -310,11 +310,13 @@ impl Simulation {
 
     /// Refuses a row with the speed where it would be another one, or none.
     fn check_speed(&self) -> Result<(), Error> {
-        let WaveOptions { vcd, fst, speed, .. } = &self.waves;
+        let WaveOptions { vcd, fst, html, speed, .. } = &self.waves;
         let reason = match &self.source {
             _ if !speed => return Ok(()),
             Source::Program(_) => "is of runs along a curve: in a program look at pulse_source.v and at --plot",
-            Source::Curve(_) if vcd.is_none() && fst.is_none() => "is a row of a wave file: give --vcd or --fst",
+            Source::Curve(_) if [vcd, fst, html].into_iter().all(Option::is_none) => {
+                "is a row of a wave: give --vcd, --fst or --html"
+            }
             Source::Curve(_) if self.checkpoints.is_some() => {
                 "needs the steps from the beginning, which --checkpoints leaves out: leave one of both out"
             }

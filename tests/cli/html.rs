@@ -94,6 +94,20 @@ fn a_page_shows_the_signals_and_the_window_that_are_asked_for() {
 }
 
 #[test]
+fn a_page_shows_the_speed_where_it_is_asked_for() {
+    let folder = Folder::new();
+    for (option, rows) in [("", 0), ("--trace-speed", 1)] {
+        folder.good(&format!("run dda-line --to 80,60 --html page.html {option}"));
+        let [run] = &runs(&folder.read("page.html"))[..] else { panic!("one run") };
+        let speeds = paths(run).into_iter().filter(|path| path == "dda_line.testbench.speed_e4").count();
+        assert_eq!(speeds, rows, "{option}");
+        // It is a row of the test bench: the netlist has no such net.
+        let nets = run["nets"].as_array().unwrap().iter();
+        assert_eq!(nets.filter(|net| net[0].is_null()).count(), rows, "{option}");
+    }
+}
+
+#[test]
 fn a_page_of_a_program_has_its_text_and_its_moves() {
     let folder = Folder::new();
     std::fs::write(

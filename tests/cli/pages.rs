@@ -220,8 +220,16 @@ fn the_bash_completions_are_a_script_that_bash_can_read() {
                 && printf '%s\\n' \"${COMPREPLY[@]}\"";
     let output = std::process::Command::new("bash").args(["-c", test]).current_dir(folder.path("")).output().unwrap();
     let offered: BTreeSet<String> = String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect();
-    let expected =
-        ["--trace", "--trace-depth", "--trace-exclude", "--trace-from", "--trace-on", "--trace-steps", "--trace-to"];
+    let expected = [
+        "--trace",
+        "--trace-depth",
+        "--trace-exclude",
+        "--trace-from",
+        "--trace-on",
+        "--trace-speed",
+        "--trace-steps",
+        "--trace-to",
+    ];
     assert_eq!(offered, expected.map(str::to_owned).into(), "{output:?}");
 }
 

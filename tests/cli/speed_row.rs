@@ -91,7 +91,6 @@ fn a_window_and_steps_alone_have_the_same_speeds() {
 #[test]
 fn where_it_would_be_another_row_or_none_it_is_refused() {
     refused("run ppc-line --to 9,6 --trace-speed", &["--vcd"]);
-    refused("run ppc-line --to 9,6 --trace-speed --html p.html", &["--trace-speed", "--vcd or --fst"]);
     refused(
         "run ppc-line --to 9,6 --trace-speed --vcd w.vcd --checkpoints c.json",
         &["--trace-speed", "--checkpoints"],

@@ -109,7 +109,7 @@ const KEYS = [
   [['Home', 'End'], 'Home End', 'key_ends', (by) => cursor.seek(by > 0 ? cursor.run.last : cursor.run.first)],
   [['ArrowUp', 'ArrowDown'], '↑ ↓', 'key_select', (by) => wave.selectNext(by)],
   [[null, ' '], 'Space', 'key_play', () => cursor.play()],
-  [['-', '+'], '− +', 'key_zoom', (by) => wave.zoom(by > 0 ? 1.6 : 1 / 1.6)],
+  [['-', '+'], '+ −', 'key_zoom', (by) => wave.zoom(by > 0 ? 1.6 : 1 / 1.6)],
   [[null, '0'], '0', 'key_fit', () => wave.fit()],
   [[null, 'o'], 'o', 'key_overflow', nextEvent],
   [[null, 'e'], 'e', 'key_worst', () => worstOf(cursor.run) && cursor.seek(worstOf(cursor.run).clock)],

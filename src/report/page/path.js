@@ -240,10 +240,13 @@ class PathView {
       context.fillStyle = colours.muted;
       context.fillText(text, x, y);
     };
-    for (let x = Math.ceil(-left / scale / step) * step; left + x * scale <= width - 20; x += step) {
+    const [right, up] = this.plane.map((axis) => this.run.interpolator.axes[axis]);
+    label(`${right} (BLU)`, width - 6, height - 5, 'right');
+    if (up) label(`${up} (BLU)`, 4, 14, 'left');
+    for (let x = Math.ceil(-left / scale / step) * step; left + x * scale <= width - 80; x += step) {
       if (left + x * scale > 40) label(shown(x), left + x * scale, height - 5, 'center');
     }
-    for (let y = Math.ceil((top - height) / scale / step) * step; top - y * scale >= 10; y += step) {
+    for (let y = Math.ceil((top - height) / scale / step) * step; top - y * scale >= 26; y += step) {
       if (top - y * scale < height - 18) label(shown(y), 4, top - y * scale + 4, 'left');
     }
   }

@@ -1,6 +1,7 @@
 //! What a page keeps of a run while it lasts.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::io::ErrorKind;
 
 use serde_json::{Value, json};
@@ -17,15 +18,17 @@ use super::track::{StepRows, Track};
 use crate::Error;
 use crate::report::program::{Units, move_json};
 use crate::report::workpiece;
-use crate::testbench::{BlockReport, Observer, ObserverError, Step, Testbench, WaveWriter};
+use crate::testbench::{BlockReport, Observer, ObserverError, SpeedRow, Step, Testbench, WaveWriter};
 use crate::waves::{self, Shown, WaveOptions};
 
 /// Looks on for a page.
 pub(crate) struct RunRecord {
     writer: WaveWriter<Changes>,
     probes: Vec<Probe>,
-    /// The net of each stream, and its column.
-    nets: Vec<(Net, usize, Width)>,
+    /// The net of each stream, but of a row of the test bench, and its width.
+    nets: Vec<(Option<Net>, Width)>,
+    /// The stream of each column.
+    streams: HashMap<usize, usize>,
     interpolator: Option<Interpolator>,
     /// Paths without the design's name of the signals that come first.
     leading: &'static [&'static str],
@@ -57,7 +60,7 @@ impl RunRecord {
     /// # Errors
     /// The options name no signal.
     pub(crate) fn of_design(shown: Shown<'_>, args: &WaveOptions, limit: Limit) -> Result<RunRecord, Error> {
-        RunRecord::new(shown, &[], args, limit)
+        RunRecord::new(shown, &[], args, limit, None)
     }
 
     /// Of a machine that interpolates, with a clock in Hz, a BLU in mm, and one of rotary axes in degrees.
@@ -74,7 +77,7 @@ impl RunRecord {
         let table = machine.table.iter().map(|(_, port)| port);
         let ports = table.chain(&machine.positions).chain([&machine.loaded]);
         let ports: Vec<Net> = ports.map(|port| port.net).collect();
-        let mut record = RunRecord::new(bench.into(), &ports, args, limit)?;
+        let mut record = RunRecord::new(bench.into(), &ports, args, limit, args.speed.then(|| SpeedRow::new(bench)))?;
         let head = record.head(bench);
         let (track, steps) = (Track::new(bench, record.window), StepRows::default());
         let units = Units { clock_hz, blu_mm, blu_degrees };
@@ -82,19 +85,32 @@ impl RunRecord {
         Ok(record)
     }
 
-    fn new(shown: Shown<'_>, ports: &[Net], args: &WaveOptions, limit: Limit) -> Result<RunRecord, Error> {
-        let probes = waves::probes(shown, args)?;
-        let mut nets: Vec<(Net, usize, Width)> = Vec::new();
-        let of_probes = probes.iter().flat_map(|probe| &probe.columns).map(|&column| shown.columns.nets()[column]);
-        for net in of_probes.chain(ports.iter().copied()) {
-            if nets.iter().all(|(known, ..)| *known != net) {
-                nets.push((net, shown.columns.index(net), shown.design.netlist().width(net)));
+    fn new(
+        shown: Shown<'_>,
+        ports: &[Net],
+        args: &WaveOptions,
+        limit: Limit,
+        speed: Option<SpeedRow>,
+    ) -> Result<RunRecord, Error> {
+        let mut probes = waves::probes(shown, args)?;
+        let (design, all) = (shown.design.netlist(), shown.columns.nets());
+        probes.extend(speed.iter().map(|_| SpeedRow::probe(&design.scopes[0].name, all.len())));
+        let (mut nets, mut streams) = (Vec::new(), HashMap::new());
+        let ports = ports.iter().map(|&net| (shown.columns.index(net), 0));
+        let of_probes = probes.iter().flat_map(|probe| probe.columns.iter().map(|&column| (column, probe.width)));
+        for (column, bits) in of_probes.chain(ports) {
+            let net = all.get(column).copied();
+            let width = net.map(|net| design.width(net)).or(Width::new(u64::from(bits)).ok());
+            if let (Some(width), Entry::Vacant(free)) = (width, streams.entry(column)) {
+                free.insert(nets.len());
+                nets.push((net, width, column));
             }
         }
-        let columns: Vec<(usize, Width)> = nets.iter().map(|&(_, column, width)| (column, width)).collect();
+        let columns: Vec<(usize, Width)> = nets.iter().map(|&(_, width, column)| (column, width)).collect();
         let writer = WaveWriter::new(Changes::new(&columns, limit.bytes), waves::window(shown, args)?);
-        let window = (args.from, args.to.unwrap_or(u64::MAX));
-        Ok(RunRecord { writer, probes, nets, interpolator: None, leading: &[], window, limit })
+        let (writer, window) = (writer.with_speed(speed), (args.from, args.to.unwrap_or(u64::MAX)));
+        let nets = nets.into_iter().map(|(net, width, _)| (net, width)).collect();
+        Ok(RunRecord { writer, probes, nets, streams, interpolator: None, leading: &[], window, limit })
     }
 
     /// The same with signals that come first: their paths without the design's name.
@@ -105,13 +121,13 @@ impl RunRecord {
     /// The streams of what a step table and a path show.
     fn head(&self, bench: &Testbench) -> Value {
         let (machine, letters) = (bench.machine(), bench.hardware().letters());
-        let streams: HashMap<Net, usize> = self.nets.iter().enumerate().map(|(at, (net, ..))| (*net, at)).collect();
-        let column = |name: &str, port: &Port| json!([name, streams.get(&port.net), reading(port.reading)]);
+        let stream = |port: &Port| self.streams.get(&bench.columns().index(port.net));
+        let column = |name: &str, port: &Port| json!([name, stream(port), reading(port.reading)]);
         json!({
             "axes": letters,
             "table": machine.table.iter().map(|(name, port)| column(name, port)).collect::<Vec<_>>(),
             "counters": letters.iter().zip(&machine.positions).map(|(name, port)| column(name, port)).collect::<Vec<_>>(),
-            "loaded": streams.get(&machine.loaded.net),
+            "loaded": stream(&machine.loaded),
             "program": bench.blocks() == 0,
         })
     }
@@ -124,17 +140,16 @@ impl RunRecord {
         let (written, recorded) = waves::finish(self.writer, facts.clocks)?;
         let mut run = Run::new(&facts.headline);
         let nets = self.nets.iter().zip(&recorded.nets);
-        let nets = nets.map(|(&(net, _, width), of)| {
-            json!([net.index(), width.get(), run.stream(&of.times), run.stream(&of.values), of.order])
+        let nets = nets.map(|(&(net, width), of)| {
+            json!([net.map(Net::index), width.get(), run.stream(&of.times), run.stream(&of.values), of.order])
         });
         let nets: Vec<Value> = nets.collect();
-        let places: HashMap<usize, usize> = self.nets.iter().enumerate().map(|(at, net)| (net.1, at)).collect();
         let mut meta = facts.json();
         meta["first"] = json!(written.clocks.0);
         meta["last"] = json!(written.clocks.1);
         meta["nets"] = json!(nets);
         meta["leading"] = json!(self.leading);
-        meta["signals"] = self.probes.iter().map(|probe| signal(probe, &places)).collect();
+        meta["signals"] = self.probes.iter().map(|probe| signal(probe, &self.streams)).collect();
         if let Some(Interpolator { head, track, steps, moves, .. }) = self.interpolator {
             meta["interpolator"] = head;
             let pulses: Vec<usize> = track.pulses.iter().map(|pulses| run.stream(pulses)).collect();
