@@ -10,6 +10,7 @@ pub mod plot;
 mod png;
 mod program;
 mod speed;
+mod speed_chart;
 mod summary;
 mod table;
 mod workpiece;
@@ -147,7 +148,9 @@ impl Report {
     pub(crate) fn picture(&self, out: Sink) -> Box<dyn RunFile> {
         match &self.subject {
             Subject::Curve(of) => Box::new(PathPicture::new(of, self.hardware.clocks_of_step(), out)),
-            Subject::Program(_) => Box::new(Workpiece::new(&self.headline(), out)),
+            Subject::Program(_) => {
+                Box::new(Workpiece::new(&self.headline(), out).with_speed(self.clock_hz, self.blu_mm))
+            }
         }
     }
 

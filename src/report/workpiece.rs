@@ -1,4 +1,5 @@
-//! The picture of a program as SVG: the programmed contour, and the pulses of the tool's centre next to it.
+//! The picture of a program as SVG: the programmed contour, and the pulses of the tool's centre next to it; below it the
+//! speed over time.
 //!
 //! The memory is bounded whatever the length of the program: a long path is thinned.
 
@@ -8,6 +9,7 @@ use std::io::{self, Write};
 use stepwave_nc::{Cause, Direction, Point, SegmentShape, Side, ToolMove, swept};
 
 use super::plot::{FONT, HEAD, Page, Pair, TITLE_FONT, View, cut, escaped, reaching, text_width};
+use super::speed_chart::SpeedChart;
 use super::{Report, RunFile};
 use crate::testbench::{BlockReport, Observer, ObserverError, Step};
 
@@ -37,7 +39,12 @@ pub struct Workpiece<W> {
     seen: u64,
     last: Option<Pair>,
     ranges: [Pair; 2],
+    speed: Option<SpeedChart>,
 }
+
+/// Height of the speed, and what is between it and the contour.
+const CHART_HEIGHT: f64 = 120.0;
+const BETWEEN: f64 = 58.0;
 
 impl<W> Workpiece<W> {
     /// A picture in x and y, for an output.
@@ -55,7 +62,14 @@ impl<W> Workpiece<W> {
             seen: 0,
             last: None,
             ranges: [[0.0, 0.0]; 2],
+            speed: None,
         }
+    }
+
+    /// With the speed over time, of a clock in Hz and a BLU in mm.
+    #[must_use]
+    pub fn with_speed(self, hz: f64, blu_mm: f64) -> Workpiece<W> {
+        Workpiece { speed: Some(SpeedChart::new(hz, blu_mm)), ..self }
     }
 
     fn shown(&self, point: Point) -> Pair {
@@ -111,7 +125,13 @@ impl<W> Workpiece<W> {
             page.path(&view, if *rapid { RAPID } else { CUT }, points);
         }
         let wide = (left + view.size[0] + 26.0).max(x).ceil();
-        let high = (62.0 + view.size[1] + 46.0).ceil();
+        let mut bottom = view.origin[1] + view.size[1];
+        let (origin, size) = ([left, bottom + BETWEEN], [wide - left - 26.0, CHART_HEIGHT]);
+        if let Some((chart, view)) = self.speed.as_ref().and_then(|chart| Some((chart, chart.view(origin, size)?))) {
+            chart.draw(&mut page, &view);
+            bottom = origin[1] + CHART_HEIGHT;
+        }
+        let high = (bottom + 46.0).ceil();
         let size = format!(r#"width="{wide}" height="{high}" viewBox="0 0 {wide} {high}" font-size="{FONT}""#);
         format!("<svg {HEAD} {size}>\n{}</svg>\n", page.0)
     }
@@ -156,6 +176,9 @@ impl<W> Observer for Workpiece<W> {
     }
 
     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        if let Some(chart) = &mut self.speed {
+            chart.step(&step.position, step.clock);
+        }
         let at = self.axes.map(|axis| step.position.get(axis).map_or(0.0, |&c| c as f64));
         self.ranges = reaching(self.ranges, at);
         self.last = Some(at);
