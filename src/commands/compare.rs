@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::engine::{EngineKind, Rows};
 use crate::models::{CurveKind, Millionths, Model, ModelError, Options, Preset, installed};
-use crate::nc::Curve;
+use crate::nc::{Curve, Nurbs, SplineForm};
 use crate::report::page::{self, Comparison, Facts, Limit, Packed, RunRecord};
 use crate::report::{RelativeSpeed, geometry as geometry_of, title};
 use crate::testbench::{
@@ -28,9 +28,12 @@ const OF_SEVERAL: Limit = Limit { bytes: 1 << 26, remedy: "compare fewer models 
 pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     let curve = curve(args)?;
     let models = models(args)?;
-    let models = models.into_iter().filter(|model| model.curve().fits(&curve));
-    let runs: Vec<_> =
-        models.flat_map(|model| forms(model, &curve).into_iter().map(move |form| (model, form))).collect();
+    let curves = [Some(curve.clone()), as_nurbs(&curve)];
+    let curve_of = |model: &Model| curves.iter().flatten().find(|curve| model.curve().fits(curve));
+    let models = models.into_iter().filter_map(|model| Some((model, curve_of(model)?)));
+    let runs: Vec<_> = models
+        .flat_map(|(model, curve)| forms(model, curve).into_iter().map(move |form| (model, curve, form)))
+        .collect();
     if runs.is_empty() {
         let curve = curve.description().drawn.noun();
         return Err(Error::Invalid(format!("none of these models takes {curve}: name others, or none for all")));
@@ -39,8 +42,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Error> {
     let page = args.html.as_deref().map(|path| outputs.open(path)).transpose()?;
     let progress = Progress::of(runs.len() as u64, "machines");
     let (mut rows, mut left_out, mut pages) = (vec![HEADING.map(str::to_owned)], Vec::new(), Vec::new());
-    for (model, (form, choices)) in runs {
-        match row(model, &form, &curve, &choices, args)? {
+    for (model, curve, (form, choices)) in runs {
+        match row(model, &form, curve, &choices, args)? {
             Ok((row, run)) => {
                 rows.push(row);
                 pages.extend(run);
@@ -80,6 +83,13 @@ fn curve(args: &CompareArgs) -> Result<Curve, Error> {
         CurveKind::Line { max_axes: 6 }
     };
     geometry::curve("compare", kind, geometry, args.tolerance.map_or(0.0, Millionths::units))
+}
+
+/// The NURBS of all weights 1 that a Bezier curve is.
+fn as_nurbs(curve: &Curve) -> Option<Curve> {
+    let Curve::Spline(spline) = curve else { return None };
+    let of = (spline.form() == SplineForm::Bezier).then(|| Nurbs::bezier(spline.points()))?;
+    Some(of.ok()?.into())
 }
 
 const HEADING: [&str; 8] = [

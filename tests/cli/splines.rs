@@ -113,3 +113,16 @@ fn a_mistake_in_a_file_of_points_is_reported_with_its_line() {
         assert_eq!(folder.files(), ["p.csv"]);
     }
 }
+
+#[test]
+fn a_bezier_curve_is_compared_as_polynomials_and_as_a_nurbs() {
+    let folder = Folder::new();
+    let table = folder.good("compare --bezier 0,0,10,20,30,-10,40,5");
+    let rows: Vec<&str> = table.lines().skip(1).filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(rows, ["sampled-spline", "sampled-spline", "spline-dda"], "{table}");
+    // The same rows as each alone.
+    let alone = folder.good("compare sampled-spline --nurbs 0,0,1,10,20,1,30,-10,1,40,5,1");
+    let words =
+        |text: &str| text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect::<Vec<_>>();
+    assert_eq!(words(&table)[1..3], words(&alone)[1..3]);
+}

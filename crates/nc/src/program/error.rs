@@ -130,6 +130,12 @@ pub enum ProgramErrorKind {
         /// The word in front of it.
         first: String,
     },
+    /// A word belongs to G05 and to G04 or G64.
+    #[error("{word} would belong to G05 and to G04 or G64 as well: break the block in two")]
+    TwoOwners {
+        /// The word.
+        word: String,
+    },
     /// Nothing in the block uses a word.
     #[error("{word} has nothing that uses it in this block: it belongs to {owner}, give that too or remove the word")]
     Unused {

@@ -132,8 +132,13 @@ impl Modal {
         if self.side != Side::On || self.compensated {
             return Err(first.fault(|word| ProgramErrorKind::SplineUnderCompensation { word }));
         }
-        if let Some(word) = block.any(if motion == Motion::Cubic { "ZKR" } else { "ZKRPQ" }) {
+        let cubic = motion == Motion::Cubic;
+        let own = |letter, others: bool| block.word(letter).filter(|_| !cubic && !others);
+        if let Some(word) = block.any("ZKR").or(own('P', block.times())).or(own('Q', block.blends())) {
             return Err(word.fault(|word| ProgramErrorKind::Unused { word, owner: "G02 or G03" }));
+        }
+        if let Some(word) = block.word('P').filter(|_| cubic && block.times()) {
+            return Err(word.fault(|word| ProgramErrorKind::TwoOwners { word }));
         }
         if block.any("XY").is_none() {
             return Err(first.fault(|word| ProgramErrorKind::SplineEnd { word, name }));

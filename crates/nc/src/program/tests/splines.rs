@@ -204,3 +204,16 @@ fn p_and_q_still_belong_to_a_dwell_and_to_g64_where_a_curve_is_in_force() {
     let text = "F1 G5 X1 Y1 I0 J3 P0 Q-3\nG4 P2\nG64 P0.1 Q0.2\nX2 Y2 P0 Q-3";
     assert_eq!(ends(text).last(), Some(&[200.0, 200.0, 0.0]));
 }
+
+#[test]
+fn a_word_of_another_code_in_the_block_of_a_curve_keeps_its_own_meaning() {
+    let run = |text: &str| run_with(text, reading());
+    let event = |text: &str| run(text).map(|events| events.len());
+    assert!(event("F1 G5.1 G64 P0.1 Q0.2 X1 Y1 I0.5 J0").is_ok_and(|events| events > 2));
+    assert!(event("F1 G5.1 G4 P0.1 X1 Y1 I0.5 J0").is_ok_and(|events| events > 3));
+    for text in ["F1 G5 G64 X1 Y1 I0 J3 P1 Q-3", "F1 G5 G4 X1 Y1 I0 J3 P1 Q-3"] {
+        let said = run(text).unwrap_err().to_string();
+        assert!(said.contains("P1 would belong to G05 and to G04 or G64 as well"), "{said}");
+    }
+    assert!(run("F1 G5.1 X1 Y1 I0.5 J0 P3").unwrap_err().to_string().contains("P3 has nothing that uses it"));
+}
