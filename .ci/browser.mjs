@@ -153,6 +153,11 @@ async function keys({ page, open }) {
   await press('ArrowRight', 6);
   assert.match(await page.getAttribute('#time', 'aria-valuetext'), /^clock 6, 6 µs, step 1, \(1, 0\)$/);
   await page.waitForFunction(() => document.getElementById('spoken').textContent.startsWith('clock 6, '));
+  await page.focus('#steps-tab .grid');
+  await press('ArrowDown', 9);
+  await press('ArrowUp', 5);
+  const active = await page.getAttribute('#steps-tab .grid', 'aria-activedescendant');
+  assert.equal(await page.getAttribute(`#${active}`, 'aria-current'), 'true');
   await page.click('.alerts .bad');
   assert.equal(await clock(), 15);
   await page.click('.alerts .worst');

@@ -357,7 +357,7 @@ impl Simulation {
         let record = |out| {
             let degrees = report.program().map_or(0.0, |program| program.blu_degrees);
             let units = [self.clock_hz, self.blu_mm, degrees];
-            let record = RunRecord::of_bench(bench, &self.waves, units, page::ONE_RUN)?;
+            let record = RunRecord::of_bench(bench, &self.waves, units, page::limit(&self.waves))?;
             Ok::<_, Error>((out, record.beginning_with(self.source.leading())))
         };
         let mut page = page.map(record).transpose()?;

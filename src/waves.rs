@@ -83,7 +83,7 @@ pub struct WaveOptions {
     /// Along a curve, add a row that is not of the hardware: the speed over v_max.
     #[cfg_attr(feature = "cli", arg(skip))]
     pub speed: bool,
-    /// Write a wave of more than 1 GB
+    /// Write a wave of more than 1 GB, or a page of more than 256 MB of changes
     #[cfg_attr(feature = "cli", arg(long, requires = "wave"))]
     pub large: bool,
 }

@@ -122,7 +122,7 @@ impl Sim {
         let title = format!("{}; {} clocks", self.design.netlist().scopes[0].name, self.clocks);
         let mut waves = sinks.map(|sinks| Waves::new(shown, &self.waves, sinks, time, &title, None)).transpose()?;
         let page = page::open(&self.waves, outputs)?;
-        let record = |out| Ok::<_, Error>((out, RunRecord::of_design(shown, &self.waves, page::ONE_RUN)?));
+        let record = |out| Ok::<_, Error>((out, RunRecord::of_design(shown, &self.waves, page::limit(&self.waves))?));
         let mut page = page.map(record).transpose()?;
         let mut overflow = OverflowWatch::of(self.design.netlist(), &columns);
         let mut firsts = Firsts::of(self.design.netlist(), &columns);

@@ -23,10 +23,10 @@ pub(crate) use facts::Facts;
 pub(crate) use record::{Limit, RunRecord};
 
 /// What the page of one run may hold.
-pub(crate) const ONE_RUN: Limit = Limit {
-    bytes: 1 << 28,
-    remedy: "show fewer signals (--trace) or a window (--trace-from, --trace-to), or write --fst for a viewer",
-};
+pub(crate) fn limit(args: &WaveOptions) -> Limit {
+    let remedy = "show fewer signals (--trace) or a window (--trace-from, --trace-to), write --fst for a viewer, or give --large";
+    Limit { bytes: if args.large { usize::MAX } else { 1 << 28 }, remedy }
+}
 
 /// Opens the output of a page, where one is asked for.
 ///

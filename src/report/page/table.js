@@ -74,6 +74,7 @@ class Table {
 
   line() {
     const line = make('div', { role: 'row', data: { row: -1 } }, ...this.columns.map((column) => this.cell('gridcell', column, '')));
+    line.id = `${this.element.id}-${this.lines.length}`;
     line.style.gridTemplateColumns = this.template;
     this.space.append(line);
     return line;
@@ -112,6 +113,8 @@ class Table {
       this.body.scrollTop = this.top;
       this.draw();
     }
-    this.setCurrent(this.lineOf(row), true);
+    const line = this.lineOf(row);
+    this.setCurrent(line, true);
+    if (line) this.body.setAttribute('aria-activedescendant', line.id);
   }
 }
