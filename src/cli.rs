@@ -7,6 +7,7 @@ use crate::nc::{Drawn, Opens, SplineForm};
 use clap::{Args, Parser, Subcommand};
 
 use crate::commands::diff::DiffArgs;
+use crate::commands::show::ShowArgs;
 
 mod endings;
 mod hardware;
@@ -68,6 +69,8 @@ pub(crate) enum Command {
     Prove(Box<ProveArgs>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)
     Diff(DiffArgs),
+    /// A wave in the terminal (VCD or FST, ours or anybody's)
+    Show(ShowArgs),
     /// Write a machine as Verilog, with a test bench that runs the geometry, or for model checkers and solvers
     Export(Box<ExportArgs>),
     /// A design of one's own, in Verilog or VHDL, as a netlist

@@ -14,6 +14,7 @@ pub(crate) mod program;
 mod progress;
 mod prove;
 pub(crate) mod run;
+pub(crate) mod show;
 mod size;
 mod sweep;
 mod widths;
@@ -44,6 +45,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Error> {
         Command::Machine(args) => machine::run(args),
         Command::Prove(args) => prove::run(args),
         Command::Diff(args) => diff::run(args),
+        Command::Show(args) => show::run(args),
         Command::Export(args) => export::run(args),
         Command::Import(args) => own::import(args),
         Command::Check(args) => own::check(args),
@@ -56,7 +58,7 @@ pub(crate) fn dispatch(cli: &Cli) -> Result<(), Error> {
 
 /// Nothing comes of a command but what it writes on standard output.
 fn only_prints(command: &Command) -> bool {
-    let traced = |args: &WaveOptions| [args.vcd.clone(), args.fst.clone()];
+    let traced = |args: &WaveOptions| [args.vcd.clone(), args.fst.clone(), args.html.clone()];
     let written = |args: &FileOptions| [args.steps.clone(), args.json.clone(), args.plot.clone()];
     let files: Vec<Option<PathBuf>> = match command {
         Command::Run(args) => {
@@ -71,7 +73,8 @@ fn only_prints(command: &Command) -> bool {
         Command::Sim(args) => traced(&args.trace).into_iter().chain([args.json.clone()]).collect(),
         Command::Prove(args) => vec![args.certificate.clone(), args.vcd.clone()],
         Command::Diff(args) => vec![args.merged.clone()],
-        Command::Compare(_) | Command::Widths(_) | Command::Machine(_) | Command::Golden(GoldenCommand::Check(_)) => {
+        Command::Compare(args) => vec![args.html.clone()],
+        Command::Show(_) | Command::Widths(_) | Command::Machine(_) | Command::Golden(GoldenCommand::Check(_)) => {
             Vec::new()
         }
         _ => return false,

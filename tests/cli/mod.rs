@@ -23,6 +23,7 @@ mod progress;
 mod ramps;
 mod ranges;
 mod sampled;
+mod show;
 mod speed_row;
 mod splines;
 mod stages;

@@ -42,7 +42,9 @@ fn commands_of_the_documents_print_what_is_shown() {
         }
         // `cargo run -- run …` and `stepwave run …` are the same program.
         let words = command.trim().strip_prefix("cargo run -- ").or(command.strip_prefix("stepwave "));
-        let Some(arguments) = words.filter(|words| words.starts_with("run ") || words.starts_with("program ")) else {
+        let Some(arguments) =
+            words.filter(|words| ["run ", "program ", "show "].iter().any(|command| words.starts_with(command)))
+        else {
             continue;
         };
         let output = Command::new(env!("CARGO_BIN_EXE_stepwave"))

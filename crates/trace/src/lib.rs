@@ -2,6 +2,7 @@
 
 pub mod changes;
 pub mod diverge;
+pub mod draw;
 pub mod fst;
 pub mod gtkw;
 pub mod guard;

@@ -1,7 +1,8 @@
 //! Globs that select signals by name.
 
 use crate::guard::guarded;
-use globset::{Glob, GlobMatcher};
+use globset::Glob;
+pub use globset::GlobMatcher;
 
 /// The longest glob, in bytes, and the most braces within one another: longer and deeper ones, which no name needs,
 /// take the crate's memory and stack.

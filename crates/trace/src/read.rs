@@ -279,6 +279,13 @@ impl Wave {
         self.signals.iter().position(|signal| signal.path == path)
     }
 
+    /// Whether a signal is the clock, under this name or another.
+    #[must_use]
+    pub fn is_clock(&self, signal: usize) -> bool {
+        let clock = self.clock.as_ref().ok().and_then(|clock| self.signals.get(clock.signal()));
+        clock.is_some_and(|clock| self.signals.get(signal).is_some_and(|signal| signal.stored == clock.stored))
+    }
+
     /// The clock that samples this wave.
     ///
     /// # Errors
