@@ -196,7 +196,7 @@ impl Drawing {
     }
 
     fn panel(&self, text: &mut String, (rows, name): (&[Row<'_>], usize), places: &[u64], first: usize, cell: usize) {
-        text.push_str(&self.dim(&format!("{:name$} {}", "", scale(places, cell)).trim_end()));
+        text.push_str(&self.dim(format!("{:name$} {}", "", scale(places, cell)).trim_end()));
         text.push('\n');
         for row in rows {
             let _ = write!(text, "{:name$} ", cut(&row.name, name, self.characters().cut));

@@ -74,7 +74,7 @@ fn times_of_changes_are_cells_and_a_long_window_has_several_lines() {
     let levels: String = text.lines().filter_map(|line| line.strip_prefix("b ")).collect();
     assert_eq!((levels.len(), text.lines().last()), (2 * 200, Some("clock 0 to 199")));
     // Its value at clock k is that of time 2k, and an edge is drawn where it changes, also at the start of a line.
-    let value = |clock: usize| clock * 2 / 4 % 2 == 0;
+    let value = |clock: usize| (clock * 2 / 4).is_multiple_of(2);
     for clock in 0..200 {
         let (now, edge) = (value(clock), clock > 0 && value(clock - 1) != value(clock));
         let wanted = match (now, edge) {
