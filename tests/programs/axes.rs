@@ -229,6 +229,28 @@ fn a_feed_is_along_x_y_z_else_along_u_v_w_else_in_degrees() {
 }
 
 #[test]
+fn all_pieces_of_a_helix_keep_its_time_where_few_have_a_pulse_of_another_axis() {
+    // 10.17 mm in 2.03 s; C has two pulses, which most pieces of the helix are without.
+    let program = "G21 G90 G94 G2 X4 Y0 I2 J0 Z8 C0.02 F300\nM30\n";
+    let wanted = f64::hypot(2.0 * std::f64::consts::PI, 8.0) / 5.0;
+    for family in FAMILIES {
+        let report = report(&Folder::new(), program, &format!("--method {family} {USUAL}"));
+        let seconds = number(&report["blocks"][0]["seconds"]);
+        assert!((seconds / wanted - 1.0).abs() < 0.01, "{family}: {seconds} s for {wanted}");
+    }
+}
+
+#[test]
+fn a_line_whose_path_is_rounded_off_counts_all_axes() {
+    let report = report(&Folder::new(), "G1 X0.001 A9 C12 F600\nM30\n", &format!("--method ppc {USUAL}"));
+    let block = &report["blocks"][0];
+    assert_eq!(number(&block["length"]), 1500.0, "{block}");
+    assert!((number(&block["seconds"]) - 1.5).abs() < 1e-4, "{block}");
+    let speed = |what: &str| number(&block["feed"][what]["value"]);
+    assert!(speed("least") > 0.7 && speed("greatest") < 0.8, "{block}");
+}
+
+#[test]
 fn a_compensated_contour_turns_with_its_blocks() {
     let program = "G21 G90 G1 F600 G41 D1 X10 Y0 A10\nX20 A20\nA50\nY20 A60\nG40 X0 Y30 A0\nG91 A-5 B7\nG28 A0\nM30\n";
     for family in FAMILIES {

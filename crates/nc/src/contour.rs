@@ -256,4 +256,18 @@ impl ToolMove {
     pub fn feed_axes(&self) -> FeedAxes {
         FeedAxes::of(&self.segment, &self.others)
     }
+
+    /// The indices of the axes along which the length of its path is counted: those of the feed, but of a line that rounding to
+    /// whole BLU has left no travel along them all axes.
+    #[must_use]
+    pub fn path_axes(&self) -> std::ops::Range<usize> {
+        let axes = self.feed_axes().axes();
+        let ends = |axis: usize| match axis.checked_sub(3) {
+            Some(other) => [self.others.from[other], self.others.to[other]],
+            None => [self.segment.from[axis], self.segment.to[axis]],
+        };
+        let rests = |axis: usize| ends(axis)[0].round() == ends(axis)[1].round();
+        let rounded_off = self.segment.shape == SegmentShape::Line && axes.clone().all(rests);
+        if rounded_off { 0..AXES_MAX } else { axes }
+    }
 }

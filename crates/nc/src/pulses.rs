@@ -111,11 +111,14 @@ impl PulseBlock {
         self.from[3..] != self.to[3..]
     }
 
-    /// An axis moves that the feed is not along.
+    /// An axis moves that the feed is not along: in this block or, as the pieces of an arc are at one feed, in another of its
+    /// move.
     #[must_use]
     pub fn carries_others(&self) -> bool {
         let along = self.of.feed_axes().axes();
-        (0..AXES_MAX).any(|axis| !along.contains(&axis) && self.travel(axis) != 0)
+        let Others { from, to } = &self.of.others;
+        let in_move = |axis: usize| axis >= 3 && from[axis - 3].round() != to[axis - 3].round();
+        (0..AXES_MAX).any(|axis| !along.contains(&axis) && (self.travel(axis) != 0 || in_move(axis)))
     }
 
     /// The distance of a position from the curve commanded to the machine, in BLU; the axes of the machine that the curve has

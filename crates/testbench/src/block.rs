@@ -211,9 +211,9 @@ fn place_of(values: &[i64]) -> Position {
     std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(0))
 }
 
-/// Where it is along the axes that the feed of the move is along.
+/// Where it is along the axes along which the path of the move is counted.
 fn along<'a>(of: &ToolMove, place: &'a Position) -> &'a [i64] {
-    &place[of.feed_axes().axes()]
+    &place[of.path_axes()]
 }
 
 /// The parts that the machine was given, and the account of the block that runs.
