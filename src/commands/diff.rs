@@ -29,11 +29,11 @@ use crate::output::{self, Outputs};
 /// Exit code: 0 same, 1 different, 2 trouble.
 #[derive(Debug, clap::Args)]
 pub(crate) struct DiffArgs {
-    /// The first wave, side A
+    /// The first wave, side A; - is standard input
     #[arg(value_name = "A")]
     a: PathBuf,
 
-    /// The second wave, side B
+    /// The second wave, side B; - is standard input
     #[arg(value_name = "B")]
     b: PathBuf,
 
@@ -94,6 +94,9 @@ pub(crate) fn run(args: &DiffArgs) -> Result<(), Error> {
         Axis::Time if args.clock.is_some() => return trouble("--clock names a clock, which --by time does without"),
         Axis::Time => By::Time,
     };
+    if [&args.a, &args.b].iter().all(|path| path.as_path() == Path::new("-")) {
+        return trouble("standard input is one wave: give the other one as a file");
+    }
     let options = Options {
         by,
         signals: args.signals.clone(),

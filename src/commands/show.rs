@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::Error;
 use crate::output;
 use crate::trace::draw::{Drawing, LEAST_COLUMNS, Radix};
-use crate::trace::pattern::{GlobMatcher, glob};
+use crate::trace::pattern::{Glob, glob};
 use crate::trace::read::{Wave, WaveError};
 
 /// Draw a wave in the terminal
@@ -18,10 +18,11 @@ use crate::trace::read::{Wave, WaveError};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     stepwave run ppc-line --to 6,4 --vcd line.vcd && stepwave show line.vcd\n  \
+    stepwave run dda-line --to 8,6 --vcd - | stepwave show -\n  \
     stepwave show line.vcd --from 8 --to 20 --signals f --signals 'x*' --radix binary\n  \
     stepwave show other.fst --by-time --ascii --columns 132")]
 pub(crate) struct ShowArgs {
-    /// The wave: VCD or FST
+    /// The wave: VCD or FST; - is standard input
     #[arg(value_name = "WAVE")]
     wave: PathBuf,
 
@@ -123,7 +124,7 @@ fn signals(wave: &Wave, args: &ShowArgs) -> Result<Vec<usize>, Error> {
     let mut used = vec![false; wanted.len()];
     let mut shown = Vec::new();
     for (index, signal) in wave.signals().iter().enumerate() {
-        let fits = |glob: &GlobMatcher| glob.is_match(&signal.path) || glob.is_match(signal.leaf());
+        let fits = |glob: &Glob| glob.is_match(&signal.path) || glob.is_match(signal.leaf());
         let mut hit = wanted.is_empty() && (args.by_time || !wave.is_clock(index));
         for (glob, used) in wanted.iter().zip(&mut used) {
             if fits(glob) {

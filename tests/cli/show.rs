@@ -90,3 +90,23 @@ fn what_cannot_be_shown_is_refused_with_the_remedy() {
     assert!(refused("show c.vcd --by-time --clock clk").contains("--clock"));
     assert_eq!(folder.files(), ["c.vcd"]);
 }
+
+#[test]
+fn a_wave_may_come_from_standard_input() {
+    let folder = Folder::new();
+    folder.write("c.vcd", ICARUS);
+    let piped = |words: &[&str]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_stepwave"))
+            .args(words)
+            .current_dir(folder.path(""))
+            .stdin(std::fs::File::open(folder.path("c.vcd")).unwrap())
+            .output()
+            .unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        (output.status.code(), text(output.stdout), text(output.stderr))
+    };
+    assert_eq!(piped(&["show", "-"]), (Some(0), folder.good("show c.vcd"), String::new()));
+    assert_eq!(piped(&["diff", "c.vcd", "-"]).0, Some(0));
+    let (code, _, said) = piped(&["diff", "-", "-"]);
+    assert!(code == Some(2) && said.contains("standard input is one wave: give the other one as a file"), "{said}");
+}

@@ -2,9 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use globset::GlobMatcher;
-
-use crate::pattern::{fits, glob};
+use crate::pattern::{Glob, fits, glob};
 use stepwave_netlist::cells::{Format, Net, Op};
 use stepwave_netlist::did_you_mean;
 use stepwave_netlist::{Design, Netlist};
@@ -74,17 +72,17 @@ pub enum PatternError {
 /// Narrows the names of a design. The default keeps all.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
-    include: Vec<GlobMatcher>,
-    exclude: Vec<GlobMatcher>,
+    include: Vec<Glob>,
+    exclude: Vec<Glob>,
     depth: Option<usize>,
 }
 
-fn matchers(patterns: &[String]) -> Result<Vec<GlobMatcher>, PatternError> {
+fn matchers(patterns: &[String]) -> Result<Vec<Glob>, PatternError> {
     let compile = |pattern: &String| glob(pattern).map_err(|reason| PatternError::Syntax(pattern.clone(), reason));
     patterns.iter().map(compile).collect()
 }
 
-fn matches(glob: &GlobMatcher, scopes: &[String], name: &str) -> bool {
+fn matches(glob: &Glob, scopes: &[String], name: &str) -> bool {
     fits(glob, &format!("{}.{name}", scopes.join(".")))
 }
 
@@ -100,7 +98,7 @@ impl Selection {
     }
 
     fn keeps(&self, scopes: &[String], name: &str) -> bool {
-        let any = |globs: &[GlobMatcher]| globs.iter().any(|glob| matches(glob, scopes, name));
+        let any = |globs: &[Glob]| globs.iter().any(|glob| matches(glob, scopes, name));
         (self.include.is_empty() || any(&self.include))
             && !any(&self.exclude)
             && self.depth.is_none_or(|depth| scopes.len() <= depth)
@@ -122,9 +120,9 @@ impl Selection {
             scopes.push(path);
         }
         let names = || netlist.names.iter().map(|named| (&scopes[named.scope.index()], named.name.as_str()));
-        let fits = |glob: &&GlobMatcher| names().any(|(scopes, name)| matches(glob, scopes, name));
+        let fits = |glob: &&Glob| names().any(|(scopes, name)| matches(glob, scopes, name));
         if let Some(unused) = self.include.iter().find(|glob| !fits(glob)) {
-            let pattern = unused.glob().to_string();
+            let pattern = unused.pattern().to_owned();
             let hint = did_you_mean(&pattern, names().map(|(_, name)| name));
             return Err(PatternError::Unused { pattern, hint });
         }
@@ -149,8 +147,8 @@ impl Selection {
             }
         }
         if probes.is_empty() {
-            let list = |word: &str, globs: &[GlobMatcher]| {
-                globs.iter().map(|glob| format!("{word} '{}'", glob.glob())).collect::<Vec<_>>()
+            let list = |word: &str, globs: &[Glob]| {
+                globs.iter().map(|glob| format!("{word} '{}'", glob.pattern())).collect::<Vec<_>>()
             };
             let mut patterns = [list("keep", &self.include), list("leave out", &self.exclude)].concat();
             patterns.extend(self.depth.map(|depth| format!("depth {depth}")));

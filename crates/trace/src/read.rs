@@ -197,13 +197,16 @@ pub enum WaveError {
 }
 
 impl Wave {
-    /// Reads a whole file or pipe; the format is recognised by its content. The clock is the one found as [`Clock`]
+    /// Reads a whole file or pipe, or standard input where the path is `-`; the format is recognised by its content. The clock is the one found as [`Clock`]
     /// says; a file without a clock is an error only when cycles are asked for.
     ///
     /// # Errors
     /// [`WaveError`], if anything is wrong with the file.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, WaveError> {
         let path = path.as_ref();
+        if path == Path::new("-") {
+            return Self::piped(io::stdin().lock(), String::from("standard input"));
+        }
         let name = path.display().to_string();
         let io = |source| WaveError::Io { name: name.clone(), source };
         let mut file = File::open(path).map_err(io)?;
@@ -211,15 +214,22 @@ impl Wave {
         if is_device(kind) {
             return Err(WaveError::Device { name });
         }
+        if !kind.is_file() {
+            return Self::piped(file, name);
+        }
         let mut head = Vec::with_capacity(HEAD);
         file.by_ref().take(HEAD as u64).read_to_end(&mut head).map_err(io)?;
         let format = Self::format(&head, &name)?;
-        if kind.is_file() {
-            file.rewind().map_err(io)?;
-            decode::wave(BufReader::with_capacity(1 << 16, file), format, name)
-        } else {
-            decode::piped(head, file, format, name)
-        }
+        file.rewind().map_err(io)?;
+        decode::wave(BufReader::with_capacity(1 << 16, file), format, name)
+    }
+
+    fn piped(mut input: impl Read, name: String) -> Result<Self, WaveError> {
+        let mut head = Vec::with_capacity(HEAD);
+        let read = input.by_ref().take(HEAD as u64).read_to_end(&mut head);
+        read.map_err(|source| WaveError::Io { name: name.clone(), source })?;
+        let format = Self::format(&head, &name)?;
+        decode::piped(head, input, format, name)
     }
 
     /// Reads a wave that is in memory; messages call it `memory`.

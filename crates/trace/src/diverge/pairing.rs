@@ -2,9 +2,8 @@
 
 use super::frame::Frames;
 use super::{CompareError, Options};
-use crate::pattern::glob;
+use crate::pattern::{Glob, glob};
 use crate::read::{Signal, Wave};
-use globset::GlobMatcher;
 use std::collections::{HashMap, HashSet};
 use stepwave_netlist::did_you_mean;
 
@@ -33,9 +32,9 @@ pub(crate) fn pairs<'w>(frames: &Frames<'w>, options: &Options) -> Result<Vec<Pa
     let ignore = globs(&options.ignore)?;
     pairs.retain(|pair| {
         let clock = pair.a.is_some_and(|a| frames.a.is_clock(a)) || pair.b.is_some_and(|b| frames.b.is_clock(b));
-        let hit = |globs: &[GlobMatcher]| {
+        let hit = |globs: &[Glob]| {
             let signals = || pair.a.into_iter().chain(pair.b);
-            let one = |glob: &GlobMatcher| {
+            let one = |glob: &Glob| {
                 glob.is_match(&pair.name) || signals().any(|s| glob.is_match(&s.path) || glob.is_match(s.leaf()))
             };
             globs.iter().any(one)
@@ -52,7 +51,7 @@ pub(crate) fn pairs<'w>(frames: &Frames<'w>, options: &Options) -> Result<Vec<Pa
     Ok(pairs)
 }
 
-fn globs(patterns: &[String]) -> Result<Vec<GlobMatcher>, CompareError> {
+fn globs(patterns: &[String]) -> Result<Vec<Glob>, CompareError> {
     let compile =
         |pattern: &String| glob(pattern).map_err(|reason| CompareError::BadGlob { pattern: pattern.clone(), reason });
     patterns.iter().map(compile).collect()
