@@ -1,12 +1,13 @@
-//! `stepwave show`: a wave in the terminal.
+//! `stepwave show`: a wave in the terminal, and as a picture for documents.
 
 use std::collections::BTreeMap;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use crate::Error;
-use crate::output;
-use crate::trace::draw::{Drawing, LEAST_COLUMNS, Radix};
+use crate::cli::{Format, file_of};
+use crate::output::{Outputs, Screen};
+use crate::trace::draw::{Drawing, LEAST_COLUMNS, Radix, Window};
 use crate::trace::pattern::{Glob, glob};
 use crate::trace::read::{Wave, WaveError};
 
@@ -14,12 +15,14 @@ use crate::trace::read::{Wave, WaveError};
 ///
 /// Reads VCD and FST, of stepwave or of any other simulator. Each signal has a line, each clock a cell: sample k is what
 /// the hardware has settled to after edge k. Values of one state have its name where the file F.SIGNAL.states lies next to the
-/// wave, as `run --vcd` writes it. In a terminal levels are green and unknown values red, unless NO_COLOR is set.
+/// wave, as `run --vcd` writes it. In a terminal levels are green and unknown values red, unless NO_COLOR is set. The same
+/// lines go into a picture for documents, or as WaveJSON to WaveDrom.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \
     stepwave run ppc-line --to 6,4 --vcd line.vcd && stepwave show line.vcd\n  \
     stepwave run dda-line --to 8,6 --vcd - | stepwave show -\n  \
     stepwave show line.vcd --from 8 --to 20 --signals f --signals 'x*' --radix binary\n  \
+    stepwave show line.vcd --to 19 --svg line.svg --wavedrom line.json\n  \
     stepwave show other.fst --by-time --ascii --columns 132")]
 pub(crate) struct ShowArgs {
     /// The wave: VCD or FST; - is standard input
@@ -61,7 +64,19 @@ pub(crate) struct ShowArgs {
     /// Characters of a line [default: those of the terminal, else 80]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(LEAST_COLUMNS as i64..=1000))]
     columns: Option<u16>,
+
+    /// Write the same lines as SVG
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Svg]), help_heading = OUTPUTS)]
+    svg: Option<PathBuf>,
+
+    /// Write the same clocks and signals as WaveJSON, which WaveDrom draws
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json]), help_heading = OUTPUTS)]
+    wavedrom: Option<PathBuf>,
 }
+
+const OUTPUTS: &str = "Outputs (- is standard output)";
+/// Most clocks or times of a picture: a page of paper shows a few dozen of them in a line.
+const MOST_PICTURED: usize = 10_000;
 
 /// [`Radix`], for the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -85,7 +100,7 @@ impl From<Base> for Radix {
     }
 }
 
-/// Draws a wave on standard output.
+/// Draws a wave on standard output, or on standard error where an output has that, and into the files asked for.
 pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
     if let Some(to) = args.to.filter(|to| *to < args.from) {
         return Err(Error::Invalid(format!("--to {to} is before --from {}: exchange them", args.from)));
@@ -95,6 +110,7 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
         wave = wave.with_clock(clock).map_err(WaveError::from)?;
     }
     let signals = signals(&wave, args)?;
+    let States { names, files } = States::next_to(&args.wave, &wave, &signals);
     let drawing = Drawing {
         columns: args.columns.map_or_else(columns, usize::from),
         ascii: args.ascii,
@@ -103,13 +119,36 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
         from: args.from,
         to: args.to,
         by_time: args.by_time,
-        names: states(&args.wave, &wave, &signals),
+        names,
     };
-    let text = drawing.text(&wave, &signals).map_err(|reason| {
+    let window = drawing.window(&wave, &signals).map_err(|reason| {
         let remedy = if args.by_time { "" } else { ", or --by-time" };
         Error::Invalid(format!("{}: {reason}: give other clocks{remedy}", args.wave.display()))
     })?;
-    output::print(&text)
+    let mut outputs = Outputs::reading(files.iter().chain([&args.wave]));
+    let views = [(&args.svg, Window::svg as fn(&Window) -> String), (&args.wavedrom, Window::wavedrom)];
+    let views = views.into_iter().filter_map(|(path, view)| Some((path.as_ref()?, view)));
+    let mut pictures = Vec::new();
+    for (path, view) in views {
+        if window.cells() > MOST_PICTURED {
+            return Err(Error::Invalid(format!(
+                "{}: a picture of {} clocks or times: at most {MOST_PICTURED} can be read; give --from and --to",
+                path.display(),
+                window.cells()
+            )));
+        }
+        pictures.push((outputs.open(path)?, view));
+    }
+    // Only when all can be opened something is written.
+    for (mut sink, view) in pictures {
+        sink.write_all(view(&window).as_bytes())?;
+        sink.flush()?;
+    }
+    let on_error = outputs.uses_stdout();
+    outputs.commit()?;
+    let mut screen = Screen::new(on_error);
+    write!(screen, "{}", window.text(drawing.ascii, drawing.colour && !on_error))?;
+    Ok(screen.flush()?)
 }
 
 /// The signals that are asked for, in the order of the file; without the clock, unless it is named.
@@ -147,19 +186,30 @@ fn signals(wave: &Wave, args: &ShowArgs) -> Result<Vec<usize>, Error> {
     Ok(shown)
 }
 
-/// Names of states next to the wave, by signal and bits.
-fn states(path: &Path, wave: &Wave, signals: &[usize]) -> BTreeMap<String, BTreeMap<String, String>> {
-    let mut all = BTreeMap::new();
-    for &signal in signals {
-        let leaf = wave.signals()[signal].leaf();
-        let file = path.with_extension(format!("{leaf}.states"));
-        // Names are an extra: a wave of another program has no such file.
-        let Ok(text) = std::fs::read_to_string(file) else { continue };
-        let names = text.lines().filter_map(|line| line.split_once(' '));
-        let printable = |name: &str| name.chars().filter(|c| !c.is_control()).collect();
-        all.insert(leaf.to_owned(), names.map(|(bits, name)| (bits.to_owned(), printable(name))).collect());
+/// Names of states next to a wave.
+struct States {
+    /// By signal and bits.
+    names: BTreeMap<String, BTreeMap<String, String>>,
+    /// From which they were read.
+    files: Vec<PathBuf>,
+}
+
+impl States {
+    fn next_to(path: &Path, wave: &Wave, signals: &[usize]) -> States {
+        let mut all = States { names: BTreeMap::new(), files: Vec::new() };
+        for &signal in signals {
+            let leaf = wave.signals()[signal].leaf();
+            let file = path.with_extension(format!("{leaf}.states"));
+            // Names are an extra: a wave of another program has no such file.
+            let Ok(text) = std::fs::read_to_string(&file) else { continue };
+            let names = text.lines().filter_map(|line| line.split_once(' '));
+            let printable = |name: &str| name.chars().filter(|c| !c.is_control()).collect();
+            let names = names.map(|(bits, name)| (bits.to_owned(), printable(name))).collect();
+            all.names.insert(leaf.to_owned(), names);
+            all.files.push(file);
+        }
+        all
     }
-    all
 }
 
 /// Characters of a line of the terminal, or of `COLUMNS`; 80 where there is none.

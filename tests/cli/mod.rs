@@ -19,6 +19,7 @@ mod outputs;
 mod overflow;
 mod pages;
 mod parts;
+mod pictures;
 mod progress;
 mod ramps;
 mod ranges;

@@ -3,7 +3,7 @@
 use super::Folder;
 
 /// What Icarus Verilog 11 writes for a counter whose steps are 3 and, from 22 ns on, -1.
-const ICARUS: &str = "$date\n\tMon Nov 30 09:38:39 2026\n$end\n$version\n\tIcarus Verilog\n$end\n$timescale\n\t1ps\n$end\n\
+pub(super) const ICARUS: &str = "$date\n\tMon Nov 30 09:38:39 2026\n$end\n$version\n\tIcarus Verilog\n$end\n$timescale\n\t1ps\n$end\n\
     $scope module tb $end\n$var wire 4 ! n [3:0] $end\n$var reg 1 \" clk $end\n$var reg 1 # up $end\n$scope module dut $end\n\
     $var wire 1 \" clk $end\n$var wire 1 # up $end\n$var reg 4 $ n [3:0] $end\n$upscope $end\n$upscope $end\n$enddefinitions $end\n\
     #0\n$dumpvars\nbx $\n1#\n0\"\nbx !\n$end\n#5000\nb0 !\nb0 $\n1\"\n#10000\n0\"\n#15000\nb11 !\nb11 $\n1\"\n#20000\n0\"\n#22000\n0#\n\

@@ -1,3 +1,5 @@
+use std::fmt::Write;
+
 use super::*;
 
 /// A clock of 2 units; a bit, a counter with a sign, a state, an unknown bus, a text.
