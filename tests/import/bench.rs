@@ -237,7 +237,7 @@ fn what_a_bench_file_says_wrongly_is_refused_with_its_line() {
         ("pulse = \"dx\"", "pulse = \"dx\"\nup = \"dx\"", "axis x: give one of step, pulse, up and down"),
         ("pulse = \"dx\"", "pulse = \"dx\"\ndirection = \"sx\"", "axis x: its direction is in the pulses"),
         ("[axis.y]", "[axis.z]", "there is an axis z, but no axis y"),
-        ("[axis.y]", "[axis.w]", "there is no axis 'w'"),
+        ("[axis.y]", "[axis.q]", "there is no axis 'q'"),
         ("start = \"load\"", "start = \"load\"\nstarts = 1", "unknown field `starts`"),
         ("start = \"load\"", "max_axes = 3\nstart = \"load\"", "max_axes = 3: give 2 to 2"),
         ("start = \"load\"", "start = \"load\"\nset = { x_in = 999 }", "set x_in: 999 does not fit in its 9 bits"),

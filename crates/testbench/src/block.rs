@@ -87,14 +87,16 @@ impl BlockReport {
     /// Before its first step.
     #[must_use]
     pub fn new(of: ToolMove, begun: u64, from: &[i64]) -> BlockReport {
+        // x, y and z are always reported, as they are where the machine has two axes.
+        let (place, axes) = (place_of(from), from.len().max(3));
         BlockReport {
             of,
             begun,
             clocks: 0,
             steps: 0,
-            pulses: vec![0; from.len()],
-            wanted: from.to_vec(),
-            reached: from.to_vec(),
+            pulses: vec![0; axes],
+            wanted: place[..axes].to_vec(),
+            reached: place[..axes].to_vec(),
             length: 0.0,
             commanded: None,
             source_hz: None,
@@ -106,7 +108,7 @@ impl BlockReport {
             contour_bound: None,
             free: false,
             off_programmed: None,
-            windows: Windows::begun(along(&of, &place_of(from)), begun),
+            windows: Windows::begun(along(&of, &place), begun),
         }
     }
 
@@ -116,7 +118,7 @@ impl BlockReport {
         self.steps += 1;
         self.windows.row(along(&self.of, &position), clock);
         self.clocks = clock - self.begun;
-        self.reached.copy_from_slice(&step.position);
+        self.reached.iter_mut().zip(position).for_each(|(reached, at)| *reached = at);
         if step.pulses.iter().all(|pulse| *pulse == 0) {
             return;
         }

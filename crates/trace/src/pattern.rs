@@ -55,11 +55,24 @@ pub fn glob(pattern: &str) -> Result<Glob, String> {
     if unopened.is_none() {
         return Err("a } has no { before it".to_owned());
     }
+    if let Some([first, _, last]) = empty_range(pattern) {
+        return Err(format!("the range {first}-{last} is empty"));
+    }
     fast_glob::validate(pattern).map_err(|error| error.to_string())?;
     let matched = without_slashes(pattern).into_owned();
     // The crate takes ! at the start for a negation; it is a character of names.
     let compiled = if matched.starts_with('!') { format!("\\{matched}") } else { matched };
     Ok(Glob { pattern: pattern.to_owned(), compiled })
+}
+
+/// A range between brackets that begins after its end.
+fn empty_range(pattern: &str) -> Option<[char; 3]> {
+    let sets = pattern.split('[').skip(1).map(|set| set.split(']').next().unwrap_or_default());
+    let ranges = sets.flat_map(|set| {
+        let characters: Vec<char> = set.chars().collect();
+        characters.windows(3).map(|range| [range[0], range[1], range[2]]).collect::<Vec<_>>()
+    });
+    ranges.into_iter().find(|[first, dash, last]| *dash == '-' && first > last)
 }
 
 /// A glob fits the leaf name, the dotted path, or the path without the design's name.
@@ -110,7 +123,8 @@ mod tests {
     #[test]
     fn what_is_no_glob_is_refused_and_never_panics() {
         assert!(glob("*.{x,y}[0-3]").is_ok_and(|glob| glob.is_match("m.x2") && !glob.is_match("m.x4")));
-        for pattern in ["[z", "{a", "a}", "{".repeat(9).as_str(), "{".repeat(5000).as_str(), &"a".repeat(1001)] {
+        for pattern in ["[z", "{a", "a}", "[z-a]", "{".repeat(9).as_str(), "{".repeat(5000).as_str(), &"a".repeat(1001)]
+        {
             assert!(glob(pattern).is_err(), "{pattern}");
         }
         // Every short pattern of the characters that mean something.
