@@ -20,6 +20,7 @@ use stepwave::engine::{EngineKind, Rows, Watch};
 use stepwave::export::{self, Checking, Options, Step, Stimulus};
 use stepwave::netlist::cells::NamedNet;
 use stepwave::netlist::{Bits, Design, Net, elaborate};
+use stepwave::trace::WaveBody;
 use stepwave::trace::probe::Selection;
 use stepwave::trace::timescale::ClockTime;
 use stepwave::trace::vcd::VcdHeader;

@@ -17,6 +17,7 @@
 use std::error::Error;
 
 use stepwave::engine::{EngineKind, Rows, Watch};
+use stepwave::netlist::bits::to_signed;
 use stepwave::netlist::dsl::{Module, Register, Scope, Signal};
 use stepwave::netlist::{elaborate, text};
 
@@ -50,6 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let columns = [u, w, x, y].map(|register: Register<'_>| register.q.net());
 
     let design = elaborate(module.finish()?)?;
+    let width = design.netlist().width(columns[0]);
     let stops = design.netlist().properties.iter().map(|property| property.never).collect();
     let mut engine = EngineKind::Compiled.build(&design, &Watch { columns: columns.to_vec(), stops });
     if let Some(file) = std::env::args().nth(1) {
@@ -67,10 +69,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             let ((sin, cos), a) = (angle.sin_cos(), A as f64);
             let spiral = [a * angle * cos, a * angle * sin];
             let involute = [a * cos + spiral[1], a * sin - spiral[0]];
-            // Two's complement of N + 1 bits, in parts of a BLU.
-            let at = |column: usize| {
-                ((rows.value(column, row) << (63 - N)).cast_signed() >> (63 - N)) as f64 / f64::from(1 << FRACTION)
-            };
+            // In parts of a BLU.
+            let at = |column: usize| to_signed(width, rows.value(column, row)) as f64 / f64::from(1 << FRACTION);
             for (curve, exact) in [spiral, involute].into_iter().enumerate() {
                 let off = f64::hypot(at(2 * curve) - exact[0], at(2 * curve + 1) - exact[1]);
                 worst[curve] = worst[curve].max(off);

@@ -34,7 +34,7 @@ pub(crate) use program::{Method, ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use usage::usage;
-pub(crate) use values::{ClockArgs, Point, SimulationArgs, parse_decimals, parse_point};
+pub(crate) use values::{ClockArgs, Point, SimulationArgs, one_of, parse_decimals, parse_point};
 pub(crate) use widths::WidthsArgs;
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware

@@ -24,7 +24,6 @@ use crate::trace::timescale::ClockTime;
 use crate::waves::{Sinks, WaveOptions, Waves};
 use crate::{Error, Trace};
 
-#[cfg(feature = "cli")]
 pub(crate) use self::source::Prepared;
 
 /// A run of a model over a curve, or of a machine over a whole NC program, with everything that is to come of it.

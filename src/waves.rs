@@ -11,9 +11,9 @@ use clap::builder::StringValueParser;
 use crate::netlist::cells::Format;
 use crate::netlist::{Design, Net, Width};
 use crate::testbench::{
-    Columns, Observer, OverflowEvent, Running, SpeedRow, Taken, Testbench, Trigger, WaveBody, WaveWriter, Window,
-    net_named,
+    Columns, Observer, OverflowEvent, Running, SpeedRow, Taken, Testbench, Trigger, WaveWriter, Window, net_named,
 };
+use crate::trace::WaveBody;
 use crate::trace::fst::{FstBody, FstHeader};
 use crate::trace::gtkw::{View, side_files};
 use crate::trace::probe::{Probe, Selection};

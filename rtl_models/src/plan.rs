@@ -294,9 +294,14 @@ impl Plan {
             table.extend(declaration.shown.then_some(name));
             scale.extend(declaration.scaled.then_some(name));
         })?;
+        let count = widths.len();
+        let widths: BTreeMap<_, _> = widths.into_iter().collect();
+        if widths.len() < count {
+            return Err(ModelError::defect(self.model, "two of its registers have one name".to_owned()));
+        }
         Ok(Hardware {
             presets,
-            widths: widths.into_iter().collect(),
+            widths,
             model: self.model,
             axes: self.axes,
             // Both are resolved, register by register.

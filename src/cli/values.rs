@@ -68,7 +68,7 @@ pub(super) fn parse_blu(text: &str) -> Result<f64, String> {
 }
 
 /// A choice among named values.
-pub(super) fn one_of<T: Clone + Send + Sync + 'static>(
+pub(crate) fn one_of<T: Clone + Send + Sync + 'static>(
     values: &[(&'static str, T)],
 ) -> impl TypedValueParser<Value = T> + use<T> {
     let values = values.to_vec();

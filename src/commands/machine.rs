@@ -2,7 +2,6 @@
 
 mod json;
 mod pareto;
-mod ramp;
 mod text;
 
 use std::collections::BTreeSet;
@@ -10,32 +9,16 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use self::pareto::Beaten;
-use self::ramp::{Ramped, ramped};
 use super::progress::Progress;
 use crate::Error;
 use crate::cli::{BenchArgs, MachineArgs};
 use crate::models::{Model, Options, installed};
 use crate::nc::COORDINATE_LIMIT;
 use crate::output;
-use crate::study::machine::{Dimensions, dimensions, takes};
+use crate::study::machine::{Dimensions, Size, dimensions, takes};
 use crate::study::proof::ProofError;
+use crate::study::ramp::{Ramped, ramped};
 use crate::study::synth::{Cost, Tools};
-
-/// A machine as it is asked for.
-struct Size {
-    /// Travel of each axis in BLU.
-    travel: Vec<i64>,
-    /// BLU/s.
-    feed: f64,
-    blu_mm: f64,
-}
-
-impl Size {
-    /// mm/min of a speed in BLU/s.
-    fn feed_of(&self, speed: f64) -> f64 {
-        speed * self.blu_mm * 60.0
-    }
-}
 
 /// A machine by one method, with what it costs where that is asked for.
 struct Row {

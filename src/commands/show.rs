@@ -5,10 +5,10 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use crate::Error;
-use crate::cli::{Format, file_of};
+use crate::cli::{Format, file_of, one_of};
 use crate::output::{Outputs, Screen};
 use crate::trace::draw::{Drawing, LEAST_COLUMNS, Radix, Window};
-use crate::trace::pattern::{Glob, glob};
+use crate::trace::pattern::{Glob, fits_an_end, glob};
 use crate::trace::read::{Wave, WaveError};
 
 /// Draw a wave in the terminal
@@ -37,17 +37,17 @@ pub(crate) struct ShowArgs {
     #[arg(long, value_name = "N")]
     to: Option<u64>,
 
-    /// Only signals whose path or name matches; `*` matches dots too (repeatable)
+    /// Only signals whose name matches, or their path from some scope on; `*` matches dots too (repeatable)
     #[arg(long, value_name = "GLOB")]
     signals: Vec<String>,
 
-    /// Leave out signals whose path or name matches (repeatable)
+    /// Leave out signals by their names, or their paths from some scope on (repeatable)
     #[arg(long, value_name = "GLOB")]
     ignore: Vec<String>,
 
     /// How vectors are written; as declared is decimal, with a sign where the file says so
-    #[arg(long, value_enum, default_value_t = Base::Declared)]
-    radix: Base,
+    #[arg(long, default_value = "declared", value_parser = one_of(&RADICES))]
+    radix: Radix,
 
     /// A cell for each time at which something changes, in units of the wave, in place of each clock
     #[arg(long)]
@@ -78,27 +78,14 @@ const OUTPUTS: &str = "Outputs (- is standard output)";
 /// Most clocks or times of a picture: a page of paper shows a few dozen of them in a line.
 const MOST_PICTURED: usize = 10_000;
 
-/// [`Radix`], for the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Base {
-    Declared,
-    Binary,
-    Hex,
-    Signed,
-    Unsigned,
-}
-
-impl From<Base> for Radix {
-    fn from(base: Base) -> Radix {
-        match base {
-            Base::Declared => Radix::Declared,
-            Base::Binary => Radix::Binary,
-            Base::Hex => Radix::Hex,
-            Base::Signed => Radix::Signed,
-            Base::Unsigned => Radix::Unsigned,
-        }
-    }
-}
+/// How vectors may be written.
+const RADICES: [(&str, Radix); 5] = [
+    ("declared", Radix::Declared),
+    ("binary", Radix::Binary),
+    ("hex", Radix::Hex),
+    ("signed", Radix::Signed),
+    ("unsigned", Radix::Unsigned),
+];
 
 /// Draws a wave on standard output, or on standard error where an output has that, and into the files asked for.
 pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
@@ -115,7 +102,7 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
         columns: args.columns.map_or_else(columns, usize::from),
         ascii: args.ascii,
         colour: coloured(),
-        radix: args.radix.into(),
+        radix: args.radix,
         from: args.from,
         to: args.to,
         by_time: args.by_time,
@@ -163,7 +150,7 @@ fn signals(wave: &Wave, args: &ShowArgs) -> Result<Vec<usize>, Error> {
     let mut used = vec![false; wanted.len()];
     let mut shown = Vec::new();
     for (index, signal) in wave.signals().iter().enumerate() {
-        let fits = |glob: &Glob| glob.is_match(&signal.path) || glob.is_match(signal.leaf());
+        let fits = |glob: &Glob| fits_an_end(glob, &signal.path);
         let mut hit = wanted.is_empty() && (args.by_time || !wave.is_clock(index));
         for (glob, used) in wanted.iter().zip(&mut used) {
             if fits(glob) {

@@ -8,7 +8,7 @@
 use std::collections::VecDeque;
 
 use stepwave_models::program::Acceleration;
-use stepwave_nc::{AXES_MAX, FeedAxes, PathControl};
+use stepwave_nc::{Coordinates, FeedAxes, PathControl};
 
 /// Most blocks that wait. With more of them so short a stop is assumed after the last.
 const MOST: usize = 4096;
@@ -61,7 +61,7 @@ impl<T> Lookahead<T> {
 
     /// The greatest speed at which a corner between two directions may be passed, along these axes; others turn as much as they
     /// must.
-    pub(super) fn joint(&self, path: PathControl, along: FeedAxes, [before, after]: [[f64; AXES_MAX]; 2]) -> f64 {
+    pub(super) fn joint(&self, path: PathControl, along: FeedAxes, [before, after]: [Coordinates; 2]) -> f64 {
         let changes = before.into_iter().zip(after).map(|(before, after)| (after - before).abs());
         // What rounding leaves of two equal directions is none.
         let by_axis =

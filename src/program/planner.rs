@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use stepwave_models::Hardware;
 use stepwave_models::program::{Acceleration, HardwareBlock, Moves, Profile};
-use stepwave_nc::{AXES_MAX, Cause, FeedAxes, PathControl, PulseBlock, ToolMove};
+use stepwave_nc::{Cause, Coordinates, FeedAxes, PathControl, PulseBlock, ToolMove};
 
 use super::ProgramFailure;
 use super::feed::{Pace, Paced, Pacer};
@@ -39,7 +39,7 @@ struct Ahead<T> {
     by: Acceleration,
     queue: Lookahead<(Paced, T)>,
     /// How the move before ends, unless the machine stops there.
-    end: Option<(PathControl, FeedAxes, [f64; AXES_MAX])>,
+    end: Option<(PathControl, FeedAxes, Coordinates)>,
     /// Pulses of a BLU in the part before.
     scale: Option<f64>,
 }

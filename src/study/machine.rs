@@ -17,6 +17,25 @@ use crate::testbench::{Ending, PathWatch, Testbench};
 /// Clocks after which a run at a corner is given up.
 const LIMIT: u64 = 1 << 26;
 
+/// A machine as it is asked for.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Size {
+    /// Travel of each axis in BLU.
+    pub travel: Vec<i64>,
+    /// Feed along the path in BLU/s.
+    pub feed: f64,
+    /// One BLU in mm.
+    pub blu_mm: f64,
+}
+
+impl Size {
+    /// mm/min of a speed in BLU/s.
+    #[must_use]
+    pub fn feed_of(&self, speed: f64) -> f64 {
+        speed * self.blu_mm * 60.0
+    }
+}
+
 /// A run at a corner of the travel.
 #[derive(Clone, Debug)]
 pub struct Corner {

@@ -46,6 +46,7 @@ mod parquet;
 mod parts;
 mod points;
 pub mod proof;
+pub mod ramp;
 mod range;
 mod space;
 mod stage;

@@ -23,7 +23,7 @@ const LOGIC_CELLS: u64 = 7680;
 /// The seed of the placement, and the last that is tried.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=16;
 /// Lines of the router's table, of 1000 arcs each, without progress after which it is given up.
-const CIRCLES: usize = 12;
+const STALLED_LINES: usize = 12;
 /// Time between two looks at a tool.
 const INTERVAL: Duration = Duration::from_millis(20);
 /// Lines of a tool that fails which are shown.
@@ -150,7 +150,7 @@ impl Tools {
         let cost = counted(&read(YOSYS, "machine.json")?);
         let whole = counted(&read(YOSYS, "harness.json")?);
         if cost.luts == 0 {
-            return Err(unread(YOSYS, "there is no lookup table in it".to_owned()));
+            return Err(unread(YOSYS, "it has no lookup table".to_owned()));
         }
         if [whole.luts, whole.flip_flops, whole.carries].iter().any(|count| *count > LOGIC_CELLS) {
             return Ok(Cost { fits: false, ..cost });
@@ -159,7 +159,7 @@ impl Tools {
             let seed_word = seed.to_string();
             let place =
                 ["--seed", &seed_word, "--json", "harness.json", "--report", "report.json", "--timing-allow-fail"];
-            if run(NEXTPNR, &[&DEVICE[..], &place[..]].concat(), model, folder.path(), goes_round)? {
+            if run(NEXTPNR, &[&DEVICE[..], &place[..]].concat(), model, folder.path(), router_loops)? {
                 let clock_hz = highest(&read(NEXTPNR, "report.json")?);
                 return Ok(Cost { clock_hz, seed: Some(seed), ..cost });
             }
@@ -170,7 +170,7 @@ impl Tools {
 
 /// The router does what it has done before: in many lines of its table in a row no arc was added without another being
 /// torn out, and as many remain.
-fn goes_round(log: &str) -> bool {
+fn router_loops(log: &str) -> bool {
     // Iterations; arcs with and without such; those of them in this line; remaining; and times.
     let line = |line: &str| -> Option<(bool, u64)> {
         let mut fields = line.strip_prefix("Info:")?.split('|').skip(2);
@@ -183,7 +183,7 @@ fn goes_round(log: &str) -> bool {
         longest = longest.max(length);
         before = Some(remaining);
     }
-    longest >= CIRCLES
+    longest >= STALLED_LINES
 }
 
 /// The version that a tool says: the word after `Yosys`, or what follows `Version`.
@@ -326,16 +326,16 @@ mod tests {
     }
 
     #[test]
-    fn a_router_that_goes_round_is_seen_in_its_table() {
+    fn a_router_that_router_loops_is_seen_in_its_table() {
         let head = "Info:            |   (re-)routed arcs  |   delta    | remaining|       time spent     |\n\
                     Info:    IterCnt |  w/ripup   wo/ripup |  w/r  wo/r |      arcs| batch(sec) total(sec)|\n\
                     Info:       1000 |       26        973 |   26   973 |      2103|       0.50       0.50|\n";
         let round = "Info:       2000 |     1026        973 | 1000     0 |      2103|       0.53       1.03|\n";
         let on = "Info:       3000 |     1926       1073 |  900   100 |      2003|       0.53       1.03|\n";
-        assert!(!goes_round(head) && !goes_round(&(head.to_owned() + &round.repeat(CIRCLES - 1))));
-        assert!(goes_round(&(head.to_owned() + &round.repeat(CIRCLES))));
-        assert!(goes_round(&(head.to_owned() + &round.repeat(CIRCLES) + on)));
-        assert!(!goes_round(&(head.to_owned() + &(round.repeat(CIRCLES - 1) + on).repeat(9))));
+        assert!(!router_loops(head) && !router_loops(&(head.to_owned() + &round.repeat(STALLED_LINES - 1))));
+        assert!(router_loops(&(head.to_owned() + &round.repeat(STALLED_LINES))));
+        assert!(router_loops(&(head.to_owned() + &round.repeat(STALLED_LINES) + on)));
+        assert!(!router_loops(&(head.to_owned() + &(round.repeat(STALLED_LINES - 1) + on).repeat(9))));
     }
 
     #[test]

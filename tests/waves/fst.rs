@@ -7,6 +7,7 @@ use stepwave_engine::{EngineKind, Rows, Watch};
 use stepwave_models::find;
 use stepwave_netlist::dsl::Module;
 use stepwave_netlist::elaborate;
+use stepwave_trace::WaveBody;
 use stepwave_trace::fst::FstHeader;
 use stepwave_trace::probe::Selection;
 use stepwave_trace::timescale::ClockTime;

@@ -9,6 +9,9 @@ pub type Point = [f64; 3];
 /// A place of a machine in whole BLU: x, y, z, a, b, c, u, v, w.
 pub type Position = [i64; AXES_MAX];
 
+/// A place of a machine in BLU, before it is rounded, in the order of a [`Position`].
+pub type Coordinates = [f64; AXES_MAX];
+
 /// How many axes there are other than x, y and z.
 pub const OTHERS: usize = AXES_MAX - 3;
 
@@ -250,11 +253,29 @@ pub struct ToolMove {
     pub others: Others,
 }
 
+/// A place of the tool and of the other axes.
+pub(crate) fn coordinates([x, y, z]: Point, [a, b, c, u, v, w]: [f64; OTHERS]) -> Coordinates {
+    [x, y, z, a, b, c, u, v, w]
+}
+
 impl ToolMove {
+    /// Where all axes are at its start and at its end.
+    #[must_use]
+    pub fn ends(&self) -> [Coordinates; 2] {
+        let Others { from, to } = self.others;
+        [coordinates(self.segment.from, from), coordinates(self.segment.to, to)]
+    }
+
     /// The axes that its feed is along.
     #[must_use]
     pub fn feed_axes(&self) -> FeedAxes {
         FeedAxes::of(&self.segment, &self.others)
+    }
+
+    /// Whether an axis is at the same whole BLU at both ends.
+    pub(crate) fn rests(&self, axis: usize) -> bool {
+        let [from, to] = self.ends().map(|end| end[axis].round());
+        from == to
     }
 
     /// The indices of the axes along which the length of its path is counted: those of the feed, but of a line that rounding to
@@ -262,12 +283,7 @@ impl ToolMove {
     #[must_use]
     pub fn path_axes(&self) -> std::ops::Range<usize> {
         let axes = self.feed_axes().axes();
-        let ends = |axis: usize| match axis.checked_sub(3) {
-            Some(other) => [self.others.from[other], self.others.to[other]],
-            None => [self.segment.from[axis], self.segment.to[axis]],
-        };
-        let rests = |axis: usize| ends(axis)[0].round() == ends(axis)[1].round();
-        let rounded_off = self.segment.shape == SegmentShape::Line && axes.clone().all(rests);
+        let rounded_off = self.segment.shape == SegmentShape::Line && axes.clone().all(|axis| self.rests(axis));
         if rounded_off { 0..AXES_MAX } else { axes }
     }
 }

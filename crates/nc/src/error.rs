@@ -272,8 +272,8 @@ mod tests {
     fn every_message_names_the_value_the_limit_and_the_remedy() {
         let arc = |from, to, center| Arc::new(from, to, center, Direction::Clockwise);
         assert_eq!(
-            message(Line::new(vec![0; 7], vec![1; 7])),
-            "a line has 1 to 6 axes, not 7: give x at least, and at most x,y,z,a,b,c"
+            message(Line::new(vec![0; 10], vec![1; 10])),
+            "a line has 1 to 9 axes, not 10: give x at least, and at most x,y,z,a,b,c,u,v,w"
         );
         assert_eq!(
             message(Line::new(vec![0, 0], vec![1, 1, 1])),

@@ -46,8 +46,8 @@ pub use arc::Arc;
 pub use compensation::{CompensationError, CompensationErrorKind, Compensator, Corner, Scheme, WAITING_LIMIT};
 pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
 pub use contour::{
-    Cause, Feed, FeedAxes, Move, OTHERS, Others, PathControl, Place, Plane, Point, Position, Segment, SegmentShape,
-    Side, ToolMove,
+    Cause, Coordinates, Feed, FeedAxes, Move, OTHERS, Others, PathControl, Place, Plane, Point, Position, Segment,
+    SegmentShape, Side, ToolMove,
 };
 pub use curve::{Curve, CurveType, Description, Drawn, OUTLINE_LIMIT};
 pub use error::{End, GeometryError};

@@ -140,10 +140,10 @@ mod tests {
     type Outcome = Result<(), GeometryError>;
 
     #[test]
-    fn a_line_takes_one_to_six_axes_and_both_points_the_same() {
-        for axes in 0..=8 {
+    fn a_line_takes_one_to_nine_axes_and_both_points_the_same() {
+        for axes in 0..=11 {
             let line = Line::new(vec![0; axes], vec![1; axes]);
-            assert_eq!(line.map(|line| line.axes()).ok(), (1..=6).contains(&axes).then_some(axes));
+            assert_eq!(line.map(|line| line.axes()).ok(), (1..=9).contains(&axes).then_some(axes));
         }
         let unequal = Line::new(vec![0; 2], vec![1; 3]);
         assert_eq!(unequal, Err(GeometryError::AxisMismatch { from: 2, to: 3 }));

@@ -5,9 +5,10 @@ use std::f64::consts::{PI, TAU};
 use bow::Bow;
 use nearest::{Nearest, nearest};
 
+use crate::contour::coordinates;
 use crate::{
-    AXES_MAX, Arc, Cause, Curve, Direction, Feed, GeometryError, Helix, Line, OTHERS, Others, PathControl, Place,
-    Plane, Point, Position, Segment, SegmentShape, Side, ToolMove,
+    AXES_MAX, Arc, Cause, Coordinates, Curve, Direction, Feed, GeometryError, Helix, Line, OTHERS, Others, PathControl,
+    Place, Plane, Point, Position, Segment, SegmentShape, Side, ToolMove,
 };
 
 /// The largest distance between the curve that a machine gets and the move in real numbers, in BLU, in both directions:
@@ -82,8 +83,8 @@ impl PulseBlock {
         self.of.cause
     }
 
-    /// The length of the path that the feed is along, in BLU: that of [these axes](ToolMove::feed_axes). Where rounding has
-    /// left none of it, the length along all axes.
+    /// The length of the path that the feed is along, in BLU: that of [these axes](ToolMove::path_axes). Of a chord that rounding
+    /// has left no travel along them it is the length along all axes.
     #[must_use]
     pub fn length(&self) -> f64 {
         if let Curve::Line(_) = self.curve {
@@ -92,7 +93,7 @@ impl PulseBlock {
                 let squared: u128 = travels.map(|travel| u128::from(travel).pow(2)).sum();
                 (squared as f64).sqrt()
             };
-            let length = along(self.of.feed_axes().axes());
+            let length = along(self.of.path_axes());
             return if length > 0.0 { length } else { along(0..AXES_MAX) };
         }
         self.curve.length()
@@ -116,9 +117,7 @@ impl PulseBlock {
     #[must_use]
     pub fn carries_others(&self) -> bool {
         let along = self.of.feed_axes().axes();
-        let Others { from, to } = &self.of.others;
-        let in_move = |axis: usize| axis >= 3 && from[axis - 3].round() != to[axis - 3].round();
-        (0..AXES_MAX).any(|axis| !along.contains(&axis) && (self.travel(axis) != 0 || in_move(axis)))
+        (0..AXES_MAX).any(|axis| !along.contains(&axis) && (self.travel(axis) != 0 || !self.of.rests(axis)))
     }
 
     /// The distance of a position from the curve commanded to the machine, in BLU; the axes of the machine that the curve has
@@ -169,7 +168,7 @@ impl Rounder {
     /// A coordinate is beyond [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT).
     pub fn blocks(&mut self, of: &ToolMove, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
         let SegmentShape::Arc { plane, center, direction } = of.segment.shape else {
-            return self.line(of, join(of.segment.to, of.others.to), out);
+            return self.line(of, of.ends()[1], out);
         };
         if let Some(tolerance) = self.chords {
             return self.chords(of, tolerance, out);
@@ -181,7 +180,7 @@ impl Rounder {
         for part in 1..=parts {
             let to = on_arc(&of.segment, plane, center, direction, [part, parts]);
             let segment = Segment { from, to, shape: of.segment.shape };
-            let end = join(to, of.others.after(part as f64 / parts as f64));
+            let end = coordinates(to, of.others.after(part as f64 / parts as f64));
             let ends = [self.at, rounded(end)?];
             let (curve, off) = arc(&segment, plane, center, direction, ends.map(|end| [end[0], end[1], end[2]]));
             apart = apart.max(off);
@@ -205,19 +204,19 @@ impl Rounder {
     /// As [`blocks`](Self::blocks).
     pub fn chords(&mut self, of: &ToolMove, tolerance: f64, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
         let SegmentShape::Arc { plane, center, direction } = of.segment.shape else {
-            return self.line(of, join(of.segment.to, of.others.to), out);
+            return self.line(of, of.ends()[1], out);
         };
         let mut apart = 0.0_f64;
         let points = chords(&of.segment, plane, center, direction, tolerance);
         let parts = points.len() as f64;
         for (part, point) in (1_u32..).zip(points) {
-            apart = apart.max(self.line(of, join(point, of.others.after(f64::from(part) / parts)), out)?);
+            apart = apart.max(self.line(of, coordinates(point, of.others.after(f64::from(part) / parts)), out)?);
         }
         Ok(apart)
     }
 
     /// A straight block; also returns how far its end is off the wanted one.
-    fn line(&mut self, of: &ToolMove, end: Place9, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
+    fn line(&mut self, of: &ToolMove, end: Coordinates, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
         let (from, to) = (self.at, rounded(end)?);
         let off = end.iter().zip(to).map(|(end, to)| (end - to as f64).powi(2)).sum::<f64>().sqrt();
         if from == to {
@@ -230,14 +229,7 @@ impl Rounder {
     }
 }
 
-/// A place of the machine, before it is rounded.
-type Place9 = [f64; AXES_MAX];
-
-fn join([x, y, z]: Point, [a, b, c, u, v, w]: [f64; OTHERS]) -> Place9 {
-    [x, y, z, a, b, c, u, v, w]
-}
-
-fn split([x, y, z, a, b, c, u, v, w]: Place9) -> (Point, [f64; OTHERS]) {
+fn split([x, y, z, a, b, c, u, v, w]: Coordinates) -> (Point, [f64; OTHERS]) {
     ([x, y, z], [a, b, c, u, v, w])
 }
 
@@ -264,7 +256,7 @@ fn in_plane(plane: Plane, curve: &Curve) -> Vec<usize> {
 }
 
 /// The nearest whole point.
-fn rounded(point: Place9) -> Result<Position, GeometryError> {
+fn rounded(point: Coordinates) -> Result<Position, GeometryError> {
     // Beyond the limit if it is not finite or does not fit: the cast saturates.
     #[allow(clippy::cast_possible_truncation)]
     let whole = point.map(|c| if c.is_nan() { i64::MAX } else { c.round() as i64 });

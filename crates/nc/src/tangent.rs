@@ -1,7 +1,7 @@
 //! Directions and bends of segments.
 
 use crate::pulses::swept;
-use crate::{AXES_MAX, Direction, FeedAxes, Point, Segment, SegmentShape, ToolMove};
+use crate::{Coordinates, Direction, FeedAxes, Point, Segment, SegmentShape, ToolMove};
 
 impl Segment {
     /// The unit vectors along the segment at its start and its end, in x, y and z; none of a segment of no length.
@@ -60,11 +60,9 @@ impl ToolMove {
     /// How far each axis goes for a BLU of the path that the feed is along, at the start and at the end; none of a move of no
     /// length.
     #[must_use]
-    pub fn directions(&self) -> Option<[[f64; AXES_MAX]; 2]> {
-        let travels: [f64; AXES_MAX] = std::array::from_fn(|axis| match axis.checked_sub(3) {
-            None => self.segment.to[axis] - self.segment.from[axis],
-            Some(other) => self.others.to[other] - self.others.from[other],
-        });
+    pub fn directions(&self) -> Option<[Coordinates; 2]> {
+        let [from, to] = self.ends();
+        let travels: Coordinates = std::array::from_fn(|axis| to[axis] - from[axis]);
         let along = self.feed_axes();
         let length = match along {
             FeedAxes::Linear => self.segment.length(),

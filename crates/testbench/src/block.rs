@@ -1,6 +1,7 @@
 //! What a machine made of a block of a program, and the account that is kept of it while it runs.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 
 use stepwave_engine::Rows;
 use stepwave_models::Promise;
@@ -79,7 +80,8 @@ pub struct BlockReport {
     pub free: bool,
     /// Greatest distance of the tool's edge from the programmed contour, in BLU.
     pub off_programmed: Option<f64>,
-    /// Where it was after each step.
+    /// The axes along which its path is counted, and where it was along them after each step.
+    along: Range<usize>,
     windows: Windows,
 }
 
@@ -88,7 +90,7 @@ impl BlockReport {
     #[must_use]
     pub fn new(of: ToolMove, begun: u64, from: &[i64]) -> BlockReport {
         // x, y and z are always reported, as they are where the machine has two axes.
-        let (place, axes) = (place_of(from), from.len().max(3));
+        let (place, axes, along) = (place_of(from), from.len().max(3), of.path_axes());
         BlockReport {
             of,
             begun,
@@ -108,7 +110,8 @@ impl BlockReport {
             contour_bound: None,
             free: false,
             off_programmed: None,
-            windows: Windows::begun(along(&of, &place), begun),
+            windows: Windows::begun(&place[along.clone()], begun),
+            along,
         }
     }
 
@@ -116,7 +119,7 @@ impl BlockReport {
     fn step(&mut self, block: &PulseBlock, step: &Step) {
         let (clock, position) = (step.clock, place_of(&step.position));
         self.steps += 1;
-        self.windows.row(along(&self.of, &position), clock);
+        self.windows.row(&position[self.along.clone()], clock);
         self.clocks = clock - self.begun;
         self.reached.iter_mut().zip(position).for_each(|(reached, at)| *reached = at);
         if step.pulses.iter().all(|pulse| *pulse == 0) {
@@ -211,11 +214,6 @@ impl BlockReport {
 /// A place, 0 along an axis that the machine has not.
 fn place_of(values: &[i64]) -> Position {
     std::array::from_fn(|axis| values.get(axis).copied().unwrap_or(0))
-}
-
-/// Where it is along the axes along which the path of the move is counted.
-fn along<'a>(of: &ToolMove, place: &'a Position) -> &'a [i64] {
-    &place[of.path_axes()]
 }
 
 /// The parts that the machine was given, and the account of the block that runs.

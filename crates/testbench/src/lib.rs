@@ -51,7 +51,7 @@ pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
 pub use speed::{Speed, SpeedRow, SpeedTrack, SpeedWatch, Window as SpeedWindow};
 pub use steps::Step;
 use steps::StepColumns;
-pub use wave::{Taken, Trigger, WaveBody, WaveWriter, Window};
+pub use wave::{Taken, Trigger, WaveWriter, Window};
 
 /// Samples held between engine and observers.
 pub const CHUNK: usize = 256;

@@ -1,14 +1,12 @@
 //! Writes the samples of a run into a wave file, within a window of clocks.
 
-use std::io::{self, Seek, Write};
+use std::io;
 use std::ops::Range;
 
 use stepwave_engine::Rows;
 use stepwave_netlist::Width;
 use stepwave_netlist::bits::to_signed;
-use stepwave_trace::changes::{Changes, Recorded};
-use stepwave_trace::fst::FstBody;
-use stepwave_trace::vcd::VcdBody;
+use stepwave_trace::WaveBody;
 
 use super::{Observer, ObserverError, SpeedRow};
 
@@ -41,75 +39,6 @@ impl Window {
     fn rows(&self, rows: &Rows) -> Range<usize> {
         let end = self.to.map_or(rows.len(), |to| rows.before(to.saturating_add(1)));
         rows.before(self.from).min(end)..end
-    }
-}
-
-/// A format of waves whose header is written: takes the rows of blocks, in order.
-pub trait WaveBody {
-    /// What is left when the wave is whole.
-    type Output;
-
-    /// Writes some rows of a block.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()>;
-
-    /// Samples up to this clock, after the last row, are as that row.
-    fn rest(&mut self, clock: u64);
-
-    /// Ends the wave.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    fn finish(self) -> io::Result<Self::Output>;
-}
-
-impl<W: Write> WaveBody for VcdBody<W> {
-    type Output = W;
-
-    fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
-        VcdBody::rows(self, rows, range)
-    }
-
-    fn rest(&mut self, clock: u64) {
-        VcdBody::rest(self, clock);
-    }
-
-    fn finish(self) -> io::Result<W> {
-        VcdBody::finish(self)
-    }
-}
-
-impl<W: Write + Seek> WaveBody for FstBody<W> {
-    type Output = W;
-
-    fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
-        FstBody::rows(self, rows, range)
-    }
-
-    fn rest(&mut self, clock: u64) {
-        FstBody::rest(self, clock);
-    }
-
-    fn finish(self) -> io::Result<W> {
-        FstBody::finish(self)
-    }
-}
-
-impl WaveBody for Changes {
-    type Output = Recorded;
-
-    fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
-        Changes::rows(self, rows, range)
-    }
-
-    fn rest(&mut self, clock: u64) {
-        Changes::rest(self, clock);
-    }
-
-    fn finish(self) -> io::Result<Recorded> {
-        Ok(Changes::finish(self))
     }
 }
 

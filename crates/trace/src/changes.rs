@@ -10,8 +10,10 @@
 use std::io;
 use std::ops::Range;
 
+use stepwave_netlist::bits::to_signed;
 use stepwave_netlist::{Rows, Width};
 
+use super::WaveBody;
 use super::moves::{Moves, SPAN};
 use super::numbers::{pull_signed, push, push_signed};
 
@@ -75,40 +77,6 @@ impl Changes {
         Changes { streams: columns.iter().map(stream).collect(), moves, taken: None, most }
     }
 
-    /// Takes some rows of a block, which are later than those taken before. Samples in which no net changes may be missing.
-    ///
-    /// # Errors
-    /// What changes takes more bytes than are allowed; nothing is taken then.
-    pub fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
-        if range.is_empty() {
-            return Ok(());
-        }
-        let (first, last) = (rows.clock(range.start), rows.clock(range.end - 1));
-        if self.bytes() > self.most {
-            return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("at clock {first}")));
-        }
-        if self.taken.is_none() {
-            self.first(first, rows, range.start);
-            range.start += 1;
-        }
-        for start in range.clone().step_by(SPAN) {
-            self.span(rows, start..range.end.min(start + SPAN));
-        }
-        self.taken = Some((self.taken.map_or(first, |(first, _)| first), last));
-        Ok(())
-    }
-
-    /// Samples up to this clock, after the last row, are as that row.
-    pub fn rest(&mut self, clock: u64) {
-        self.taken = self.taken.map(|(first, _)| (first, clock));
-    }
-
-    /// What was recorded.
-    #[must_use]
-    pub fn finish(self) -> Recorded {
-        Recorded { clocks: self.taken, nets: self.streams.into_iter().map(Stream::finish).collect() }
-    }
-
     fn bytes(&self) -> usize {
         self.streams.iter().map(|stream| stream.times.len() + stream.values.len()).sum()
     }
@@ -134,14 +102,47 @@ impl Changes {
     }
 }
 
+impl WaveBody for Changes {
+    type Output = Recorded;
+
+    /// Samples in which no net changes may be missing.
+    ///
+    /// # Errors
+    /// What changes takes more bytes than are allowed; nothing is taken then.
+    fn rows(&mut self, rows: &Rows, mut range: Range<usize>) -> io::Result<()> {
+        if range.is_empty() {
+            return Ok(());
+        }
+        let (first, last) = (rows.clock(range.start), rows.clock(range.end - 1));
+        if self.bytes() > self.most {
+            return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("at clock {first}")));
+        }
+        if self.taken.is_none() {
+            self.first(first, rows, range.start);
+            range.start += 1;
+        }
+        for start in range.clone().step_by(SPAN) {
+            self.span(rows, start..range.end.min(start + SPAN));
+        }
+        self.taken = Some((self.taken.map_or(first, |(first, _)| first), last));
+        Ok(())
+    }
+
+    fn rest(&mut self, clock: u64) {
+        self.taken = self.taken.map(|(first, _)| (first, clock));
+    }
+
+    fn finish(self) -> io::Result<Recorded> {
+        Ok(Recorded { clocks: self.taken, nets: self.streams.into_iter().map(Stream::finish).collect() })
+    }
+}
+
 impl Stream {
     fn take(&mut self, clock: u64, value: u64) {
         let first = self.times.is_empty();
         push(clock - self.clock, &mut self.times);
         if first || self.width.get() > 1 {
-            let unused = 64 - self.width.get();
-            let difference = (value.wrapping_sub(self.value) << unused).cast_signed() >> unused;
-            push_signed(difference, &mut self.values);
+            push_signed(to_signed(self.width, value.wrapping_sub(self.value)), &mut self.values);
         }
         (self.clock, self.value) = (clock, value);
     }
@@ -165,9 +166,8 @@ impl Stream {
 /// The differences of numbers, from 0, modulo 2^width and read as two's complement.
 fn differences(mut numbers: &[u8], width: Width) -> Vec<u8> {
     let (mut before, mut out) = (0_i64, Vec::with_capacity(numbers.len()));
-    let unused = 64 - width.get();
     while let Some(number) = pull_signed(&mut numbers) {
-        push_signed(number.wrapping_sub(before) << unused >> unused, &mut out);
+        push_signed(to_signed(width, number.wrapping_sub(before).cast_unsigned()), &mut out);
         before = number;
     }
     out
@@ -263,7 +263,7 @@ mod tests {
                 (start..end).for_each(|at| rows.push(from + at as u64, |net| columns[net][at]));
                 changes.rows(&rows, 0..rows.len()).unwrap();
             }
-            let recorded = changes.finish();
+            let recorded = changes.finish().unwrap();
             prop_assert_eq!(recorded.clocks, Some((from, from + seeds.len() as u64 - 1)));
             for (net, column) in columns.iter().enumerate() {
                 prop_assert_eq!(&decoded(&recorded, net, nets[net].1), column);
@@ -280,7 +280,7 @@ mod tests {
             rows.push(clock, |net| if net == 0 { (clock * 16_777_200) & 0xFF_FFFF } else { clock & 1 });
         }
         changes.rows(&rows, 0..64).unwrap();
-        let recorded = changes.finish();
+        let recorded = changes.finish().unwrap();
         let bytes = |net: &Net| [net.times.len(), net.values.len()];
         assert_eq!((bytes(&recorded.nets[0]), recorded.nets[0].order), ([64, 64], 1));
         assert_eq!(bytes(&recorded.nets[1]), [64, 1]);
@@ -293,7 +293,7 @@ mod tests {
         let mut rows = Rows::new(1, 1000);
         (0..1000_u64).for_each(|clock| rows.push(clock, |_| clock.pow(3) * 0x0123_4567));
         changes.rows(&rows, 0..1000).unwrap();
-        let recorded = changes.finish();
+        let recorded = changes.finish().unwrap();
         assert_eq!(recorded.nets[0].order, 4);
         assert!(recorded.nets[0].values.len() < 1030, "{} bytes", recorded.nets[0].values.len());
         assert_eq!(decoded(&recorded, 0, width)[777], 777_u64.pow(3) * 0x0123_4567);
@@ -311,7 +311,7 @@ mod tests {
         let full = changes.rows(&rows, 0..1).unwrap_err();
         assert_eq!(full.kind(), io::ErrorKind::FileTooLarge);
         changes.rest(80_000);
-        let recorded = changes.finish();
+        let recorded = changes.finish().unwrap();
         assert_eq!(recorded.clocks, Some((3, 80_000)));
         assert_eq!(recorded.nets[0].values, [7, 1, 0x78]);
         let shown = decoded(&recorded, 0, width);

@@ -16,6 +16,7 @@ mod tests;
 use std::io::{self, Seek, Write};
 use std::ops::Range;
 
+use super::WaveBody;
 use super::moves::{Moves, SPAN};
 use super::probe::Probe;
 use super::timescale::ClockTime;
@@ -100,29 +101,24 @@ impl FstHeader<'_> {
     }
 }
 
-impl<W: Write + Seek> FstBody<W> {
-    /// Writes some rows of a block, which follow those written before. Where the clock is not dumped, samples in which no
-    /// probe changes may be missing.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    pub fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
+impl<W: Write + Seek> WaveBody for FstBody<W> {
+    /// The output.
+    type Output = W;
+
+    /// Where the clock is not dumped, samples in which no probe changes may be missing.
+    fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
         if self.sections.rows(rows, range) {
             self.out.write_all(&self.sections.section())?;
         }
         Ok(())
     }
 
-    /// Samples up to this clock, after the last row, are as that row.
-    pub fn rest(&mut self, clock: u64) {
+    fn rest(&mut self, clock: u64) {
         self.sections.written = self.sections.written.map(|(first, _)| (first, clock));
     }
 
     /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    pub fn finish(mut self) -> io::Result<W> {
+    fn finish(mut self) -> io::Result<W> {
         let (last, times) = self.sections.end();
         self.out.write_all(&last)?;
         header::finish(&mut self.out, times, self.sections.count)?;

@@ -65,6 +65,13 @@ pub fn glob(pattern: &str) -> Result<Glob, String> {
     Ok(Glob { pattern: pattern.to_owned(), compiled })
 }
 
+/// A glob fits the path from some scope on, the leaf name and the whole path among these.
+#[must_use]
+pub fn fits_an_end(glob: &Glob, path: &str) -> bool {
+    let ends = path.match_indices('.').map(|(at, _)| &path[at + 1..]);
+    std::iter::once(path).chain(ends).any(|end| glob.is_match(end))
+}
+
 /// A range between brackets that begins after its end.
 fn empty_range(pattern: &str) -> Option<[char; 3]> {
     let sets = pattern.split('[').skip(1).map(|set| set.split(']').next().unwrap_or_default());

@@ -16,6 +16,7 @@ use fearless_simd::{Level, dispatch};
 
 use ::vcd::{IdCode, ReferenceIndex, VarType, Writer};
 
+use super::WaveBody;
 use super::moves::{Moves, SPAN};
 use super::probe::{Probe, Role};
 use super::timescale::ClockTime;
@@ -178,26 +179,21 @@ impl VcdHeader<'_> {
     }
 }
 
-impl<W: Write> VcdBody<W> {
-    /// Writes some rows of a block, which are later than those written before; a row holds every column of the probes.
-    /// Where the clock is not dumped, samples in which no probe changes may be missing.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    pub fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
+impl<W: Write> WaveBody for VcdBody<W> {
+    /// The output.
+    type Output = W;
+
+    /// A row holds every column of the probes. Where the clock is not dumped, samples in which no probe changes may be missing.
+    fn rows(&mut self, rows: &Rows, range: Range<usize>) -> io::Result<()> {
         self.text.rows(rows, range, &mut self.out)
     }
 
-    /// Samples up to this clock, after the last row, are as that row.
-    pub fn rest(&mut self, clock: u64) {
+    fn rest(&mut self, clock: u64) {
         self.text.last_clock = Some(clock);
     }
 
     /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
-    ///
-    /// # Errors
-    /// The output cannot be written.
-    pub fn finish(mut self) -> io::Result<W> {
+    fn finish(mut self) -> io::Result<W> {
         self.out.write_all(self.text.end())?;
         self.out.flush()?;
         Ok(self.out)

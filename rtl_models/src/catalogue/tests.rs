@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::options::WIDTH;
 use crate::parts::{Block, E, END, F, POSITION};
 use crate::plan::Plan;
-use crate::registers::{N, Reg, Rule};
+use crate::registers::{N, Reg, Rule, Where};
 use crate::{Hardware, ModelError};
 
 /// A line along x alone.
@@ -99,6 +99,15 @@ fn a_register_that_no_hardware_has_is_refused_with_its_name() {
 fn a_register_that_is_listed_twice_is_refused_with_its_name() {
     static TWICE: Model = Model { name: "twice", registers: &[&E, &POSITION, &E.about("again")], ..PLAIN };
     assert!(refused(&TWICE).ends_with("it lists the register e twice"), "{}", refused(&TWICE));
+}
+
+#[test]
+fn two_registers_of_one_name_in_one_hardware_are_refused_whatever_their_conditions() {
+    static EVER: Where = Where("always", |_| true);
+    const FIRST: Reg = Reg::new("e", N, "one").when(&EVER);
+    const SECOND: Reg = Reg::new("e", N, "another").when(&EVER);
+    static TWO: Model = Model { name: "two", registers: &[&FIRST, &SECOND, &POSITION], ..PLAIN };
+    assert!(refused(&TWO).ends_with("two of its registers have one name"), "{}", refused(&TWO));
 }
 
 #[test]

@@ -30,13 +30,13 @@ use crate::words;
 const CROSSING: Crossing = Crossing::RoundedRadius;
 
 /// The weights where axes of the machine are called a and b.
-const NEXT_TO_AXES: Reg<2> = Reg::each(["wa", "wb"], N, "interval weights A of an X, B of a Y pulse")
+const WA_WB: Reg<2> = Reg::each(["wa", "wb"], N, "interval weights A of an X, B of a Y pulse")
     .when(&Where("axes other than x, y and z", |plan| plan.axes() > 3));
 /// The machine has no axes but x, y and z.
-static IN_SPACE: Where = Where("axes x, y and z alone", |plan| plan.axes() <= 3);
+static XYZ_ALONE: Where = Where("axes x, y and z alone", |plan| plan.axes() <= 3);
 
 fn weights(axes: usize) -> Reg<2> {
-    if axes > 3 { NEXT_TO_AXES } else { A_B }
+    if axes > 3 { WA_WB } else { A_B }
 }
 
 /// Comparison-integral: a machine that runs whole programs.
@@ -45,7 +45,7 @@ pub static MODEL: Model = Model {
     title: "Comparison-integral",
     method: cim_line::MODEL.method,
     source: cim_line::MODEL.source,
-    registers: &[&MODE, &PLANE, &QUAD, &F, &A_B.when(&IN_SPACE), &NEXT_TO_AXES, &BASE, &END.pair(), &WHOLE, &POSITION],
+    registers: &[&MODE, &PLANE, &QUAD, &F, &A_B.when(&XYZ_ALONE), &WA_WB, &BASE, &END.pair(), &WHOLE, &POSITION],
     options: &[&WIDTH, &ON_OVERFLOW, &ACCEL, &JERK],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: planar::judging(CROSSING, load, |_, block| Some(planar::bound(block, 1.0))),

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use super::ramp::{Part, Ramped};
 use super::{Answer, Row};
 use crate::commands::widths::registers_json;
 use crate::report::{export_command, run_command};
+use crate::study::ramp::{Part, Ramped};
 use crate::study::synth::{Cost, Tools};
 use crate::testbench::Ending;
 

@@ -1,8 +1,9 @@
 //! Rows that nothing beats: of two rows that draw the same kind of curve one beats the other where it is nowhere worse and
 //! somewhere better.
 
-use super::{Answer, Row, Size};
+use super::{Answer, Row};
 use crate::models::CurveKind;
+use crate::study::machine::Size;
 
 /// A row that was left out.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

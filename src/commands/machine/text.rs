@@ -2,11 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::ramp::Part;
-use super::{Answer, Row, Size};
+use super::{Answer, Row};
 use crate::commands::columns::{aligned, markdown};
 use crate::commands::widths::{evidence, one_bit_below};
 use crate::study::machine::Dimensions;
+use crate::study::machine::Size;
+use crate::study::ramp::Part;
 use crate::study::synth::{Cost, Tools};
 use crate::testbench::Ending;
 

@@ -88,7 +88,7 @@ pub enum ProgramErrorKind {
     },
     /// A word is not among the supported ones.
     #[error(
-        "{word} is not supported: rewrite the block with G00 to G03 in X, Y and Z, or remove the word if it does not matter here"
+        "{word} is not supported: rewrite the block with G00 to G03 along X, Y, Z, A, B, C, U, V or W, or remove the word if it does not matter here"
     )]
     Unsupported {
         /// The word.

@@ -60,8 +60,6 @@ const MOVING: &str = "XYZABCUVWIJKR";
 /// The letters of axes and of the centre, axis by axis.
 pub(super) const AXES: [char; 3] = ['X', 'Y', 'Z'];
 pub(super) const OTHER_AXES: [char; OTHERS] = ['A', 'B', 'C', 'U', 'V', 'W'];
-/// Those of them that turn.
-const ROTARY: usize = 3;
 const CENTERS: [char; 3] = ['I', 'J', 'K'];
 
 /// Ends that are no further apart along the axes are one point: rounding of increments and inches has parted
@@ -266,7 +264,7 @@ impl Modal {
     pub(super) fn length(&self, word: Word<'_>, reading: &Reading) -> Result<f64, Fault> {
         let value = match reading.integers {
             Integers::Pulses if word.integer => word.value,
-            _ if OTHER_AXES[..ROTARY].contains(&word.letter) => word.value / reading.degrees,
+            _ if matches!(word.letter, 'A'..='C') => word.value / reading.degrees,
             _ => word.value * self.unit / reading.blu,
         };
         within(value, word.column, || word.letter.to_string())

@@ -261,18 +261,14 @@ impl Modal {
     /// The chords, each a move; under G93 each has its share of the time.
     fn draw(&mut self, ends: &[Point], feed: Feed, place: Place, events: &mut VecDeque<Event>) {
         let starts = std::iter::once(self.position).chain(ends.iter().copied());
-        let pairs: Vec<(Point, Point)> = starts.zip(ends.iter().copied()).filter(|(from, to)| from != to).collect();
-        let distance = |(from, to): (Point, Point)| {
-            let [x, y, z] = [0, 1, 2].map(|axis: usize| to[axis] - from[axis]);
-            x.hypot(y).hypot(z)
-        };
-        let length: f64 = pairs.iter().map(|pair| distance(*pair)).sum();
-        for &(from, to) in &pairs {
+        let pairs = starts.zip(ends.iter().copied()).filter(|(from, to)| from != to);
+        let chords: Vec<Segment> = pairs.map(|(from, to)| Segment { from, to, shape: SegmentShape::Line }).collect();
+        let length: f64 = chords.iter().map(Segment::length).sum();
+        for segment in chords {
             let feed = match feed {
-                Feed::Inverse(number) => Feed::Inverse(number * length / distance((from, to))),
+                Feed::Inverse(number) => Feed::Inverse(number * length / segment.length()),
                 other => other,
             };
-            let segment = Segment { from, to, shape: SegmentShape::Line };
             events.push_back(Event::Move(Move {
                 place,
                 segment,

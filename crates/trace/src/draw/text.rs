@@ -58,7 +58,7 @@ impl Window {
                 );
             }
         }
-        text.push_str(&paint.on(Paint::DIM, &self.account()));
+        text.push_str(&paint.on(Paint::DIM, &self.footer()));
         text.push('\n');
         text
     }
@@ -99,8 +99,8 @@ impl Window {
         out.trim_end().to_owned()
     }
 
-    /// What was drawn, and how the next part is.
-    fn account(&self) -> String {
+    /// What was drawn, and the option that shows the rest.
+    fn footer(&self) -> String {
         let next = match (self.more, self.places.last()) {
             (1.., Some(last)) => {
                 format!("; {} more: --from {} shows the next", self.more, last.saturating_add(1))

@@ -260,18 +260,17 @@ fn written(drawing: &Drawing, signal: &Signal, value: Value<'_>) -> String {
     if let Some(name) = drawing.names.get(signal.leaf()).and_then(|names| names.get(&binary)) {
         return name.clone();
     }
-    let number = bits.to_u128().filter(|_| bits.width() > 1);
-    let signed = |number: u128| {
-        let unused = 128 - bits.width();
-        ((number << unused).cast_signed() >> unused).to_string()
+    let hex = |number: u128| format!("{number:0digits$x}", digits = bits.width().div_ceil(4) as usize);
+    let number = match drawing.radix {
+        // One bit is its own number.
+        _ if bits.width() == 1 => None,
+        Radix::Binary => None,
+        Radix::Declared => bits.decimal(),
+        Radix::Hex => bits.to_u128().map(hex),
+        Radix::Signed => bits.decimal_as(true),
+        Radix::Unsigned => bits.decimal_as(false),
     };
-    match (drawing.radix, number) {
-        (_, None) | (Radix::Binary, _) => binary,
-        (Radix::Declared, Some(_)) => bits.decimal().unwrap_or(binary),
-        (Radix::Hex, Some(number)) => format!("{number:0digits$x}", digits = bits.width().div_ceil(4) as usize),
-        (Radix::Signed, Some(number)) => signed(number),
-        (Radix::Unsigned, Some(number)) => number.to_string(),
-    }
+    number.unwrap_or(binary)
 }
 
 /// Paths without the scopes that all share.

@@ -121,9 +121,16 @@ impl<'w> Vector<'w> {
     /// [`to_u128`](Self::to_u128).
     #[must_use]
     pub fn decimal(self) -> Option<String> {
+        self.decimal_as(self.signed)
+    }
+
+    /// The number in decimal, in two's complement or not, however the variable is declared; under the conditions of
+    /// [`to_u128`](Self::to_u128).
+    #[must_use]
+    pub fn decimal_as(self, signed: bool) -> Option<String> {
         let number = self.to_u128().filter(|_| self.width > 0)?;
         let unused = 128 - self.width;
-        Some(if self.signed { ((number << unused).cast_signed() >> unused).to_string() } else { number.to_string() })
+        Some(if signed { ((number << unused).cast_signed() >> unused).to_string() } else { number.to_string() })
     }
 
     fn same(self, other: Vector<'_>) -> bool {

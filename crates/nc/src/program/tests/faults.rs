@@ -5,7 +5,7 @@ use super::*;
 /// The word, the limit and the remedy of every message; the errors of arcs are judged with the arcs.
 #[test]
 fn every_message_says_what_is_wrong_and_names_the_remedy() {
-    let unsupported = "is not supported: rewrite the block with G00 to G03 in X, Y and Z, or remove the word if it does not matter here";
+    let unsupported = "is not supported: rewrite the block with G00 to G03 along X, Y, Z, A, B, C, U, V or W, or remove the word if it does not matter here";
     for (text, line, column, message) in [
         ("G0 X1 G43.1 Z1", 1, 7, format!("G43.1 {unsupported}")),
         ("g0 x1\n g 30", 2, 2, format!("g30 {unsupported}")),
@@ -16,8 +16,8 @@ fn every_message_says_what_is_wrong_and_names_the_remedy() {
         ("G-1", 1, 1, format!("G-1 {unsupported}")),
         ("G81 X1 R1", 1, 1, format!("G81 {unsupported}")),
         ("M98 P1", 1, 1, format!("M98 {unsupported}")),
-        ("G0 X1 A5", 1, 7, format!("A5 {unsupported}")),
-        ("G0 W5", 1, 4, format!("W5 {unsupported}")),
+        ("G0 X1 E5", 1, 7, format!("E5 {unsupported}")),
+        ("G0 E-2", 1, 4, format!("E-2 {unsupported}")),
         ("X#5", 1, 1, "parameters (#) are not supported: write the number itself".into()),
         (" #5=1", 1, 2, "parameters (#) are not supported: write the number itself".into()),
         ("G0 X[1+2]", 1, 4, "expressions ([ ]) are not supported: write the number itself".into()),

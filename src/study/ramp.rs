@@ -3,14 +3,14 @@
 use crate::Error;
 use crate::engine::Rows;
 use crate::models::{CurveKind, Model, Options, installed};
-use crate::netlist::Net;
+use crate::netlist::bits::to_signed;
 use crate::netlist::cells::Netlist;
+use crate::netlist::{Net, Width};
 use crate::output::temporary::Folder;
 use crate::simulation::{Onlookers, Prepared, Simulation};
-use crate::study::machine::Dimensions;
 use crate::testbench::{BlockReport, Ending, Observer, ObserverError, Testbench};
 
-use super::Size;
+use super::machine::{Dimensions, Size};
 
 /// Clocks after which the move is given up.
 const LIMIT: u64 = 1 << 28;
@@ -20,37 +20,38 @@ const REGISTERS: [&str; 7] = ["phase", "v", "accel", "decel", "av", "ju", "jd"];
 
 /// Part of a move.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Part {
-    pub(super) seconds: f64,
-    pub(super) mm: f64,
+pub struct Part {
+    /// How long it takes.
+    pub seconds: f64,
+    /// How far it goes.
+    pub mm: f64,
 }
 
 /// A move with acceleration.
 #[derive(Clone, Debug)]
-pub(super) struct Ramped {
+pub struct Ramped {
     /// The family, as `--method` takes it.
-    pub(super) family: &'static str,
+    pub family: &'static str,
     /// The program with the move.
-    pub(super) program: String,
+    pub program: String,
     /// Registers of the ramp, with their bits.
-    pub(super) registers: Vec<(&'static str, u32)>,
+    pub registers: Vec<(&'static str, u32)>,
     /// The greatest feed that was reached, in mm/min.
-    pub(super) feed: f64,
+    pub feed: f64,
     /// That is less than what was asked of the ramp: it has to brake before.
-    pub(super) is_short: bool,
+    pub is_short: bool,
     /// From the start to the end of the ramp up, and from the beginning of the ramp down to the last step.
-    pub(super) ramps: [Part; 2],
+    pub ramps: [Part; 2],
     /// Clocks of the move.
-    pub(super) clocks: u64,
-    pub(super) seconds: f64,
+    pub clocks: u64,
+    /// The time that these take.
+    pub seconds: f64,
 }
 
-/// The machine for whole programs of the family of a method, and its name.
-pub(super) fn machine_of(model: &Model) -> Option<(&'static str, &'static Model)> {
+/// The machine for whole programs of the family of a method.
+fn machine_of(model: &Model) -> Option<&'static Model> {
     let family = model.name.split('-').next().unwrap_or_default();
-    let name = format!("{family}-machine");
-    let machine = installed().iter().find(|machine| machine.name == name)?;
-    Some((machine.name.strip_suffix("-machine")?, machine))
+    installed().machines().find(|machine| machine.is_buffered() && machine.method_name() == family)
 }
 
 /// A number as programs take it: mm, without what a product of decimal numbers is too much.
@@ -80,8 +81,8 @@ fn radius(size: &Size) -> i64 {
 ///
 /// # Errors
 /// The acceleration cannot be had, or the move does not come to its end: in words.
-pub(super) fn ramped(found: &Dimensions, size: &Size, options: &Options, hz: f64) -> Result<Option<Ramped>, Error> {
-    let Some((family, machine)) = machine_of(found.model) else { return Ok(None) };
+pub fn ramped(found: &Dimensions, size: &Size, options: &Options, hz: f64) -> Result<Option<Ramped>, Error> {
+    let Some(machine) = machine_of(found.model) else { return Ok(None) };
     let kind = found.model.curve();
     let text = program(kind, size);
     let folder = Folder::new()?;
@@ -109,7 +110,7 @@ pub(super) fn ramped(found: &Dimensions, size: &Size, options: &Options, hz: f64
     let part = |from: u64, to: u64, blu: f64| Part { seconds: (to - from) as f64 / hz, mm: blu * size.blu_mm };
     let source_hz = top as f64 / 2f64.powi(n.cast_signed()) * hz;
     Ok(Some(Ramped {
-        family,
+        family: machine.method_name(),
         program: text,
         registers,
         feed: size.feed_of(source_hz * block.length / block.steps as f64),
@@ -166,10 +167,10 @@ struct Slope {
 /// Looks at the speed of a ramp.
 struct RampWatch {
     along: Along,
-    /// Columns of the speed and the greatest speed of the block, and of the position of each axis with its bits.
+    /// Columns of the speed and the greatest speed of the block, and of the position of each axis with its width.
     v: usize,
     vc: usize,
-    axes: Vec<(usize, u32)>,
+    axes: Vec<(usize, Width)>,
     /// Bits of the phase.
     bits: u32,
     /// The greatest speed, and what it was to be.
@@ -190,7 +191,7 @@ impl RampWatch {
     fn new(bench: &Testbench, along: Along) -> Option<RampWatch> {
         let netlist = bench.design().netlist();
         let axes = bench.machine().positions.iter();
-        let axes = axes.map(|port| (bench.columns().index(port.net), port.width.get())).collect();
+        let axes = axes.map(|port| (bench.columns().index(port.net), port.width)).collect();
         let column = |name: &str| Some(bench.columns().index(register(netlist, name)?));
         let slope = Slope::default();
         Some(RampWatch {
@@ -211,11 +212,8 @@ impl RampWatch {
     }
 
     fn place(&self, rows: &Rows, row: usize) -> Place {
-        let signed = |&(column, bits): &(usize, u32)| {
-            let unused = 64 - bits;
-            (rows.column(column)[row] << unused).cast_signed() >> unused
-        };
-        let at: Vec<i64> = self.axes.iter().map(signed).collect();
+        let at = self.axes.iter().map(|&(column, width)| to_signed(width, rows.value(column, row)));
+        let at: Vec<i64> = at.collect();
         (rows.first_clock() + row as u64, self.along.length(&at))
     }
 }
