@@ -6,6 +6,7 @@
 mod arc;
 pub mod extremes;
 mod line;
+mod travel;
 
 use stepwave_nc::Curve;
 use stepwave_netlist::formula::Symbol;
@@ -32,6 +33,8 @@ pub enum Region {
     QuadrantArcs,
     /// Every line from the origin, and every such arc.
     LinesAndArcs,
+    /// Every travel of one axis from the origin, by |dx|.
+    Travels,
 }
 
 /// What a model claims over a box of geometries.
@@ -48,6 +51,10 @@ pub struct Claims {
     pub guesses: fn(&Hardware) -> Vec<Clause>,
     /// Registers that change what the others mean.
     pub modes: &'static [Reg],
+    /// Whether a register of this name may be loaded with any word: what is proved holds whatever the loader gives it.
+    pub loaded_any: fn(&Hardware, &str) -> bool,
+    /// Inputs that may change at any clock: what is proved holds whatever they are.
+    pub free: &'static [&'static str],
     /// Registers that are held bit by bit, at one width at a time.
     pub bitwise: &'static [Reg],
     /// Registers that are loaded with |dx|, |dy|, … while nothing else depends on these: a block takes its clocks
@@ -65,6 +72,8 @@ impl Claims {
             rank: steps_left,
             guesses: |_| Vec::new(),
             modes: &[],
+            loaded_any: |_, _| false,
+            free: &[],
             bitwise: &[],
             counted: &[],
         }
@@ -101,6 +110,12 @@ pub struct Kind {
 }
 
 impl Region {
+    /// Axes of its geometries: 1 or 2.
+    #[must_use]
+    pub fn axes(self) -> usize {
+        if self == Region::Travels { 1 } else { 2 }
+    }
+
     /// In words.
     #[must_use]
     pub fn describe(self) -> &'static str {
@@ -115,6 +130,7 @@ impl Region {
                 "every line from the origin, and every arc about it inside a quadrant with both ends on the circle, to \
                  coordinates of k bits"
             }
+            Region::Travels => "every travel of one axis from the origin to a coordinate of k bits",
         }
     }
 
@@ -128,6 +144,7 @@ impl Region {
             Region::LinesHalved => &[Region::LinesHalved],
             Region::QuadrantArcs => &[Region::QuadrantArcs],
             Region::LinesAndArcs => &[Region::Lines, Region::QuadrantArcs],
+            Region::Travels => &[Region::Travels],
         }
     }
 
@@ -141,6 +158,7 @@ impl Region {
             Region::LinesByLonger => line::kinds(line::LONGER, false),
             Region::LinesHalved => line::kinds(line::LONG, true),
             Region::QuadrantArcs => arc::kinds(),
+            Region::Travels => travel::kinds(),
         }
     }
 
@@ -154,6 +172,7 @@ impl Region {
             Region::Lines | Region::LinesByLength | Region::LinesByLonger => line::symbols(&kind.name, curve, false),
             Region::LinesHalved => line::symbols(&kind.name, curve, true),
             Region::QuadrantArcs => arc::symbols(&kind.name, curve),
+            Region::Travels => travel::symbols(&kind.name, curve),
         }?;
         let value = |name: &str| {
             let place = kind.symbols.iter().position(|symbol| symbol.name == name)?;
@@ -171,7 +190,16 @@ impl Region {
                 line::to([most, most])
             }
             Region::QuadrantArcs | Region::LinesAndArcs => arc::quarter(most),
+            Region::Travels => travel::to(most),
         }
+    }
+
+    /// The curves that together need the widest registers among those of k-bit coordinates: the largest, and shorter
+    /// travels, whose ramps have parts of their own.
+    #[must_use]
+    pub fn demanding(self, k: u32) -> Vec<Curve> {
+        let shorter = if self == Region::Travels { travel::demanding(k) } else { Vec::new() };
+        self.largest(k).into_iter().chain(shorter).collect()
     }
 
     /// [`curves`](Region::curves) has all geometries of k-bit coordinates, if `most` allows.
@@ -180,6 +208,7 @@ impl Region {
         match self {
             Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => k <= line::WHOLE,
             Region::QuadrantArcs => k <= arc::WHOLE,
+            Region::Travels => k <= travel::WHOLE,
             Region::LinesAndArcs => self.parts().iter().all(|part| part.is_whole(k)),
         }
     }
@@ -192,6 +221,7 @@ impl Region {
                 line::curves(k, most)
             }
             Region::QuadrantArcs => arc::curves(k, most),
+            Region::Travels => travel::curves(k, most),
             Region::LinesAndArcs => {
                 let all = self.parts().iter().flat_map(|part| part.curves(k, most)).collect();
                 spread(all, most)

@@ -48,6 +48,18 @@ impl Model {
         matches!(self.interpolates, Interpolates::Described(_))
     }
 
+    /// --width is the width of coordinates, and not of the ways of a period or of a phase.
+    #[must_use]
+    pub fn width_is_of_coordinates(&self) -> bool {
+        self.method != "data sampling" && !self.is_described() && !self.width_is_of_phase()
+    }
+
+    /// --width is that of the phase of a pulse source, in whose units speeds are: it says nothing of coordinates.
+    #[must_use]
+    pub fn width_is_of_phase(&self) -> bool {
+        self.curve() == CurveKind::Axis
+    }
+
     /// Its registers by what is declared together, in the order of the step table.
     pub fn rows(&self) -> impl Iterator<Item = RegisterGroup> {
         rows(self.registers)

@@ -40,7 +40,9 @@
 use stepwave_nc::Line;
 use stepwave_netlist::Width;
 use stepwave_netlist::dsl::Scope;
+use stepwave_netlist::formula::{Clause, name};
 
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::{Interpolates, Method};
@@ -96,7 +98,22 @@ pub static MODEL: Model = Model {
         &BRAKE,
         &ON_OVERFLOW,
     ],
-    claims: None,
+    claims: Some(Claims {
+        // Of a travel are its pulses and its sign; the rest is that of the speed, and along an S planned for the travel.
+        loaded_any: |hardware, register| hardware.get(&JERK).is_none() && ![E.name(), SIGN.of(0).name(), POSITION.of(0).name()].contains(&register),
+        free: &["hold", "trim"],
+        // At most the pulses that there were.
+        guesses: |hardware| match hardware.get(&BRAKE) {
+            Brake::Count => {
+                let made = name("|dx|") - E.value() - RISEN.value();
+                vec![Clause::at_least_zero("r counts pulses of the acceleration", made)]
+            }
+            Brake::Square => Vec::new(),
+        },
+        // An operator may hold it for ever.
+        rank: |_| None,
+        ..Claims::of(Region::Travels)
+    }),
     interpolates: Interpolates::Axis(Method { plan, load }),
     hardware,
 };

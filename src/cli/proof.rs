@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::Error;
+use crate::models::Model;
 use crate::models::options::WRAPS;
 use crate::study::Extent;
 use crate::study::proof::symmetric_box;
@@ -54,7 +56,7 @@ pub(crate) struct ProveArgs {
     pub(crate) narrower: Vec<Narrower>,
     /// The geometries: those of coordinates of so many bits, or with ends in a range for each axis, as `stepwave widths` has
     /// them [default: those of --width N, else of every number of bits]
-    #[arg(long = "box", value_name = "BITS|RANGExRANGE", allow_hyphen_values = true)]
+    #[arg(long = "box", value_name = "BITS|RANGE[xRANGE]", allow_hyphen_values = true)]
     pub(crate) extent: Option<Extent>,
     /// The geometries: those with ends within ±X and ±Y (default: X), in whole BLU
     #[arg(long, value_name = "X[,Y]", conflicts_with = "extent", allow_hyphen_values = true, value_parser = parse_travel)]
@@ -165,18 +167,38 @@ impl ProveArgs {
     }
 }
 
-/// The box of `--travel`.
+/// The box of `--travel`: X, or X and Y, in BLU.
 #[derive(Clone, Debug)]
-pub(crate) struct Travel(pub(crate) Extent);
+pub(crate) struct Travel(Vec<i64>);
 
 fn parse_travel(text: &str) -> Result<Travel, String> {
     let number = |word: &str| {
         let word = word.trim();
         word.parse::<i64>().map_err(|_| format!("invalid travel '{word}': give whole BLU, such as 100 or 100,62"))
     };
-    let (x, y) = text.split_once(',').unwrap_or((text, text));
-    let travel = symmetric_box([number(x)?, number(y)?]);
-    travel.map(Travel).map_err(|error| error.to_string())
+    let travel: Vec<i64> = match text.split_once(',') {
+        Some((x, y)) => vec![number(x)?, number(y)?],
+        None => vec![number(text)?],
+    };
+    symmetric_box(&travel).map_err(|error| error.to_string())?;
+    Ok(Travel(travel))
+}
+
+impl ProveArgs {
+    /// The box that is given for geometries of this model, by --box or by --travel.
+    ///
+    /// # Errors
+    /// It holds none.
+    pub(crate) fn extent_for(&self, model: &Model) -> Result<Option<Extent>, Error> {
+        let of_travel = |Travel(travel): &Travel| match travel[..] {
+            [x] => symmetric_box(&vec![x; model.curve().max_axes().min(2)]),
+            _ => symmetric_box(travel),
+        };
+        match &self.extent {
+            Some(extent) => Ok(Some(extent.clone())),
+            None => Ok(self.travel.as_ref().map(of_travel).transpose()?),
+        }
+    }
 }
 
 #[derive(Debug, Subcommand)]

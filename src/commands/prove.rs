@@ -29,9 +29,13 @@ pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
         Some(ProveCommand::Check { file }) => check(file),
         None => match args.model.as_deref() {
             Some(path) if is_netlist(path) => {
-                let extent = args.extent.as_ref().or(args.travel.as_ref().map(|travel| &travel.0));
+                // What has a box has a bench file, that says what it interpolates.
+                let extent = match args.extent.is_some() || args.travel.is_some() {
+                    true => args.extent_for(args.bench.model(path)?)?,
+                    false => None,
+                };
                 match extent {
-                    Some(extent) => boxed::prove(args, path, extent),
+                    Some(extent) => boxed::prove(args, path, &extent),
                     None => netlist::prove(args, Path::new(path)),
                 }
             }
@@ -61,10 +65,10 @@ const ASKED: u32 = 2;
 
 /// What the command line asks to prove.
 fn proposition(args: &ProveArgs) -> Result<Proposition, Error> {
-    let extent = args.extent.clone().or_else(|| args.travel.clone().map(|travel| travel.0));
-    let mut asked = Proposition::of(args.bench.model(args.model.as_deref().unwrap_or_default())?)
+    let model = args.bench.model(args.model.as_deref().unwrap_or_default())?;
+    let mut asked = Proposition::of(model)
         .options(args.hardware.choices())
-        .extent(extent)
+        .extent(args.extent_for(model)?)
         .any_preset(args.any_preset);
     for (name, bits) in args.narrower.iter().flat_map(|list| list.0.iter()) {
         if let Some(before) = asked.narrower.insert(name.clone(), *bits) {

@@ -61,7 +61,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
 
 /// All geometries that the options tell.
 fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Error> {
-    if let kind @ (CurveKind::Spline | CurveKind::Nurbs | CurveKind::Axis) = model.curve() {
+    if let kind @ (CurveKind::Spline | CurveKind::Nurbs) = model.curve() {
         let (name, what) = (model.name, kind.in_box());
         return invalid(format!("a sweep has no {what}: give {name} one at a time to `stepwave run`"));
     }
@@ -76,18 +76,22 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
     let (mut from, to) = (points(&args.from, &args.from_grid), points(&args.to, &args.to_grid));
     let sizes = sizes(model, args, drawn)?;
     let who = model.name;
-    let axes = to.as_ref().or(from.as_ref()).map_or(2, Vec::len);
-    let least = drawn.axes();
     let most = model.curve().max_axes();
+    let least = drawn.axes().min(most);
+    let axes = to.as_ref().or(from.as_ref()).map_or(least.min(2), Vec::len);
     for (option, points) in [("--to", &to), ("--from", &from)] {
         let count = points.as_ref().map_or(axes.max(least), Vec::len);
         if !(least..=most).contains(&count) || (drawn == Drawn::Line && count != axes) {
             let takes = model.curve().describe();
-            return invalid(format!("{option} has {count} coordinates, but {who} interpolates {takes}"));
+            return invalid(format!(
+                "{option} has {count} {}, but {who} interpolates {takes}",
+                if count == 1 { "coordinate" } else { "coordinates" }
+            ));
         }
     }
     if drawn == Drawn::Line && to.is_none() {
-        return invalid(format!("the end points are missing: give {who} --to-grid such as 0..255x0..255"));
+        let grid = vec!["0..255"; least].join("x");
+        return invalid(format!("the end points are missing: give {who} --to-grid such as {grid}"));
     }
     if drawn == Drawn::Line {
         from = from.or_else(|| Some(vec![Range::one(0); axes]));

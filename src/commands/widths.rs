@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use crate::models::Model;
 use crate::models::options::WIDTH;
+use crate::models::parts::{E, POSITION};
 use crate::report::run_command;
 use crate::study::widths::{Known, RegisterWidth, Widths, Witness, widths};
 use serde_json::{Value, json};
@@ -73,8 +74,12 @@ pub(super) fn one_bit_below(model: &Model, register: &RegisterWidth) -> String {
     }
 }
 
-fn relative(bits: u32, k: u32) -> String {
-    match i64::from(bits) - i64::from(k) {
+/// The bits that a register needs, by the bits of coordinates; of a ramp only what counts pulses depends on these.
+fn relative(model: &Model, register: &RegisterWidth, k: u32) -> String {
+    if model.width_is_of_phase() && ![E.name(), POSITION.of(0).name()].contains(&&*register.name) {
+        return String::new();
+    }
+    match i64::from(register.needed) - i64::from(k) {
         0 => "k".to_owned(),
         more => format!("k{more:+}"),
     }
@@ -97,7 +102,7 @@ fn table(model: &Model, found: &Widths) -> String {
             register.name,
             register.given,
             register.needed,
-            relative(register.needed, found.k),
+            relative(model, register, found.k),
             evidence(register),
             one_bit_below(model, register),
         );

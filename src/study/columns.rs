@@ -32,7 +32,7 @@ impl Layout {
     pub(super) fn new(model: &Model, space: &Space, variants: &Variants) -> Result<Layout, StudyError> {
         let none = || StudyError::Geometries("there are no geometries: give a grid or a file that has some".to_owned());
         let (drawn, axes) = space.drawn().ok_or_else(none)?;
-        if axes > model.curve().max_axes() || axes < 2 {
+        if axes > model.curve().max_axes() || axes < drawn.axes().min(model.curve().max_axes()) {
             let takes = model.curve().describe();
             let message = format!("{} interpolates {takes}; points of {axes} axes were given", model.name);
             return Err(StudyError::Geometries(message));

@@ -1,16 +1,17 @@
 //! Widths relative to k: proved for every k at once, and evaluated at any.
 
+use std::ops::RangeInclusive;
+
 use rayon::prelude::*;
-use stepwave_models::options::WIDTH;
 use stepwave_models::{Hardware, Model, ModelError, Options};
 
-use super::boxes::{Extent, Geometries};
-use super::proof::{Block, CountMethod, Narrower, ProofError, Subject, blocks, choices_at};
+use super::boxes::{Extent, Geometries, MOST_BITS, without_widths};
+use super::proof::{Block, CountMethod, Narrower, ProofError, Subject, blocks, choices_at, hardware_at};
 use super::widths::least_seen;
 
 /// The k whose geometries are all simulated to find how wide registers must be; the first at which a choice, such as a
 /// preset, fits is taken.
-const FOUND: std::ops::RangeInclusive<u32> = 5..=8;
+const FOUND: RangeInclusive<u32> = 5..=8;
 /// The greatest k at which a block of a counted model is followed: it takes 2^k clocks.
 const MOST_FOLLOWED: u32 = 16;
 
@@ -23,6 +24,8 @@ pub struct KForm {
     narrower: Narrower,
     /// Each k needs a proof of its own.
     counted: bool,
+    /// Those for which it is proved.
+    ks: RangeInclusive<u32>,
 }
 
 impl KForm {
@@ -32,7 +35,7 @@ impl KForm {
     /// The hardware cannot be built.
     pub fn of(model: &'static Model, choices: &Options) -> Result<Option<KForm>, ProofError> {
         let Some(claims) = model.claims else { return Ok(None) };
-        let choices = choices.clone().with(&WIDTH, None);
+        let choices = without_widths(model, choices);
         let mut found = None;
         for k in FOUND {
             match Geometries::of(model, &choices, &Extent::Bits(k)) {
@@ -50,8 +53,9 @@ impl KForm {
         let narrower: Narrower = narrower.filter(|(_, less)| *less > 0).collect();
         // Where not all of the registers can be as narrow at once, those by default may still be proved.
         for narrower in [narrower, Narrower::new()] {
-            if counted || is_proved(model, &choices, &narrower) {
-                return Ok(Some(KForm { model, choices, narrower, counted }));
+            let ks = if counted { Some(1..=MOST_BITS) } else { proved_ks(model, &choices, &narrower) };
+            if let Some(ks) = ks {
+                return Ok(Some(KForm { model, choices, narrower, counted, ks }));
             }
         }
         Ok(None)
@@ -63,7 +67,7 @@ impl KForm {
     /// # Errors
     /// There is no such hardware.
     pub fn hardware(&self, k: u32) -> Result<Option<Hardware>, ProofError> {
-        let Some(claims) = self.model.claims else { return Ok(None) };
+        let Some(claims) = self.model.claims.filter(|_| self.ks.contains(&k)) else { return Ok(None) };
         if self.counted {
             let exact = |block: &Block| block.is_exact();
             let followed = k <= MOST_FOLLOWED
@@ -74,8 +78,7 @@ impl KForm {
             }
         }
         let choices = choices_at(self.model, &claims, &self.choices, &self.narrower, k)?;
-        let Some(largest) = claims.geometries.largest(k) else { return Ok(None) };
-        Ok(Some(self.model.plan(&largest, &choices)?))
+        Ok(Some(hardware_at(self.model, &claims, &choices, k)?))
     }
 
     /// It was proved for every k at once.
@@ -85,9 +88,14 @@ impl KForm {
     }
 }
 
-/// With registers as narrow as this nothing overflows and every end is reached, for every k.
-fn is_proved(model: &'static Model, choices: &Options, narrower: &Narrower) -> bool {
-    let Ok(subject) = Subject::new(model, choices, narrower) else { return false };
+/// The k for which with registers as narrow as this nothing overflows and every end is reached; `None` of none.
+fn proved_ks(model: &'static Model, choices: &Options, narrower: &Narrower) -> Option<RangeInclusive<u32>> {
+    let subject = Subject::new(model, choices, narrower).ok()?;
     let safe = |kind| subject.prove(&kind).is_ok_and(|(proof, _)| proof.is_safe());
-    subject.kinds().into_par_iter().all(safe)
+    let (least, greatest) = subject.ks();
+    subject.kinds().into_par_iter().all(safe).then_some(if subject.is_whole() {
+        1..=greatest
+    } else {
+        least..=greatest
+    })
 }

@@ -162,7 +162,9 @@ impl Space {
         match self {
             Space::Cells(cells) | Space::Samples { cells, .. } => {
                 let axes = cells.to.as_ref().or(cells.from.as_ref()).map_or(2, Vec::len);
-                Some((cells.drawn, axes.max(cells.drawn.axes())))
+                // A travel of one axis is a line.
+                let least = if cells.drawn == Drawn::Line { axes } else { cells.drawn.axes() };
+                Some((cells.drawn, axes.max(least)))
             }
             Space::Points { points, .. } => points.first().map(|site| (site.drawn, site.to.len())),
         }

@@ -21,6 +21,9 @@ impl Dimension {
     /// A word is not a value of this option.
     pub fn parse(option: &'static dyn AnyOption, text: &str) -> Result<Dimension, StudyError> {
         let texts = match option.shape() {
+            shape @ Shape::Commas if option.parse(text).is_err() && text.parse::<Range>().is_ok() => {
+                values_of(option, &shape, text)?
+            }
             Shape::Commas => vec![text.to_owned()],
             shape @ Shape::PerRegister { .. } => {
                 let named = named(text.split(',').map(str::trim), |word| values_of(option, &shape, word))?;
@@ -57,7 +60,7 @@ fn wrong(option: &dyn AnyOption, word: &str) -> StudyError {
         Shape::Numbers { values, .. } | Shape::PerRegister { values, .. } | Shape::Text { values, .. } => {
             values.to_owned()
         }
-        Shape::Commas => format!("values such as {}", option.default_text()),
+        Shape::Commas => format!("values of the form {}", option.value_name()),
     };
     StudyError::NoValue { word: word.to_owned(), option: option.name(), values }
 }
@@ -67,21 +70,24 @@ fn values_of(option: &'static dyn AnyOption, shape: &Shape, word: &str) -> Resul
     let (least, most, words): (u64, u64, &[&str]) = match shape {
         Shape::Words(words) if words.contains(&word) => return Ok(vec![word.to_owned()]),
         Shape::Words(_) => return Err(wrong(option, word)),
-        Shape::Text { .. } | Shape::Commas => {
+        Shape::Text { .. } => {
             // As the option writes it, so that equal values have equal words.
             let value = option.parse(word).map_err(|_| wrong(option, word))?;
             return Ok(vec![value.text().to_owned()]);
         }
         Shape::Numbers { least, most, none, .. } => (*least, *most, if *none { &["none"] } else { &[] }),
         Shape::PerRegister { words, least, most, .. } => (*least, *most, words),
+        Shape::Commas => (0, u64::MAX, &[]),
     };
     if words.contains(&word) {
         return Ok(vec![word.to_owned()]);
     }
-    let range: Range = word.parse().map_err(|error| match error {
-        StudyError::NoRange(_) => wrong(option, word),
-        error => error,
-    })?;
+    let range: Range = match word.parse() {
+        // A number with a unit.
+        Err(_) if option.parse(word).is_ok() => return Ok(vec![word.to_owned()]),
+        Err(StudyError::NoRange(_)) => return Err(wrong(option, word)),
+        range => range?,
+    };
     let within = |number: i64| u64::try_from(number).is_ok_and(|number| (least..=most).contains(&number));
     if !within(range.at(0)) || !within(range.at(range.count() - 1)) {
         return Err(wrong(option, word));

@@ -50,7 +50,8 @@ fn words(model: &str, row: &Row) -> String {
     if get("center_x").is_some() {
         words += &format!(" --center {}", point("center"));
     }
-    for option in ["width", "preset", "beats", "end_point", "weights", "form", "on_overflow"] {
+    for option in ["width", "preset", "beats", "end_point", "weights", "form", "speed", "accel", "jerk", "on_overflow"]
+    {
         words += &get(option).map_or_else(String::new, |word| format!(" --{} {word}", option.replace('_', "-")));
     }
     if get("normalize").as_deref() == Some("yes") {
@@ -110,8 +111,9 @@ fn rows_of_every_model_are_what_single_runs_report() {
                 "--from-grid 2..17x-9..9 --to-grid -15..19x-19..19 --center 1,-1 --cw --ccw --samples 12"
             }
             CurveKind::Conic => "--ellipse 3..9,2..9 --to-grid -9..9x-9..9 --cw --ccw --samples 12",
+            CurveKind::Axis => "--from-grid -9..9 --to-grid -40..40 --samples 12",
             // A sweep has none.
-            CurveKind::Spline | CurveKind::Nurbs | CurveKind::Axis => continue,
+            CurveKind::Spline | CurveKind::Nurbs => continue,
             CurveKind::Helix => "--radius 3..9 --height -20..20/5 --cw --ccw --samples 12",
         };
         let all = rows(&good(&format!("sweep {name} {geometries} --csv -")));
@@ -133,6 +135,7 @@ fn rows_of_many_choices_overflows_stalls_and_refusals_are_what_single_runs_repor
             "stalled",
         ),
         ("cim-conic", "--parabola 4..5 --to-grid 1..16x0..9 --weights mid,pre,post", "done"),
+        ("ramp", "--to-grid -20..20/7 --speed vc=100..144/22 --accel 8..12/4 --accel 9,4", "done"),
         ("ppc-conic", "--hyperbola 3..4,2 --to-grid 3..9x-4..4 --opens +x", "done"),
     ] {
         let all = rows(&good(&format!("sweep {model} {words} --csv -")));
@@ -342,7 +345,7 @@ fn bad_words_are_refused_and_leave_no_file() {
     for (words, hints) in [
         ("sweep dda-line --csv s.csv", &["the end points are missing", "--to-grid"][..]),
         ("sweep dda-line --to-grid 9..0x0..9 --csv s.csv", &["9..0 begins after its end", "0..9"]),
-        ("sweep dda-line --to-grid 0..9 --csv s.csv", &["1 coordinates"]),
+        ("sweep dda-line --to-grid 0..9 --csv s.csv", &["1 coordinate,"]),
         ("sweep vector-line --to-grid 0..9x0..9x0..9 --csv s.csv", &["3 coordinates", "lines of 2 axes"]),
         ("sweep dda-line --to-grid 0..9x0..9/0 --csv s.csv", &["a step of 0"]),
         ("sweep dda-line --to-grid 0..1000000x0..1000000 --csv s.csv", &["are more than 4294967296 runs", "coarser"]),

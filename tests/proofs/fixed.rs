@@ -102,7 +102,7 @@ fn bad_boxes_and_options_that_contradict_each_other_are_refused() {
         ("prove ppc-line --travel 0", "give 1 or more"),
         ("prove ppc-line --travel -5", "give 1 or more"),
         ("prove ppc-line --travel 9 --box 4", "cannot be used with"),
-        ("prove ppc-line --box 0..9", "0..255x0..255"),
+        ("prove ppc-line --box 0..9", "a box of 1 axis is not proved: give two ranges, such as 0..9x0..9"),
         ("prove ppc-line --box 0..9x0..9x0..9", "give two"),
         ("prove ppc-line --width g=8 --box 4", "has no register g"),
         ("prove ppc-line --width g=8", "has no register g"),

@@ -8,6 +8,7 @@ mod fixed;
 mod induction;
 mod invariants;
 mod netlists;
+mod ramps;
 mod sat;
 mod truth;
 mod widths;

@@ -26,6 +26,8 @@ use super::{Ending, LaneOutcome, Testbench};
 /// What the instruments measure against, and the inputs that hold it.
 #[derive(Clone, Debug)]
 enum Ideal {
+    /// One axis, which leaves no line: d is 0.
+    Axis,
     /// Gain of each axis.
     Line([Net; 2]),
     /// Twice the start of each axis about the centre, and the square of the radius.
@@ -58,11 +60,10 @@ pub(super) struct Instruments {
 }
 
 impl Instruments {
-    /// Those for a bench; `None` where its curves are neither circles nor lines of two axes, or too large.
+    /// Those for a bench; `None` where its curves are neither circles nor lines of one or two axes, or too large.
     pub(super) fn new(bench: &Testbench, kind: CurveKind) -> Option<Instruments> {
         let machine = bench.machine();
         let pulses: Vec<Net> = machine.pulses.iter().map(|port| port.net).collect();
-        let [x, y] = <[Net; 2]>::try_from(pulses.clone()).ok()?;
         if machine.pulses.iter().any(|port| port.width.get() != 2) {
             return None;
         }
@@ -73,12 +74,13 @@ impl Instruments {
         }
         let module = Module::continuing(bench.design().netlist().clone());
         let m = module.top().scope("gauge");
-        let steps = [x, y].map(|pulse| PulseNets::of(m.net(pulse, true)));
+        let step = |pulse: &Net| PulseNets::of(m.net(*pulse, true));
         let stepped = m.net(machine.stepped.net, false);
         let loads = m.net(machine.load.net, false) & m.net(machine.preset_position.net, false);
-        let (ideal, deviation, seen) = match kind {
-            CurveKind::Line { .. } => line(m, bits, steps),
-            CurveKind::Arc => circle(m, bits, steps, loads),
+        let (ideal, deviation, seen) = match (kind, &pulses[..]) {
+            (CurveKind::Axis, [_]) => (Ideal::Axis, m.lit_signed(bits, 0), m.lit(bits, 0)),
+            (CurveKind::Line { .. }, [x, y]) => line(m, bits, [x, y].map(step)),
+            (CurveKind::Arc, [x, y]) => circle(m, bits, [x, y].map(step), loads),
             _ => return None,
         };
         let waits = (!follows_load(bench)).then(|| {
@@ -117,7 +119,7 @@ impl Instruments {
     pub(super) fn observe(&self) -> Vec<Observe> {
         let (net, judged, bits) = (self.seen, self.judged, self.bits[1]);
         let path = match self.ideal {
-            Ideal::Line(_) => {
+            Ideal::Axis | Ideal::Line(_) => {
                 [Observe::Last(net), Observe::Max { net: judged, signed: false }, Observe::Sum { net, bits: 32 }]
             }
             Ideal::Circle { square, .. } => [
@@ -135,6 +137,7 @@ impl Instruments {
     /// What the inputs are to hold for a geometry; `None` where it is too large.
     pub(super) fn words(&self, curve: &Curve) -> Option<Vec<(Net, u64)>> {
         let numbers = match (&self.ideal, curve) {
+            (Ideal::Axis, Curve::Line(_)) => Vec::new(),
             (Ideal::Line(gain), Curve::Line(line)) => {
                 let [dx, dy] = <[i64; 2]>::try_from(line.delta()).ok()?.map(|travel| self.reached(travel));
                 vec![(gain[0], -dy?), (gain[1], dx?)]
@@ -285,6 +288,9 @@ fn circle<'m>(
 
 /// d at a position.
 fn reached(curve: &Curve, position: &[i64]) -> Option<i128> {
+    if position.len() == 1 {
+        return Some(0);
+    }
     let position = <[i64; 2]>::try_from(position).ok()?;
     Some(match curve {
         Curve::Line(line) => cross(line, position)?,

@@ -97,7 +97,7 @@ pub enum Shape {
         /// Some of them, with which hardware has every register that it can have.
         some: &'static [&'static str],
     },
-    /// Texts with commas of their own: a list gives the option several times.
+    /// Texts with commas of their own: a list gives the option several times, or a range of whole numbers.
     Commas,
 }
 

@@ -256,7 +256,9 @@ options! {
         help: "Drive speed of a ramp, or start, drive and stop speed by name, in units of its register or with a unit",
         value_name: "SPEED|vs=…,vc=…,ve=…",
         values: Values::Parsed {
-            shape: Shape::Commas,
+            shape: Shape::PerRegister {
+                words: &[], least: 1, most: 1 << 54, values: "speeds such as 64..144 or 2400mm/min, or of vs, vc or ve: vs=64,vc=100..144",
+            },
             parse: |text| {
                 let speeds = PerRegister::parse("speed", text, |word| Quantity::parse(word, 1))?;
                 match speeds.single.keys().find(|name| !["vs", "vc", "ve"].contains(&name.as_str())) {

@@ -9,7 +9,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use stepwave_models::options::{CASCADE, NORMALIZE, RADIX, WIDTH};
-use stepwave_models::{CurveKind, Hardware, Model, Options, Region};
+use stepwave_models::{CurveKind, Hardware, Model, ModelError, Options, Region};
 use stepwave_nc::{Curve, Line};
 use stepwave_netlist::Width;
 
@@ -49,7 +49,7 @@ impl FromStr for Extent {
         let no_box =
             || format!("invalid box '{text}': give bits, such as 8, or a range for each axis, such as 0..255x0..255");
         let grid: Grid = text.parse().map_err(|error: super::StudyError| error.to_string())?;
-        if grid.0.len() < 2 { Err(no_box()) } else { Ok(Extent::Grid(grid)) }
+        if grid.0.is_empty() { Err(no_box()) } else { Ok(Extent::Grid(grid)) }
     }
 }
 
@@ -83,11 +83,11 @@ impl Extent {
         }
     }
 
-    /// Axes of the geometries in it.
+    /// Axes of the geometries in it of this model.
     #[must_use]
-    pub fn axes(&self) -> usize {
+    pub fn axes(&self, model: &Model) -> usize {
         match self {
-            Extent::Bits(_) => 2,
+            Extent::Bits(_) => model.curve().max_axes().min(2),
             Extent::Grid(Grid(ranges)) => ranges.len(),
         }
     }
@@ -112,6 +112,7 @@ pub struct Geometries {
 fn region(model: &Model) -> Option<Region> {
     match (model.claims, model.curve()) {
         (Some(claims), _) => Some(claims.geometries),
+        (None, CurveKind::Axis) => Some(Region::Travels),
         (None, CurveKind::Line { .. }) => Some(Region::Lines),
         (None, CurveKind::Arc) => Some(Region::QuadrantArcs),
         (None, CurveKind::Move) => Some(Region::LinesAndArcs),
@@ -145,7 +146,8 @@ impl Geometries {
         let sides = match extent {
             Extent::Bits(k) => {
                 let most = (1_i64 << k) - 1;
-                Grid(vec![Range::new(-most, most, 1).map_err(|error| ProofError::Box(error.to_string()))?; 2])
+                let range = Range::new(-most, most, 1).map_err(|error| ProofError::Box(error.to_string()))?;
+                Grid(vec![range; region.axes()])
             }
             Extent::Grid(grid) => grid.clone(),
         };
@@ -159,10 +161,10 @@ impl Geometries {
             all &= whole;
         }
         let kinds = region.kinds();
-        if axes == 2 {
+        if axes == region.axes() {
             curves.retain(|curve| kinds.iter().any(|kind| region.symbols(kind, curve).is_some()));
         }
-        let largest = if axes == 2 { region.largest(k) } else { line(vec![(1_i64 << k) - 1; axes]) };
+        let largest = if axes == region.axes() { region.largest(k) } else { line(vec![(1_i64 << k) - 1; axes]) };
         if curves.is_empty() && arcs && plane::all_arcs(&sides).is_none() {
             return Err(ProofError::Box(format!(
                 "no two points next to the corners of the box are ends of one arc, and its {} points are too many to look at \
@@ -178,7 +180,11 @@ impl Geometries {
             )));
         };
         let choices = choices.clone().with_all(&WIDTH, choices.of_all(&WIDTH).or(width(model, choices, k)));
-        Ok(Geometries { curves, all, k, hardware: model.plan(&largest, &choices)?, choices })
+        let hardware = match region {
+            Region::Travels => hardware_of(model, &choices, &curves)?,
+            _ => model.plan(&largest, &choices)?,
+        };
+        Ok(Geometries { curves, all, k, hardware, choices })
     }
 
     /// These geometries, by hardware that holds all of them.
@@ -188,7 +194,7 @@ impl Geometries {
     pub fn these(model: &'static Model, choices: &Options, curves: Vec<Curve>) -> Result<Geometries, ProofError> {
         let coordinates = curves.iter().flat_map(|curve| curve.from().iter().chain(curve.to()));
         let greatest = coordinates.map(|coordinate| coordinate.unsigned_abs()).max().unwrap_or(0);
-        let (k, hardware) = (Width::needed_unsigned(greatest.into()), widest(model, choices, &curves)?);
+        let (k, hardware) = (Width::needed_unsigned(greatest.into()), hardware_of(model, choices, &curves)?);
         Ok(Geometries { curves, all: false, k, hardware, choices: choices.clone() })
     }
 
@@ -216,7 +222,7 @@ impl Geometries {
         };
         let all = wanted && k <= whole;
         let curves = of(k, all);
-        let hardware = widest(model, choices, &curves)?;
+        let hardware = hardware_of(model, choices, &curves)?;
         Ok(Geometries { curves, all, k, hardware, choices: choices.clone() })
     }
 }
@@ -251,14 +257,25 @@ pub(super) fn spare_bits(model: &Model, choices: &Options) -> u32 {
 }
 
 /// The width of registers that hold every number of `k` bits, in whole digits and whole units; `None` where --width is not
-/// the width of coordinates, but of the ways of a period, or there is none to choose.
+/// the width of coordinates.
 fn width(model: &Model, choices: &Options, k: u32) -> Option<Width> {
-    if model.method == "data sampling" || model.is_described() {
+    if !model.width_is_of_coordinates() {
         return None;
     }
     let bits = choices.value(&RADIX).reading().needed((1_i128 << k) - 1) + spare_bits(model, choices);
     let bits = bits.next_multiple_of(choices.value(&CASCADE).map_or(1, Width::get));
     Width::new(u64::from(bits)).ok()
+}
+
+/// Choices with the widths that a box decides by default: all but that of a phase.
+pub(super) fn without_widths(model: &Model, choices: &Options) -> Options {
+    let phase = choices.of_all(&WIDTH).filter(|_| model.width_is_of_phase());
+    choices.clone().with(&WIDTH, None).with_all(&WIDTH, phase)
+}
+
+/// Widths are given that a box decides by default.
+pub(super) fn has_widths(model: &Model, choices: &Options) -> bool {
+    choices.of_all(&WIDTH).is_some_and(|_| !model.width_is_of_phase()) || !choices.of_single(&WIDTH).is_empty()
 }
 
 /// Checks that runs of geometries of this many bits end within a reasonable time.
@@ -294,12 +311,10 @@ fn sizes(k: u32, all: bool) -> Vec<i64> {
     sizes
 }
 
-/// The hardware whose registers are as wide as any of these curves needs them.
-fn widest(model: &Model, choices: &Options, curves: &[Curve]) -> Result<Hardware, ProofError> {
+/// The hardware whose registers are as wide as any of these curves needs them; `None` of no curve.
+pub(super) fn widest(model: &Model, choices: &Options, curves: &[Curve]) -> Result<Option<Hardware>, ModelError> {
     let mut plans = curves.iter().map(|curve| model.plan(curve, choices));
-    let Some(first) = plans.next() else {
-        return Err(ProofError::Box(format!("the box holds nothing for {}: give a larger one", model.name)));
-    };
+    let Some(first) = plans.next() else { return Ok(None) };
     let mut widest = first?;
     for plan in plans {
         let plan = plan?;
@@ -309,5 +324,11 @@ fn widest(model: &Model, choices: &Options, curves: &[Curve]) -> Result<Hardware
         }
         widest.stall_clocks = widest.stall_clocks.max(plan.stall_clocks);
     }
-    Ok(widest)
+    Ok(Some(widest))
+}
+
+/// The hardware of a box.
+fn hardware_of(model: &Model, choices: &Options, curves: &[Curve]) -> Result<Hardware, ProofError> {
+    let nothing = || ProofError::Box(format!("the box holds nothing for {}: give a larger one", model.name));
+    widest(model, choices, curves)?.ok_or_else(nothing)
 }

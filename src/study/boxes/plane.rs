@@ -16,13 +16,15 @@ const CORNER: u64 = 256;
 /// The model takes geometries of as many axes as the grid has ranges.
 pub(super) fn check(model: &Model, Grid(ranges): &Grid, arcs: bool) -> Result<(), ProofError> {
     let (axes, most) = (ranges.len(), model.curve().max_axes());
-    if axes <= most {
+    let least = most.min(2);
+    if (least..=most).contains(&axes) {
         return Ok(());
     }
     let takes = if arcs { "arcs in the plane" } else { model.curve().describe() };
-    let ranges = vec!["0..9"; most].join("x");
+    let ranges = vec!["0..9"; if axes < least { least } else { most }].join("x");
+    let plural = if axes == 1 { "range" } else { "ranges" };
     Err(ProofError::Box(format!(
-        "the box has {axes} ranges, but {} interpolates {takes}: give --box {ranges}",
+        "the box has {axes} {plural}, but {} interpolates {takes}: give --box {ranges}",
         model.name
     )))
 }

@@ -9,7 +9,7 @@ use stepwave_nc::Curve;
 use stepwave_netlist::bits::Reading;
 use stepwave_prove::{AxisNets, Followed, LoadWord, Sum, follow, recount};
 
-use super::{Narrower, ProofError, choices_at, largest};
+use super::{Narrower, ProofError, choices_at, hardware_at};
 
 /// Curves of a kind whose words are compared.
 const COMPARED: usize = 400;
@@ -93,7 +93,7 @@ fn block(
     (k, kind): (u32, &Kind),
     method: CountMethod,
 ) -> Result<Block, ProofError> {
-    let hardware = model.plan(&largest(claims, k)?, &choices_at(model, claims, choices, narrower, k)?)?;
+    let hardware = hardware_at(model, claims, &choices_at(model, claims, choices, narrower, k)?, k)?;
     let machine = model.machine(&hardware)?;
     let all = claims.geometries.curves(k, usize::MAX);
     let own = all.iter().filter(|curve| claims.geometries.symbols(kind, curve).is_some()).take(COMPARED);

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use stepwave_models::{Claims, Model, ModelError, Options};
 use stepwave_nc::Curve;
 
-use super::{Narrower, choices_at, largest};
+use super::{Narrower, choices_at, hardware_at};
 use crate::testbench::{Ending, LaneOutcome, Testbench, is_ended};
 
 /// What a geometry shows.
@@ -109,7 +109,7 @@ fn search_at(
 ) -> Result<Option<Counterexample>, ModelError> {
     let k = tried.k;
     let own = choices_at(model, claims, choices, narrower, k)?;
-    let bench = Testbench::of_hardware(model, model.plan(&largest(claims, k)?, &own)?)?;
+    let bench = Testbench::of_hardware(model, hardware_at(model, claims, &own, k)?)?;
     let kinds = claims.geometries.kinds();
     let mut curves = claims.geometries.curves(k, TRIED);
     tried.all = claims.geometries.is_whole(k) && curves.len() < TRIED;

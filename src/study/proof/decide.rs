@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use stepwave_models::options::PRESET;
 use stepwave_models::{Options, Preset};
 
-use super::verdict::{Attempt, Claim, Evidence, Scope, Verdict, names, unproved};
+use super::verdict::{Attempt, Claim, Evidence, Scope, Shown, Verdict, names, unproved};
 use super::{
     Block, CountMethod, Counterexample, Fault, Fixed, ProofError, Proposition, Subject, Survey, Tried, blocks,
 };
@@ -199,9 +199,15 @@ impl Proposition {
             String::new()
         } else if self.claims()?.counted.is_empty() {
             // By the family of hardware that is as much narrower or wider than by default at every k.
-            match fixed.subject().map(|subject| attempts(&subject, effort)).transpose()? {
+            match fixed.subject().map(|subject| attempts(&subject, effort)) {
                 None => "this hardware is of no family that is the same circuit for every k".to_owned(),
-                Some(attempts) => match unproved(&attempts) {
+                Some(Err(ProofError::Word { word, .. })) => {
+                    format!("the load word {word} is not a polynomial of the geometry")
+                }
+                Some(Err(error)) => return Err(error),
+                // All that a proof leaves unclaimed was seen.
+                Some(Ok(attempts)) if few.is_whole() && !effort.certificate && !claims_all(&attempts) => String::new(),
+                Some(Ok(attempts)) => match unproved(&attempts) {
                     open if open.is_empty() => return Ok(self.by_steps(scope, attempts)),
                     open => format!("the proof for every k leaves open: {}", names(&open)),
                 },
@@ -250,6 +256,11 @@ fn simulate(
     clocks: u64,
 ) -> Result<(Option<Counterexample>, Tried), ProofError> {
     fixed.search(few, clocks, |done, all| (effort.progress)("geometries", done, all))
+}
+
+/// Every claim is one of the model.
+fn claims_all(attempts: &[Attempt]) -> bool {
+    Claim::ALL.iter().all(|claim| claim.shown(attempts) != Shown::Unclaimed)
 }
 
 /// An attempt at every kind of geometry.

@@ -9,9 +9,9 @@ use stepwave_nc::Curve;
 use stepwave_netlist::Width;
 
 use super::counter::try_all;
-use super::members::{Offsets, choices_with, largest, registers_named};
+use super::members::{Offsets, choices_with, hardware_at, registers_named};
 use super::{Block, CountMethod, Counterexample, Narrower, ProofError, Subject, Tried, blocks};
-use crate::study::boxes::spare_bits;
+use crate::study::boxes::{spare_bits, without_widths};
 use crate::study::{Extent, Geometries, Grid, Range};
 use crate::testbench::Testbench;
 
@@ -42,16 +42,16 @@ pub struct Fixed {
     offsets: Offsets,
 }
 
-/// The box |x| <= X, |y| <= Y.
+/// The box |x| <= X, |y| <= Y, of a travel for each axis in BLU.
 ///
 /// # Errors
-/// A travel is below 0.
-pub fn symmetric_box(travel: [i64; 2]) -> Result<Extent, ProofError> {
-    let range = |most: i64| {
+/// A travel is below 1.
+pub fn symmetric_box(travel: &[i64]) -> Result<Extent, ProofError> {
+    let range = |&most: &i64| {
         let range = most.checked_neg().filter(|_| most > 0).and_then(|least| Range::new(least, most, 1).ok());
         range.ok_or_else(|| ProofError::Box(format!("a travel of {most} BLU holds no geometry: give 1 or more")))
     };
-    Ok(Extent::Grid(Grid(travel.into_iter().map(range).collect::<Result<_, _>>()?)))
+    Ok(Extent::Grid(Grid(travel.iter().map(range).collect::<Result<_, _>>()?)))
 }
 
 impl Fixed {
@@ -62,20 +62,24 @@ impl Fixed {
     /// The model claims nothing, there is no such box, or the hardware cannot be built.
     pub fn new(model: &'static Model, choices: &Options, extent: Extent) -> Result<Fixed, ProofError> {
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-        let axes = extent.axes();
-        if axes != 2 {
-            return Err(ProofError::Box(format!("a box of {axes} axes is not proved: give two, such as 0..9x0..9")));
+        let (axes, wanted) = (extent.axes(model), claims.geometries.axes());
+        if axes != wanted {
+            let axis = if axes == 1 { "axis" } else { "axes" };
+            let range = if wanted == 1 { "one range, such as 0..9" } else { "two ranges, such as 0..9x0..9" };
+            return Err(ProofError::Box(format!("a box of {axes} {axis} is not proved: give {range}")));
         }
         let bits = extent.bits()?;
         let spare = spare_bits(model, choices);
-        let k = choices.of_all(&WIDTH).map_or(bits, |width| width.get().saturating_sub(spare).max(1));
-        let width = choices.of_all(&WIDTH).or(Width::new(u64::from(k + spare)).ok());
-        let choices = choices.clone().with_all(&WIDTH, width);
-        let usual = model.plan(&largest(&claims, k)?, &choices.clone().with_single(&WIDTH, BTreeMap::new()))?;
+        let given = choices.of_all(&WIDTH);
+        let of_coordinates = given.filter(|_| model.width_is_of_coordinates());
+        let k = of_coordinates.map_or(bits, |width| width.get().saturating_sub(spare).max(1));
+        let width = Width::new(u64::from(k + spare)).ok().filter(|_| model.width_is_of_coordinates());
+        let choices = choices.clone().with_all(&WIDTH, given.or(width));
+        let usual = hardware_at(model, &claims, &choices.clone().with_single(&WIDTH, BTreeMap::new()), k)?;
         for name in choices.of_single(&WIDTH).keys() {
             registers_named(model, &usual, name)?;
         }
-        let hardware = model.plan(&largest(&claims, k)?, &choices)?;
+        let hardware = hardware_at(model, &claims, &choices, k)?;
         let offset = |(name, width): (&&'static str, &Width)| {
             let usual = usual.bits_of(name);
             ((*name).to_owned(), i64::from(width.get()) - i64::from(usual))
@@ -114,8 +118,8 @@ impl Fixed {
         if self.bits > self.k {
             return None;
         }
-        let free = self.choices.clone().with(&WIDTH, None);
-        let subject = Subject::with(self.model, &free, &self.offsets).ok()?;
+        let free = without_widths(self.model, &self.choices);
+        let subject = Subject::with(self.model, &free, &self.offsets, Some(self.k)).ok()?;
         let own = subject.members.iter().find(|(k, ..)| *k == self.k);
         own.is_some_and(|(_, hardware, _)| *hardware == self.hardware).then_some(subject)
     }
@@ -142,7 +146,7 @@ impl Fixed {
         clocks: u64,
         progress: impl Fn(usize, usize),
     ) -> Result<(Option<Counterexample>, Tried), ProofError> {
-        let free = self.choices.clone().without(&WIDTH);
+        let free = without_widths(self.model, &self.choices);
         let (mut curves, mut all) = match &self.extent {
             // Listed in a moment, though coordinates of this many bits may be far more.
             Extent::Grid(grid) if few && points(grid) < FEW as u128 => {
@@ -212,10 +216,10 @@ fn bit(number: u32) -> &'static str {
 /// The model claims nothing, or a register does not exist.
 pub fn narrowing_ks(model: &'static Model, choices: &Options) -> Result<Vec<u32>, ProofError> {
     let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
-    let free = choices.clone().with(&WIDTH, None);
+    let free = without_widths(model, choices);
     for k in 1..=52 {
         let own = choices_with(model, &claims, &free, &Offsets::new(), k)?;
-        let usual = match model.plan(&largest(&claims, k)?, &own) {
+        let usual = match hardware_at(model, &claims, &own, k) {
             Ok(usual) => usual,
             Err(error) if k == 52 => return Err(error.into()),
             Err(_) => continue,

@@ -1,11 +1,10 @@
 //! What is learnt from runs: the words of the loader as formulas of the geometry, and rows to guess invariants from.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use stepwave_models::{Kind, Machine};
 use stepwave_nc::Curve;
 use stepwave_netlist::Net;
-use stepwave_netlist::formula::Symbol;
 use stepwave_netlist::formula::{self, Formula};
 use stepwave_prove::{self as prove, Case, Row};
 
@@ -14,8 +13,8 @@ use super::{ProofError, State, Subject, states};
 /// Words of the loader, and what the symbols of the geometry are.
 type Loaded = (Vec<(Net, u64)>, Vec<i128>);
 
-/// The k that are simulated to learn from, with how many curves of each kind.
-const LEARNED: [(u32, usize); 4] = [(3, 60), (4, 40), (5, 30), (6, 12)];
+/// How many curves of each kind are simulated to learn from, at each of the least k.
+const LEARNED: [usize; 4] = [60, 40, 30, 12];
 
 /// The rows of one run.
 pub(super) fn rows(k: u32, symbols: &[i128], machine: &Machine, words: &[(Net, u64)]) -> Vec<Row> {
@@ -30,30 +29,23 @@ impl Subject {
     /// The kind with the words of its loader, and rows of recorded runs.
     pub(super) fn case(&self, kind: &Kind) -> Result<(Case, Vec<Row>), ProofError> {
         let curves = self.curves(kind);
-        let presets = self.presets();
+        let any = self.any_words();
         let mut rows = Vec::new();
         for (place, (member, curve, symbols)) in curves.iter().enumerate() {
             let Some((words, symbols)) = self.loaded(place, *member, curve, symbols)? else { continue };
             let (k, _, machine) = &self.members[*member];
             rows.extend(self::rows(*k, &symbols, machine, &words));
         }
-        let any = |register: &String| Symbol {
-            name: format!("preset {register}"),
-            least: formula::number(0),
-            greatest: formula::name("2^k") - 1,
-        };
         let mut words = self.words(kind, &curves)?;
-        for register in &presets {
-            words.retain(|(input, _)| *input != format!("{register}_in"));
-            words.push((format!("{register}_in"), formula::name(&format!("preset {register}"))));
-        }
+        words.extend(any.iter().map(|(register, symbol)| (format!("{register}_in"), formula::name(&symbol.name))));
         let guesses = (self.claims.guesses)(&self.members[0].1);
         let case = Case {
             name: kind.name.clone(),
-            symbols: kind.symbols.iter().cloned().chain(presets.iter().map(any)).collect(),
+            symbols: kind.symbols.iter().cloned().chain(any.into_iter().map(|(_, symbol)| symbol)).collect(),
             constants: kind.constants.clone(),
             premises: kind.premises.clone(),
             words,
+            free: self.claims.free.iter().map(|input| (*input).to_owned()).collect(),
             goals: kind.goals.clone(),
             rank: (self.claims.rank)(&self.members[0].1),
             modes: self.claims.modes.iter().map(|mode| mode.name().to_owned()).collect(),
@@ -78,10 +70,11 @@ impl Subject {
         // Several blocks are several loads; the first alone is that of the kind.
         let Some(mut words) = blocks.into_iter().next() else { return Ok(None) };
         let mut symbols = symbols.to_vec();
-        for (number, register) in self.presets().iter().enumerate() {
+        for (number, (register, _)) in self.any_words().iter().enumerate() {
             let port = machine.inputs[register];
-            // Any values, spread over the register.
-            let value = (place as u64 * 7919 + number as u64 * 104_729) & port.width.mask();
+            // Any values, spread over the register by multiples of the golden section.
+            let spread = (place as u64 * 131 + number as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            let value = spread >> (64 - port.width.get());
             words.retain(|(net, _)| *net != port.net);
             words.push((port.net, value));
             symbols.push(i128::from(value));
@@ -92,8 +85,8 @@ impl Subject {
     /// Curves of a kind to learn from: place of the member, curve, symbols.
     pub(super) fn curves(&self, kind: &Kind) -> Vec<(usize, Curve, Vec<i128>)> {
         let mut curves = Vec::new();
-        for (k, most) in LEARNED {
-            let Some(member) = self.members.iter().position(|(other, ..)| *other == k) else { continue };
+        for (member, most) in (0..self.members.len()).zip(LEARNED) {
+            let k = self.members[member].0;
             let all = self.claims.geometries.curves(k, 4000);
             let own = all.into_iter().filter_map(|curve| {
                 let symbols = self.claims.geometries.symbols(kind, &curve)?;
@@ -109,11 +102,12 @@ impl Subject {
     fn words(&self, kind: &Kind, curves: &[(usize, Curve, Vec<i128>)]) -> Result<Vec<(String, Formula)>, ProofError> {
         let names: Vec<&str> =
             ["2^(k-1)"].into_iter().chain(kind.symbols.iter().map(|symbol| symbol.name.as_str())).collect();
+        let any: BTreeSet<String> = self.any_words().into_iter().map(|(register, _)| register).collect();
         let mut samples: BTreeMap<&str, Vec<Vec<i128>>> = BTreeMap::new();
         for (member, curve, symbols) in curves {
             let (k, hardware, _) = &self.members[*member];
             let Some(words) = self.model.words(hardware, curve)?.into_iter().next() else { continue };
-            for (register, value) in words {
+            for (register, value) in words.into_iter().filter(|(register, _)| !any.contains(*register)) {
                 let row = [&[1_i128 << (k - 1)][..], symbols, &[value]].concat();
                 samples.entry(register).or_default().push(row);
             }

@@ -7,7 +7,7 @@ use stepwave_models::{AXES, Claims, Hardware, Model, ModelError, Options};
 use stepwave_nc::Curve;
 use stepwave_netlist::{Width, did_you_mean};
 
-use crate::study::boxes::spare_bits;
+use crate::study::boxes::{spare_bits, widest};
 
 /// Bits by which registers are narrower than by default, by name.
 pub type Narrower = BTreeMap<String, u32>;
@@ -42,11 +42,12 @@ pub(super) fn choices_with(
     k: u32,
 ) -> Result<Options, ModelError> {
     let bits = k + spare_bits(model, choices);
-    let wide = choices.clone().with_all(&WIDTH, Width::new(u64::from(bits)).ok());
+    let width = Width::new(u64::from(bits)).ok().filter(|_| model.width_is_of_coordinates());
+    let wide = choices.clone().with_all(&WIDTH, width.or(choices.of_all(&WIDTH)));
     if offsets.is_empty() {
         return Ok(wide);
     }
-    let default = model.plan(&largest(claims, k)?, &wide)?;
+    let default = hardware_at(model, claims, &wide, k)?;
     let mut widths = wide.of_single(&WIDTH);
     for (given, bits) in offsets {
         for (register, own) in registers_named(model, &default, given)? {
@@ -82,6 +83,17 @@ pub(super) fn registers_named(
         )));
     }
     Ok(meant)
+}
+
+/// The hardware for all geometries of k-bit coordinates.
+pub(in crate::study) fn hardware_at(
+    model: &Model,
+    claims: &Claims,
+    choices: &Options,
+    k: u32,
+) -> Result<Hardware, ModelError> {
+    widest(model, choices, &claims.geometries.demanding(k))?
+        .ok_or_else(|| ModelError::Widths(format!("there are no geometries of {k} bits")))
 }
 
 /// The geometry of k-bit coordinates that needs the widest registers.

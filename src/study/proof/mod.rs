@@ -27,6 +27,7 @@ pub use decide::{Effort, SEARCHED, Watcher};
 pub use file::{CertificateFile, FileError, MOST_BYTES};
 pub use fixed::{Fixed, narrowing_ks, symmetric_box};
 pub use induction::{CounterexampleToInduction, INDUCTION_KS, InductionSearch};
+pub(in crate::study) use members::hardware_at;
 use members::largest;
 pub use members::{Narrower, choices_at};
 pub use proposition::Proposition;
@@ -82,7 +83,7 @@ pub enum ProofError {
     Case(#[from] CaseError),
     /// The load word of an input is not a formula of the geometry.
     #[error(
-        "the load word {word} of {kind} is no polynomial of its geometry, so that nothing can be concluded from it"
+        "the load word {word} of {kind} is not a polynomial of its geometry, so that nothing can be concluded from it for every k: give a box, of which every geometry is simulated"
     )]
     Word {
         /// The register.

@@ -120,7 +120,8 @@ impl Proposition {
 
     /// The box that is given, or what coordinates of the width that is given for all registers hold.
     pub(crate) fn bounds(&self) -> Option<Extent> {
-        let of_width = || self.options.of_all(&WIDTH).map(|width| Extent::Bits(width.get()));
+        let width = self.options.of_all(&WIDTH).filter(|_| self.model.width_is_of_coordinates());
+        let of_width = || width.map(|width| Extent::Bits(width.get()));
         self.extent.clone().or_else(of_width)
     }
 

@@ -9,7 +9,7 @@ use stepwave_export::{Checking, smt2_asking};
 use stepwave_models::{Claims, Model, ModelError, Options};
 use stepwave_netlist::{Net, Width};
 
-use super::{Narrower, ProofError, choices_at, largest};
+use super::{Narrower, ProofError, choices_at, hardware_at, largest};
 use crate::testbench::Testbench;
 
 /// Most geometries that one question is about.
@@ -106,13 +106,13 @@ pub fn question(
     }
     // At the default widths, so that a narrower register does not cut the runs short.
     let wide = choices_at(model, claims, choices, &Narrower::new(), k)?;
-    let hardware = model.plan(&largest(claims, k)?, &wide)?;
+    let hardware = hardware_at(model, claims, &wide, k)?;
     let runs = Testbench::of_hardware(model, hardware)?.run_many(&curves, DEEPEST).map_err(|_| too_long(k))?;
     let clocks = runs.iter().map(|run| run.as_ref().map_or(DEEPEST + 1, |run| run.clocks)).max().unwrap_or(0) + 2;
     if clocks > DEEPEST {
         return Err(too_long(k));
     }
-    let bench = Testbench::of_hardware(model, model.plan(&largest(claims, k)?, &own)?)?;
+    let bench = Testbench::of_hardware(model, hardware_at(model, claims, &own, k)?)?;
     let machine = bench.machine();
     let words: Vec<String> = bench.load_words().map(str::to_owned).collect();
     let any = bench.of(model, &curves[0]).or_else(|_| bench.of(model, &largest(claims, k)?))?;

@@ -1,12 +1,15 @@
 //! The family of a model's netlists, and attempts at proofs of it.
 
-use stepwave_models::{Claims, Hardware, Kind, Machine, Model, ModelError, Options};
+use std::ops::Range;
+
+use stepwave_models::{Claims, Hardware, Kind, Machine, Model, ModelError, Options, Region};
 use stepwave_netlist::Design;
+use stepwave_netlist::formula::{Formula, Symbol, name, number};
 use stepwave_prove::{self as prove, Certificate, Family, Proof, Strobes};
 
 use super::ProofError;
 use super::learning::rows;
-use super::members::{Narrower, Offsets, choices_with, largest, offsets};
+use super::members::{Narrower, Offsets, choices_with, hardware_at, largest, offsets};
 
 /// One hardware for every width.
 #[derive(Debug)]
@@ -32,18 +35,24 @@ impl Subject {
     /// # Errors
     /// The model claims nothing, a choice is impossible, or the netlists of several k differ in more than widths.
     pub fn new(model: &'static Model, choices: &Options, narrower: &Narrower) -> Result<Subject, ProofError> {
-        Subject::with(model, choices, &offsets(narrower))
+        Subject::with(model, choices, &offsets(narrower), None)
     }
 
-    /// As [`new`](Subject::new), some registers narrower or wider.
-    pub(super) fn with(model: &'static Model, choices: &Options, offsets: &Offsets) -> Result<Subject, ProofError> {
+    /// As [`new`](Subject::new), some registers narrower or wider. Of a travel of one axis, whose hardware is not the same
+    /// circuit at every k, the k around `at`, or as many as there are in a row.
+    pub(super) fn with(
+        model: &'static Model,
+        choices: &Options,
+        offsets: &Offsets,
+        at: Option<u32>,
+    ) -> Result<Subject, ProofError> {
         let claims = model.claims.ok_or(ProofError::NoClaims { model: model.name })?;
         if model.is_buffered() {
             return Err(ProofError::Buffered { model: model.name });
         }
         let member = |k| -> Result<_, ModelError> {
             let curve = largest(&claims, k)?;
-            let hardware = model.plan(&curve, &choices_with(model, &claims, choices, offsets, k)?)?;
+            let hardware = hardware_at(model, &claims, &choices_with(model, &claims, choices, offsets, k)?, k)?;
             let machine = model.machine(&hardware)?;
             machine.encode(&hardware, &model.words(&hardware, &curve)?)?;
             Ok((k, hardware, machine))
@@ -59,7 +68,15 @@ impl Subject {
             }
         }
         let designs: Vec<(u32, Design)> = members.iter().map(|(k, _, machine)| (*k, machine.design.clone())).collect();
-        let family = Family::of(&designs)?;
+        let family = if claims.geometries == Region::Travels {
+            let alike = alike(&designs, members.iter().position(|(k, ..)| Some(*k) == at));
+            // Where there are not two alike, the error names what differs between the first two.
+            let alike = if alike.len() < 2 { 0..designs.len() } else { alike };
+            members = members.drain(alike.clone()).collect();
+            Family::of(&designs[alike])?
+        } else {
+            Family::of(&designs)?
+        };
         let machine = &members[0].2;
         let strobes = strobes(machine);
         let claims = claims.of_hardware(&members[0].1);
@@ -87,6 +104,37 @@ impl Subject {
         if self.any_preset { remainders.cloned().collect() } else { Vec::new() }
     }
 
+    /// Registers that are loaded with any word, with the names and the greatest values of these words: numbers of the
+    /// geometry themselves.
+    pub(super) fn any_words(&self) -> Vec<(String, Symbol)> {
+        let (_, _, machine) = &self.members[0];
+        let any = |register: &&String| (self.claims.loaded_any)(&self.members[0].1, register);
+        let loaded = machine.inputs.keys().filter(any).map(|register| {
+            let symbol = Symbol { name: format!("loaded {register}"), least: number(0), greatest: self.mask(register) };
+            (register.clone(), symbol)
+        });
+        let preset = |register: String| {
+            let symbol =
+                Symbol { name: format!("preset {register}"), least: number(0), greatest: self.mask(&register) };
+            (register, symbol)
+        };
+        self.presets().into_iter().map(preset).chain(loaded).collect()
+    }
+
+    /// The greatest number of the input of a register.
+    fn mask(&self, register: &str) -> Formula {
+        let bits = |member: &(u32, Hardware, Machine)| i64::from(member.2.inputs[register].width.get());
+        let (k, own) = (i64::from(self.members[0].0), bits(&self.members[0]));
+        let grows = self.members.get(1).is_some_and(|member| bits(member) > own);
+        match own - k {
+            _ if !grows => number((1_i128 << own) - 1),
+            wider @ 0.. => name("2^k") * number(1 << wider) - 1,
+            -1 => name("2^(k-1)") - 1,
+            // More than it holds, which is cut as it is loaded.
+            _ => name("2^k") - 1,
+        }
+    }
+
     /// The least and the greatest k of the family.
     #[must_use]
     pub fn ks(&self) -> (u32, u32) {
@@ -94,10 +142,20 @@ impl Subject {
         (all.first().copied().unwrap_or(0), all.last().copied().unwrap_or(0))
     }
 
-    /// The box in words.
+    /// The box in words, with what may be anything.
     #[must_use]
-    pub fn about(&self) -> &'static str {
-        self.claims.geometries.describe()
+    pub fn about(&self) -> String {
+        let mut about = self.claims.geometries.describe().to_owned();
+        let presets = self.presets();
+        let loaded = self.any_words().into_iter().map(|(register, _)| register).filter(|own| !presets.contains(own));
+        let loaded: Vec<String> = loaded.collect();
+        if !loaded.is_empty() {
+            about += &format!(", whatever is loaded into {}", loaded.join(", "));
+        }
+        if !self.claims.free.is_empty() {
+            about += &format!(", whatever {} are at any clock", self.claims.free.join(" and "));
+        }
+        about
     }
 
     /// The kinds of geometry that together are the box.
@@ -157,6 +215,32 @@ impl Subject {
             None => Ok(rows.len()),
         }
     }
+}
+
+/// The most designs in a row that are one circuit, this one among them.
+fn alike(designs: &[(u32, Design)], at: Option<usize>) -> Range<usize> {
+    let around = |at: usize| {
+        let mut range = at..at + 1;
+        while range.end < designs.len() && Family::of(&designs[range.start..=range.end]).is_ok() {
+            range.end += 1;
+        }
+        while range.start > 0 && Family::of(&designs[range.start - 1..range.end]).is_ok() {
+            range.start -= 1;
+        }
+        range
+    };
+    if let Some(at) = at {
+        return around(at);
+    }
+    let (mut longest, mut next) = (0..0, 0);
+    while next < designs.len() {
+        let range = around(next);
+        next = range.end;
+        if range.len() > longest.len() {
+            longest = range;
+        }
+    }
+    longest
 }
 
 /// The nets by which a proof follows a block of a machine.

@@ -8,14 +8,14 @@ use stepwave_netlist::Width;
 
 use super::simulate::too_narrow;
 use super::{Known, Widths};
-use crate::study::boxes::{Extent, Geometries};
+use crate::study::boxes::{Extent, Geometries, has_widths, without_widths};
 use crate::study::proof::ProofError;
 
 /// The choices of hardware that is wide enough for a box: without the widths that are given, unless registers of one scale
 /// are given more bits than the box needs. Those run otherwise on wider hardware, not only with room to spare.
 pub(super) fn ample(model: &'static Model, choices: &Options, extent: &Extent) -> Result<Options, ProofError> {
-    let default = choices.clone().with(&WIDTH, None).with(&ON_OVERFLOW, None);
-    if choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty() {
+    let default = without_widths(model, choices).with(&ON_OVERFLOW, None);
+    if !has_widths(model, choices) {
         return Ok(default);
     }
     let least = Geometries::extremes(model, &default, extent)?;
@@ -92,7 +92,7 @@ pub(super) fn judge(
     ample: &Options,
     found: &mut Widths,
 ) -> Result<(), ProofError> {
-    if choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty() {
+    if !has_widths(model, choices) {
         return Ok(());
     }
     let set = Geometries::extremes(model, ample, &found.extent)?;

@@ -10,13 +10,12 @@ mod judge;
 mod simulate;
 
 use rayon::prelude::*;
-use stepwave_models::options::WIDTH;
 use stepwave_models::{AXES, Claims, Hardware, Model, ModelError, Options};
 use stepwave_nc::Curve;
 use stepwave_netlist::Width;
 
 use super::Grid;
-use super::boxes::{Extent, Geometries, check_simulated};
+use super::boxes::{Extent, Geometries, check_simulated, has_widths};
 use super::kform::KForm;
 use super::proof::{Narrower, ProofError, Subject};
 use crate::testbench::Testbench;
@@ -162,8 +161,8 @@ pub fn by_proof(
     tick: Tick<'_>,
 ) -> Result<Option<Widths>, ProofError> {
     let k = extent.bits()?;
-    let is_default = choices.of_all(&WIDTH).is_none() && choices.of_single(&WIDTH).is_empty();
-    if !is_default || model.is_buffered() || extent.axes() != 2 || k < LEAST_PROVED {
+    let axes = model.claims.map(|claims| claims.geometries.axes());
+    if has_widths(model, choices) || model.is_buffered() || Some(extent.axes(model)) != axes || k < LEAST_PROVED {
         return Ok(None);
     }
     let Some(form) = KForm::of(model, choices)? else { return Ok(None) };

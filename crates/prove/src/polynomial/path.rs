@@ -64,7 +64,7 @@ impl<'p, 'o> Path<'p, 'o> {
         match netlist.cell(net).op {
             Op::Register { next: Some(next), .. } if clock > 0 => self.truth(next, clock - 1),
             Op::Input | Op::Register { .. } => {
-                let held = self.source(net, clock);
+                let held = self.source(net, clock)?;
                 Ok(!self.is_zero(&held)?)
             }
             Op::Const(value) => Ok(value != 0),
@@ -157,7 +157,7 @@ impl<'p, 'o> Path<'p, 'o> {
     fn work_out(&mut self, net: Net, clock: usize) -> Result<Poly, Stop> {
         match self.family.netlist().cell(net).op {
             Op::Register { next: Some(next), .. } if clock > 0 => self.residue(next, clock - 1),
-            Op::Input | Op::Register { .. } => Ok(self.source(net, clock)),
+            Op::Input | Op::Register { .. } => self.source(net, clock),
             Op::Const(_) => Ok(self.family.number(net)),
             Op::Not(a) => Ok(self.residue(a, clock)?.negated().plus_number(-1)),
             Op::Add(a, b) => Ok(self.residue(a, clock)?.plus(&self.residue(b, clock)?)),
@@ -319,14 +319,20 @@ impl<'p, 'o> Path<'p, 'o> {
         self.variables.fresh(name, greatest).map(Poly::from).ok_or(Stop::TooLarge)
     }
 
-    /// What an input or a register of the first clock holds.
-    fn source(&self, net: Net, clock: usize) -> Poly {
+    /// What an input or a register of the first clock holds. An input that may change at any clock, of which no number is
+    /// known, is an unknown of its own at each.
+    fn source(&mut self, net: Net, clock: usize) -> Result<Poly, Stop> {
         if clock > 0
             && let Some((_, value)) = self.later.iter().find(|(input, _)| *input == net)
         {
-            return Poly::from(i128::from(*value));
+            return Ok(Poly::from(i128::from(*value)));
         }
-        self.first[net.index()].clone()
+        let first = &self.first[net.index()];
+        if first.is_lost() {
+            let greatest = self.modulus(net).plus_number(-1);
+            return self.fresh("free", greatest);
+        }
+        Ok(first.clone())
     }
 
     fn is_bit(&self, net: Net) -> bool {

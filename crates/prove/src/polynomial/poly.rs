@@ -78,7 +78,7 @@ impl From<Var> for Poly {
 }
 
 impl Poly {
-    fn lost() -> Poly {
+    pub(crate) fn lost() -> Poly {
         Poly { terms: Vec::new(), lost: true }
     }
 

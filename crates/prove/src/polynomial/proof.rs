@@ -124,8 +124,9 @@ impl Oracle for Playback<'_> {
 const BUDGET: usize = 30_000;
 /// Multiplications that the certificate of one kind of geometry may take: those of the models here take a hundredth.
 const EFFORT: usize = 50_000_000;
-/// Questions that a certificate may leave open, each of which is a path more: those of the models here leave a hundred.
-const MOST_OPEN: usize = 2_000;
+/// Questions that a certificate may leave open, each of which is a path more: those of the models here leave a hundred, but
+/// those of a ramp that brakes by count thousands.
+const MOST_OPEN: usize = 20_000;
 /// Rounds of dropping what is not inductive, at most.
 const MOST_ROUNDS: usize = 12;
 

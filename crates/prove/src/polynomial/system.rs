@@ -26,6 +26,8 @@ pub struct Case {
     pub premises: Vec<Clause>,
     /// The word on each input, by the input's name.
     pub words: Vec<(String, Formula)>,
+    /// Inputs that may change at any clock: what is proved does not depend on them.
+    pub free: Vec<String>,
     /// What holds when the block is done.
     pub goals: Vec<Clause>,
     /// Never below 0 while the block runs, and less after every step.
@@ -217,6 +219,9 @@ fn load_words(
         let name = netlist.name_of(input).map(|named| named.name.clone()).unwrap_or_default();
         let word = if input == strobes.load || input == strobes.preset_position {
             Poly::from(1)
+        } else if case.free.contains(&name) {
+            // No number is known, at any clock.
+            Poly::lost()
         } else {
             let no_word = || CaseError::NoWord { case: case.name.clone(), name: name.clone() };
             let (_, formula) = case.words.iter().find(|(given, _)| *given == name).ok_or_else(no_word)?;

@@ -9,6 +9,7 @@ use super::super::random::{Dice, netlist};
 use super::super::refute::Effort;
 use super::*;
 use stepwave_engine::{EngineKind, Rows, Watch};
+use stepwave_netlist::dsl::Module;
 use stepwave_netlist::elaborate;
 
 /// What the judge knows of unknowns.
@@ -124,4 +125,39 @@ fn what_the_walk_says_of_every_net_is_what_the_engine_has_a_clock_later_too() {
     ] {
         assert!(compared.get(op).is_some_and(|count| *count > 100), "{op}: {compared:?}");
     }
+}
+
+/// Refutes nothing: every decision goes both ways.
+struct Open;
+
+impl Oracle for Open {
+    fn refutes(&mut self, _: &[Poly], _: usize, _: &[Vec<Poly>], _: Effort) -> bool {
+        false
+    }
+}
+
+#[test]
+fn an_input_that_may_change_at_any_clock_is_another_unknown_at_each_and_a_bit_of_it_is_0_or_1() {
+    let module = Module::new("free");
+    let m = module.top();
+    let (word, bit) = (m.input("word", 4).net(), m.input("bit", 1).net());
+    let design = elaborate(module.finish().unwrap()).unwrap();
+    let family = Family::single(&design, 4);
+    let variables = Variables::new("scale".to_owned(), 1);
+    let first = vec![Poly::lost(); design.netlist().cells.len()];
+    let mut truths = Vec::new();
+    let mut open = Open;
+    Decisions::new(&mut open, Vec::new(), Vec::new())
+        .explore(|decisions| {
+            let mut path = Path::new(&family, &variables, &first, &[], decisions);
+            let words = [0, 1, 0].map(|clock| path.unsigned(word, clock).unwrap());
+            assert!(words[0] != words[1] && words[0] == words[2] && !words[0].is_lost(), "{words:?}");
+            truths.push([path.truth(bit, 0)?, path.truth(bit, 1)?, path.truth(bit, 0)?]);
+            Ok(())
+        })
+        .unwrap();
+    truths.sort_unstable();
+    truths.dedup();
+    let [no, yes] = [false, true];
+    assert_eq!(truths, [[no, no, no], [no, yes, no], [yes, no, yes], [yes, yes, yes]]);
 }

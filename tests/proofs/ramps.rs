@@ -1,0 +1,160 @@
+//! Ramps of one axis: what is proved whatever speeds are loaded and whatever the operator does, boxes and their widths.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use stepwave::study::Extent;
+use stepwave::study::widths::widths;
+use stepwave_engine::{EngineKind, Rows, Watch};
+use stepwave_models::{Options, find};
+use stepwave_nc::{Curve, Line};
+
+use crate::cli::Folder;
+
+const EVERY: &str = "whatever is loaded into a, d, phase, v, vc, ve, vs, whatever hold and trim are at any clock";
+
+#[test]
+fn no_register_of_a_ramp_overflows_whatever_is_loaded_and_whatever_the_operator_does() {
+    let folder = Folder::new();
+    for (words, ks) in [
+        ("", "3 to 49"),
+        ("--width 12", "6 to 45"),
+        ("--brake count", "3 to 49"),
+        // From k = 20 on the square of what is left is wider than that of the speed.
+        ("--accel 500mm/s2 --speed 2400mm/min", "3 to 19"),
+    ] {
+        let out = folder.good(&format!("prove ramp {words}"));
+        assert!(out.contains(EVERY), "{out}");
+        assert!(out.contains(&format!("PROVED for k = {ks}: no register overflows\n")), "{out}");
+        let exact = format!("PROVED for k = {ks}: the end point is reached exactly by every block that ends\n");
+        assert!(out.contains(&exact) && out.contains("not claimed: every block ends\n"), "{out}");
+    }
+    // The same of a wide box, whose hardware is of another family.
+    let out = folder.good("prove ramp --accel 500mm/s2 --speed 2400mm/min --box 30");
+    assert!(out.contains("PROVED at these widths: no register overflows\n"), "{out}");
+}
+
+#[test]
+fn a_box_of_a_ramp_is_simulated_to_its_ends() {
+    let folder = Folder::new();
+    for words in ["--travel 40", "--box -3..30", "--box 6 --jerk 4 --accel 12", "--box 5 --brake count"] {
+        let out = folder.good(&format!("prove ramp {words}"));
+        for claim in ["no register overflows", "the end point is reached exactly", "every block ends"] {
+            assert!(out.lines().any(|line| line.starts_with("PROVED") && line.ends_with(claim)), "{words}: {out}");
+        }
+    }
+    // 2 · 63 travels of 6 bits.
+    assert!(folder.good("prove ramp --box 6").contains("(exhausted: 126 geometries)"));
+}
+
+#[test]
+fn a_register_that_is_too_narrow_is_refuted_by_a_run_that_shows_it() {
+    let folder = Folder::new();
+    for (words, run) in [
+        ("--narrower e=1", "stepwave run ramp --to 2 --width e=1"),
+        ("--narrower x=2", "stepwave run ramp --to 1 --width x=1"),
+        ("--width 8,e=5 --box 6", "stepwave run ramp --to 32 --width 8,e=5"),
+        ("--width e=4", "stepwave run ramp --to 16 --width e=4"),
+    ] {
+        let ran = folder.run(&format!("prove ramp {words}"));
+        assert!(ran.code == 1 && ran.out.contains(&format!(": {run}\n")), "{words}: {ran:?}");
+        assert_eq!(
+            folder.run(run.strip_prefix("stepwave ").unwrap()).code,
+            2 - i32::from(run.contains("x=1")),
+            "{run}"
+        );
+    }
+}
+
+#[test]
+fn what_has_no_proof_says_so() {
+    let folder = Folder::new();
+    let ran = folder.run("prove ramp --jerk 4 --accel 12");
+    assert!(
+        ran.code == 2
+            && ran.err.contains(
+                "is not a polynomial of its geometry, so that nothing can be concluded from it for every k: give a box"
+            ),
+        "{ran:?}"
+    );
+    let ran = folder.run("prove ramp --jerk 4 --accel 12 --box 14");
+    assert!(
+        ran.code == 1 && ran.out.contains("UNKNOWN: ") && ran.err.contains("no counterexample was found"),
+        "{ran:?}"
+    );
+    let ran = folder.run("prove ramp --travel 100,5");
+    assert!(
+        ran.code == 2 && ran.err.contains("a box of 2 axes is not proved: give one range, such as 0..9"),
+        "{ran:?}"
+    );
+}
+
+#[test]
+fn the_widths_of_a_box_are_those_that_runs_of_all_of_it_need() {
+    for (words, k) in [("", 6), ("--accel 12 --jerk 4", 6), ("--brake count --accel 9 --speed 100", 5)] {
+        let options = Options::parse(words.split_whitespace()).unwrap();
+        let model = find("ramp").unwrap();
+        let found = widths(model, &options, &Extent::Bits(k), &|_| {}).unwrap();
+        assert!(found.all && found.simulated == 2 * ((1 << k) - 1) && found.faults == 0, "{words}: {found:?}");
+        // What single runs report, each by hardware planned for itself.
+        let mut needed: BTreeMap<String, u32> = BTreeMap::new();
+        let folder = Folder::new();
+        for to in (1 - (1 << k)..1 << k).filter(|to: &i64| *to != 0) {
+            let json = folder.good(&format!("run ramp --to {to} {words} --json -"));
+            let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+            for register in report["registers"].as_array().unwrap() {
+                let bits = u32::try_from(register["needed_width"].as_u64().unwrap()).unwrap();
+                let own = needed.entry(register["name"].as_str().unwrap().to_owned()).or_default();
+                *own = (*own).max(bits);
+            }
+        }
+        for register in &found.registers {
+            assert_eq!(needed[&register.name], register.needed, "{words}: {}", register.name);
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_words_and_any_events_do_what_is_proved(
+        to in prop_oneof![-40i64..0, 1i64..40],
+        count in any::<bool>(),
+        seed in any::<[u64; 8]>(),
+        events in prop::collection::vec((any::<bool>(), any::<u64>()), 64),
+    ) {
+        let model = find("ramp").unwrap();
+        let choices = Options::parse(if count { vec!["--brake", "count"] } else { vec![] }).unwrap();
+        let curve = Curve::Line(Line::new(vec![0], vec![to]).unwrap());
+        let hardware = model.plan(&curve, &choices).unwrap();
+        let machine = model.machine(&hardware).unwrap();
+        let netlist = machine.design.netlist();
+        let input = |name: &str| netlist.find(name).unwrap().net;
+        let mut engine = EngineKind::Word.build(&machine.design, &Watch::default());
+        let mut samples = Rows::new(0, 0);
+        let own = machine.encode(&hardware, &model.words(&hardware, &curve).unwrap()).unwrap().remove(0);
+        own.iter().for_each(|(net, word)| engine.set_input(*net, *word));
+        for (name, word) in ["a", "d", "phase", "v", "vc", "ve", "vs"].into_iter().zip(seed) {
+            let net = input(&format!("{name}_in"));
+            engine.set_input(net, word & netlist.width(net).mask());
+        }
+        let strobes = [machine.load.net, machine.preset_position.net];
+        strobes.iter().for_each(|strobe| engine.set_input(*strobe, 1));
+        engine.reset(&mut samples);
+        strobes.iter().for_each(|strobe| engine.set_input(*strobe, 0));
+        let (hold, trim) = (input("hold"), input("trim"));
+        for clock in 0..2000 {
+            let (held, share) = events[clock % events.len()];
+            engine.set_input(hold, u64::from(held));
+            engine.set_input(trim, share & netlist.width(trim).mask());
+            engine.run(1, &mut samples);
+            for property in &netlist.properties {
+                prop_assert_eq!(engine.value(property.never), 0, "{} at clock {}", property.name, clock);
+            }
+            if engine.value(machine.done.net) == 1 {
+                let x = &machine.positions[0];
+                prop_assert_eq!(stepwave_netlist::bits::to_signed(x.width, engine.value(x.net)), to);
+                return Ok(());
+            }
+        }
+    }
+}
