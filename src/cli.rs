@@ -265,6 +265,16 @@ pub(crate) struct ExportArgs {
     /// Write an SMT-LIB 2 script that asks whether a property is violated within --depth clocks, for solvers
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::SmtLib]), groups = ["exports", "checked"], help_heading = "Outputs (- is standard output)")]
     pub(crate) smt2: Option<PathBuf>,
+    /// Draw the netlist as a block diagram: scopes as boxes, registers, adders and wires with their widths. A netlist of
+    /// one's own is drawn without a bench file and without a geometry too
+    #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Svg]), group = "exports", help_heading = "Outputs (- is standard output)")]
+    pub(crate) schematic: Option<PathBuf>,
+    /// Draw this scope alone
+    #[arg(long, value_name = "PATH", requires = "schematic", help_heading = "Block diagram")]
+    pub(crate) scope: Option<String>,
+    /// Draw the inside of scopes this many levels deep, those below as boxes [default: as deep as is readable]
+    #[arg(long, value_name = "LEVELS", requires = "schematic", help_heading = "Block diagram")]
+    pub(crate) levels: Option<usize>,
     /// Leave these load words open, or all: any values, also such as no geometry gives, loaded in the first clock and never
     /// again. What is known of them is for you to add
     #[arg(long, requires = "checked", value_name = "WORDS", help_heading = "Model checking")]

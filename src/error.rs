@@ -78,6 +78,7 @@ invalid_by!(
     crate::own::FileError,
     crate::own::StimulusError,
     crate::own::YosysError,
+    crate::schematic::DrawError,
     crate::program::ProgramFailure,
     crate::prove::sat::TooLarge,
     crate::study::StudyError,

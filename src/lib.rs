@@ -34,6 +34,7 @@ pub use stepwave_models as models;
 pub use stepwave_nc as nc;
 pub use stepwave_netlist as netlist;
 pub use stepwave_prove as prove;
+pub use stepwave_schematic as schematic;
 pub use stepwave_testbench as testbench;
 pub use stepwave_trace as trace;
 

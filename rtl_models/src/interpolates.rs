@@ -177,7 +177,10 @@ impl CurveKind {
     }
 
     /// Small curves of this kind: of lines also one in space, where the kind has any.
-    pub(crate) fn samples(self) -> Result<Vec<Curve>, GeometryError> {
+    ///
+    /// # Errors
+    /// None of these: they are curves.
+    pub fn samples(self) -> Result<Vec<Curve>, GeometryError> {
         let turn = Direction::CounterClockwise;
         let one: Curve = match self {
             CurveKind::Axis => Line::new(vec![0], vec![8])?.into(),

@@ -36,7 +36,7 @@ const TABLE: [Entry; 13] = [
     Entry(Format::Csv, "CSV", &["csv"], &["steps", "csv", "stimulus-out"]),
     Entry(Format::Parquet, "Parquet", &["parquet"], &["parquet"]),
     Entry(Format::Json, "JSON", &["json"], &["json", "wavedrom"]),
-    Entry(Format::Svg, "SVG", &["svg"], &["plot", "svg"]),
+    Entry(Format::Svg, "SVG", &["svg"], &["plot", "svg", "schematic"]),
     Entry(Format::Html, "HTML", &["html", "htm"], &["html"]),
     Entry(Format::Png, "PNG", &["png"], &["plot"]),
     Entry(Format::Netlist, "a netlist", &["net"], &["output", "netlist"]),

@@ -125,6 +125,12 @@ impl HardwareArgs {
         }
     }
 
+    /// The name of an option that is given, if one is.
+    pub(crate) fn first_given(&self) -> Option<&'static str> {
+        let given = self.given.given().first().map(|value| value.option().name());
+        given.or(self.feed.map(|_| "feed"))
+    }
+
     /// The options given, for a clock of this frequency in Hz.
     pub(crate) fn choices_at(&self, clock_hz: f64) -> Options {
         self.choices().at_clock(clock_hz).in_blu(self.blu)

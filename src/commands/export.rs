@@ -12,6 +12,7 @@ use crate::testbench::Testbench;
 use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
+use super::schematic;
 use crate::Error;
 use crate::cli::ExportArgs;
 use crate::output::{self, Outputs};
@@ -21,6 +22,9 @@ const DEEPEST: u64 = 1000;
 
 /// Writes a machine for other tools.
 pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
+    if let Some(file) = schematic::alone(args) {
+        return schematic::of_netlist(args, file);
+    }
     let time = ClockTime::from_hz(args.clock.clock_hz)?;
     let (simulation, widths_by, moved) = match args.program.as_deref().zip(args.method.as_ref()) {
         Some((file, method)) => {
@@ -59,6 +63,9 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
         let dump = dump_name(path, &bench.design().netlist().scopes[0].name);
         files.write(path, &export::testbench(bench.design(), &options, &stimulus, time, &dump))?;
     }
+    if let Some(path) = &args.schematic {
+        notes += &schematic::draw(args, bench.design(), &bench.ports(), path, &mut files)?;
+    }
     let (design, held) = driven(&bench, &stimulus, &args.any_geometry)?;
     let checking = Checking { comment: &comment, held: &held };
     if let Some(path) = &args.btor2 {
@@ -82,7 +89,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
 }
 
 /// The files that hardware of one's own was imported from.
-fn source_files(design: &Design) -> BTreeSet<PathBuf> {
+pub(super) fn source_files(design: &Design) -> BTreeSet<PathBuf> {
     let sources = design.netlist().sources.iter().flatten();
     let files = sources.filter_map(|source| match source {
         Source::File { file, .. } => Some(PathBuf::from(&**file)),

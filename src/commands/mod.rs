@@ -14,6 +14,7 @@ pub(crate) mod program;
 mod progress;
 mod prove;
 pub(crate) mod run;
+mod schematic;
 pub(crate) mod show;
 mod size;
 mod sweep;

@@ -162,3 +162,35 @@ fn what_cannot_be_exported_leaves_no_file() {
         assert_eq!(folder.files(), [""; 0], "{words}");
     }
 }
+
+#[test]
+fn a_schematic_is_drawn_of_models_programs_and_netlists_without_a_bench_file() {
+    let folder = Folder::new();
+    let printed = folder.good("export dda-line --to 8,6 --width 4 --schematic line.svg --netlist line.net");
+    assert_eq!(printed.lines().last(), Some("the block diagram has 34 symbols"));
+    assert!(folder.read("line.svg").starts_with("<svg "));
+    let printed = folder.good("export line.net --schematic again.svg --levels 0");
+    let closed = ", scopes 0 of 1 levels deep: --levels 1 opens more of them, --scope PATH draws one alone\n";
+    assert!(printed.starts_with("dda_line: ") && printed.ends_with(closed), "{printed}");
+    folder.good("export line.net --schematic axis.svg --scope axis_x");
+    assert!(folder.read("axis.svg").contains(">jrx<") && !folder.read("axis.svg").contains(">jry<"));
+    let piped = folder.good("export line.net --schematic -");
+    assert!(piped.starts_with("<svg ") && piped.ends_with("</svg>\n"), "{piped}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let folder = Folder::new();
+    folder.good("export dda-line --to 8,6 --netlist line.net");
+    for (more, message) in [
+        ("--scope axis_w", "there is no scope 'axis_w' (did you mean 'axis_x'?)"),
+        ("--scope wave", "there is no scope 'wave'; there are block, axis_x, axis_y"),
+        ("--width 4", "line.net is drawn as it is: leave --width out, or give a geometry for its bench file"),
+    ] {
+        let ran = folder.run(&format!("export line.net --schematic f.svg {more}"));
+        assert_eq!((ran.code, ran.err), (2, format!("stepwave: {message}\n")));
+    }
+    let ran = folder.run("export line.net --schematic ./line.net");
+    assert_eq!(ran.code, 2, "{}", ran.err);
+    assert!(folder.read("line.net").starts_with("netlist dda_line"));
+}

@@ -5,6 +5,7 @@ mod driven;
 mod models;
 mod names;
 mod operators;
+mod schematic;
 
 use stepwave_export::{Options, verilog};
 use stepwave_netlist::dsl::{Module, Scope};

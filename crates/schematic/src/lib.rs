@@ -1,0 +1,134 @@
+//! A netlist as the block diagram that an engineer would draw, in SVG: scopes are nested boxes, registers and multiplexers
+//! have a row for each value that they take, adders and comparators are signs in a circle, and data flows from left to
+//! right.
+//!
+//! What a textbook does not draw is folded: slices, constants and small logic are written where they are read, overflow
+//! flags mark the adder that raises them, and a net that many symbols read is written there by its name. Widths are at the
+//! beginning of each wire; wires of more than one bit are thick.
+//!
+//! ```
+//! use stepwave_netlist::dsl::Module;
+//!
+//! let module = Module::new("counter");
+//! let m = module.top();
+//! let enable = m.input("enable", 1);
+//! let count = m.reg("count", 4);
+//! count.when(enable, count.q.wrapping_add(m.lit(4, 1))).else_hold();
+//! let outputs = [count.q.net()];
+//!
+//! let netlist = module.finish().unwrap();
+//! let drawn = stepwave_schematic::draw(&netlist, &outputs, &stepwave_schematic::Part::default()).unwrap();
+//! assert!(drawn.svg.contains(">+ 1<"));
+//! ```
+
+mod draft;
+mod figure;
+mod fold;
+mod formula;
+mod layout;
+mod scene;
+mod svg;
+mod symbol;
+
+use stepwave_netlist::cells::ScopeId;
+use stepwave_netlist::{Net, Netlist, did_you_mean};
+
+/// Symbols that a drawing has at most where its depth is not given.
+pub const MOST_SYMBOLS: usize = 135;
+/// Symbols that a drawing has at most.
+pub const MOST_DRAWN: usize = 4000;
+
+/// Scopes that a message names.
+const MOST_LISTED: usize = 12;
+
+/// What of a netlist is drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Dotted path of the scope that is drawn; all where there is none.
+    pub scope: Option<String>,
+    /// Levels of scopes whose inside is drawn, 0 for boxes alone; as many as are readable where it is not given.
+    pub depth: Option<usize>,
+}
+
+/// A drawing.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    /// The file.
+    pub svg: String,
+    /// Levels of scopes whose inside is drawn.
+    pub depth: usize,
+    /// Levels of scopes that there are.
+    pub levels: usize,
+    /// Symbols, closed scopes among them.
+    pub symbols: usize,
+}
+
+/// Why nothing is drawn.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum DrawError {
+    /// No scope has this path.
+    #[error("there is no scope '{path}'{hint}")]
+    NoScope {
+        /// The path.
+        path: String,
+        /// What may have been meant, or which scopes there are.
+        hint: String,
+    },
+    /// There would be too many symbols.
+    #[error(
+        "{scope} has {symbols} symbols at depth {depth}, and {MOST_DRAWN} are the most: draw a part (--scope PATH) or less of it (--depth)"
+    )]
+    TooMany {
+        /// What would be drawn.
+        scope: String,
+        /// Its symbols.
+        symbols: usize,
+        /// Levels of scopes.
+        depth: usize,
+    },
+}
+
+/// Draws a netlist, or a part of it, with outputs at its right.
+///
+/// # Errors
+/// No scope has the path given, or there are more symbols than [`MOST_DRAWN`].
+pub fn draw(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Drawing, DrawError> {
+    let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(netlist, path))?;
+    let fold = fold::Fold::new(netlist, outputs);
+    let drafts = draft::Drafts::new(&fold);
+    let scene = scene::Scene::new(&fold, &drafts);
+    let levels = scene.levels(root);
+    let readable = || (0..=levels).rev().find(|&depth| scene.count(root, depth) <= MOST_SYMBOLS).unwrap_or(0);
+    let depth = part.depth.map_or_else(readable, |depth| depth.min(levels));
+    let symbols = scene.count(root, depth);
+    if symbols > MOST_DRAWN {
+        return Err(DrawError::TooMany { scope: netlist.scope_path(root), symbols, depth });
+    }
+    let figure = scene::View::new(&scene, root, depth, outputs).figure();
+    Ok(Drawing { svg: svg::svg(&figure, &netlist.scope_path(root)), depth, levels, symbols })
+}
+
+/// Nets with a name at the top that nothing reads: the outputs of a netlist of which no more is known.
+#[must_use]
+pub fn unread(netlist: &Netlist) -> Vec<Net> {
+    let fold = fold::Fold::new(netlist, &[]);
+    let flags: Vec<Net> = netlist.properties.iter().map(|property| property.never).collect();
+    let at_top = netlist.names.iter().filter(|named| named.scope == ScopeId::TOP).flat_map(|named| named.nets());
+    at_top.filter(|net| fold.is_unread(*net) && !flags.contains(net)).collect()
+}
+
+/// The scope of a path, with the name of the netlist or without.
+fn scope(netlist: &Netlist, path: &str) -> Result<ScopeId, DrawError> {
+    let all: Vec<(ScopeId, String)> =
+        (0..).map(ScopeId).take(netlist.scopes.len()).map(|scope| (scope, netlist.scope_path(scope))).collect();
+    let inner = |full: &str| full.split_once('.').map(|(_, inner)| inner.to_owned());
+    let found = all.iter().find(|(_, full)| full == path || inner(full).as_deref() == Some(path));
+    found.map(|found| found.0).ok_or_else(|| {
+        let known: Vec<String> = all.iter().filter_map(|(_, full)| inner(full)).collect();
+        let guess = did_you_mean(path, known.iter().map(String::as_str));
+        let listed = known.iter().take(MOST_LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = if known.len() > MOST_LISTED { ", …" } else { "" };
+        let list = if known.is_empty() { ": it has none".to_owned() } else { format!("; there are {listed}{more}") };
+        DrawError::NoScope { path: path.to_owned(), hint: if guess.is_empty() { list } else { guess } }
+    })
+}

@@ -1,0 +1,447 @@
+//! Scopes as nested boxes: which symbol is in which scope, which nets cross its frame, and the drawing of each scope.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use stepwave_netlist::cells::{NamedNet, Op, ScopeId};
+use stepwave_netlist::{Net, Netlist};
+
+use crate::draft::{Drafts, Kind};
+use crate::figure::{Figure, Font, Shape, Style, even, pixels, width};
+use crate::fold::Fold;
+use crate::layout::{Item, Pin, Plan, Side, lay_out};
+use crate::symbol::Context;
+
+/// Symbols that read a net of one bit, and one of more, by a wire; a net with more readers is written at each of them by
+/// its name.
+const MOST_WIRES: [usize; 2] = [5, 8];
+/// Pixels between the frame of a scope and what is in it, and the height of its title.
+const PADDING: i32 = 12;
+const TITLE: i32 = 20;
+
+/// Symbols in their scopes.
+pub(crate) struct Scene<'n> {
+    pub(crate) fold: &'n Fold<'n>,
+    pub(crate) drafts: &'n Drafts,
+    /// The scope of each symbol.
+    pub(crate) scopes: Vec<ScopeId>,
+}
+
+/// Where a net is, seen from a scope that is drawn.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum Holder {
+    Symbol(usize),
+    Child(ScopeId),
+    Outside,
+}
+
+/// A scope that is drawn as the whole, and how deep.
+pub(crate) struct View<'s> {
+    scene: &'s Scene<'s>,
+    root: ScopeId,
+    /// Levels of scopes that are open.
+    depth: usize,
+    outputs: BTreeSet<Net>,
+    names: HashMap<Net, String>,
+    wired: BTreeSet<Net>,
+    /// Symbols that read each net.
+    readers: BTreeMap<Net, Vec<usize>>,
+}
+
+impl<'n> Scene<'n> {
+    pub(crate) fn new(fold: &'n Fold<'n>, drafts: &'n Drafts) -> Scene<'n> {
+        let scopes = Places { fold, drafts }.scopes();
+        Scene { fold, drafts, scopes }
+    }
+
+    /// Scopes from the top to this one.
+    pub(crate) fn line(&self, scope: ScopeId) -> Vec<ScopeId> {
+        let mut line = vec![scope];
+        while let Some(parent) = line.last().and_then(|last| self.fold.netlist.scopes[last.index()].parent) {
+            line.push(parent);
+        }
+        line.reverse();
+        line
+    }
+
+    pub(crate) fn is_inside(&self, scope: ScopeId, of: ScopeId) -> bool {
+        self.line(scope).contains(&of)
+    }
+
+    /// Symbols in a scope of which scopes below this many levels are closed; a closed one counts as a symbol.
+    pub(crate) fn count(&self, root: ScopeId, depth: usize) -> usize {
+        let above = self.line(root).len();
+        let mut closed = BTreeSet::new();
+        let mut count = 0;
+        for (index, &scope) in self.scopes.iter().enumerate() {
+            let line = self.line(scope);
+            if self.drafts.all[index].is_gone() || !line.contains(&root) {
+                continue;
+            }
+            match line.get(above + depth) {
+                Some(&hidden) => drop(closed.insert(hidden)),
+                None => count += 1,
+            }
+        }
+        count + closed.len()
+    }
+
+    /// Levels of scopes with symbols below a scope.
+    pub(crate) fn levels(&self, root: ScopeId) -> usize {
+        let above = self.line(root).len();
+        let inside = self.scopes.iter().map(|&scope| self.line(scope)).filter(|line| line.contains(&root));
+        inside.map(|line| line.len() - above).max().unwrap_or(0)
+    }
+}
+
+/// Finds the scope of every symbol.
+struct Places<'p> {
+    fold: &'p Fold<'p>,
+    drafts: &'p Drafts,
+}
+
+impl Places<'_> {
+    fn scopes(&self) -> Vec<ScopeId> {
+        let netlist = self.fold.netlist;
+        let mut named: HashMap<Net, Vec<&NamedNet>> = HashMap::new();
+        for name in &netlist.names {
+            name.nets().for_each(|net| named.entry(net).or_default().push(name));
+        }
+        let mut scopes: Vec<Option<ScopeId>> = vec![None; self.drafts.all.len()];
+        for (index, draft) in self.drafts.all.iter().enumerate() {
+            let of_memory = netlist.memories.get(index).map(|memory| memory.scope);
+            let net = draft.outputs.first();
+            scopes[index] = match (draft.kind, net) {
+                (Kind::Memory, _) => of_memory,
+                (Kind::Input, _) => Some(ScopeId::TOP),
+                (_, Some(net)) => self.of_names(index, named.get(net).map_or(&[][..], Vec::as_slice), &named),
+                (_, None) => Some(ScopeId::TOP),
+            };
+        }
+        // What has no name is where its readers are.
+        let mut readers: Vec<Vec<usize>> = vec![Vec::new(); scopes.len()];
+        for (index, draft) in self.drafts.all.iter().enumerate() {
+            for net in draft.rows.iter().flat_map(|row| row.nets()) {
+                if let Some((driver, _)) = self.drafts.of.get(&net) {
+                    readers[*driver].push(index);
+                }
+            }
+        }
+        for index in (0..scopes.len()).rev() {
+            if scopes[index].is_none() {
+                let of_readers = readers[index].iter().filter_map(|&reader| scopes[reader]);
+                let common = of_readers.reduce(|a, b| self.common(a, b)).unwrap_or(ScopeId::TOP);
+                scopes[index] = Some(
+                    self.of_operands(index, &scopes)
+                        .filter(|scope| self.depth(*scope) > self.depth(common))
+                        .unwrap_or(common),
+                );
+            }
+        }
+        scopes.into_iter().map(|scope| scope.unwrap_or(ScopeId::TOP)).collect()
+    }
+
+    /// Of several scopes in which a net has a name, the one in which most of what drives it has one too.
+    fn of_names(&self, index: usize, names: &[&NamedNet], named: &HashMap<Net, Vec<&NamedNet>>) -> Option<ScopeId> {
+        let votes = |scope: ScopeId| {
+            let nets = self.drafts.all[index].rows.iter().flat_map(|row| row.nets());
+            nets.filter(|net| named.get(net).is_some_and(|names| names.iter().any(|name| name.scope == scope))).count()
+        };
+        let best = names.iter().enumerate().max_by_key(|(at, name)| (votes(name.scope), std::cmp::Reverse(*at)));
+        best.map(|(_, name)| name.scope)
+    }
+
+    /// The one scope that everything a symbol reads is in, but for ports.
+    fn of_operands(&self, index: usize, scopes: &[Option<ScopeId>]) -> Option<ScopeId> {
+        let nets = self.drafts.all[index].rows.iter().flat_map(|row| row.nets());
+        let drivers = nets.filter_map(|net| self.drafts.of.get(&net)).map(|(driver, _)| *driver);
+        let mut drivers = drivers.filter(|&driver| self.drafts.all[driver].kind != Kind::Input);
+        let first = scopes[drivers.next()?]?;
+        drivers.all(|driver| scopes[driver] == Some(first)).then_some(first)
+    }
+
+    fn parent(&self, scope: ScopeId) -> Option<ScopeId> {
+        self.fold.netlist.scopes[scope.index()].parent
+    }
+
+    fn depth(&self, scope: ScopeId) -> usize {
+        std::iter::successors(Some(scope), |&scope| self.parent(scope)).count()
+    }
+
+    fn common(&self, a: ScopeId, b: ScopeId) -> ScopeId {
+        let above: Vec<ScopeId> = std::iter::successors(Some(a), |&scope| self.parent(scope)).collect();
+        let found = std::iter::successors(Some(b), |&scope| self.parent(scope)).find(|scope| above.contains(scope));
+        found.unwrap_or(ScopeId::TOP)
+    }
+}
+
+impl<'s> View<'s> {
+    pub(crate) fn new(scene: &'s Scene<'s>, root: ScopeId, depth: usize, outputs: &[Net]) -> View<'s> {
+        let outputs = outputs.iter().copied().collect();
+        let names = names(scene);
+        let (wired, readers) = (BTreeSet::new(), BTreeMap::new());
+        let mut view = View { scene, root, depth, outputs, names, wired, readers };
+        view.find_wires();
+        view
+    }
+
+    /// The symbol in this view whose pin a net is: itself, or the one that it was merged into.
+    fn pin(&self, net: Net) -> Net {
+        self.scene.drafts.of.get(&net).map_or(net, |&(_, pin)| pin)
+    }
+
+    /// The closed scope that a symbol is hidden in.
+    fn hidden(&self, symbol: usize) -> Option<ScopeId> {
+        let above = self.scene.line(self.root).len();
+        self.scene.line(self.scene.scopes[symbol]).get(above + self.depth).copied()
+    }
+
+    fn is_shown(&self, symbol: usize) -> bool {
+        self.scene.is_inside(self.scene.scopes[symbol], self.root)
+    }
+
+    fn find_wires(&mut self) {
+        let mut readers: BTreeMap<Net, Vec<usize>> = BTreeMap::new();
+        for (index, draft) in self.scene.drafts.all.iter().enumerate() {
+            for net in draft.rows.iter().flat_map(|row| row.nets()) {
+                let of = readers.entry(self.pin(net)).or_default();
+                if of.last() != Some(&index) {
+                    of.push(index);
+                }
+            }
+        }
+        for (&net, symbols) in &readers {
+            let Some(&(driver, _)) = self.scene.drafts.of.get(&net) else { continue };
+            let place = |symbol: usize| self.hidden(symbol).map_or((symbol, None), |scope| (0, Some(scope)));
+            let inside: BTreeSet<_> =
+                symbols.iter().filter(|&&symbol| self.is_shown(symbol)).map(|&symbol| place(symbol)).collect();
+            let here = self.is_shown(driver).then(|| place(driver));
+            // What stays in a closed scope needs no wire.
+            let only_hidden = inside.iter().all(|place| Some(*place) == here && place.1.is_some());
+            let most = MOST_WIRES[usize::from(self.scene.fold.width(net) > 1)];
+            let by_name = self.names.contains_key(&net) && inside.len() > most;
+            if !only_hidden && !by_name && !inside.is_empty() {
+                self.wired.insert(net);
+            }
+        }
+        for &output in &self.outputs {
+            self.wired.insert(self.pin(output));
+        }
+        self.readers = readers;
+    }
+
+    /// The whole drawing.
+    pub(crate) fn figure(&self) -> Figure {
+        self.scope(self.root, 0)
+    }
+
+    /// How a net is written in a scope: by its own name alone where it is of that scope.
+    fn written(&self, net: Net, scope: ScopeId) -> Option<String> {
+        let named = self.scene.fold.named(net).filter(|named| named.scope == scope && !named.is_wide());
+        named.map(|named| named.name.clone()).or_else(|| self.names.get(&net).cloned())
+    }
+
+    /// Whether a symbol that is outside of the view, or of this scope, has a net of it, or reads one.
+    fn holder(&self, scope: ScopeId, level: usize, symbol: usize) -> Holder {
+        let line = self.scene.line(self.scene.scopes[symbol]);
+        let above = self.scene.line(self.root).len() + level;
+        if line.get(above - 1) != Some(&scope) {
+            return Holder::Outside;
+        }
+        line.get(above).map_or(Holder::Symbol(symbol), |&child| Holder::Child(child))
+    }
+
+    fn scope(&self, scope: ScopeId, level: usize) -> Figure {
+        let is_root = scope == self.root;
+        let name = |net: Net| self.written(net, scope);
+        let is_wired = |net: Net| self.wired.contains(&self.pin(net));
+        let context = &Context { fold: self.scene.fold, name: &name, is_wired: &is_wired };
+        let mut figures: BTreeMap<Holder, (Figure, Side)> = BTreeMap::new();
+        for (index, draft) in self.scene.drafts.all.iter().enumerate().filter(|(_, draft)| !draft.is_gone()) {
+            let holder = self.holder(scope, level, index);
+            let entry = match holder {
+                Holder::Outside => continue,
+                _ if figures.contains_key(&holder) => continue,
+                Holder::Symbol(_) if draft.kind == Kind::Input => (context.figure(draft), Side::First),
+                Holder::Symbol(_) => (self.pinned(context.figure(draft)), Side::Free),
+                Holder::Child(child) if level < self.depth => (self.scope(child, level + 1), Side::Free),
+                Holder::Child(child) => (self.closed(child, scope, level, context), Side::Free),
+            };
+            figures.insert(holder, entry);
+        }
+        let mut all: Vec<(Figure, Side)> = figures.into_values().collect();
+        for (net, enters) in self.crossing(scope, level) {
+            all.push(match (is_root, enters) {
+                (true, true) => (self.flag(net, true, context), Side::First),
+                (true, false) => (self.flag(net, false, context), Side::Last),
+                (false, true) => (Figure { right: vec![(net, 0)], ..Figure::default() }, Side::First),
+                (false, false) => (Figure { left: vec![(net, 0)], ..Figure::default() }, Side::Last),
+            });
+        }
+        let figure = composed(&all, context);
+        if is_root { figure } else { self.framed(scope, figure) }
+    }
+
+    /// The same with nets that were merged called by the pin that they have.
+    fn pinned(&self, mut figure: Figure) -> Figure {
+        figure.left.iter_mut().for_each(|(net, _)| *net = self.pin(*net));
+        figure
+    }
+
+    /// Nets that cross the frame of a scope, and whether they enter.
+    fn crossing(&self, scope: ScopeId, level: usize) -> Vec<(Net, bool)> {
+        let mut crossing = Vec::new();
+        for &net in &self.wired {
+            let Some(&(driver, _)) = self.scene.drafts.of.get(&net) else { continue };
+            let inside = self.holder(scope, level, driver) != Holder::Outside;
+            let mut readers = self.readers.get(&net).into_iter().flatten();
+            let is_read = |outside: bool| {
+                move |&&reader: &&usize| (self.holder(scope, level, reader) == Holder::Outside) == outside
+            };
+            let is_output = self.outputs.iter().any(|&output| self.pin(output) == net);
+            let leaves = is_output || readers.clone().any(|reader| is_read(true)(&reader));
+            if inside && leaves {
+                crossing.push((net, false));
+            } else if !inside && readers.any(|reader| is_read(false)(&reader)) {
+                crossing.push((net, true));
+            }
+        }
+        crossing
+    }
+
+    /// A port of the whole: an output, or a net from or to what is not shown.
+    fn flag(&self, net: Net, enters: bool, context: &Context<'_>) -> Figure {
+        let name = self.names.get(&net).cloned().unwrap_or_else(|| format!("net {}", net.index()));
+        let wide = even(width(&name, false) + 16);
+        let mut figure = Figure { size: [wide, 24], ..Figure::default() };
+        let frame = Shape::Frame { at: [0, 2, wide, 20], style: Style::Port, cells: Vec::new(), flags: Vec::new() };
+        figure.shapes.push(frame);
+        figure.text([8, 16], Font::Text, name);
+        if enters {
+            context.stub(&mut figure, net, 12, wide);
+        } else {
+            figure.left.push((net, 12));
+        }
+        figure
+    }
+
+    /// A scope whose inside is not shown: its name, what is in it, and its nets.
+    fn closed(&self, child: ScopeId, around: ScopeId, level: usize, context: &Context<'_>) -> Figure {
+        let netlist = self.scene.fold.netlist;
+        let within = |index: &usize| self.holder(around, level, *index) == Holder::Child(child);
+        let symbols: Vec<usize> = (0..self.scene.drafts.all.len()).filter(within).collect();
+        let cells = symbols.iter().flat_map(|&symbol| &self.scene.drafts.all[symbol].cells);
+        let registers = cells.clone().filter(|&&net| matches!(netlist.cell(net).op, Op::Register { .. })).count();
+        let flags = symbols.iter().flat_map(|&symbol| self.scene.drafts.all[symbol].flags.clone()).collect();
+        let crossing = self.crossing(child, level + 1);
+        let label = |net: &Net| self.names.get(net).cloned().unwrap_or_default();
+        let [left, right] = [true, false].map(|enters| -> Vec<Net> {
+            crossing.iter().filter(|crossing| crossing.1 == enters).map(|crossing| crossing.0).collect()
+        });
+        let name = netlist.scopes[child.index()].name.clone();
+        let count = format!("{registers} register{}, {} symbols", if registers == 1 { "" } else { "s" }, symbols.len());
+        let longest = |nets: &[Net]| nets.iter().map(|net| width(&label(net), false)).max().unwrap_or(0);
+        let pins = longest(&left) + longest(&right) + 24;
+        let wide = even((width(&name, false).max(width(&count, true)) + 16).max(pins + 16));
+        let high = 40 + (16 * pixels(left.len())).max(26 * pixels(right.len()));
+        let mut figure = Figure { size: [wide, high], holds: true, ..Figure::default() };
+        let cells = cells.copied().collect();
+        figure.shapes.push(Shape::Frame { at: [0, 0, wide, high], style: Style::Closed, cells, flags });
+        figure.text([8, 14], Font::Title, name);
+        figure.text([8, 26], Font::Small, count);
+        for (at, &net) in left.iter().enumerate() {
+            let y = 40 + 16 * pixels(at);
+            figure.text([8, y + 4], Font::Text, label(&net));
+            figure.left.push((net, y));
+        }
+        for (at, &net) in right.iter().enumerate() {
+            let (y, text) = (40 + 26 * pixels(at), label(&net));
+            figure.text([wide - 8 - width(&text, false), y + 4], Font::Text, text);
+            context.stub(&mut figure, net, y, wide);
+        }
+        figure
+    }
+
+    /// A scope with its frame and its name.
+    fn framed(&self, scope: ScopeId, inner: Figure) -> Figure {
+        let name = &self.scene.fold.netlist.scopes[scope.index()].name;
+        let wide = even(inner.size[0].max(width(name, false) + 2 * PADDING));
+        let high = even(inner.size[1]) + TITLE + PADDING;
+        let mut figure = Figure { size: [wide, high], holds: true, ..Figure::default() };
+        let (cells, flags) = (Vec::new(), Vec::new());
+        figure.shapes.push(Shape::Frame { at: [0, 0, wide, high], style: Style::Scope, cells, flags });
+        figure.text([PADDING, 14], Font::Title, name.clone());
+        figure.shapes.extend(inner.shapes.into_iter().map(|shape| shape.moved([0, TITLE])));
+        // Nets end where the inner drawing does: those at the right are drawn on to the frame.
+        let end = inner.size[0];
+        for &(net, y) in &inner.right {
+            if end < wide {
+                let lines = vec![[end, y + TITLE, wide, y + TITLE]];
+                let bits = self.scene.fold.width(net);
+                figure.shapes.push(Shape::Wire { net, bits, lines, dots: Vec::new(), ends: Vec::new() });
+            }
+        }
+        figure.left = inner.left.iter().map(|&(net, y)| (net, y + TITLE)).collect();
+        figure.right = inner.right.iter().map(|&(net, y)| (net, y + TITLE)).collect();
+        figure
+    }
+}
+
+/// Figures placed and connected. Ports without a size become pins of the whole.
+fn composed(all: &[(Figure, Side)], context: &Context<'_>) -> Figure {
+    let mut nets: Vec<Net> = Vec::new();
+    let mut number = |net: Net| {
+        nets.iter().position(|&other| other == net).unwrap_or_else(|| {
+            nets.push(net);
+            nets.len() - 1
+        })
+    };
+    let mut items = Vec::new();
+    for (figure, side) in all {
+        let mut pins = |pins: &[(Net, i32)]| pins.iter().map(|&(net, y)| Pin { net: number(net), y }).collect();
+        let (left, right) = (pins(&figure.left), pins(&figure.right));
+        items.push(Item { size: figure.size, left, right, side: *side, holds: figure.holds });
+    }
+    let Plan { size, at, wires } = lay_out(&items);
+    let mut whole = Figure { size, ..Figure::default() };
+    let is_port = |figure: &Figure| figure.shapes.is_empty();
+    let mut ports = Vec::new();
+    for ((figure, _), place) in all.iter().zip(at) {
+        if is_port(figure) {
+            // A net that enters leaves its port at the right.
+            whole.left.extend(figure.right.iter().map(|&(net, y)| (net, place[1] + y)));
+            whole.right.extend(figure.left.iter().map(|&(net, y)| (net, place[1] + y)));
+            ports.extend(figure.left.iter().map(|_| place));
+        }
+        whole.shapes.extend(figure.shapes.iter().map(|shape| shape.clone().moved(place)));
+    }
+    for wire in wires {
+        let net = nets[wire.net];
+        let bits = context.fold.width(net);
+        let ends = wire.ends.into_iter().filter(|end| !ports.contains(end)).collect();
+        whole.shapes.push(Shape::Wire { net, bits, lines: wire.lines, dots: wire.dots, ends });
+    }
+    whole
+}
+
+/// How each net that is drawn is written: its own name, with that of its scope where others have the same.
+fn names(scene: &Scene<'_>) -> HashMap<Net, String> {
+    let netlist: &Netlist = scene.fold.netlist;
+    let drawn = || netlist.nets().filter(|net| scene.fold.drawn[net.index()]);
+    let mut count: HashMap<&str, usize> = HashMap::new();
+    for named in drawn().filter_map(|net| scene.fold.named(net)) {
+        *count.entry(&named.name).or_default() += 1;
+    }
+    let written = |net: Net| {
+        let named = scene.fold.named(net)?;
+        if named.is_wide() {
+            let at = named.nets().position(|part| part == net).unwrap_or(0);
+            let low = at * NamedNet::PART as usize;
+            let high = low + scene.fold.width(net) as usize - 1;
+            return Some((net, format!("{}[{high}:{low}]", named.name)));
+        }
+        let is_unique = count.get(named.name.as_str()) == Some(&1) || named.scope == ScopeId::TOP;
+        let scope = &netlist.scopes[named.scope.index()].name;
+        Some((net, if is_unique { named.name.clone() } else { format!("{scope}.{}", named.name) }))
+    };
+    drawn().filter_map(written).collect()
+}

@@ -1,0 +1,150 @@
+//! Block diagrams of every model: what is drawn, and that a reader can read it. The file is read anew, without the layout.
+
+mod reading;
+
+use std::collections::BTreeSet;
+
+use stepwave::models::options::Options;
+use stepwave::models::{catalogue, find};
+use stepwave::netlist::cells::Op;
+use stepwave::netlist::{Net, Netlist, text};
+use stepwave::schematic::{DrawError, Drawing, Part, draw};
+use stepwave::testbench::Testbench;
+
+use reading::Figure;
+
+/// The machine of every model, for the samples of its curve; of a model of program moves the first of them.
+fn machines() -> Vec<(String, Netlist, Vec<Net>)> {
+    let mut machines = Vec::new();
+    for model in catalogue().iter() {
+        for curve in model.curve().samples().unwrap() {
+            if let Ok(bench) = Testbench::new(model, &curve, &Options::at_1_mhz()) {
+                machines.push((model.name.to_owned(), bench.design().netlist().clone(), bench.ports()));
+                break;
+            }
+        }
+    }
+    machines
+}
+
+fn all(netlist: &Netlist, outputs: &[Net]) -> Drawing {
+    draw(netlist, outputs, &Part { depth: Some(9), ..Part::default() }).unwrap()
+}
+
+#[test]
+fn every_model_has_a_drawing_that_can_be_read() {
+    let machines = machines();
+    assert_eq!(machines.len(), catalogue().len());
+    for (name, netlist, outputs) in machines {
+        let drawn = all(&netlist, &outputs);
+        let figure = Figure::read(&drawn.svg);
+        assert_eq!(figure.faults(), Vec::<String>::new(), "{name}");
+        // A wire crosses others about as often as there are symbols, or the order of the columns is bad.
+        let crossings = figure.crossings();
+        assert!(crossings <= 8 * drawn.symbols, "{name}: {crossings} crossings of {} symbols", drawn.symbols);
+    }
+}
+
+/// Nets of registers, adders and comparators that registers or outputs depend on: flags alone need none.
+fn wanted(netlist: &Netlist, outputs: &[Net]) -> BTreeSet<usize> {
+    let flags: BTreeSet<Net> = netlist.properties.iter().map(|property| property.never).collect();
+    let registers = netlist.nets().filter(|&net| matches!(netlist.cell(net).op, Op::Register { .. }));
+    let mut pending: Vec<Net> = registers.chain(outputs.iter().copied()).filter(|net| !flags.contains(net)).collect();
+    let mut seen = BTreeSet::new();
+    let mut wanted = BTreeSet::new();
+    while let Some(net) = pending.pop() {
+        if !seen.insert(net) {
+            continue;
+        }
+        let op = netlist.cell(net).op;
+        if matches!(
+            op,
+            Op::Register { .. } | Op::Add(..) | Op::Sub(..) | Op::Mul(..) | Op::Div(..) | Op::LessSigned(..)
+        ) {
+            wanted.insert(net.index());
+        }
+        // What a constant select never takes is not hardware.
+        match op {
+            Op::Register { next, .. } => pending.extend(next),
+            Op::Mux { select, high, low } => match netlist.cell(select).op {
+                Op::Const(value) => pending.push(if value == 1 { high } else { low }),
+                _ => pending.extend([select, high, low]),
+            },
+            _ => op.visit_inputs(|input| pending.push(input)),
+        }
+    }
+    wanted
+}
+
+#[test]
+fn registers_and_adders_are_all_there_with_their_widths() {
+    for (name, netlist, outputs) in machines() {
+        let figure = Figure::read(&all(&netlist, &outputs).svg);
+        let drawn: BTreeSet<usize> = figure.cells.keys().copied().collect();
+        let missing: Vec<usize> = wanted(&netlist, &outputs).difference(&drawn).copied().collect();
+        // A constant that logic makes of constants is not looked for in `wanted`: it may be a part that is never taken.
+        assert!(missing.is_empty(), "{name}: {missing:?}");
+        for (&cell, frame) in &figure.cells {
+            let bits = netlist.cells[cell].width.get();
+            if matches!(netlist.cells[cell].op, Op::Register { .. }) {
+                let plural = if bits == 1 { "" } else { "s" };
+                let texts = figure.texts_in(frame);
+                let note = format!("{bits} bit{plural}");
+                assert!(texts.iter().any(|text| text.starts_with(&note)), "{name}: %{cell} {texts:?}");
+            }
+        }
+    }
+}
+
+/// A register, named in a scope, that counts up or down and is compared.
+const COUNTER: &str = "netlist m\nscope 1 in 0 \"part\"\n%0:1 = input\n%1:1 = input\n%2:4 = register reset 0x0 next %7\n\
+    %3:4 = const 0x1\n%4:4 = add %2 %3\n%5:4 = sub %2 %3\n%6:4 = mux %1 %4 %5\n%7:4 = mux %0 %6 %2\n\
+    %8:4 = const 0x9\n%9:1 = equal %2 %8\n%10:1 = carry %2 %3\n%11:1 = and %0 %10\n\
+    name %0 in 0 \"go\" unsigned\nname %1 in 0 \"up\" unsigned\nname %2 in 1 \"count\" unsigned\n\
+    name %9 in 0 \"nine\" unsigned\nname %11 in 1 \"count_add_overflow\" unsigned\n\
+    property \"m.part.count\" never %11 add %2 unsigned %3 unsigned\n";
+
+#[test]
+fn a_counter_is_drawn_as_a_textbook_draws_it() {
+    let netlist = text::parse(COUNTER).unwrap();
+    let drawn = draw(&netlist, &[Net(9)], &Part::default()).unwrap();
+    let figure = Figure::read(&drawn.svg);
+    let texts: Vec<&str> = figure.texts.iter().map(|text| text.text.as_str()).collect();
+    for wanted in ["go", "up", "part", "count", "4 bits", "± 1", "count = 9", "nine"] {
+        assert!(texts.contains(&wanted), "{wanted}: {texts:?}");
+    }
+    // The flag is at the register and at the adder, and its logic is not drawn.
+    assert_eq!(drawn.svg.matches("data-component=\"m.part.count_add_overflow\"").count(), 2);
+    assert!(!figure.cells.contains_key(&11) && !figure.cells.contains_key(&10));
+    // Both are in the scope.
+    let scope = figure.frames.iter().find(|frame| frame.class == "scope").unwrap();
+    assert!(scope.holds(&figure.cells[&2]) && scope.holds(&figure.cells[&4]));
+}
+
+#[test]
+fn scopes_are_closed_below_a_depth_and_one_can_be_drawn_alone() {
+    let netlist = text::parse(COUNTER).unwrap();
+    let part = |scope: Option<&str>, depth| Part { scope: scope.map(str::to_owned), depth };
+    let closed = draw(&netlist, &[Net(9)], &part(None, Some(0))).unwrap();
+    assert_eq!((closed.depth, closed.levels), (0, 1));
+    let figure = Figure::read(&closed.svg);
+    assert_eq!(figure.faults(), Vec::<String>::new());
+    assert!(figure.texts.iter().any(|text| text.text.starts_with("1 register, ")), "{}", closed.svg);
+    assert!(!figure.texts.iter().any(|text| text.text == "± 1"));
+    for path in ["part", "m.part"] {
+        let alone = draw(&netlist, &[], &part(Some(path), None)).unwrap();
+        assert!(alone.svg.contains(">± 1<") && !alone.svg.contains("class=\"scope\""), "{}", alone.svg);
+    }
+    let error = draw(&netlist, &[], &part(Some("prat"), None)).unwrap_err();
+    assert!(matches!(&error, DrawError::NoScope { path, .. } if path == "prat"));
+    assert!(error.to_string().starts_with("there is no scope 'prat'"), "{error}");
+}
+
+#[test]
+fn a_netlist_is_always_drawn_alike() {
+    let model = find("ppc-arc").unwrap();
+    let curve = model.curve().samples().unwrap().remove(0);
+    let bench = Testbench::new(model, &curve, &Options::default()).unwrap();
+    let draw = || all(bench.design().netlist(), &bench.ports()).svg;
+    assert_eq!(draw(), draw());
+}
