@@ -110,10 +110,14 @@ impl Hardware {
         DownCounter::new(m, block, register.name(), self.bits(register))
     }
 
-    /// The pulse and the position of an axis: see [`axis_counter`].
+    /// The pulse and the position of an axis: see [`axis_counter`]; with `--ramp after` also what its pulses go through after
+    /// that.
     pub fn axis<'m>(&self, m: Scope<'m>, block: &Block<'m>, axis: usize, pulse: Signal<'m>, negative: Signal<'m>) {
-        let position = POSITION.of(axis);
-        axis_counter(m, block, position.name(), self.bits(position), pulse, negative);
+        let (position, bits) = (POSITION.of(axis), self.bits(POSITION.of(axis)));
+        let preset = axis_counter(m, block, position.name(), bits, pulse, negative);
+        if let Some(after) = block.after(axis) {
+            after.close([pulse, negative], bits, [block.preset_position, preset]);
+        }
     }
 
     /// The value of an option: as given, or else by default.

@@ -101,7 +101,7 @@ pub use claims::{Claims, Kind, Region, extremes};
 pub use described::{Described, know};
 pub use error::ModelError;
 pub use hardware::{Hardware, Pace};
-pub use machine::{BufferPorts, CutWord, Loaded, Machine, Port, Words};
+pub use machine::{AfterPorts, BufferPorts, CutWord, Loaded, Machine, Port, Words};
 pub use options::{
     Adder, AnyOption, Beats, Compare, EndPoint, Form, Millionths, Named, OptionDef, Options, PerRegister, Preset,
     Radix, StepTiming, System, Takes, Weights,

@@ -10,6 +10,7 @@ use stepwave_netlist::{Design, Net, Netlist, OnOverflow, Width, elaborate};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::options::ON_OVERFLOW;
+use crate::program::After;
 use crate::registers::Reg;
 
 /// A net as a number: its width and reading.
@@ -111,6 +112,8 @@ pub struct Machine {
     pub inputs: BTreeMap<String, Port>,
     /// Ports of the block buffer, of a machine that runs whole programs.
     pub buffer: Option<BufferPorts>,
+    /// What its pulses go through after the interpolator, with `--ramp after`.
+    pub after: Option<AfterPorts>,
     /// Flags that end a run where overflows trap; 1 bit each.
     pub traps: Vec<Net>,
 }
@@ -126,6 +129,17 @@ pub struct BufferPorts {
     pub at_end: Net,
     /// The phase of the pulse source, which runs freely.
     pub phase: Net,
+}
+
+/// Ports of what the pulses of a machine go through after its interpolator.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct AfterPorts {
+    /// Signed pulse of each axis for its drive: -1, 0, +1.
+    pub pulses: Vec<Port>,
+    /// Position of each axis in BLU after these.
+    pub positions: Vec<Port>,
+    /// What runs freely: the clock of the period, the divider of the fine lines, and their remainders.
+    pub running: Vec<Net>,
 }
 
 /// What an input is called for the register that it loads.
@@ -145,6 +159,14 @@ impl Port {
 }
 
 impl Machine {
+    /// What changes at every clock while a program runs, whatever else it does: the phase of the pulse source, and what runs
+    /// after the interpolator; nothing without a buffer.
+    #[must_use]
+    pub fn running(&self) -> Vec<Net> {
+        let after = self.after.iter().flat_map(|ports| &ports.running).copied();
+        self.buffer.iter().map(|ports| ports.phase).chain(after).collect()
+    }
+
     /// Elaborates a netlist and finds its ports.
     pub(crate) fn new(netlist: Netlist, hardware: &Hardware) -> Result<Machine, ModelError> {
         let find = |name: &str| Port::of(&netlist, name);
@@ -157,7 +179,20 @@ impl Machine {
             let (call, at_end, phase) = (net("call")?, net("at_end")?, net("phase")?);
             Ok::<_, ModelError>(BufferPorts { more: more.net, call, at_end, phase })
         };
+        let of_axes = |name: &dyn Fn(&str) -> String| {
+            hardware.letters().iter().map(|axis| find(&name(axis))).collect::<Result<Vec<Port>, ModelError>>()
+        };
+        let after = |_| {
+            let running = ["sample_clock".to_owned(), "spread".to_owned()].into_iter();
+            let running = running.chain(hardware.letters().iter().map(|axis| format!("fr{axis}")));
+            Ok::<_, ModelError>(AfterPorts {
+                pulses: of_axes(&|axis| format!("d{axis}_out"))?,
+                positions: of_axes(&|axis| format!("{axis}_out"))?,
+                running: running.map(|name| net(&name)).collect::<Result<_, _>>()?,
+            })
+        };
         Ok(Machine {
+            after: After::of(hardware).map(after).transpose()?,
             buffer: find("more").ok().map(ports).transpose()?,
             load: find("load")?,
             preset_position: find("preset_position")?,

@@ -37,7 +37,10 @@ use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{Millionths, ON_OVERFLOW, PRESET, SMOOTH, STEP, Smooth, WIDTH};
-use crate::parts::{Block, DISPLACEMENT, E, Iteration, JR, JV, POSITION, SIGN, axis_scope, integrator};
+use crate::parts::{
+    Block, DISPLACEMENT, E, Iteration, JR, JV, NONE, POSITION, SIGN, Taking, YOUNGER, axis_scope, exponential,
+    integrand, integrator, moving_sum,
+};
 use crate::plan::Plan;
 use crate::ramping::bits;
 use crate::registers::{AS_NEEDED, Reg, Rule, Where};
@@ -49,11 +52,6 @@ const NAME: &str = "ramp-after";
 const USUAL_STEP: u64 = 10;
 /// Most BLU of a period.
 const MOST_STEP: u64 = 1 << 30;
-
-/// The net that is 0, to which the pulses of a period are added.
-const NONE: &str = "none";
-/// The net that is the sum without the oldest.
-const YOUNGER: &str = "younger";
 
 static BY_SUM: Where = Where("--smooth sum", |plan| matches!(plan.get(&SMOOTH), Smooth::Sum(_)));
 static BY_SHARE: Where = Where("--smooth exp", |plan| matches!(plan.get(&SMOOTH), Smooth::Exponential(_)));
@@ -162,17 +160,21 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     clock.when(block.load | ends, zero).when(running, next).else_hold();
 
     let input = handed_over(m, hardware, &block, begins);
+    let at = Taking { clear: Some(block.load), begins };
     let output = match hardware.get(&SMOOTH) {
-        Smooth::Sum(k) => moving_sum(m.scope("moving_sum"), hardware, [block.load, begins], input, k),
-        Smooth::Exponential(s) => exponential(m.scope("exponential"), hardware, [block.load, begins], input, s),
+        Smooth::Sum(k) => {
+            let m = m.scope("moving_sum");
+            moving_sum(m, || [SUM, REMAINDER].map(|register| hardware.reg(m, register)), at, input, k)
+        }
+        Smooth::Exponential(s) => {
+            let m = m.scope("exponential");
+            exponential(m, hardware.reg(m, INSIDE), at, input, s)
+        }
     };
 
     let axis = axis_scope(m, 0);
     let jv = axis.reg(JV.of(0).name(), hardware.bits(JV.of(0)));
-    // What does not fit in jv would be lost.
-    let none = axis.name(NONE, m.lit(jv.q.bits(), 0));
-    let fits = none.strict_add(output, begins);
-    jv.when(block.load, m.lit(jv.q.bits(), 0)).when(begins, fits).else_hold();
+    integrand(m, axis, jv, at, output);
     let add = running & !clock.q.is_zero();
     let pulse = integrator(axis, &block, hardware, 0, jv.q, Iteration { add, complete: add });
     let negative = block.held(axis, SIGN.of(0).name(), 1);
@@ -192,54 +194,6 @@ fn handed_over<'m>(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>, begins:
     let rest = all.wrapping_sub(input).slice(0, left.q.bits());
     left.when(block.load, hardware.word(block, LEFT)).when(begins, rest).else_hold();
     input
-}
-
-/// The mean of the last k, with its remainder.
-fn moving_sum<'m>(
-    m: Scope<'m>,
-    hardware: &Hardware,
-    [load, begins]: [Signal<'m>; 2],
-    input: Signal<'m>,
-    k: u64,
-) -> Signal<'m> {
-    let zero = |bits| m.lit(bits, 0);
-    let mut oldest = input;
-    for place in 0..k {
-        let delay = m.reg(&format!("delay{place}"), input.bits());
-        delay.when(load, zero(input.bits())).when(begins, oldest).else_hold();
-        oldest = delay.q;
-    }
-    let (sum, remainder) = (hardware.reg(m, SUM), hardware.reg(m, REMAINDER));
-    // The oldest one is in the sum.
-    let wide = sum.q.bits().max(input.bits());
-    let younger = sum.q.extend(wide).wrapping_sub(oldest.extend(wide)).slice(0, sum.q.bits());
-    let fits = m.name(YOUNGER, younger).strict_add(input, begins);
-    sum.when(load, zero(sum.q.bits())).when(begins, fits).else_hold();
-    let bits = sum.q.bits().max(remainder.q.bits()) + 1;
-    let all = m.name("all", fits.extend(bits).wrapping_add(remainder.q.extend(bits)));
-    let by = m.lit(bits, k);
-    let rest = all.rem_or_zero(by).slice(0, remainder.q.bits());
-    remainder.when(load, zero(remainder.q.bits())).when(begins, rest).else_hold();
-    m.name("out", all.div_or_zero(by))
-}
-
-/// The share 1/2^s of what is inside, rounded up.
-fn exponential<'m>(
-    m: Scope<'m>,
-    hardware: &Hardware,
-    [load, begins]: [Signal<'m>; 2],
-    input: Signal<'m>,
-    s: u64,
-) -> Signal<'m> {
-    let inside = hardware.reg(m, INSIDE);
-    let s = u32::try_from(s).unwrap_or(0);
-    let all = inside.q.strict_add(input, begins);
-    let bits = all.bits().max(s) + 1;
-    let up = m.lit(bits, (1 << s) - 1);
-    let out = m.name("out", all.extend(bits).wrapping_add(up).slice(s, bits - s));
-    let rest = all.wrapping_sub(out.extend(all.bits().max(out.bits())).slice(0, all.bits()));
-    inside.when(load, m.lit(all.bits(), 0)).when(begins, rest).else_hold();
-    out
 }
 
 fn load(line: &Line, hardware: &Hardware) -> Vec<Words> {

@@ -53,10 +53,12 @@ impl Size {
         probes.sort_by(|a, b| a.columns.cmp(&b.columns));
         probes.dedup_by(|a, b| a.columns == b.columns);
         let (mut clock, mut step, mut count) = (0.0, 0.0, 0.0);
+        let running = bench.machine().running();
+        let runs = |columns: &[usize]| running.iter().any(|&net| columns == [bench.columns().index(net)]);
         for probe in probes {
             let width = f64::from(probe.width);
-            let of_source = matches!(probe.name.as_str(), "phase" | "sum") && probe.width >= RATE_BITS;
-            if of_source {
+            let of_source = probe.name == "sum" && probe.width >= RATE_BITS;
+            if of_source || runs(&probe.columns) {
                 // A b, a blank, a name of one character and the end of the line.
                 clock += width + 4.0;
             } else if COUNTING.contains(&probe.name.as_str()) {

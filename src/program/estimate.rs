@@ -3,7 +3,7 @@
 use std::io::BufRead;
 
 use stepwave_models::Hardware;
-use stepwave_models::program::{Moves, Pacing};
+use stepwave_models::program::{After, Moves, Pacing};
 
 use super::ProgramFailure;
 use super::feed::Pace;
@@ -43,6 +43,7 @@ impl Estimate {
             return Ok(None);
         }
         let (mut estimate, mut planner) = (Estimate::default(), Planner::new(moves, hardware, pace));
+        let after = After::of(hardware);
         for item in Stream::new(text, moves, preparation)? {
             match item? {
                 Item::Dwell(_, seconds) => {
@@ -53,19 +54,22 @@ impl Estimate {
                 Item::LeftOut(..) => {}
                 Item::Move(of, blocks) => planner.push(&of, &blocks, |_, _, _| ())?,
             }
-            std::iter::from_fn(|| planner.next()).for_each(|planned| estimate.add(&planned, pace));
+            std::iter::from_fn(|| planner.next()).for_each(|planned| estimate.add(&planned, pace, after));
         }
         planner.stop();
-        std::iter::from_fn(|| planner.next()).for_each(|planned| estimate.add(&planned, pace));
+        std::iter::from_fn(|| planner.next()).for_each(|planned| estimate.add(&planned, pace, after));
         Ok(Some(estimate))
     }
 
-    fn add(&mut self, Planned { block, source, seconds, .. }: &Planned<()>, pace: Pace) {
+    fn add(&mut self, Planned { block, source, seconds, settles, .. }: &Planned<()>, pace: Pace, after: Option<After>) {
         let Some((word, source_hz)) = source else { return };
         self.steps += block.steps;
         self.moving += block.steps.min(block.length * PULSES);
         // Where the source gives a pulse every 2^n clocks, its phase comes round.
         self.drifting += if word.is_power_of_two() { 0.0 } else { block.steps };
+        if let Some(after) = after.filter(|_| *settles) {
+            self.clocks += after.settling(after.most() as f64) as f64;
+        }
         // The next block is taken over in one clock.
         self.clocks += seconds.unwrap_or(block.steps / source_hz) * pace.clock_hz + 1.0;
     }

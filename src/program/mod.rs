@@ -5,6 +5,7 @@
 //! memory does not grow with the program.
 
 mod control;
+mod corners;
 mod estimate;
 mod feed;
 mod lookahead;

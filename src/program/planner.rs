@@ -3,10 +3,12 @@
 use std::collections::VecDeque;
 
 use stepwave_models::Hardware;
-use stepwave_models::program::{Acceleration, HardwareBlock, Moves, Profile};
+use stepwave_models::parts::SETTLE;
+use stepwave_models::program::{Acceleration, After, HardwareBlock, Moves, Profile};
 use stepwave_nc::{Cause, Coordinates, FeedAxes, PathControl, PulseBlock, ToolMove};
 
 use super::ProgramFailure;
+use super::corners::Corners;
 use super::feed::{Pace, Paced, Pacer};
 use super::lookahead::{Lookahead, Stretch, seconds};
 
@@ -22,6 +24,8 @@ pub(super) struct Planned<T> {
     pub(super) limited: bool,
     /// Seconds that it takes with acceleration; `None` where it has one speed.
     pub(super) seconds: Option<f64>,
+    /// It begins only after the filters after the interpolator are empty.
+    pub(super) settles: bool,
     /// What it is of.
     pub(super) of: T,
 }
@@ -30,6 +34,7 @@ pub(super) struct Planned<T> {
 pub(super) struct Planner<'a, T> {
     pacer: Pacer<'a>,
     ahead: Option<Ahead<T>>,
+    corners: Option<Corners>,
     /// Blocks whose words are known.
     planned: VecDeque<Planned<T>>,
 }
@@ -50,7 +55,8 @@ impl<'a, T> Planner<'a, T> {
             let jump = pace.jump.map_or_else(|| by.start(), |jump| jump / (60.0 * pace.blu_mm));
             Ahead { by, queue: Lookahead::new(by, jump), end: None, scale: None }
         });
-        Planner { pacer: Pacer::new(moves, hardware, pace), ahead, planned: VecDeque::new() }
+        let corners = After::of(hardware).map(|after| Corners::new(after, pace));
+        Planner { pacer: Pacer::new(moves, hardware, pace), ahead, corners, planned: VecDeque::new() }
     }
 
     /// Takes the next move, and with each of its parts what `of` makes of the block and of whether it is the first of it.
@@ -69,7 +75,10 @@ impl<'a, T> Planner<'a, T> {
             for (index, paced) in self.pacer.blocks(block)?.into_iter().enumerate() {
                 let what = with(&self.pacer, block, index == 0);
                 match &mut self.ahead {
-                    None => self.planned.push_back(at_once(paced, what)),
+                    None => {
+                        let settles = self.corners.as_mut().map(|corners| corners.settles(of, &paced));
+                        self.planned.push_back(at_once(paced, what, settles));
+                    }
                     Some(ahead) => {
                         ahead.push(of, paced, self.pacer.speed, std::mem::replace(&mut joint, f64::INFINITY), what)
                     }
@@ -86,6 +95,9 @@ impl<'a, T> Planner<'a, T> {
             ahead.queue.stop();
             ahead.end = None;
         }
+        if let Some(corners) = &mut self.corners {
+            corners.stop();
+        }
         self.settle();
     }
 
@@ -101,8 +113,20 @@ impl<'a, T> Planner<'a, T> {
     }
 }
 
-fn at_once<T>(Paced { block, source, limited, .. }: Paced, of: T) -> Planned<T> {
-    Planned { block, source, limited, seconds: None, of }
+/// A block at one speed. `settles`, where there are filters after the interpolator: they are to be empty before.
+fn at_once<T>(Paced { block, source, limited, .. }: Paced, of: T, settles: Option<bool>) -> Planned<T> {
+    let words = match settles {
+        None => block.words,
+        Some(settles) => block.words.set(SETTLE, settles),
+    };
+    Planned {
+        block: HardwareBlock { words, ..block },
+        source,
+        limited,
+        seconds: None,
+        settles: settles == Some(true),
+        of,
+    }
 }
 
 impl<T> Ahead<T> {
@@ -135,6 +159,13 @@ impl<T> Ahead<T> {
         let (words, hz) = self.by.words(&profile);
         let seconds = seconds(&self.by, block.steps / pulses_per_blu, speeds);
         let block = HardwareBlock { words: block.words.clone().and(words), ..block };
-        Some(Planned { block, source: source.map(|(word, _)| (word, hz)), limited, seconds: Some(seconds), of })
+        Some(Planned {
+            block,
+            source: source.map(|(word, _)| (word, hz)),
+            limited,
+            seconds: Some(seconds),
+            settles: false,
+            of,
+        })
     }
 }

@@ -188,7 +188,11 @@ impl Report {
             "overflow": overflow,
             "ending": ending,
         });
-        joined(results, own)
+        let mut results = joined(results, own);
+        if let Some(after) = self.after_json() {
+            results["after"] = after;
+        }
+        results
     }
 
     /// A component that lost something, of own hardware with the line of the program.

@@ -1,5 +1,6 @@
 //! What a run came to, for people and for programs: summary, step table, JSON, picture.
 
+mod after;
 mod curve;
 mod file;
 mod geometry;
@@ -23,7 +24,7 @@ use stepwave_netlist::OnOverflow;
 
 use crate::output::Sink;
 use crate::program::CutWords;
-use crate::testbench::{CUT_CLOCKS, Ending, Outcome, OverflowEvent, OverflowTally, RegisterRange, Testbench};
+use crate::testbench::{CUT_CLOCKS, Ending, Outcome, OverflowEvent, OverflowTally, RegisterRange, Sent, Testbench};
 
 pub use curve::OfCurve;
 pub use file::{JsonFile, PathPicture, RunFile};
@@ -70,6 +71,8 @@ pub struct Report {
     pub blu_mm: f64,
     /// What the operator did.
     pub events: Vec<Timed>,
+    /// What went out after the filters of acceleration after the interpolator, where there are any.
+    pub sent: Option<Sent>,
 }
 
 /// What a run is of.
@@ -102,6 +105,7 @@ impl Report {
             clock_hz: 0.0,
             blu_mm: 0.0,
             events: Vec::new(),
+            sent: None,
         }
     }
 
@@ -336,6 +340,7 @@ impl Report {
                 failures.extend(self.wrong_counters());
             }
         }
+        failures.extend(self.after_failures());
         failures
     }
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use stepwave_models::program::Pacing;
+use stepwave_models::program::{After, Pacing};
 use stepwave_models::{AXES, Promise};
 use stepwave_nc::{FeedAxes, Side, ToolMove};
 
@@ -47,7 +47,9 @@ impl OfProgram {
         // A netlist is the same wherever it is.
         let model = report.model;
         let name = if model.is_described() { super::geometry::file_name(model.source) } else { model.method_name() };
-        format!("program {file}; method {name}; width {widths}")
+        let after = After::of(&report.hardware);
+        let after = after.map(|After { smooth, period }| format!("; ramp after; smooth {smooth}; period {period}"));
+        format!("program {file}; method {name}; width {widths}{}", after.unwrap_or_default())
     }
 
     pub(super) fn file_name(&self) -> String {
@@ -195,7 +197,7 @@ fn pacing(report: &Report) -> Option<&'static str> {
     }
 }
 
-fn of_axes(pulses: &[u64]) -> Value {
+pub(super) fn of_axes(pulses: &[u64]) -> Value {
     AXES.iter().zip(pulses).map(|(axis, pulses)| ((*axis).to_owned(), json!(pulses))).collect()
 }
 

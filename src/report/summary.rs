@@ -10,12 +10,13 @@ impl Report {
     #[must_use]
     pub fn summary(&self) -> String {
         match &self.subject {
-            Subject::Program(of) => of.summary(self) + &self.bits_needed(),
+            Subject::Program(of) => of.summary(self) + &self.after_text() + &self.bits_needed(),
             Subject::Curve(of) => {
                 let mut text = of.summary(self);
                 if let Some(first) = self.overflows.first() {
                     text += &format!("{} overflow(s), the first: {first}\n", self.overflow_count);
                 }
+                text += &self.after_text();
                 text += &self.bits_needed();
                 text += &self.bits_unused();
                 self.warnings().iter().fold(text, |text, warning| format!("{text}warning: {warning}\n"))

@@ -16,7 +16,17 @@ use crate::testbench::Testbench;
 use crate::waves::{probes, runs};
 
 /// What the wave of a program begins with: where the machine is, how fast it is to be, and in which block.
-const LEADING: [&str; 6] = ["axis_x.x", "axis_y.y", "program.feed", "program.block", "axis_z.z", "pulse_source.v"];
+const LEADING: [&str; 9] = [
+    "axis_x.x",
+    "axis_y.y",
+    "program.feed",
+    "program.block",
+    "axis_z.z",
+    "pulse_source.v",
+    "after_x.x_out",
+    "after_y.y_out",
+    "after_z.z_out",
+];
 
 #[derive(Clone, Debug)]
 pub(super) enum Source {

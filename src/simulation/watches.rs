@@ -3,7 +3,8 @@
 use super::source::Source;
 use crate::report::{Report, Subject};
 use crate::testbench::{
-    CoarseWatch, Observer, Outcome, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, SpeedWatch, Testbench,
+    CoarseWatch, Observer, Outcome, OutputWatch, OverflowWatch, PathWatch, RangeWatch, SpacingWatch, SpeedWatch,
+    Testbench,
 };
 
 /// What looks on for the report; the account of a program keeps itself.
@@ -11,6 +12,7 @@ pub(super) struct Watches<'a> {
     overflow: OverflowWatch,
     ranges: RangeWatch,
     curve: Option<OfCurve<'a>>,
+    output: Option<OutputWatch>,
 }
 
 /// What looks on along a curve.
@@ -32,11 +34,13 @@ impl<'a> Watches<'a> {
             }),
             Source::Program(_) => None,
         };
-        Watches { overflow: OverflowWatch::new(bench), ranges: RangeWatch::new(bench), curve }
+        let output = OutputWatch::of(bench);
+        Watches { overflow: OverflowWatch::new(bench), ranges: RangeWatch::new(bench), curve, output }
     }
 
     pub(super) fn observers<'o>(&'o mut self, subject: &'o mut Subject) -> Vec<&'o mut dyn Observer> {
         let mut all: Vec<&mut dyn Observer> = vec![&mut self.overflow, &mut self.ranges];
+        all.extend(self.output.as_mut().map(|output| output as &mut dyn Observer));
         if let Some(OfCurve { path, spacing, speed, coarse }) = &mut self.curve {
             all.extend([path as &mut dyn Observer, spacing, speed]);
             all.extend(coarse.as_mut().map(|coarse| coarse as &mut dyn Observer));
@@ -50,6 +54,7 @@ impl<'a> Watches<'a> {
     /// Fills the results in.
     pub(super) fn finish(self, report: &mut Report, outcome: Outcome) {
         report.outcome = outcome;
+        report.sent = self.output.map(OutputWatch::finish);
         report.ranges = self.ranges.finish();
         report.overflows = self.overflow.events();
         report.overflow_count = self.overflow.count;

@@ -42,6 +42,8 @@ fn values(option: &dyn AnyOption) -> &'static [&'static str] {
         "speed" => &["100", "vs=9,vc=200,ve=3", "300mm/min"],
         "accel" => &["9", "40,7", "500mm/s2"],
         "jerk" => &["none", "3"],
+        "ramp" => &["before", "after"],
+        "period" => &["40"],
         "smooth" => &["sum=3", "exp=2"],
         "brake" => &["square", "count"],
         "on-overflow" => &["trap", "saturate", "wrap"],

@@ -8,3 +8,4 @@ mod curves;
 mod field;
 mod like_any;
 mod machines;
+mod smoothing;

@@ -67,7 +67,7 @@ pub(crate) use ppc_conic::ppc_conic;
 use ramp::speeds_up as ramp_speeds_up;
 pub(crate) use ramp::{Braking, InForce, RampBlock, plan as ramp_plan, ramp};
 pub(crate) use sampled::{System, sampled_arc, sampled_line, step_factor_points};
-pub(crate) use smooth::{Filter, smooth};
+pub(crate) use smooth::{Filter, smooth, smoothed};
 pub(crate) use space_lines::{cim_space_line, mindev_space_line, ppc_space_line};
 pub(crate) use spline::{Basis, Segment, spline_dda, spline_dda_fraction, spline_owes};
 pub(crate) use stepgen::{StepOutput, Timing, stepgen, stepgen_clocks};

@@ -51,3 +51,40 @@ pub(crate) fn smooth(filter: Filter, pulses: i64, step: i64, preset: i64) -> Tab
     table.finished = true;
     table
 }
+
+/// What the pulses of one axis, one number for each sample, become after a filter with a sampling period of `period` clocks: one
+/// number for each sample too. In the period after that in which they are counted the fine line makes 2^bits additions, the last
+/// at its last clock.
+pub(crate) fn smoothed(filter: Filter, period: usize, bits: u32, pulses: &[i64]) -> Vec<i64> {
+    let counted: Vec<i64> = pulses.chunks(period).map(|pulses| pulses.iter().sum()).collect();
+    let (mut rem, mut acc) = (0, 0);
+    let filtered = |index: usize| match filter {
+        Filter::Sum(k) => {
+            let first = (index + 1).saturating_sub(usize::try_from(k).unwrap());
+            let all: i64 = counted[first..=index].iter().sum::<i64>() + rem;
+            rem = all.rem_euclid(k);
+            all.div_euclid(k)
+        }
+        Filter::Exponential(s) => {
+            acc += counted[index];
+            let share = 1 << s;
+            let out = acc.signum() * ((acc.abs() + share - 1) / share);
+            acc -= out;
+            out
+        }
+    };
+    let out: Vec<i64> = (0..counted.len()).map(filtered).collect();
+    let (scale, clocks) = (1_i64 << bits, i64::try_from(period).unwrap());
+    let (mut rest, mut all) = (0, vec![0]);
+    for sample in 0..pulses.len() - 1 {
+        let period_before = (sample / period).checked_sub(1);
+        let travel = period_before.map_or(0, |index| out[index]);
+        let clock = i64::try_from(sample % period).unwrap();
+        // One more of the 2^bits additions is due by the end of this clock.
+        let due = |clocks_gone: i64| clocks_gone * scale / clocks;
+        rest += if due(clock + 1) > due(clock) { travel.abs() } else { 0 };
+        all.push(if rest >= scale { travel.signum() } else { 0 });
+        rest %= scale;
+    }
+    all
+}

@@ -46,6 +46,30 @@ fn waves_without_the_phase_are_those_from_every_sample_by_every_family() {
     same_as_whole(&folder, "--method dda --normalize");
 }
 
+/// With acceleration after the interpolator its period and its fine lines run too.
+#[test]
+fn waves_without_what_runs_after_the_interpolator_are_those_from_every_sample() {
+    let folder = Folder::new();
+    folder.write("p.ngc", PROGRAM);
+    let running = ["period.sample_clock", "period.spread", "*.frx", "*.fry", "*.frz"];
+    let without: String = running.iter().map(|name| format!(" --trace-exclude {name}")).collect();
+    let families = [("ppc", "sum=4 --period 1000"), ("dda", "exp=2 --period 40"), ("stepgen", "sum=3 --period 16")];
+    for (family, filter) in
+        families.into_iter().chain([("dpm", "exp=4 --period 2"), ("bresenham", "sum=64 --period 100")])
+    {
+        let options = format!("--method {family} --ramp after --smooth {filter}");
+        let windows = ["--trace-steps --trace-from 30000", "", "--trace-from 20001 --trace-to 40000"];
+        for window in if family == "ppc" { &windows[..] } else { &windows[2..] } {
+            let [short, whole] = [("s", String::new()), ("w", format!("{WHOLE}{without}"))].map(|(name, more)| {
+                folder.good(&format!("program p.ngc {options} {window} {more} --vcd {name}.vcd"));
+                changes(&folder, &format!("{name}.vcd"))
+            });
+            assert!(short == whole, "{options} {window}");
+            assert!(short.contains("x_out") && !short.contains(" frx "), "{options}");
+        }
+    }
+}
+
 #[test]
 fn windows_begin_and_end_in_samples_that_are_passed_over() {
     let folder = Folder::new();

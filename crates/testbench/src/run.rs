@@ -73,8 +73,8 @@ impl<'a, 'o> Run<'a, 'o> {
         let (lookout, wanted) = Lookout::of(bench, &mut steps, observers).unzip();
         let (mut engine, rows) = match machine.buffer.filter(|_| !bench.every_sample) {
             None => (kind.build_digesting(bench.design(), &watch, wanted.as_ref()), Rows::new(columns, CHUNK)),
-            Some(ports) => {
-                let idle = Idle { running: vec![ports.phase], flags };
+            Some(_) => {
+                let idle = Idle { running: machine.running(), flags };
                 let idle = bench.running().map_or(idle.clone(), |running| running.idle(idle));
                 (kind.build_passing(bench.design(), &watch, &idle), Rows::sparse(columns, CHUNK))
             }

@@ -202,6 +202,20 @@ impl Named for Brake {
     const ALL: &'static [(&'static str, Brake)] = &[("square", Brake::Square), ("count", Brake::Count)];
 }
 
+/// Where a machine that runs programs has its acceleration.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum RampAt {
+    /// A ramp in front of the pulse source, if it has any.
+    #[default]
+    Before,
+    /// A filter of the pulses of each axis, after the interpolator.
+    After,
+}
+
+impl Named for RampAt {
+    const ALL: &'static [(&'static str, RampAt)] = &[("before", RampAt::Before), ("after", RampAt::After)];
+}
+
 /// What displacements of periods go through after the interpolator.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Smooth {

@@ -21,12 +21,12 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-pub use choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, Smooth, System, Weights};
+pub use choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, RampAt, Smooth, System, Weights};
 pub use given::{Options, Value};
 pub use table::{
     ACCEL, ADDER, ALL, BEATS, BRAKE, CASCADE, COMPARE, DIVISIONS, END_POINT, FORM, FRACTION, JERK, NORMALIZE,
-    ON_OVERFLOW, OVERRIDE, PICK_OFF, PRESET, RADIX, SMOOTH, SPEED, STEP, STRICT, SYSTEM, TIMING, TOLERANCE, WEIGHTS,
-    WIDTH, WRAPS,
+    ON_OVERFLOW, OVERRIDE, PERIOD, PICK_OFF, PRESET, RADIX, RAMP, SMOOTH, SPEED, STEP, STRICT, SYSTEM, TIMING,
+    TOLERANCE, WEIGHTS, WIDTH, WRAPS,
 };
 pub use taken::{Taken, Takes};
 pub(crate) use taken::{chosen, taken};

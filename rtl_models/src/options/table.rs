@@ -5,7 +5,7 @@
 
 use stepwave_netlist::{OnOverflow, Width};
 
-use super::choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, Smooth, System, Weights};
+use super::choices::{Adder, Beats, Brake, Compare, EndPoint, Form, Radix, RampAt, Smooth, System, Weights};
 use super::{AnyOption, Gains, Millionths, Named, OptionDef, PerRegister, Preset, Quantity, Shape, StepTiming, Values};
 
 /// Declares the options, and the list of them in the order of the command line.
@@ -308,6 +308,29 @@ options! {
         values: Values::Words(Brake::ALL),
         about: "",
         default: Brake::Square,
+    };
+    /// Where the acceleration of a machine is.
+    RAMP: RampAt = OptionDef {
+        name: "ramp",
+        help: "Where a machine that runs programs has its acceleration: before its interpolator (--accel), or after it, for \
+               each axis (--smooth, --period)",
+        value_name: "RAMP",
+        values: Values::Words(RampAt::ALL),
+        about: "",
+        default: RampAt::Before,
+    };
+    /// Sampling period of an acceleration after the interpolator.
+    PERIOD: Option<u64> = OptionDef {
+        name: "period",
+        help: "Clocks of a sampling period of --ramp after [default: 1 ms]",
+        value_name: "CLOCKS",
+        values: Values::Parsed {
+            shape: Shape::Numbers { least: 2, most: 1 << 30, none: false, values: "clocks such as 100 or 1000" },
+            parse: |text| whole(text, 2, 1 << 30, "a number of clocks").map(Some),
+            text: |clocks| text_or_none(clocks.as_ref()),
+        },
+        about: "clocks of a sampling period of --ramp after (default: 1 ms)",
+        default: None,
     };
     /// Acceleration after the interpolator.
     SMOOTH: Smooth = OptionDef {

@@ -24,6 +24,8 @@ pub fn axis_scope(m: Scope<'_>, axis: usize) -> Scope<'_> {
 ///
 /// - `d` and the letter, 2 bits: the signed pulse of the last edge, -1, 0 or +1.
 /// - The letter, `bits` bits in two's complement: the machine position in BLU, preset with the first block.
+///
+/// Returns the word of that preset.
 pub fn axis_counter<'m>(
     m: Scope<'m>,
     block: &Block<'m>,
@@ -31,11 +33,30 @@ pub fn axis_counter<'m>(
     bits: u32,
     pulse: Signal<'m>,
     negative: Signal<'m>,
-) {
-    let signed_pulse = m.reg_signed(&format!("d{letter}"), 2);
-    signed_pulse.set((pulse & negative).concat(pulse).as_signed());
+) -> Signal<'m> {
+    let names = [&format!("d{letter}"), letter];
+    position_counter(m, names, bits, [pulse, negative], block.preset_position, || block.position(letter, bits))
+}
+
+/// The signed pulse and the position of an axis by these names. Returns what the position is preset with.
+pub(super) fn position_counter<'m>(
+    m: Scope<'m>,
+    [moved, place]: [&str; 2],
+    bits: u32,
+    [pulse, negative]: [Signal<'m>; 2],
+    load: Signal<'m>,
+    preset: impl FnOnce() -> Signal<'m>,
+) -> Signal<'m> {
+    let signed_pulse = m.reg_signed(moved, 2);
+    signed_pulse.set(signed(pulse, negative));
     let (up, down) = (pulse & !negative, pulse & negative);
-    let position = m.reg_signed(letter, bits).shown(Format::Analog);
-    let preset = block.position(letter, bits);
-    up_down_counter(position, &[(block.preset_position, preset)], up, down, m.lit_signed(2, 1));
+    let position = m.reg_signed(place, bits).shown(Format::Analog);
+    let preset = preset();
+    up_down_counter(position, &[(load, preset)], up, down, m.lit_signed(2, 1));
+    preset
+}
+
+/// A pulse, in the negative direction where `negative` is 1 (1 bit each), as a number of 2 bits.
+pub(super) fn signed<'m>(pulse: Signal<'m>, negative: Signal<'m>) -> Signal<'m> {
+    (pulse & negative).concat(pulse).as_signed()
 }

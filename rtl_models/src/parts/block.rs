@@ -6,6 +6,7 @@ use stepwave_netlist::dsl::{Register, Scope, Signal};
 use crate::hardware::Hardware;
 use crate::machine::input_name;
 use crate::options::{ACCEL, Radix};
+use crate::parts::{AxisAfter, Period, SETTLE};
 
 /// Block loader and sequencer.
 ///
@@ -23,8 +24,12 @@ pub struct Block<'m> {
     registers: [Register<'m>; 4],
     /// 1 bit: this edge takes the words into a buffer in front of the registers, if there is one.
     write: Option<Signal<'m>>,
-    /// 1 bit each, where blocks may be run one by one: they are, and the next has not been started.
-    single: Option<[Signal<'m>; 2]>,
+    /// 1 bit, where blocks may be run one by one: they are.
+    single: Option<Signal<'m>>,
+    /// 1 bit, where it may be so: the next block must not begin yet.
+    stopped: Option<Signal<'m>>,
+    /// Acceleration after the interpolator, if there is one.
+    after: Option<Period<'m>>,
 }
 
 impl<'m> Block<'m> {
@@ -35,7 +40,8 @@ impl<'m> Block<'m> {
         let load = m.input("load", 1);
         let preset_position = load & m.input("preset_position", 1);
         let registers = ["busy", "done", "loaded", "stepped"].map(|name| m.reg(name, 1));
-        Block { words: m, load, preset_position, busy: registers[0].q, registers, write: None, single: None }
+        let (write, single, stopped, after) = (None, None, None, None);
+        Block { words: m, load, preset_position, busy: registers[0].q, registers, write, single, stopped, after }
     }
 
     /// The unsigned load word of a register.
@@ -105,13 +111,19 @@ impl<'m> Block<'m> {
     /// 1 bit: blocks are run one by one.
     #[must_use]
     pub fn single(&self, m: Scope<'m>) -> Signal<'m> {
-        self.single.map_or_else(|| m.lit(1, 0), |[single, _]| single)
+        self.single.unwrap_or_else(|| m.lit(1, 0))
     }
 
-    /// 1 bit: blocks are run one by one, and the next has not been started.
+    /// 1 bit: the next block must not begin yet, as blocks are run one by one and it has not been started, or as it is to
+    /// find the filters after the interpolator empty.
     #[must_use]
     pub fn stopped(&self, m: Scope<'m>) -> Signal<'m> {
-        self.single.map_or_else(|| m.lit(1, 0), |[_, stopped]| stopped)
+        self.stopped.unwrap_or_else(|| m.lit(1, 0))
+    }
+
+    /// What the pulses of an axis go through after the interpolator, if there is anything.
+    pub(crate) fn after(&self, axis: usize) -> Option<AxisAfter<'m>> {
+        self.after.and_then(|after| after.axis(axis))
     }
 
     /// Closes the sequencer. Each is 1 bit: `ready`, the registers are loaded after this edge; `step`, a step is
@@ -139,6 +151,8 @@ impl<'m> Block<'m> {
 /// - `more`, an input: the host has a further block. `call`: it may write it. `at_end`: all is done.
 /// - A block begins, and the buffer is free again, at an edge at which it is full and nothing runs.
 /// - `single`, an input of a machine that accelerates: a block begins only after `start` = 1 while nothing runs.
+/// - `settle`, a word of a machine that accelerates [after its interpolator](Period): the block begins only after the filters
+///   are empty. `at_end` waits for that too.
 #[derive(Clone, Copy, Debug)]
 pub struct Buffer<'m> {
     m: Scope<'m>,
@@ -150,12 +164,15 @@ pub struct Buffer<'m> {
     more: Signal<'m>,
     /// Inputs of the operator, and whether the next block is started.
     operator: Option<([Signal<'m>; 2], Register<'m>)>,
+    /// Acceleration after the interpolator, and the word of the next block for it.
+    after: Option<(Period<'m>, Register<'m>)>,
 }
 
 impl<'m> Buffer<'m> {
     /// Ports and state in the scope `block`.
     #[must_use]
     pub fn new(m: Scope<'m>, hardware: &Hardware) -> Buffer<'m> {
+        let after = Period::new(m, hardware);
         let m = m.scope("block");
         let write = m.input("load", 1);
         let preset = write & m.input("preset_position", 1);
@@ -163,7 +180,12 @@ impl<'m> Buffer<'m> {
         let (full, more) = (m.reg("full", 1), m.input("more", 1));
         let operator = || (["single", "start"].map(|name| m.input(name, 1)), m.reg("started", 1));
         let operator = hardware.get(&ACCEL).map(|_| operator());
-        Buffer { m, write, preset, full, registers, more, operator }
+        let after = after.map(|after| {
+            let settle = m.reg(&format!("next_{}", SETTLE.name()), 1);
+            settle.when(write, m.input(&input_name(SETTLE.name()), 1)).else_hold();
+            (after, settle)
+        });
+        Buffer { m, write, preset, full, registers, more, operator, after }
     }
 
     /// 1 bit: the buffer holds a block.
@@ -181,18 +203,23 @@ impl<'m> Buffer<'m> {
     /// The block loader that the buffer feeds. While `wait` (1 bit) is 1 the buffer is not ready yet.
     #[must_use]
     pub fn block(self, wait: Signal<'m>) -> Block<'m> {
-        let Buffer { m, write, preset, full, registers, more, operator } = self;
+        let Buffer { m, write, preset, full, registers, more, operator, after } = self;
         let busy = registers[0].q;
         let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
-        let single = operator.map(|([single, _], started)| [single, m.name("stopped", single & !started.q)]);
-        let wait = single.map_or(wait, |[_, stopped]| wait | stopped);
+        let single = operator.map(|([single, _], _)| single);
+        let unstarted = operator.map(|([single, _], started)| single & !started.q);
+        let unsettled = after.map(|(after, settle)| settle.q & !after.empty());
+        let stopped = unstarted.into_iter().chain(unsettled).reduce(|a, b| a | b).map(|any| m.name("stopped", any));
+        let wait = stopped.map_or(wait, |stopped| wait | stopped);
         let transfer = m.name("transfer", full.q & !wait & !busy);
         if let Some(([_, start], started)) = operator {
             started.when(transfer, no).when(start & !busy, yes).else_hold();
         }
         full.when(write, yes).when(transfer, no).else_hold();
         m.name("call", more & !full.q);
-        m.name("at_end", !more & !full.q & !busy);
-        Block { words: m, load: transfer, preset_position: preset, busy, registers, write: Some(write), single }
+        let ended = !more & !full.q & !busy;
+        m.name("at_end", after.map_or(ended, |(after, _)| ended & after.empty()));
+        let (write, after) = (Some(write), after.map(|(after, _)| after));
+        Block { words: m, load: transfer, preset_position: preset, busy, registers, write, single, stopped, after }
     }
 }

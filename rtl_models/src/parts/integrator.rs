@@ -1,7 +1,7 @@
 //! The DDA integrator.
 
 use stepwave_netlist::cells::Format;
-use stepwave_netlist::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::{Block, Iteration, decimal_adder, digit_adder};
 use crate::hardware::Hardware;
@@ -50,6 +50,20 @@ pub fn integrator<'m>(
     };
     remainder.when(block.load, word).when(step.add, sum).else_hold();
     m.name("carry", carry & step.add)
+}
+
+/// A remainder register that begins at 0 and is never loaded, of a fine line: at an edge with `add` = 1 (1 bit) it adds the
+/// integrand, as wide. Returns the carry, 1 bit. After 2^n additions of n bits there were as many carries as the integrand
+/// says, and it is 0 again.
+pub(super) fn fine_line<'m>(
+    m: Scope<'m>,
+    remainder: Register<'m>,
+    integrand: Signal<'m>,
+    add: Signal<'m>,
+) -> Signal<'m> {
+    let (carry, sum) = remainder.q.carrying_add(integrand);
+    remainder.when(add, sum).else_hold();
+    m.name("carry", carry & add)
 }
 
 /// How the registers of integrators are shown: decimal digits in radix 10, bits where they shift, else a number.

@@ -1,6 +1,7 @@
 //! Parts: clocked components that more than one interpolator is made of. A part is a plain function, or a struct where
 //! a register has to exist before the logic that drives it.
 
+mod after;
 mod arc_frame;
 mod axis;
 mod beats;
@@ -34,10 +35,12 @@ mod serial_divider;
 mod serial_multiplier;
 mod serial_root;
 mod sign;
+mod smoothing;
 mod space_line;
 mod step_output;
 mod wide;
 
+pub use after::{AxisAfter, Period, SETTLE};
 use arc_frame::square_gain;
 pub use arc_frame::{ArcFrame, XI_YI, count_coordinates, square_gains};
 pub use axis::{POSITION, SIGN, axis_counter, axis_scope};
@@ -53,6 +56,7 @@ pub use end_counters::{E, END, EndCounters, handed_over};
 pub use end_radius::EndRadius;
 pub use fine_stage::{BURST, DISPLACEMENT, FineStage, POINT, TARGET};
 pub use follower::{FOLLOWER_SIGN, REST, SHARE, WHOLE, followers, followers_of};
+use integrator::fine_line;
 pub use integrator::{JR, JV, digits, integrator, rotated};
 pub use integrator_pair::{IntegratorPair, PairSide};
 pub use iteration::{Iteration, PLACE};
@@ -77,6 +81,7 @@ pub use serial_divider::SerialDivider;
 pub use serial_multiplier::SerialMultiplier;
 pub use serial_root::SerialRoot;
 pub use sign::{magnitude, magnitude_of_difference, negated, with_sign};
+pub(crate) use smoothing::{NONE, Taking, YOUNGER, exponential, integrand, moving_sum};
 pub(crate) use space_line::space_words;
 pub use space_line::{DEVIATION, IN_PLANE, IN_SPACE, LONG, SpaceAxis, SpaceLine, TRAVEL};
 pub use step_output::{StepOutput, Timer};

@@ -7,6 +7,7 @@
 //! source continues: pulses keep their distance across blocks.
 
 mod acceleration;
+mod after;
 pub mod bresenham;
 pub mod cim;
 pub mod dda;
@@ -18,6 +19,7 @@ pub mod ppc;
 pub mod stepgen;
 
 pub use acceleration::{Acceleration, Profile};
+pub use after::After;
 
 use std::fmt;
 
@@ -29,7 +31,7 @@ use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{Options, chosen};
-use crate::parts::{FASTEST_RATE, POSITION, PULSE_RATE, RATE_BITS};
+use crate::parts::{FASTEST_RATE, POSITION, PULSE_RATE, RATE_BITS, SETTLE};
 use crate::plan::Plan;
 use crate::promise::Promise;
 use crate::registers::{Reg, Rule};
@@ -193,6 +195,7 @@ impl Moves for Paced {
 
     fn plan(&self, size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
         (self.plan)(size, plan)?;
+        after::plan(plan)?;
         acceleration::plan(plan, (self.most_steps)(size, plan))
     }
 
@@ -232,6 +235,7 @@ impl Paced {
                 None => block.words.set(PULSE_RATE, FASTEST_RATE),
                 Some(by) => block.words.clone().and(by.alone(block.steps, block.length)),
             };
+            let words = if After::of(hardware).is_some() { words.set(SETTLE, false) } else { words };
             let words = words.set(number, index).set(feed, 0);
             let from = curve.from().iter().enumerate();
             from.fold(words, |words, (axis, &from)| words.set(POSITION.of(axis), from))

@@ -117,6 +117,7 @@ impl Bench {
                 .collect::<Result<_, ModelError>>()?,
             inputs,
             buffer: None,
+            after: None,
             traps,
             design: elaborate(netlist)?,
         })
