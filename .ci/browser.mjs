@@ -126,7 +126,48 @@ async function compare({ page, open }, name, decimal = []) {
       if (counter && at > 0) assert.equal(BigInt(coordinate), numberOf(counter, vcd.at(counter, at), true), `${name} at ${at}`);
     }
   }
-  console.log(`${name}: ${clocks.length} clocks, ${vcd.names.length} signals, ${csv.rows.length} rows: alike`);
+  const drawn = await compareDiagram(page, name, vcd, clocks);
+  console.log(`${name}: ${clocks.length} clocks, ${vcd.names.length} signals, ${csv.rows.length} rows, ${drawn} values in the diagram: alike`);
+}
+
+/** The description of the first run of a page, and the run as bytes, how long the description is, and as text. */
+function unpacked(file) {
+  const text = readFileSync(join(folder, file), 'utf8');
+  const packed = /class="run"[^>]*>([^<]*)</.exec(text)[1];
+  const all = inflateSync(Buffer.from(packed, 'base64'));
+  const length = all.readUInt32LE(0);
+  return { text, packed, all, length, meta: JSON.parse(all.subarray(4, 4 + length)) };
+}
+
+/** The block diagram shows at its wires what the wave holds, and the flags that are raised. */
+async function compareDiagram(page, name, vcd, clocks) {
+  await page.click('#diagram-button');
+  const { meta } = unpacked(`${name}/page.html`);
+  const netOf = new Map(meta.signals.map(({ scopes, name: leaf, nets }) => [[...scopes, leaf].join('.'), nets.length === 1 ? meta.nets[nets[0]]?.[0] : undefined]));
+  const seen = new Set();
+  for (const at of clocks) {
+    await shownAt(page, at, 'call');
+    const drawn = await page.evaluate(() => ({
+      texts: [...document.querySelectorAll('#diagram-tab text[data-net]')].map(({ dataset, textContent }) => [Number(dataset.net), dataset.value, textContent]),
+      raised: [...document.querySelectorAll('#diagram-tab .raised')].flatMap(({ dataset }) => dataset.component.split(' ')),
+      listed: Object.fromEntries([...document.querySelectorAll('#values [data-name]')].map((item) => [item.dataset.name, item.querySelector('.value').textContent])),
+    }));
+    for (const variable of vcd.names) {
+      const bits = BigInt(`0b${vcd.at(variable, at)}`);
+      for (const [net, value, text] of drawn.texts.filter(([net]) => net === netOf.get(variable.path))) {
+        assert.equal(BigInt(value), bits, `${name} at ${at}: ${variable.path} in the diagram`);
+        if (variable.kind !== 'parameter') assert.equal(text, drawn.listed[variable.path], `${name} at ${at}: ${variable.path} as text`);
+        seen.add(net);
+      }
+      const isFlag = meta.signals.some(({ role, scopes, name: leaf }) => role === 'flag' && [...scopes, leaf].join('.') === variable.path);
+      if (isFlag && bits === 1n) assert.ok(drawn.raised.includes(variable.path), `${name} at ${at}: ${variable.path} is raised`);
+    }
+    if (!vcd.names.some((variable) => BigInt(`0b${vcd.at(variable, at)}`) === 1n && meta.signals.some(({ role, scopes, name: leaf }) => role === 'flag' && [...scopes, leaf].join('.') === variable.path))) {
+      assert.deepEqual(drawn.raised, [], `${name} at ${at}`);
+    }
+  }
+  if (meta.diagram) assert.ok(seen.size > 2, `${name}: ${seen.size} values in the diagram`);
+  return seen.size;
 }
 
 /** Keys move the cursor, from wherever the focus is. */
@@ -257,13 +298,9 @@ async function zoom({ context, page, open }) {
 
 /** A block diagram in a page: texts and elements with the index of a net follow the cursor. */
 async function diagram({ page, open }) {
-  const text = readFileSync(join(folder, 'trap/page.html'), 'utf8');
-  const packed = /class="run"[^>]*>([^<]*)</.exec(text)[1];
-  const all = inflateSync(Buffer.from(packed, 'base64'));
-  const length = all.readUInt32LE(0);
-  const meta = JSON.parse(all.subarray(4, 4 + length));
+  const { text, packed, all, length, meta } = unpacked('trap/page.html');
   const net = (name) => meta.nets[meta.signals.find((signal) => signal.name === name).nets[0]][0];
-  meta.diagram = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 60"><g data-component="ppc_line.f"><rect width="60" height="40"/></g>`
+  meta.diagram = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 60"><g data-component="ppc_line.f_add_overflow ppc_line.f_sub_overflow"><rect width="60" height="40"/></g>`
     + `<text id="of-f" y="20" data-net="${net('f')}"/><path id="of-x" d="M0 0h9" data-net="${net('take_x')}"/></svg>`;
   const json = Buffer.from(JSON.stringify(meta));
   const head = Buffer.alloc(4);
@@ -276,7 +313,7 @@ async function diagram({ page, open }) {
     await shownAt(page, clock, 'call');
     assert.equal(await page.textContent('#of-f'), f);
     assert.equal(await page.getAttribute('#of-x', 'data-value'), x);
-    assert.equal(await page.evaluate(() => document.querySelector('[data-component]').classList.contains('raised')), raised);
+    assert.equal(await page.evaluate(() => document.querySelector('#diagram-tab [data-component]').classList.contains('raised')), raised);
   }
   console.log('a block diagram follows the cursor');
 }
@@ -310,7 +347,7 @@ async function looks({ page, open }) {
 async function check() {
   const one = await browser();
   const decimal = ['jvx', 'jvy', 'jrx', 'jry', 'jvx_in', 'jvy_in', 'jrx_in', 'jry_in'];
-  for (const name of ['line', 'arc', 'trap', 'data', 'spline', 'nurbs', 'window', 'part', 'own']) await compare(one, name);
+  for (const name of ['line', 'arc', 'trap', 'data', 'spline', 'nurbs', 'window', 'part', 'own', 'imported']) await compare(one, name);
   await compare(one, 'decimal', decimal);
   await keys(one);
   await zoom(one);

@@ -47,18 +47,9 @@ pub(super) fn draw(
     path: &Path,
     files: &mut Outputs,
 ) -> Result<String, Error> {
-    let part = Part { scope: args.scope.clone(), depth: args.levels };
+    let part = Part { scope: args.scope.clone(), depth: args.levels, most: None };
     let drawn = schematic::draw(design.netlist(), outputs, &part)?;
     files.write(path, &drawn.svg)?;
-    let closed = if drawn.depth == drawn.levels {
-        String::new()
-    } else {
-        format!(
-            ", scopes {} of {} levels deep: --levels {} opens more of them, --scope PATH draws one alone",
-            drawn.depth,
-            drawn.levels,
-            drawn.depth + 1
-        )
-    };
+    let closed = drawn.closed().map_or_else(String::new, |closed| format!(", {closed}"));
     Ok(format!("the block diagram has {} symbols{closed}\n", drawn.symbols))
 }

@@ -169,3 +169,37 @@ fn a_page_goes_to_standard_output_alone_and_not_where_it_does_not_belong() {
         refused(words, &[says]);
     }
 }
+
+#[test]
+fn a_page_has_the_block_diagram_of_what_ran_or_says_why_not() {
+    let folder = Folder::new();
+    folder.good("run ppc-line --to 6,4 --html line.html");
+    folder.good("export ppc-line --to 6,4 --schematic line.svg --netlist line.net");
+    let [run] = &runs(&folder.read("line.html"))[..] else { panic!("one run") };
+    assert_eq!(run["diagram"], folder.read("line.svg"));
+    assert!(run["diagram_note"].is_null());
+    // Every register is shown at a wire, by the index of its net.
+    let nets: Vec<u64> = run["nets"].as_array().unwrap().iter().filter_map(|net| net[0].as_u64()).collect();
+    for signal in run["signals"].as_array().unwrap().iter().filter(|signal| signal["role"] == "register") {
+        let net = nets[usize::try_from(signal["nets"][0].as_u64().unwrap()).unwrap()];
+        let value = "<text class=\"value\" x=\"";
+        let shown = folder
+            .read("line.svg")
+            .lines()
+            .any(|line| line.starts_with(value) && line.contains(&format!("data-net=\"{net}\"")));
+        assert!(shown, "{signal}");
+    }
+    folder.good("sim line.net --clocks 9 --html own.html");
+    let [own] = &runs(&folder.read("own.html"))[..] else { panic!("one run") };
+    assert!(own["diagram"].as_str().unwrap().contains(">take_x<"));
+    // 400 registers in one scope.
+    let mut wide = "netlist wide\n%0:1 = input\n".to_owned();
+    (1..=400).for_each(|net| wide += &format!("%{net}:1 = register reset 0x0 next %{}\n", net - 1));
+    wide += "name %0 in 0 \"d\" unsigned\n";
+    folder.write("wide.net", &wide);
+    folder.good("sim wide.net --clocks 3 --html wide.html");
+    let [wide] = &runs(&folder.read("wide.html"))[..] else { panic!("one run") };
+    let note = "wide has 401 symbols in its block diagram, and 300 are the most: draw one scope alone, as `stepwave export` does with \
+                --schematic FILE --scope PATH";
+    assert_eq!((&wide["diagram"], &wide["diagram_note"]), (&Value::Null, &json!(note)));
+}

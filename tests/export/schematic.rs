@@ -124,7 +124,7 @@ fn a_counter_is_drawn_as_a_textbook_draws_it() {
 #[test]
 fn scopes_are_closed_below_a_depth_and_one_can_be_drawn_alone() {
     let netlist = text::parse(COUNTER).unwrap();
-    let part = |scope: Option<&str>, depth| Part { scope: scope.map(str::to_owned), depth };
+    let part = |scope: Option<&str>, depth| Part { scope: scope.map(str::to_owned), depth, most: None };
     let closed = draw(&netlist, &[Net(9)], &part(None, Some(0))).unwrap();
     assert_eq!((closed.depth, closed.levels), (0, 1));
     let figure = Figure::read(&closed.svg);

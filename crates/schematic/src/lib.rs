@@ -48,6 +48,8 @@ pub struct Part {
     pub scope: Option<String>,
     /// Levels of scopes whose inside is drawn, 0 for boxes alone; as many as are readable where it is not given.
     pub depth: Option<usize>,
+    /// Symbols that there may be, where fewer than [`MOST_DRAWN`].
+    pub most: Option<usize>,
 }
 
 /// A drawing.
@@ -76,16 +78,29 @@ pub enum DrawError {
     },
     /// There would be too many symbols.
     #[error(
-        "{scope} has {symbols} symbols at depth {depth}, and {MOST_DRAWN} are the most: draw a part (--scope PATH) or less of it (--depth)"
+        "{scope} has {symbols} symbols in its block diagram, and {most} are the most: draw one scope alone, as `stepwave export` \
+         does with --schematic FILE --scope PATH"
     )]
     TooMany {
         /// What would be drawn.
         scope: String,
         /// Its symbols.
         symbols: usize,
-        /// Levels of scopes.
-        depth: usize,
+        /// Symbols that there may be.
+        most: usize,
     },
+}
+
+impl Drawing {
+    /// What is not shown, and how it is, where scopes are closed.
+    #[must_use]
+    pub fn closed(&self) -> Option<String> {
+        let Drawing { depth, levels, .. } = self;
+        (depth < levels).then(|| {
+            let more = depth + 1;
+            format!("scopes {depth} of {levels} levels deep: --levels {more} opens more of them, --scope PATH draws one alone")
+        })
+    }
 }
 
 /// Draws a netlist, or a part of it, with outputs at its right.
@@ -101,8 +116,9 @@ pub fn draw(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Drawing, 
     let readable = || (0..=levels).rev().find(|&depth| scene.count(root, depth) <= MOST_SYMBOLS).unwrap_or(0);
     let depth = part.depth.map_or_else(readable, |depth| depth.min(levels));
     let symbols = scene.count(root, depth);
-    if symbols > MOST_DRAWN {
-        return Err(DrawError::TooMany { scope: netlist.scope_path(root), symbols, depth });
+    let most = part.most.unwrap_or(MOST_DRAWN).min(MOST_DRAWN);
+    if symbols > most {
+        return Err(DrawError::TooMany { scope: netlist.scope_path(root), symbols, most });
     }
     let figure = scene::View::new(&scene, root, depth, outputs).figure();
     Ok(Drawing { svg: svg::svg(&figure, &netlist.scope_path(root)), depth, levels, symbols })

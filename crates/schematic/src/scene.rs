@@ -42,6 +42,8 @@ pub(crate) struct View<'s> {
     depth: usize,
     outputs: BTreeSet<Net>,
     names: HashMap<Net, String>,
+    /// Names that nets have in a scope.
+    local: HashMap<(Net, ScopeId), String>,
     wired: BTreeSet<Net>,
     /// Symbols that read each net.
     readers: BTreeMap<Net, Vec<usize>>,
@@ -178,8 +180,12 @@ impl<'s> View<'s> {
     pub(crate) fn new(scene: &'s Scene<'s>, root: ScopeId, depth: usize, outputs: &[Net]) -> View<'s> {
         let outputs = outputs.iter().copied().collect();
         let names = names(scene);
+        let mut local = HashMap::new();
+        for named in scene.fold.netlist.names.iter().filter(|named| !named.is_wide()) {
+            local.entry((named.net, named.scope)).or_insert_with(|| named.name.clone());
+        }
         let (wired, readers) = (BTreeSet::new(), BTreeMap::new());
-        let mut view = View { scene, root, depth, outputs, names, wired, readers };
+        let mut view = View { scene, root, depth, outputs, names, local, wired, readers };
         view.find_wires();
         view
     }
@@ -236,8 +242,7 @@ impl<'s> View<'s> {
 
     /// How a net is written in a scope: by its own name alone where it is of that scope.
     fn written(&self, net: Net, scope: ScopeId) -> Option<String> {
-        let named = self.scene.fold.named(net).filter(|named| named.scope == scope && !named.is_wide());
-        named.map(|named| named.name.clone()).or_else(|| self.names.get(&net).cloned())
+        self.local.get(&(net, scope)).or_else(|| self.names.get(&net)).cloned()
     }
 
     /// Whether a symbol that is outside of the view, or of this scope, has a net of it, or reads one.

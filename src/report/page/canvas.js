@@ -19,6 +19,7 @@ const SIGNS = {
   before_block: 'M8 3v10L2 8zM14 3v10L8 8z', next_block: 'M2 3v10l6-5zM8 3v10l6-5z', before_step: 'M11 3v10L4 8z',
   next_step: 'M5 3v10l7-5z', fit: 'M2 2h5v2H4v3H2zM9 2h5v5h-2V4H9zM2 9h2v3h3v2H2zM12 9h2v5H9v-2h3z', zoom_in: 'M7 3h2v4h4v2H9v4H7V9H3V7h4z',
   zoom_out: 'M3 7h10v2H3z', light: 'M8 5a3 3 0 1 1 0 6 3 3 0 0 1 0-6zM7 1h2v2H7zM7 13h2v2H7zM1 7h2v2H1zM13 7h2v2h-2z',
+  large: 'M2 2h6L5.5 4.5 8 7 7 8 4.500 5.500 2 8zM14 14H8l2.500-2.500L8 9l1-1 2.500 2.500L14 8z',
   dark: 'M10 1.5A6.5 6.5 0 1 0 14.5 10 5.5 5.5 0 0 1 10 1.5z',
 };
 

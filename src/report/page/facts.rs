@@ -39,8 +39,6 @@ pub(crate) struct Facts {
     pub(crate) outline: Vec<Vec<f64>>,
     /// Text of the program.
     pub(crate) text: Option<String>,
-    /// The block diagram: an SVG whose elements have the index of their net in `data-net`.
-    pub(crate) diagram: Option<String>,
 }
 
 impl Facts {
@@ -72,7 +70,6 @@ impl Facts {
             "worst": worst,
             "outline": self.outline,
             "text": self.text.as_ref().map(|text| text.lines().collect::<Vec<_>>()),
-            "diagram": self.diagram,
         })
     }
 }
@@ -103,7 +100,6 @@ impl From<&Report> for Facts {
             worst,
             outline,
             text,
-            diagram: None,
         }
     }
 }

@@ -42,7 +42,7 @@ class Panels {
     this.methods?.mark(index);
     this.report(run);
     const first = comparison && !this.opened ? 'methods' : run.moves.length ? 'program' : 'steps';
-    this.open(has[this.opened] ? this.opened : has[first] ? first : 'report');
+    this.open([this.opened, first, 'diagram', 'report'].find((name) => has[name]));
   }
 
   open(name) {
@@ -140,7 +140,7 @@ class Panels {
     const { clock } = this.cursor;
     if (this.opened === 'steps') this.steps?.mark(this.run.row(clock));
     if (this.opened === 'program') this.moves?.mark(this.rowOfMove.get(this.run.block(clock)) ?? -1);
-    if (this.opened === 'diagram') this.diagram.moved();
+    this.diagram.moved();
   }
 }
 

@@ -18,8 +18,12 @@ use super::track::{StepRows, Track};
 use crate::Error;
 use crate::report::program::{Units, move_json};
 use crate::report::workpiece;
+use crate::schematic::{self, DrawError, Drawing, Part};
 use crate::testbench::{BlockReport, Observer, ObserverError, SpeedRow, Step, Testbench, WaveWriter};
 use crate::waves::{self, Shown, WaveOptions};
+
+/// Symbols of a block diagram in a page, at most.
+const MOST_SYMBOLS: usize = 300;
 
 /// Looks on for a page.
 pub(crate) struct RunRecord {
@@ -34,6 +38,8 @@ pub(crate) struct RunRecord {
     leading: &'static [&'static str],
     window: (u64, u64),
     limit: Limit,
+    /// The block diagram, or why there is none.
+    diagram: Result<Drawing, DrawError>,
 }
 
 /// Bytes that a page may hold before they are packed, and what to do where it becomes larger.
@@ -60,7 +66,8 @@ impl RunRecord {
     /// # Errors
     /// The options name no signal.
     pub(crate) fn of_design(shown: Shown<'_>, args: &WaveOptions, limit: Limit) -> Result<RunRecord, Error> {
-        RunRecord::new(shown, &[], args, limit, None)
+        let outputs = schematic::unread(shown.design.netlist());
+        RunRecord::new(shown, [&[], &outputs], args, limit, None)
     }
 
     /// Of a machine that interpolates, with a clock in Hz, a BLU in mm, and one of rotary axes in degrees.
@@ -77,7 +84,13 @@ impl RunRecord {
         let table = machine.table.iter().map(|(_, port)| port);
         let ports = table.chain(&machine.positions).chain([&machine.loaded]);
         let ports: Vec<Net> = ports.map(|port| port.net).collect();
-        let mut record = RunRecord::new(bench.into(), &ports, args, limit, args.speed.then(|| SpeedRow::new(bench)))?;
+        let mut record = RunRecord::new(
+            bench.into(),
+            [&ports, &bench.ports()],
+            args,
+            limit,
+            args.speed.then(|| SpeedRow::new(bench)),
+        )?;
         let head = record.head(bench);
         let (track, steps) = (Track::new(bench, record.window), StepRows::default());
         let units = Units { clock_hz, blu_mm, blu_degrees };
@@ -87,7 +100,7 @@ impl RunRecord {
 
     fn new(
         shown: Shown<'_>,
-        ports: &[Net],
+        [ports, outputs]: [&[Net]; 2],
         args: &WaveOptions,
         limit: Limit,
         speed: Option<SpeedRow>,
@@ -110,7 +123,9 @@ impl RunRecord {
         let writer = WaveWriter::new(Changes::new(&columns, limit.bytes), waves::window(shown, args)?);
         let (writer, window) = (writer.with_speed(speed), (args.from, args.to.unwrap_or(u64::MAX)));
         let nets = nets.into_iter().map(|(net, width, _)| (net, width)).collect();
-        Ok(RunRecord { writer, probes, nets, streams, interpolator: None, leading: &[], window, limit })
+        let part = Part { most: Some(MOST_SYMBOLS), ..Part::default() };
+        let diagram = schematic::draw(design, outputs, &part);
+        Ok(RunRecord { writer, probes, nets, streams, interpolator: None, leading: &[], window, limit, diagram })
     }
 
     /// The same with signals that come first: their paths without the design's name.
@@ -148,6 +163,13 @@ impl RunRecord {
         meta["first"] = json!(written.clocks.0);
         meta["last"] = json!(written.clocks.1);
         meta["nets"] = json!(nets);
+        match &self.diagram {
+            Ok(drawn) => {
+                meta["diagram"] = json!(drawn.svg);
+                meta["diagram_note"] = json!(drawn.closed());
+            }
+            Err(none) => meta["diagram_note"] = json!(none.to_string()),
+        }
         meta["leading"] = json!(self.leading);
         meta["signals"] = self.probes.iter().map(|probe| signal(probe, &self.streams)).collect();
         if let Some(Interpolator { head, track, steps, moves, .. }) = self.interpolator {
