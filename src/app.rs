@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use clap::Parser;
 
 use crate::Error;
-use crate::cli::{Cli, usage};
+use crate::cli::{Cli, help_of_model, usage};
 use crate::models::Catalogue;
 use crate::{commands, output, stop};
 
@@ -61,6 +61,11 @@ fn run(models: Catalogue) -> Result<(), Error> {
     stop::watch()?;
     models.install()?;
     bound_threads()?;
+    // No name of a model holds what is not Unicode.
+    let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    if let Some(help) = help_of_model(&words) {
+        return output::print(&help);
+    }
     match Cli::try_parse() {
         Ok(cli) => commands::dispatch(&cli),
         Err(error) if error.use_stderr() => Err(usage(&error)),

@@ -13,10 +13,12 @@ mod endings;
 mod hardware;
 mod machine;
 mod names;
+mod of_model;
 mod own;
 mod program;
 mod proof;
 mod sweep;
+mod titled;
 mod usage;
 mod values;
 mod widths;
@@ -28,11 +30,13 @@ pub(crate) use hardware::HardwareArgs;
 pub(crate) use machine::{MachineArgs, Travel};
 use names::model_name;
 pub(crate) use names::{Registers, all_registers, known_register, listed, registers};
+pub(crate) use of_model::help_of_model;
 pub(crate) use own::{BenchArgs, CheckArgs, ImportArgs, SimArgs};
 use program::MethodParser;
 pub(crate) use program::{Method, ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
+pub(crate) use titled::Titled;
 pub(crate) use usage::usage;
 pub(crate) use values::{ClockArgs, Point, SimulationArgs, one_of, parse_decimals, parse_point};
 pub(crate) use widths::WidthsArgs;
@@ -52,33 +56,33 @@ pub(crate) struct Cli {
 #[command(defer = true)]
 pub(crate) enum Command {
     /// Every model: name, method, curves, registers with default widths, options
-    List(ListArgs),
+    List(Titled<ListArgs>),
     /// Build a model's netlist, simulate it clock by clock, write waves, step table, report, picture
-    Run(Box<RunArgs>),
+    Run(Box<Titled<RunArgs>>),
     /// A whole NC program through one machine: compensation, block buffer, feed; one wave, one step table, one report
-    Program(Box<ProgramArgs>),
+    Program(Box<Titled<ProgramArgs>>),
     /// Many geometries and hardware choices, a row each: clocks, path error, overflow; CSV, Parquet and heat maps
-    Sweep(Box<SweepArgs>),
+    Sweep(Box<Titled<SweepArgs>>),
     /// Every method on one curve: steps, clocks, greatest error, widest register
-    Compare(Box<CompareArgs>),
+    Compare(Box<Titled<CompareArgs>>),
     /// The least width of every register over a box of geometries, how it is known, and what happens one bit below
-    Widths(Box<WidthsArgs>),
+    Widths(Box<Titled<WidthsArgs>>),
     /// What a machine of a given size takes by each method: widths, clock, feed, path error
-    Machine(Box<MachineArgs>),
+    Machine(Box<Titled<MachineArgs>>),
     /// Prove, for all geometries and widths: no register overflows, the end point is reached exactly
-    Prove(Box<ProveArgs>),
+    Prove(Box<Titled<ProveArgs>>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)
-    Diff(DiffArgs),
+    Diff(Titled<DiffArgs>),
     /// A wave in the terminal (VCD or FST, ours or anybody's)
-    Show(ShowArgs),
+    Show(Titled<ShowArgs>),
     /// Write a machine as Verilog, with a test bench that runs the geometry, or for model checkers and solvers
-    Export(Box<ExportArgs>),
+    Export(Box<Titled<ExportArgs>>),
     /// A design of one's own, in Verilog or VHDL, as a netlist
-    Import(Box<ImportArgs>),
+    Import(Box<Titled<ImportArgs>>),
     /// Every mistake of a netlist in the text form
-    Check(CheckArgs),
+    Check(Titled<CheckArgs>),
     /// Run a netlist by values of its inputs, clock by clock: wave and report
-    Sim(Box<SimArgs>),
+    Sim(Box<Titled<SimArgs>>),
     /// Re-simulate the recorded cases of a folder and compare bit by bit
     #[command(subcommand)]
     Golden(GoldenCommand),
@@ -96,7 +100,11 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  stepwave list\n  stepwave list ppc-arc dda-arc\n  stepwave list dda-line --json")]
 pub(crate) struct ListArgs {
+    /// These models alone
+    #[arg(value_parser = model_name(), hide_possible_values = true)]
+    pub(crate) models: Vec<String>,
     /// As JSON
     #[arg(long)]
     pub(crate) json: bool,

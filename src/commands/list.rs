@@ -3,21 +3,30 @@
 use std::fmt::Write as _;
 
 use crate::models::options::{Shape, Takes};
-use crate::models::{Model, installed};
+use crate::models::{Model, find, installed};
 use serde_json::{Value, json};
 
 use crate::Error;
 use crate::cli::ListArgs;
 use crate::output;
 
-/// Prints every model, by method.
+/// Prints every model, by method, or those that are named.
 pub(crate) fn run(args: &ListArgs) -> Result<(), Error> {
+    let named = args.models.iter().map(|name| find(name));
+    let named: Vec<&'static Model> = named.collect::<Result<_, _>>()?;
+    let models = if named.is_empty() { installed().iter().collect() } else { named };
     if args.json {
-        let models: Vec<Value> = installed().iter().map(as_json).collect();
+        let models: Vec<Value> = models.into_iter().map(as_json).collect();
         return output::print_data(&format!("{:#}\n", json!(models)));
     }
+    if !args.models.is_empty() {
+        let mut text = String::new();
+        let columns = Columns::new(&models);
+        models.iter().for_each(|model| columns.describe(&mut text, model));
+        return output::print(text.trim_start_matches('\n'));
+    }
     let methods = by_method();
-    let mut text = format!("{} models by method\n\n", installed().len());
+    let mut text = format!("{} models by method\n\n", models.len());
     let widest = methods.iter().map(|(method, _)| method.chars().count()).max().unwrap_or(0);
     // Writing to a string cannot fail.
     for (method, models) in &methods {
@@ -26,7 +35,7 @@ pub(crate) fn run(args: &ListArgs) -> Result<(), Error> {
     }
     let _ =
         writeln!(text, "\nWidths are in bits; n holds the largest magnitude of the geometry, or is what --width says.");
-    let columns = Columns::new();
+    let columns = Columns::new(&models);
     for (method, models) in &methods {
         let _ = writeln!(text, "\n{method}\n{}", "─".repeat(method.chars().count()));
         for model in models {
@@ -55,14 +64,18 @@ struct Columns {
 }
 
 impl Columns {
-    fn new() -> Columns {
-        let of_model = |model: &'static Model| model.rows().map(|row| row.label(model.curve().max_axes()));
-        let options = installed().iter().flat_map(|model| model.options).map(|takes| format!("--{}", takes.name()));
+    fn new(models: &[&'static Model]) -> Columns {
+        let of_model = |model: &&'static Model| {
+            let axes = model.curve().max_axes();
+            model.rows().map(move |row| row.label(axes))
+        };
+        let options = models.iter().flat_map(|model| model.options).map(|takes| format!("--{}", takes.name()));
         let widest =
             |texts: &mut dyn Iterator<Item = String>| texts.map(|text| text.chars().count()).max().unwrap_or(0);
+        let rules = |model: &&'static Model| model.rows().map(|row| row.declaration.rule.to_string());
         Columns {
-            name: widest(&mut installed().iter().flat_map(of_model).chain(options)),
-            width: widest(&mut installed().iter().flat_map(Model::rows).map(|row| row.declaration.rule.to_string())),
+            name: widest(&mut models.iter().flat_map(of_model).chain(options)),
+            width: widest(&mut models.iter().flat_map(rules)),
         }
     }
 

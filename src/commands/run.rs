@@ -13,7 +13,7 @@ use crate::output::{self, Outputs};
 use crate::waves::WaveOptions;
 
 /// Models of which textbooks print the integrands that a step used.
-const TEXTBOOK_MODELS: [&str; 3] = ["dda-arc", "dda-conic", "dda-helix"];
+pub(crate) const TEXTBOOK_MODELS: [&str; 3] = ["dda-arc", "dda-conic", "dda-helix"];
 
 /// Runs a model and writes what was asked for.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Error> {

@@ -50,6 +50,73 @@ fn the_help_mentions_every_command_and_the_exit_codes() {
 }
 
 #[test]
+fn the_help_of_a_command_begins_with_the_line_that_lists_it() {
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let all = words(&good("--help"));
+    for command in [
+        "list", "run", "program", "sweep", "compare", "widths", "machine", "prove", "diff", "show", "export", "import",
+        "check", "sim",
+    ] {
+        let help = good(&format!("{command} --help"));
+        let title = words(help.split("\n\n").next().unwrap());
+        assert!(all.contains(&format!(" {command} {title} ")), "{command}: {title}");
+    }
+}
+
+#[test]
+fn the_help_with_a_model_has_the_options_that_it_takes_and_no_others() {
+    for model in stepwave_models::catalogue().iter() {
+        for command in ["run", "export", "widths", "prove", "sweep"] {
+            let help = good(&format!("{command} {} --help", model.name));
+            let begin = format!("{}\n\nIt takes {}.", model.title, model.curve().describe());
+            assert!(
+                help.split_whitespace().collect::<Vec<_>>().join(" ").starts_with(&begin.replace("\n\n", " ")),
+                "{help}"
+            );
+            let lines = help.lines().filter_map(|line| line.strip_prefix("      --"));
+            let shown: BTreeSet<&str> = lines.filter_map(|line| line.split_whitespace().next()).collect();
+            for option in stepwave_models::options::all() {
+                // The sweep has a tolerance of its own for every model.
+                if (command, option.name()) != ("sweep", "tolerance") {
+                    assert_eq!(
+                        shown.contains(option.name()),
+                        model.options.iter().any(|taken| taken.name() == option.name()),
+                        "{command} {} --{}",
+                        model.name,
+                        option.name()
+                    );
+                }
+            }
+        }
+    }
+    let help = good("run --to 8,6 dda-line -h");
+    assert!(
+        help.contains("Usage: stepwave run dda-line [OPTIONS]")
+            && !help.contains("--bezier")
+            && !help.contains("--textbook"),
+        "{help}"
+    );
+    assert!(good("run spline-dda --help").contains("--bezier") && good("run dda-arc --help").contains("--textbook"));
+    // Without a model, all of them.
+    assert!(good("run --help").contains("--bezier") && good("run --help my.net").contains("--bezier"));
+}
+
+#[test]
+fn list_describes_the_models_that_are_named() {
+    let one = good("list dda-arc");
+    assert!(
+        one.starts_with("  dda-arc  ")
+            && !one.contains("dda-line")
+            && good("list").contains(one.lines().next().unwrap())
+    );
+    let two: serde_json::Value = serde_json::from_str(&good("list ramp ppc-line --json")).unwrap();
+    let names: Vec<&str> = two.as_array().unwrap().iter().map(|model| model["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["ramp", "ppc-line"]);
+    let ran = Folder::new().run("list dda-lin");
+    assert!(ran.code == 2 && ran.err.contains("did you mean 'dda-line'"), "{ran:?}");
+}
+
+#[test]
 fn the_examples_of_the_help_work_as_written() {
     let help = good("run --help");
     let examples: Vec<&str> = help.lines().filter_map(|line| line.trim().strip_prefix("stepwave run ")).collect();

@@ -96,7 +96,7 @@ fn what_cannot_be_is_refused_with_a_remedy() {
         ("run ramp-after --to 60 --width rem=1", &["rem of 1", "--width rem=2"]),
         ("run ramp-after --to 60 --smooth sum=65", &["'sum=65'", "sum=64"]),
         ("run ramp-after --to 60 --step 1.5", &["1.5", "whole BLU"]),
-        ("sweep ramp --to 12 --csv -", &["displacements of one axis", "run"]),
+        ("sweep ramp --to 12,3 --csv -", &["displacements of one axis", "2 coordinates"]),
     ] {
         refused(command, hints);
     }

@@ -1,14 +1,14 @@
 use clap::Parser;
 
 use super::*;
-use crate::cli::{Cli, Command, ProgramArgs};
+use crate::cli::{Cli, Command, ProgramArgs, Titled};
 use crate::commands::program;
 use crate::output::Outputs;
 
 /// Rates of the pulse source that come round and that do not, moves of all kinds.
 const TEXT: &str = "G21 G90 G1 X3 Y0.9 F300\nX0.9 Y3.6 F500\nG2 X2.4 Y2.1 I1.5 J0\nG1 X0 Y0 Z0.3\nG0 X1\n";
 
-fn args(words: &str) -> Box<ProgramArgs> {
+fn args(words: &str) -> Box<Titled<ProgramArgs>> {
     match Cli::try_parse_from(words.split(' ')).expect("a command").command {
         Command::Program(args) => args,
         other => panic!("{other:?}"),
