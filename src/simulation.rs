@@ -352,7 +352,7 @@ impl Simulation {
         if let Some(sink) = json {
             files.push(Box::new(JsonFile::new(&report, sink)?));
         }
-        files.extend(plot.map(|sink| report.picture(sink)));
+        files.extend(plot.map(|sink| report.picture(bench, sink)));
         let record = |out| {
             let degrees = report.program().map_or(0.0, |program| program.blu_degrees);
             let units = [self.clock_hz, self.blu_mm, degrees];

@@ -6,6 +6,7 @@ mod file;
 mod geometry;
 pub mod heat;
 pub(crate) mod json;
+mod output_path;
 pub(crate) mod page;
 pub mod plot;
 mod png;
@@ -24,7 +25,9 @@ use stepwave_netlist::OnOverflow;
 
 use crate::output::Sink;
 use crate::program::CutWords;
-use crate::testbench::{CUT_CLOCKS, Ending, Outcome, OverflowEvent, OverflowTally, RegisterRange, Sent, Testbench};
+use crate::testbench::{
+    CUT_CLOCKS, Ending, Outcome, OutputTrack, OverflowEvent, OverflowTally, RegisterRange, Sent, Testbench,
+};
 
 pub use curve::OfCurve;
 pub use file::{JsonFile, PathPicture, RunFile};
@@ -149,11 +152,13 @@ impl Report {
     }
 
     /// The picture of the run, still without points.
-    pub(crate) fn picture(&self, out: Sink) -> Box<dyn RunFile> {
+    pub(crate) fn picture(&self, bench: &Testbench, out: Sink) -> Box<dyn RunFile> {
         match &self.subject {
             Subject::Curve(of) => Box::new(PathPicture::new(of, self.hardware.clocks_of_step(), out)),
-            Subject::Program(_) => {
-                Box::new(Workpiece::new(&self.headline(), out).with_speed(self.clock_hz, self.blu_mm))
+            Subject::Program(of) => {
+                let picture = Workpiece::new(&self.headline(), out);
+                let picture = picture.with_speed(self.clock_hz, self.blu_mm, of.blu_degrees);
+                Box::new(picture.with_output(OutputTrack::of(bench)))
             }
         }
     }

@@ -1,5 +1,9 @@
 //! The speed of a program over time, for its picture: over 32 steps each, in bounded memory.
 
+use std::ops::Range;
+
+use stepwave_nc::{FeedAxes, Position, ToolMove};
+
 use super::plot::{Page, Pair, View};
 use crate::testbench::SpeedTrack;
 
@@ -12,8 +16,13 @@ const FEW_SECONDS: f64 = 20.0;
 #[derive(Clone, Debug)]
 pub(super) struct SpeedChart {
     hz: f64,
-    /// mm/min of a BLU a clock.
-    unit: f64,
+    /// mm/min, and degrees/min of rotary axes, of a BLU a clock.
+    units: [f64; 2],
+    /// Which of both the present block has, by index; and which there were.
+    unit: usize,
+    had: [bool; 2],
+    /// The axes that the feed of the block is along.
+    along: Range<usize>,
     track: SpeedTrack,
     /// Clock of the last row; `None` before the first.
     clock: Option<u64>,
@@ -30,10 +39,21 @@ fn union(a: Option<Pair>, b: Option<Pair>) -> Option<Pair> {
 }
 
 impl SpeedChart {
-    /// With this clock in Hz and this BLU in mm.
-    pub(super) fn new(hz: f64, blu_mm: f64) -> SpeedChart {
-        let track = SpeedTrack::new(3);
-        SpeedChart { hz, unit: 60.0 * hz * blu_mm, track, clock: None, spans: Vec::new(), width: 1 }
+    /// With this clock in Hz, and these BLU in mm and in degrees.
+    pub(super) fn new(hz: f64, blu: [f64; 2]) -> SpeedChart {
+        let (along, track, units) = (0..3, SpeedTrack::new(3), blu.map(|blu| 60.0 * hz * blu));
+        let (clock, spans) = (None, Vec::new());
+        SpeedChart { hz, units, unit: 0, had: [false; 2], along, track, clock, spans, width: 1 }
+    }
+
+    /// A block begins, whose feed may be along other axes: no window reaches over from those before.
+    pub(super) fn begin(&mut self, of: &ToolMove) {
+        let along = of.path_axes();
+        self.unit = usize::from(of.feed_axes() == FeedAxes::Rotary);
+        self.had[self.unit] = true;
+        if along != self.along {
+            (self.track, self.along) = (SpeedTrack::new(along.len()), along);
+        }
     }
 
     /// Takes the place after a step, and its clock: the speed has been that of the window since the step before.
@@ -42,9 +62,9 @@ impl SpeedChart {
         if before.is_some_and(|before| before >= clock) {
             return;
         }
-        let place = [0, 1, 2].map(|axis| position.get(axis).copied().unwrap_or(0));
-        let Some(window) = self.track.row(&place, clock) else { return };
-        let speed = self.unit * window.speed();
+        let place: Position = std::array::from_fn(|axis| position.get(axis).copied().unwrap_or(0));
+        let Some(window) = self.track.row(&place[self.along.clone()], clock) else { return };
+        let speed = self.units[self.unit] * window.speed();
         while clock / self.width >= SPAN_LIMIT as u64 {
             let merged = self.spans.chunks(2).map(|pair| pair.iter().copied().fold(None, union));
             self.spans = merged.collect();
@@ -79,10 +99,18 @@ impl SpeedChart {
         clocks / self.hz * if self.in_milliseconds() { 1e3 } else { 1.0 }
     }
 
-    /// Draws an area from the least to the greatest speed of each span.
-    pub(super) fn draw(&self, page: &mut Page, view: &View) {
+    /// Draws an area from the least to the greatest speed of each span, of the tool or of the output after a filter.
+    pub(super) fn draw(&self, page: &mut Page, view: &View, of_output: bool) {
         let unit = if self.in_milliseconds() { "ms" } else { "s" };
-        page.axes(view, [&format!("time ({unit}); speed over 32 steps"), "mm/min"], false, 0.1);
+        let speed = match self.had {
+            [_, false] => "mm/min",
+            [false, true] => "degrees/min",
+            [true, true] => "mm/min or degrees/min",
+        };
+        let of = if of_output { "output's speed" } else { "speed" };
+        let rotary = if self.had == [true; 2] { "; where A, B, C move alone in degrees" } else { "" };
+        let below = format!("time ({unit}); {of} along the axes of F over 32 steps{rotary}");
+        page.axes(view, [&below, speed], false, 0.1);
         let (mut upper, mut lower) = (Vec::new(), Vec::new());
         let end = self.clock.map_or(0, |clock| clock + 1);
         for (index, span) in (0_u64..).zip(&self.spans) {
@@ -103,7 +131,7 @@ mod tests {
     #[test]
     fn an_even_speed_and_a_pause_are_where_they_were() {
         // A BLU of 0.01 mm every 10th clock of 1 kHz is 1 mm/s; a pause of 5000 clocks; then half of it.
-        let mut chart = SpeedChart::new(1e3, 0.01);
+        let mut chart = SpeedChart::new(1e3, [0.01, 0.001]);
         let mut clock = 0;
         for x in 0..2000 {
             chart.step(&[x, 0, 0], clock);

@@ -1,5 +1,5 @@
-//! The picture of a program as SVG: the programmed contour, and the pulses of the tool's centre next to it; below it the
-//! speed over time.
+//! The picture of a program as SVG: the programmed contour, and the pulses of the tool's centre next to it, with those after a filter
+//! where they leave it; below it the speed over time.
 //!
 //! The memory is bounded whatever the length of the program: a long path is thinned.
 
@@ -8,10 +8,12 @@ use std::io::{self, Write};
 
 use stepwave_nc::{Cause, Direction, Point, SegmentShape, Side, ToolMove, swept};
 
+use super::output_path::OutputPath;
 use super::plot::{FONT, HEAD, Page, Pair, TITLE_FONT, View, cut, escaped, reaching, text_width};
 use super::speed_chart::SpeedChart;
 use super::{Report, RunFile};
-use crate::testbench::{BlockReport, Observer, ObserverError, Step};
+use crate::engine::Rows;
+use crate::testbench::{BlockReport, Observer, ObserverError, OutputPlace, OutputTrack, Step};
 
 /// Points of the path that are kept; when they are full, every second one goes.
 const PATH_LIMIT: usize = 1 << 13;
@@ -22,6 +24,7 @@ const CONTOUR_LIMIT: usize = 4096;
 const PROGRAMMED: &str = r##"stroke="#eebf99" stroke-width="5""##;
 const CUT: &str = r##"stroke="#0072b2" stroke-width="1.2""##;
 const RAPID: &str = r##"stroke="#009e73" stroke-width="1" stroke-dasharray="6 4""##;
+const OUTPUT: &str = r##"stroke="#d55e00" stroke-width="1.2""##;
 const TOOL: &str = r##"stroke="#999" stroke-width="0.8""##;
 
 /// Collects the path of a program as seen along one axis.
@@ -40,6 +43,7 @@ pub struct Workpiece<W> {
     last: Option<Pair>,
     ranges: [Pair; 2],
     speed: Option<SpeedChart>,
+    output: Option<OutputPath>,
 }
 
 /// Height of the speed, and what is between it and the contour.
@@ -63,13 +67,22 @@ impl<W> Workpiece<W> {
             last: None,
             ranges: [[0.0, 0.0]; 2],
             speed: None,
+            output: None,
         }
     }
 
-    /// With the speed over time, of a clock in Hz and a BLU in mm.
+    /// With the speed over time, of a clock in Hz, a BLU in mm, and one of a rotary axis in degrees.
     #[must_use]
-    pub fn with_speed(self, hz: f64, blu_mm: f64) -> Workpiece<W> {
-        Workpiece { speed: Some(SpeedChart::new(hz, blu_mm)), ..self }
+    pub fn with_speed(self, hz: f64, blu_mm: f64, blu_degrees: f64) -> Workpiece<W> {
+        Workpiece { speed: Some(SpeedChart::new(hz, [blu_mm, blu_degrees])), ..self }
+    }
+
+    /// With the output of acceleration after the interpolator where it leaves the contour, if there is one.
+    #[must_use]
+    pub fn with_output(self, track: Option<OutputTrack>) -> Workpiece<W> {
+        // Below it the speed is that of the output.
+        let output = track.map(|track| OutputPath::new(track, self.axes));
+        Workpiece { output, ..self }
     }
 
     fn shown(&self, point: Point) -> Pair {
@@ -108,7 +121,10 @@ impl<W> Workpiece<W> {
             (CUT, "tool's centre, pulse by pulse"),
             (RAPID, "rapid"),
             (TOOL, "tool at the end of a block"),
-        ] {
+        ]
+        .into_iter()
+        .chain(self.output.iter().map(|_| (OUTPUT, "output, where it is off the contour")))
+        {
             page.symbol(&format!(r#"<path d="M-12 0H12" {style}/>"#), [x + 12.0, 44.0]);
             page.text([x + 30.0, 48.0], "", name);
             x += 46.0 + text_width(name, FONT);
@@ -124,11 +140,14 @@ impl<W> Workpiece<W> {
         for (rapid, points) in &self.path {
             page.path(&view, if *rapid { RAPID } else { CUT }, points);
         }
+        for points in self.output.iter().flat_map(OutputPath::pieces) {
+            page.path(&view, OUTPUT, points);
+        }
         let wide = (left + view.size[0] + 26.0).max(x).ceil();
         let mut bottom = view.origin[1] + view.size[1];
         let (origin, size) = ([left, bottom + BETWEEN], [wide - left - 26.0, CHART_HEIGHT]);
         if let Some((chart, view)) = self.speed.as_ref().and_then(|chart| Some((chart, chart.view(origin, size)?))) {
-            chart.draw(&mut page, &view);
+            chart.draw(&mut page, &view, self.output.is_some());
             bottom = origin[1] + CHART_HEIGHT;
         }
         let high = (bottom + 46.0).ceil();
@@ -160,14 +179,39 @@ pub(super) fn outline(of: &ToolMove) -> Vec<[f64; 3]> {
 
 impl<W: Write> RunFile for Workpiece<W> {
     fn finish(&mut self, _: &Report) -> io::Result<()> {
+        let Workpiece { output, speed, .. } = self;
+        if let Some(output) = output {
+            output.finish(|at| sent(speed.as_mut(), at));
+        }
         let svg = self.svg();
         self.out.write_all(svg.as_bytes())?;
         self.out.flush()
     }
 }
 
+/// The speed is that of the output, where there is one.
+fn sent(speed: Option<&mut SpeedChart>, at: &OutputPlace) {
+    if let Some(chart) = speed {
+        chart.step(&at.place, at.clock);
+    }
+}
+
 impl<W> Observer for Workpiece<W> {
+    fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
+        let Workpiece { output, speed, .. } = self;
+        if let Some(output) = output {
+            output.samples(rows, |at| sent(speed.as_mut(), at));
+        }
+        Ok(())
+    }
+
     fn block_begun(&mut self, block: &BlockReport) -> Result<(), ObserverError> {
+        if let Some(chart) = &mut self.speed {
+            chart.begin(&block.of);
+        }
+        if let Some(output) = &mut self.output {
+            output.begun(block);
+        }
         let rapid = block.of.feed == stepwave_nc::Feed::Rapid;
         if self.path.last().is_none_or(|(before, _)| *before != rapid) {
             self.path.push((rapid, self.last.into_iter().collect()));
@@ -176,7 +220,7 @@ impl<W> Observer for Workpiece<W> {
     }
 
     fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
-        if let Some(chart) = &mut self.speed {
+        if let Some(chart) = self.speed.as_mut().filter(|_| self.output.is_none()) {
             chart.step(&step.position, step.clock);
         }
         let at = self.axes.map(|axis| step.position.get(axis).map_or(0.0, |&c| c as f64));
@@ -197,6 +241,9 @@ impl<W> Observer for Workpiece<W> {
     }
 
     fn block_ended(&mut self, report: &BlockReport) -> Result<(), ObserverError> {
+        if let Some(output) = &mut self.output {
+            output.ended(report);
+        }
         let end = self.axes.map(|axis| report.reached.get(axis).map_or(0.0, |&c| c as f64));
         if let Some((_, points)) = self.path.last_mut()
             && points.last() != Some(&end)

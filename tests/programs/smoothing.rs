@@ -208,6 +208,56 @@ fn a_curve_alone_comes_out_whole() {
     }
 }
 
+#[test]
+fn the_picture_draws_the_output_where_it_is_off_the_contour() {
+    let folder = crate::cli::Folder::new();
+    folder.write("p.ngc", CIRCLES);
+    let drawn = |options: &str| {
+        folder.good(&format!("program p.ngc --method dda --blu 0.01mm --clock-hz 2e5 --plot p.svg {options}"));
+        let svg = folder.read("p.svg");
+        let paths: Vec<String> = svg.lines().filter(|line| line.contains("#d55e00")).map(str::to_owned).collect();
+        (paths, svg)
+    };
+    let (paths, svg) = drawn("--ramp after --smooth sum=64 --period 400");
+    assert!(
+        svg.contains(">output, where it is off the contour<") && svg.contains("output's speed along the axes"),
+        "{svg}"
+    );
+    // The legend, and at least the circle.
+    assert!(paths.len() >= 2 && paths.iter().any(|path| path.len() > 5000), "{paths:?}");
+    // Every corner is an exact stop: nothing is off but what a circle loses.
+    folder.write("p.ngc", "G21 G90 G61 F3000\nG1 X1\nG1 Y1\nM2\n");
+    assert_eq!(drawn("--ramp after --smooth sum=64 --period 400").0.len(), 1);
+    let (paths, svg) = drawn("");
+    assert!(paths.is_empty() && svg.contains("; speed along the axes of F over 32 steps<"), "{svg}");
+}
+
+/// The speed of moves of A, B, C or U, V, W alone is along these.
+#[test]
+fn the_picture_shows_the_speed_along_the_axes_of_f() {
+    let folder = crate::cli::Folder::new();
+    let drawn = |moves: &str| {
+        folder.write("p.ngc", &format!("G21 G90 {moves}\nM2\n"));
+        folder.good("program p.ngc --method ppc --blu 0.01mm --blu-rotary 0.01deg --clock-hz 1e5 --plot p.svg");
+        let svg = folder.read("p.svg");
+        let panel = svg.split("(BLU)</text>").last().unwrap().to_owned();
+        // The ticks of the speed are at the end of their texts.
+        let ticks = panel.lines().filter(|line| line.contains("text-anchor=\"end\""));
+        let greatest = ticks.filter_map(|line| line.split(['>', '<']).nth(2)?.parse::<f64>().ok()).fold(0.0, f64::max);
+        (panel, greatest)
+    };
+    for (moves, unit, tick) in [
+        ("G1 A90 F600", "degrees/min", 600.0),
+        ("G1 U5 F300", "mm/min", 300.0),
+        ("G1 X5 F300\nA20 F600", "mm/min or degrees/min", 600.0),
+        ("G1 X5 A20 F300", "mm/min", 300.0),
+    ] {
+        let (panel, greatest) = drawn(moves);
+        assert!(panel.contains(&format!(">{unit}<")), "{moves}: {panel}");
+        assert_eq!(greatest, tick, "{moves}: {panel}");
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Leg {
     by: [i64; 3],
