@@ -67,4 +67,4 @@ pub use error::Error;
 pub use simulation::Simulation;
 pub use study::proof;
 pub use testbench::Trace;
-pub use waves::WaveOptions;
+pub use waves::{Viewer, WaveOptions};

@@ -36,6 +36,14 @@ fn cannot_write(path: &Path, error: &io::Error) -> Error {
     Error::Invalid(format!("cannot write {}: {error}", path.display()))
 }
 
+/// A folder for outputs that are found there by their viewer; one that is there stays as it is.
+///
+/// # Errors
+/// It cannot be made.
+pub(crate) fn make_folder(path: &Path) -> Result<(), Error> {
+    std::fs::create_dir_all(path).map_err(|error| cannot_write(path, &error))
+}
+
 impl Outputs {
     /// Of a command that reads these files.
     pub(crate) fn reading(inputs: impl IntoIterator<Item = impl AsRef<Path>>) -> Outputs {

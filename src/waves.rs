@@ -17,6 +17,7 @@ use crate::trace::WaveBody;
 use crate::trace::fst::{FstBody, FstHeader};
 use crate::trace::gtkw::{View, side_files};
 use crate::trace::probe::{Probe, Selection};
+use crate::trace::surfer;
 use crate::trace::timescale::ClockTime;
 use crate::trace::vcd::{Background, VcdBody, VcdHeader};
 
@@ -43,6 +44,9 @@ pub struct WaveOptions {
     /// Write a page that shows path, wave and step table under one cursor, for a browser
     #[cfg_attr(feature = "cli", arg(long, value_name = "FILE", value_parser = file_of(&[FileFormat::Html]), group = "wave"))]
     pub html: Option<PathBuf>,
+    /// The viewer whose files are written next to the wave [default: gtkwave]
+    #[cfg_attr(feature = "cli", arg(long, requires = "wave", value_name = "VIEWER"))]
+    pub viewer: Option<Viewer>,
     /// Dump only names that match (leaf name or dotted path; may be repeated)
     #[cfg_attr(feature = "cli", arg(id = "trace", long = "trace", requires = "wave", value_name = "GLOB"))]
     #[cfg_attr(feature = "cli", arg(value_parser = listed(StringValueParser::new(), all_registers()), hide_possible_values = true))]
@@ -88,12 +92,41 @@ pub struct WaveOptions {
     pub large: bool,
 }
 
+/// A program that shows waves, and is given a file of rows and formats next to each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Viewer {
+    /// A save file, and files of state names
+    #[default]
+    Gtkwave,
+    /// A command file, and mappings of state names in .surfer/mappings
+    Surfer,
+    /// The files of both
+    Both,
+}
+
 impl Default for WaveOptions {
     fn default() -> WaveOptions {
         let (signals, excluded) = (Vec::new(), Vec::new());
-        let (vcd, fst, html, depth, to, on) = (None, None, None, None, None, None);
+        let (vcd, fst, html, viewer, depth, to, on) = (None, None, None, None, None, None, None);
         let (clk, steps, every_clock, speed, large) = (true, false, false, false, false);
-        WaveOptions { vcd, fst, html, signals, excluded, depth, from: 0, to, on, clk, steps, every_clock, speed, large }
+        WaveOptions {
+            vcd,
+            fst,
+            html,
+            viewer,
+            signals,
+            excluded,
+            depth,
+            from: 0,
+            to,
+            on,
+            clk,
+            steps,
+            every_clock,
+            speed,
+            large,
+        }
     }
 }
 
@@ -109,6 +142,7 @@ impl WaveOptions {
 pub(crate) struct Sinks<'a> {
     vcd: Option<(&'a Path, Sink)>,
     fst: Option<(&'a Path, SeekableSink)>,
+    viewer: Viewer,
 }
 
 impl<'a> Sinks<'a> {
@@ -119,7 +153,14 @@ impl<'a> Sinks<'a> {
     pub(crate) fn open(args: &'a WaveOptions, outputs: &mut Outputs) -> Result<Option<Sinks<'a>>, Error> {
         let vcd = args.vcd.as_deref().map(|path| Ok::<_, Error>((path, outputs.open(path)?))).transpose()?;
         let fst = args.fst.as_deref().map(|path| Ok::<_, Error>((path, outputs.open_seekable(path)?))).transpose()?;
-        Ok((vcd.is_some() || fst.is_some()).then_some(Sinks { vcd, fst }))
+        let mut files = args.vcd.iter().chain(&args.fst);
+        if args.viewer.is_some() && files.all(|file| output::is_stream(file)) {
+            return Err(Error::Invalid(
+                "--viewer is about files next to a wave, and no wave is written into a file: give --vcd FILE or --fst FILE"
+                    .to_owned(),
+            ));
+        }
+        Ok((vcd.is_some() || fst.is_some()).then_some(Sinks { vcd, fst, viewer: args.viewer.unwrap_or_default() }))
     }
 }
 
@@ -149,6 +190,7 @@ pub(crate) struct Waves<'a> {
     time: ClockTime,
     leading: &'static [&'static str],
     without: Vec<String>,
+    viewer: Viewer,
 }
 
 /// One of them.
@@ -214,7 +256,7 @@ impl<'a> Waves<'a> {
             }
             None => None,
         };
-        Ok(Waves { vcd, fst, probes, clk, time, leading: &[], without })
+        Ok(Waves { vcd, fst, probes, clk, time, leading: &[], without, viewer: sinks.viewer })
     }
 
     /// The same with rows that come first: their paths without the design's name.
@@ -293,10 +335,17 @@ impl<'a> Waves<'a> {
             flagged: !marks.is_empty(),
             marks: &marks,
         };
-        for file in side_files(&view) {
-            outputs.write(&path.with_file_name(&file.name), &file.text)?;
+        let mut files = Vec::new();
+        if self.viewer != Viewer::Surfer {
+            files.extend(side_files(&view));
         }
-        Ok(())
+        if self.viewer != Viewer::Gtkwave {
+            files.extend(surfer::side_files(&view));
+        }
+        if files.iter().any(|file| file.name.starts_with(surfer::MAPPINGS)) {
+            output::make_folder(&path.with_file_name(surfer::MAPPINGS))?;
+        }
+        files.iter().try_for_each(|file| outputs.write(&path.with_file_name(&file.name), &file.text))
     }
 }
 

@@ -178,3 +178,44 @@ fn numbers_of_a_report_are_numbers() {
     let report: Value = serde_json::from_str(&good("run ppc-line --to 6,4 --json -")).unwrap();
     assert_eq!(report["choices"]["beats"], 4);
 }
+
+#[test]
+fn the_files_of_the_viewer_that_is_asked_for_are_next_to_the_wave() {
+    let folder = Folder::new();
+    let words = "run ppc-line --to 6,4 --vcd w.vcd";
+    let gtkwave = ["w.beat.states", "w.gtkw"];
+    folder.good(&format!("{words} --viewer surfer"));
+    assert_eq!(folder.files(), [".surfer", "w.sucl", "w.vcd"]);
+    let commands = folder.read("w.sucl");
+    assert!(
+        commands
+            .starts_with("# In the folder of this file: surfer --command-file w.sucl w.vcd\nvariable_add ppc_line.")
+    );
+    assert!(commands.contains("variable_add ppc_line.beat\nitem_set_format w.beat\n"), "{commands}");
+    assert!(commands.ends_with("\nitem_unfocus\nzoom_fit\n"));
+    let mapping = "Name = w.beat\nBits = 4\n0b0000 IDLE\n0b0001 JUDGE\n0b0010 FEED\n0b0100 COMPUTE\n0b1000 COMPARE\n";
+    assert_eq!(folder.read(".surfer/mappings/w.beat"), mapping);
+    // Every row of the command file is a variable of the wave.
+    let wave = stepwave::trace::read::Wave::open(folder.path("w.vcd")).unwrap();
+    let paths: Vec<&str> = wave.signals().iter().map(|signal| signal.path.as_str()).collect();
+    let rows: Vec<&str> = commands.lines().filter_map(|line| line.strip_prefix("variable_add ")).collect();
+    assert_eq!(rows.len(), paths.len());
+    assert!(rows.iter().all(|row| paths.contains(row)), "{rows:?} {paths:?}");
+    folder.good(&format!("{words} --viewer both"));
+    assert_eq!(folder.files(), [".surfer", gtkwave[0], gtkwave[1], "w.sucl", "w.vcd"]);
+    let plain = Folder::new();
+    plain.good(words);
+    assert_eq!(plain.files(), [gtkwave[0], gtkwave[1], "w.vcd"]);
+    assert_eq!(plain.read("w.gtkw"), folder.read("w.gtkw"));
+}
+
+#[test]
+fn a_viewer_without_a_wave_in_a_file_is_refused() {
+    for words in ["--html w.html", "--vcd -"] {
+        refused(
+            &format!("run ppc-line --to 6,4 --viewer surfer {words}"),
+            &["--viewer is about files next to a wave", "--vcd FILE"],
+        );
+    }
+    refused("run ppc-line --to 6,4 --viewer surfer", &["--vcd"]);
+}

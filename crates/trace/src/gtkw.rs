@@ -150,10 +150,8 @@ fn save_file(view: &View<'_>, states: &[(&[(u64, String)], SideFile)]) -> String
     line(&format!("[treeopen] {top}."));
     line(&format!("[signals_width] {signals}"));
     line("[sst_expanded] 0");
-    let (leading, rest): (Vec<_>, Vec<_>) = view.probes.iter().partition(|probe| leading_place(view, probe).is_some());
-    let mut leading: Vec<&Probe> = leading;
-    leading.sort_by_key(|probe| leading_place(view, probe));
-    for probe in leading {
+    let (first, rest) = leading(view);
+    for probe in first {
         row(&mut line, view, probe, states);
     }
     if view.clk {
@@ -187,6 +185,14 @@ fn save_file(view: &View<'_>, states: &[(&[(u64, String)], SideFile)]) -> String
 fn without(view: &View<'_>) -> Option<String> {
     let names: Vec<&str> = view.without.iter().filter_map(|path| path.rsplit('.').next()).collect();
     (!names.is_empty()).then(|| format!("without {}", names.join(", ")))
+}
+
+/// The rows that come first, in their order, and the others.
+pub(crate) fn leading<'a>(view: &View<'a>) -> (Vec<&'a Probe>, Vec<&'a Probe>) {
+    let (mut first, rest): (Vec<_>, Vec<_>) =
+        view.probes.iter().partition(|probe| leading_place(view, probe).is_some());
+    first.sort_by_key(|probe| leading_place(view, probe));
+    (first, rest)
 }
 
 /// The place of a row among those that come first.
@@ -254,7 +260,7 @@ fn analog_rows(view: &View<'_>, probe: &Probe) -> u64 {
 }
 
 /// Rows with the title of their group, in the order in which they are shown; the top scope has no title.
-fn groups<'a>(probes: &[&'a Probe]) -> Vec<(Option<String>, Vec<&'a Probe>)> {
+pub(crate) fn groups<'a>(probes: &[&'a Probe]) -> Vec<(Option<String>, Vec<&'a Probe>)> {
     let title = |probe: &Probe| (probe.scopes.len() > 1).then(|| probe.scopes[1..].join(" "));
     let mut flags = Vec::new();
     let mut groups: Vec<(Option<String>, Vec<&'a Probe>)> = Vec::new();

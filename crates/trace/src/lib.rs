@@ -12,6 +12,7 @@ pub mod numbers;
 pub mod pattern;
 pub mod probe;
 pub mod read;
+pub mod surfer;
 pub mod timescale;
 pub mod vcd;
 mod wide;
