@@ -1,14 +1,15 @@
 //! The program: parse, dispatch, print the error, set the exit code.
 
+use std::ffi::OsString;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use crate::Error;
-use crate::cli::{Cli, help_of_model, usage};
+use crate::cli::{Cli, by_ending, help_of_model, usage};
 use crate::models::Catalogue;
 use crate::{commands, output, stop};
 
@@ -61,12 +62,11 @@ fn run(models: Catalogue) -> Result<(), Error> {
     stop::watch()?;
     models.install()?;
     bound_threads()?;
-    // No name of a model holds what is not Unicode.
-    let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    let words: Vec<OsString> = std::env::args_os().collect();
     if let Some(help) = help_of_model(&words) {
         return output::print(&help);
     }
-    match Cli::try_parse() {
+    match Cli::try_parse_from(by_ending(words, Cli::command)) {
         Ok(cli) => commands::dispatch(&cli),
         Err(error) if error.use_stderr() => Err(usage(&error)),
         Err(help) => output::print(&help.render().to_string()),

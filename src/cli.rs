@@ -25,7 +25,7 @@ mod widths;
 
 use crate::simulation::FileOptions;
 use crate::waves::WaveOptions;
-pub(crate) use endings::{Format, file_of};
+pub(crate) use endings::{Format, OutputArgs, by_ending, file_of};
 pub(crate) use hardware::HardwareArgs;
 pub(crate) use machine::{MachineArgs, Travel};
 use names::model_name;
@@ -204,6 +204,8 @@ pub(crate) struct RunArgs {
     pub(crate) trace_speed: bool,
     #[command(flatten)]
     pub(crate) outputs: FileOptions,
+    #[command(flatten)]
+    pub(crate) by_ending: OutputArgs,
     /// Show registers in binary in the printed table
     #[arg(long, help_heading = "Outputs (- is standard output)")]
     pub(crate) bits: bool,
@@ -250,6 +252,8 @@ pub(crate) struct ExportArgs {
     pub(crate) hardware: HardwareArgs,
     #[command(flatten)]
     pub(crate) clock: ClockArgs,
+    #[command(flatten)]
+    pub(crate) by_ending: OutputArgs,
     /// Write the netlist in the text form, which `stepwave sim` and `check` read
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Netlist]), group = "exports", help_heading = "Outputs (- is standard output)")]
     pub(crate) netlist: Option<PathBuf>,

@@ -1,11 +1,11 @@
 //! File names on the command line: the ending and the option that writes the file must agree. One table of both.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::error::ErrorKind;
-use clap::{Arg, Command, Error};
+use clap::{Arg, Args, Command, Error};
 
 use crate::output::is_stream;
 
@@ -76,6 +76,85 @@ impl TypedValueParser for FileParser {
             _ => Ok(path),
         }
     }
+}
+
+/// Files whose option follows from the ending of their name, and what is printed.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Outputs (- is standard output)")]
+pub(crate) struct OutputArgs {
+    /// Write what the ending of the name says, as the option for such files does (may be repeated)
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_parser = UnknownEnding, allow_hyphen_values = true)]
+    output: Vec<PathBuf>,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// What reads a name of `-o` that [`by_ending`] has left: one whose ending says nothing.
+#[derive(Clone)]
+struct UnknownEnding;
+
+impl TypedValueParser for UnknownEnding {
+    type Value = PathBuf;
+
+    fn parse_ref(&self, command: &Command, _: Option<&Arg>, value: &OsStr) -> Result<PathBuf, Error> {
+        let path = Path::new(value).display();
+        let endings: Vec<String> = writers(command).map(|(entry, _)| format!(".{}", entry.2[0])).collect();
+        let message =
+            format!("the ending of {path} does not say what -o is to write: give one of {}", endings.join(", "));
+        Err(Error::raw(ErrorKind::ValueValidation, message).with_cmd(command))
+    }
+}
+
+/// The formats that a command writes, with their options.
+fn writers(command: &Command) -> impl Iterator<Item = (&'static Entry, &'static str)> {
+    // Only heat maps are images of points.
+    let written = |entry: &&Entry| entry.0 != Format::Png || command.get_name() == "sweep";
+    TABLE.iter().filter(written).filter_map(|entry| {
+        let known = |writer: &&&str| command.get_arguments().any(|arg| arg.get_long() == Some(**writer));
+        Some((entry, *entry.3.iter().filter(|writer| **writer != "output").find(known)?))
+    })
+}
+
+/// The name in `-oNAME` or `--output=NAME`, or nothing of `-o` alone, whose name is the next word; `None` of other words.
+fn output_name(word: &OsStr) -> Option<Option<&str>> {
+    let word = word.to_str()?;
+    let name = word.strip_prefix("--output=").or_else(|| word.strip_prefix("-o").filter(|name| !name.is_empty()));
+    (name.is_some() || word == "-o" || word == "--output").then_some(name)
+}
+
+/// The words of a command line with the option for files of such a name in the place of `-o`. Names whose ending says
+/// nothing are left, and refused when they are read.
+pub(crate) fn by_ending(words: Vec<OsString>, program: impl FnOnce() -> Command) -> Vec<OsString> {
+    if words.iter().all(|word| output_name(word).is_none()) {
+        return words;
+    }
+    let mut program = program();
+    program.build();
+    // `import` writes nothing else, and has its own.
+    let command = words.get(1).and_then(|word| program.find_subcommand(word)).filter(|own| own.get_name() != "import");
+    let Some(command) = command else { return words };
+    let option = |name: &OsStr| {
+        let said = Path::new(name).extension().and_then(said)?;
+        writers(command).find(|(entry, _)| entry.0 == said.0).map(|(_, writer)| OsString::from(format!("--{writer}")))
+    };
+    let mut all = words.iter().peekable();
+    let mut expanded = Vec::new();
+    while let Some(word) = all.next() {
+        match output_name(word) {
+            Some(Some(name)) => match option(name.as_ref()) {
+                Some(writer) => expanded.extend([writer, name.into()]),
+                None => expanded.push(word.clone()),
+            },
+            Some(None) => {
+                expanded.push(all.peek().and_then(|name| option(name)).unwrap_or_else(|| word.clone()));
+                // Its name, whatever it looks like.
+                expanded.extend(all.next().cloned());
+            }
+            None => expanded.push(word.clone()),
+        }
+    }
+    expanded
 }
 
 impl FileParser {

@@ -1,6 +1,6 @@
 //! Hardware options on the command line: those of the table, and the feed in the units of a machine.
 
-use crate::models::options::{AnyOption, Options, STEP, SYSTEM, Shape, TOLERANCE, Value, all};
+use crate::models::options::{AnyOption, Options, STEP, SYSTEM, Shape, TOLERANCE, Value, WIDTH, all};
 use crate::models::{Millionths, ModelError};
 use crate::program::ProgramFailure;
 use crate::study::proof::ProofError;
@@ -43,6 +43,7 @@ pub(super) fn proposals(option: &dyn AnyOption) -> Vec<String> {
 
 fn arg(option: &'static dyn AnyOption) -> Arg {
     let arg = Arg::new(option.name()).long(option.name()).help(option.help());
+    let arg = if option.name() == WIDTH.name { arg.short('w') } else { arg };
     if option.value_name().is_empty() {
         return arg.action(ArgAction::SetTrue);
     }

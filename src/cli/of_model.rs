@@ -1,6 +1,7 @@
 //! The help of a command with a model: the options that this model takes alone.
 
 use std::collections::BTreeSet;
+use std::ffi::OsString;
 
 use clap::{Args, Command, CommandFactory};
 
@@ -30,9 +31,11 @@ const GEOMETRY: [&str; 15] = [
 ];
 
 /// What `stepwave COMMAND MODEL --help` prints; `None` where these words ask for something else.
-pub(crate) fn help_of_model(words: &[String]) -> Option<String> {
-    let [_, name, rest @ ..] = words else { return None };
-    let asks = rest.iter().any(|word| word == "--help" || word == "-h");
+pub(crate) fn help_of_model(words: &[OsString]) -> Option<String> {
+    // No name of a model or a command holds what is not Unicode.
+    let words: Vec<&str> = words.iter().map(|word| word.to_str().unwrap_or_default()).collect();
+    let [_, name, rest @ ..] = &words[..] else { return None };
+    let asks = rest.iter().any(|word| *word == "--help" || *word == "-h");
     let model = rest.iter().find_map(|word| find(word).ok()).filter(|_| asks)?;
     let mut program = Cli::command();
     program.build();

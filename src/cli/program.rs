@@ -9,7 +9,7 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Args, Command};
 
 use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu, parse_speed};
-use super::{BenchArgs, HardwareArgs};
+use super::{BenchArgs, HardwareArgs, OutputArgs};
 use crate::own::is_netlist;
 use crate::simulation::FileOptions;
 use crate::waves::WaveOptions;
@@ -181,4 +181,6 @@ pub(crate) struct ProgramArgs {
     pub(crate) every_clock: bool,
     #[command(flatten)]
     pub(crate) outputs: FileOptions,
+    #[command(flatten)]
+    pub(crate) by_ending: OutputArgs,
 }

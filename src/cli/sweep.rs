@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use crate::models::options::{AnyOption, Shape, all};
+use crate::models::options::{AnyOption, Shape, WIDTH, all};
 use crate::nc::{Drawn, Opens};
 use crate::study::{Grid, Range};
 use clap::builder::StringValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
 
 use super::BenchArgs;
-use super::endings::{Format, file_of};
+use super::endings::{Format, OutputArgs, file_of};
 use super::hardware::proposals;
 use super::names::{listed, model_name};
 use super::values::{Point, opens, parse_point};
@@ -80,6 +80,8 @@ pub(crate) struct SweepArgs {
     pub(crate) variants: VariantArgs,
     #[command(flatten)]
     pub(crate) outputs: TableArgs,
+    #[command(flatten)]
+    pub(crate) by_ending: OutputArgs,
 }
 
 #[derive(Debug, Subcommand)]
@@ -177,6 +179,7 @@ fn list(option: &'static dyn AnyOption) -> Arg {
     let help = help.split_once(" [default").map_or(help, |(help, _)| help);
     let arg = Arg::new(option.name()).long(option.name()).help(format!("{help} [{values}]")).value_name(value_name);
     let arg = arg.value_parser(listed(StringValueParser::new(), proposals(option))).hide_possible_values(true);
+    let arg = if option.name() == WIDTH.name { arg.short('w') } else { arg };
     let arg = if option.shape() == Shape::Commas { arg.action(ArgAction::Append) } else { arg };
     if option.value_name().is_empty() { arg.num_args(0..=1).default_missing_value("yes") } else { arg }
 }

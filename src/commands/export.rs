@@ -83,7 +83,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), Error> {
         files.write(path, &export::smt2(&design, &checking, depth)?)?;
         notes += &format!("asked is whether a property is violated in one of the clocks 0 to {depth}\n");
     }
-    let quiet = files.uses_stdout();
+    let quiet = args.by_ending.quiet || files.uses_stdout();
     files.commit()?;
     if quiet { Ok(()) } else { output::print(&notes) }
 }

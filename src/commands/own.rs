@@ -83,7 +83,7 @@ pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
         .json(args.json.clone());
     // What the hardware prints must not be mixed with a file.
     let files = [&args.trace.vcd, &args.trace.fst, &args.json];
-    let quiet = files.into_iter().flatten().any(|file| file == Path::new("-"));
+    let quiet = args.by_ending.quiet || files.into_iter().flatten().any(|file| file == Path::new("-"));
     let mut screen = output::Screen::new(quiet);
     let report = sim.staged(&mut outputs, &mut screen)?;
     screen.flush()?;

@@ -22,7 +22,7 @@ use crate::waves::WaveOptions;
 pub(crate) fn program(args: &ProgramArgs) -> Result<(), Error> {
     let own = args.bench.files_of(Some(&args.method));
     let mut outputs = Outputs::reading([&args.file].into_iter().chain(&own));
-    simulate(args, &mut outputs)?.print(outputs)
+    simulate(args, &mut outputs)?.print(outputs, args.by_ending.quiet)
 }
 
 /// The tool table: radii in mm by D number.

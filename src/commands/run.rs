@@ -20,7 +20,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Error> {
     // States that exist are read; else they are an output.
     let own: Vec<_> = args.bench.files([&args.model]).into_iter().chain(args.geometry.file()).collect();
     let mut outputs = Outputs::reading(args.checkpoints.iter().filter(|path| path.exists()).chain(&own));
-    simulate(args, &mut outputs)?.print(outputs)
+    simulate(args, &mut outputs)?.print(outputs, args.by_ending.quiet)
 }
 
 /// A run whose outputs are staged.
@@ -32,12 +32,12 @@ pub(crate) struct Finished {
 }
 
 impl Finished {
-    /// Puts the outputs under their names, and prints what there is to print.
+    /// Puts the outputs under their names, and prints what there is to print, unless `quiet`.
     ///
     /// # Errors
     /// An output cannot be written, or the simulated hardware failed a check.
-    pub(super) fn print(self, outputs: Outputs) -> Result<(), Error> {
-        let quiet = outputs.uses_stdout();
+    pub(super) fn print(self, outputs: Outputs, quiet: bool) -> Result<(), Error> {
+        let quiet = quiet || outputs.uses_stdout();
         outputs.commit()?;
         if !quiet {
             output::print(&self.text)?;

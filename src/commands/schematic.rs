@@ -34,7 +34,7 @@ pub(super) fn of_netlist(args: &ExportArgs, file: &Path) -> Result<(), Error> {
     let outputs = schematic::unread(design.netlist());
     let Some(path) = &args.schematic else { return Ok(()) };
     let notes = crate::own::summary(&design) + "\n" + &draw(args, &design, &outputs, path, &mut files)?;
-    let quiet = files.uses_stdout();
+    let quiet = args.by_ending.quiet || files.uses_stdout();
     files.commit()?;
     if quiet { Ok(()) } else { output::print(&notes) }
 }

@@ -56,7 +56,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
         (Error::Invalid(sentence), Some(kept)) => Error::Invalid(format!("{sentence}; {kept}")),
         (failure, _) => failure,
     })?;
-    if outputs.uses_stdout() { Ok(()) } else { output::print(&text) }
+    if args.by_ending.quiet || outputs.uses_stdout() { Ok(()) } else { output::print(&text) }
 }
 
 /// All geometries that the options tell.

@@ -56,3 +56,51 @@ fn other_names_are_left_to_the_user() {
         assert_eq!(ran.code, 0, "{options}: {ran:?}");
     }
 }
+
+#[test]
+fn what_o_writes_is_what_the_option_for_such_files_writes() {
+    let own = Folder::new();
+    own.good(
+        "run dda-line --to 8,6 -w 4 --vcd a.vcd --html a.html --steps a.csv --json a.json --plot a.svg --fst a.fst",
+    );
+    let short = Folder::new();
+    let out =
+        short.good("run dda-line --to 8,6 -w 4 -o a.vcd -oa.html --output a.csv --output=a.json -o a.svg -o a.fst -q");
+    assert_eq!(out, "");
+    for file in ["a.vcd", "a.gtkw", "a.csv", "a.svg"] {
+        assert_eq!(short.read(file), own.read(file), "{file}");
+    }
+    for file in ["a.html", "a.json", "a.fst"] {
+        assert!(short.path(file).exists(), "{file}");
+    }
+    let same = |words: &str, short_words: &str, file: &str| {
+        own.good(words);
+        short.good(short_words);
+        assert_eq!(short.read(file), own.read(file), "{words}");
+    };
+    same("export dda-line --to 8,6 --verilog d.v", "export dda-line --to 8,6 -q -o d.v", "d.v");
+    same("export dda-line --to 8,6 --schematic d.svg", "export dda-line --to 8,6 -o d.svg", "d.svg");
+    same("sweep dda-line --to-grid 1..3x1..3 --csv s.csv", "sweep dda-line --to-grid 1..3x1..3 -o s.csv -q", "s.csv");
+}
+
+#[test]
+fn a_name_that_does_not_say_what_it_holds_is_refused_and_nothing_is_written() {
+    let folder = Folder::new();
+    for (words, hint) in [
+        (
+            "run dda-line --to 8,6 -o a.txt",
+            "the ending of a.txt does not say what -o is to write: give one of .vcd, .fst, .csv, .json, .svg, .html",
+        ),
+        ("run dda-line --to 8,6 -o -", "the ending of - does not say"),
+        ("run dda-line --to 8,6 -o --vcd", "the ending of --vcd does not say"),
+        ("run dda-line --to 8,6 -o a.v", "the ending of a.v does not say"),
+        ("run dda-line --to 8,6 -o a.png", "the ending of a.png does not say"),
+        ("run dda-line --to 8,6 -o a.vcd -o b.vcd", "cannot be used multiple times"),
+        ("run dda-line --to 8,6 -o", "a value is required for '--output <FILE>'"),
+        ("widths dda-line --box 3 -o a.csv", "unexpected argument '-o'"),
+    ] {
+        let ran = folder.run(words);
+        assert!(ran.code == 2 && ran.err.contains(hint) && ran.err.lines().count() == 1, "{words}: {ran:?}");
+    }
+    assert_eq!(folder.files(), [""; 0]);
+}

@@ -73,7 +73,7 @@ fn the_help_with_a_model_has_the_options_that_it_takes_and_no_others() {
                 help.split_whitespace().collect::<Vec<_>>().join(" ").starts_with(&begin.replace("\n\n", " ")),
                 "{help}"
             );
-            let lines = help.lines().filter_map(|line| line.strip_prefix("      --"));
+            let lines = help.lines().filter_map(|line| line.strip_prefix("      --").or(line.strip_prefix("  -w, --")));
             let shown: BTreeSet<&str> = lines.filter_map(|line| line.split_whitespace().next()).collect();
             for option in stepwave_models::options::all() {
                 // The sweep has a tolerance of its own for every model.
