@@ -3,8 +3,10 @@
 use std::io::{self, Write};
 
 use crate::models::parts::RATE_BITS;
+use crate::models::program::After;
 use crate::program::Estimate;
 use crate::testbench::Testbench;
+use crate::trace::probe::Probe;
 use crate::trace::timescale::ClockTime;
 
 use crate::Error;
@@ -23,6 +25,10 @@ const COUNTING: [&str; 6] = ["q", "jrx", "jry", "accx", "accy", "accz"];
 const FLAGS: f64 = 18.0;
 /// Times at which something changes around a step: its pulse comes, it is taken, and its flags go.
 const STAMPS: f64 = 3.0;
+/// Bytes of VCD that a bit of a filter after the interpolator takes in a period on the average, as measured.
+const FILTERED: f64 = 0.45;
+/// Times at which its output changes around a pulse, and its period ends.
+const OUTPUTS: f64 = 4.0;
 /// Bytes of FST that a clock takes where the pulse source is shown, less where its phase comes round; and what changes
 /// at a step, and counts at every step, as parts of what they take as VCD; all as measured.
 const FST_CLOCK: f64 = 12.0;
@@ -38,6 +44,8 @@ pub(super) struct Size {
     step: f64,
     /// What changes at every step.
     count: f64,
+    /// What changes with every period after the interpolator, and its clocks.
+    filter: Option<(f64, f64)>,
     /// The clock itself is shown.
     clk: bool,
     ticks: f64,
@@ -54,6 +62,10 @@ impl Size {
         probes.dedup_by(|a, b| a.columns == b.columns);
         let (mut clock, mut step, mut count) = (0.0, 0.0, 0.0);
         let running = bench.machine().running();
+        let after = After::of(bench.hardware());
+        let mut filtered = 0.0;
+        let in_filter =
+            |probe: &Probe| after.is_some() && probe.scopes.get(1).is_some_and(|scope| scope.starts_with("after_"));
         let runs = |columns: &[usize]| running.iter().any(|&net| columns == [bench.columns().index(net)]);
         for probe in probes {
             let width = f64::from(probe.width);
@@ -63,12 +75,15 @@ impl Size {
                 clock += width + 4.0;
             } else if COUNTING.contains(&probe.name.as_str()) {
                 count += width + 4.0;
+            } else if in_filter(&probe) && !probe.name.ends_with("_out") {
+                filtered += if width > 1.0 { width + 4.0 } else { 0.0 };
             } else if width > 1.0 {
                 step += width * BIT;
             }
         }
         let clk = args.clk && bench.running().is_none();
-        Ok(Size { clock, step, count, clk, ticks: time.ticks() as f64 })
+        let filter = after.map(|after| (filtered, after.period as f64));
+        Ok(Size { clock, step, count, filter, clk, ticks: time.ticks() as f64 })
     }
 
     /// Bytes of the VCD and of the FST that are asked for, 0 where they are not.
@@ -89,10 +104,17 @@ impl Size {
         };
         // At steps alone the flags of a step stay up, and of the source only the phase between two steps is seen.
         let (changing, flags) = if args.steps { (drifting, 0.0) } else { (samples, FLAGS) };
+        // Of steps alone no more than one change is seen between two.
+        let filtered = self.filter.map_or([0.0; 2], |(bits, clocks)| {
+            let periods = if args.steps { (shown / clocks).min(steps) } else { shown / clocks };
+            let times = if self.clk || self.clock > 0.0 || args.steps { 0.0 } else { OUTPUTS * moving + periods };
+            [FILTERED * bits * periods, stamp * times + if args.steps { 0.0 } else { FLAGS * moving }]
+        });
         let vcd = edges + self.clock * changing + (self.count + flags) * steps + self.step * moving;
+        let vcd = vcd + filtered[0] + filtered[1];
         let round = if args.steps { 1.0 } else { FST_ROUND + drifting / steps.max(1.0) };
         let source = if self.clock > 0.0 { FST_CLOCK * changing * round } else { 0.0 };
-        let fst = source + FST_COUNT * self.count * steps + FST_STEP * self.step * moving;
+        let fst = source + FST_COUNT * self.count * steps + FST_STEP * (self.step * moving + filtered[0]);
         [(&args.vcd, vcd), (&args.fst, fst)].map(|(path, bytes)| if path.is_some() { bytes } else { 0.0 })
     }
 

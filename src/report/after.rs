@@ -63,9 +63,11 @@ impl Report {
         if let Some(ArcLoss { line, radius, displacement, expected, measured }) = sent.worst {
             let measured =
                 measured.map_or_else(|| "too short to be measured".to_owned(), |loss| format!("measured {loss:.3}"));
+            // Only the first term of a series: beyond the radius it says nothing.
+            let expected = if expected < radius { format!("{expected:.3} BLU") } else { "all of it".to_owned() };
             let _ = writeln!(
                 text,
-                "most radius lost by an arc: {expected:.3} BLU by {}, {measured}; line {line}, R {radius:.1}, f {displacement:.3}",
+                "most radius lost by an arc: {expected} by {}, {measured}; line {line}, R {radius:.1}, f {displacement:.3}",
                 formula(smooth)
             );
         }

@@ -38,6 +38,10 @@ fn waves_take_about_what_is_expected_of_every_family_and_option() {
             " --every-clock --trace-steps",
             " --every-clock --no-clk",
             " --trace-from 2000 --trace-to 20000",
+            " --ramp after --period 40",
+            " --ramp after --period 200 --smooth exp=3",
+            " --ramp after --period 40 --every-clock",
+            " --ramp after --period 40 --trace-steps",
         ] {
             let (file, vcd, fst) = (at("p.ngc"), at("w.vcd"), at("w.fst"));
             let own = format!("--method {method} --blu 0.01mm --clock-hz 20000 --vcd {vcd} --fst {fst}{options}");
