@@ -25,7 +25,7 @@ mod widths;
 
 use crate::simulation::FileOptions;
 use crate::waves::WaveOptions;
-pub(crate) use endings::{Format, OutputArgs, by_ending, file_of};
+pub(crate) use endings::{Format, OutputArgs, ShownArgs, by_ending, file_of};
 pub(crate) use hardware::HardwareArgs;
 pub(crate) use machine::{MachineArgs, Travel};
 use names::model_name;
@@ -205,7 +205,7 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) outputs: FileOptions,
     #[command(flatten)]
-    pub(crate) by_ending: OutputArgs,
+    pub(crate) by_ending: ShownArgs,
     /// Show registers in binary in the printed table
     #[arg(long, help_heading = "Outputs (- is standard output)")]
     pub(crate) bits: bool,

@@ -90,6 +90,17 @@ pub(crate) struct OutputArgs {
     pub(crate) quiet: bool,
 }
 
+/// What comes of the outputs of a run.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Outputs (- is standard output)")]
+pub(crate) struct ShownArgs {
+    #[command(flatten)]
+    pub(crate) outputs: OutputArgs,
+    /// Open what was written: a wave in its viewer, a page or a picture as the system does
+    #[arg(long)]
+    pub(crate) open: bool,
+}
+
 /// What reads a name of `-o` that [`by_ending`] has left: one whose ending says nothing.
 #[derive(Clone)]
 struct UnknownEnding;

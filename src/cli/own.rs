@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use stepwave_import::Unknown;
 
-use super::{ClockArgs, Format, Method, OutputArgs, file_of, values};
+use super::{ClockArgs, Format, Method, ShownArgs, file_of, values};
 use crate::Error;
 use crate::engine::EngineKind;
 use crate::models::{Model, find};
@@ -152,5 +152,5 @@ pub(crate) struct SimArgs {
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Json]), help_heading = "Outputs (- is standard output)")]
     pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
-    pub(crate) by_ending: OutputArgs,
+    pub(crate) by_ending: ShownArgs,
 }

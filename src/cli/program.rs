@@ -9,7 +9,7 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Args, Command};
 
 use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu, parse_speed};
-use super::{BenchArgs, HardwareArgs, OutputArgs};
+use super::{BenchArgs, HardwareArgs, ShownArgs};
 use crate::own::is_netlist;
 use crate::simulation::FileOptions;
 use crate::waves::WaveOptions;
@@ -182,5 +182,5 @@ pub(crate) struct ProgramArgs {
     #[command(flatten)]
     pub(crate) outputs: FileOptions,
     #[command(flatten)]
-    pub(crate) by_ending: OutputArgs,
+    pub(crate) by_ending: ShownArgs,
 }

@@ -18,6 +18,7 @@ mod schematic;
 pub(crate) mod show;
 mod size;
 mod sweep;
+mod view;
 mod widths;
 
 use std::path::{Path, PathBuf};

@@ -3,6 +3,7 @@
 use std::io::Write as _;
 use std::path::Path;
 
+use super::view::View;
 use crate::Error;
 use crate::cli::{CheckArgs, ImportArgs, SimArgs};
 use crate::netlist::elaborate;
@@ -83,7 +84,8 @@ pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
         .json(args.json.clone());
     // What the hardware prints must not be mixed with a file.
     let files = [&args.trace.vcd, &args.trace.fst, &args.json];
-    let quiet = args.by_ending.quiet || files.into_iter().flatten().any(|file| file == Path::new("-"));
+    let view = View::new(&args.by_ending, &args.trace, None)?;
+    let quiet = view.quiet || files.into_iter().flatten().any(|file| file == Path::new("-"));
     let mut screen = output::Screen::new(quiet);
     let report = sim.staged(&mut outputs, &mut screen)?;
     screen.flush()?;
@@ -91,6 +93,7 @@ pub(crate) fn sim(args: &SimArgs) -> Result<(), Error> {
     if !quiet {
         output::print(&report.summary())?;
     }
+    view.show()?;
     let failures = report.failures();
     if failures.is_empty() { Ok(()) } else { Err(Error::Check(failures)) }
 }

@@ -13,6 +13,7 @@ use crate::trace::timescale::ClockTime;
 use super::progress::RunProgress;
 use super::run::{Finished, Terminal};
 use super::size::Size;
+use super::view::View;
 use crate::Error;
 use crate::cli::{HardwareArgs, ProgramArgs, TextArgs, Tool};
 use crate::output::Outputs;
@@ -22,7 +23,8 @@ use crate::waves::WaveOptions;
 pub(crate) fn program(args: &ProgramArgs) -> Result<(), Error> {
     let own = args.bench.files_of(Some(&args.method));
     let mut outputs = Outputs::reading([&args.file].into_iter().chain(&own));
-    simulate(args, &mut outputs)?.print(outputs, args.by_ending.quiet)
+    let view = View::new(&args.by_ending, &args.trace, args.outputs.plot.as_ref())?;
+    simulate(args, &mut outputs)?.print(outputs, &view)
 }
 
 /// The tool table: radii in mm by D number.

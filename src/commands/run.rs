@@ -7,6 +7,7 @@ use crate::trace::timescale::ClockTime;
 
 use super::geometry::{self, curve};
 use super::progress::RunProgress;
+use super::view::View;
 use crate::Error;
 use crate::cli::RunArgs;
 use crate::output::{self, Outputs};
@@ -20,7 +21,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), Error> {
     // States that exist are read; else they are an output.
     let own: Vec<_> = args.bench.files([&args.model]).into_iter().chain(args.geometry.file()).collect();
     let mut outputs = Outputs::reading(args.checkpoints.iter().filter(|path| path.exists()).chain(&own));
-    simulate(args, &mut outputs)?.print(outputs, args.by_ending.quiet)
+    let view = View::new(&args.by_ending, &args.trace, args.outputs.plot.as_ref())?;
+    simulate(args, &mut outputs)?.print(outputs, &view)
 }
 
 /// A run whose outputs are staged.
@@ -32,16 +34,17 @@ pub(crate) struct Finished {
 }
 
 impl Finished {
-    /// Puts the outputs under their names, and prints what there is to print, unless `quiet`.
+    /// Puts the outputs under their names, and prints and shows what there is, as the view says.
     ///
     /// # Errors
     /// An output cannot be written, or the simulated hardware failed a check.
-    pub(super) fn print(self, outputs: Outputs, quiet: bool) -> Result<(), Error> {
-        let quiet = quiet || outputs.uses_stdout();
+    pub(super) fn print(self, outputs: Outputs, view: &View) -> Result<(), Error> {
+        let quiet = view.quiet || outputs.uses_stdout();
         outputs.commit()?;
         if !quiet {
             output::print(&self.text)?;
         }
+        view.show()?;
         if self.failures.is_empty() { Ok(()) } else { Err(Error::Check(self.failures)) }
     }
 }

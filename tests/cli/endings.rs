@@ -104,3 +104,63 @@ fn a_name_that_does_not_say_what_it_holds_is_refused_and_nothing_is_written() {
     }
     assert_eq!(folder.files(), [""; 0]);
 }
+
+/// A folder with programs of these names that write their words into a file.
+#[cfg(unix)]
+fn viewers(folder: &Folder, names: &[&str]) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    folder.make("bin");
+    for name in names {
+        let own = format!("bin/{name}");
+        folder.write(&own, &format!("#!/bin/sh\necho {name} \"$@\" >>{}\n", folder.path("opened").display()));
+        std::fs::set_permissions(folder.path(&own), std::fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    folder.path("bin").display().to_string()
+}
+
+#[test]
+#[cfg(unix)]
+fn open_starts_the_viewer_of_what_was_written_also_of_a_trap() {
+    let folder = Folder::new();
+    let path = viewers(&folder, &["gtkwave", "surfer", "xdg-open"]);
+    let run = |words: &str, lines: &[&str], code: i32| {
+        let _ = std::fs::remove_file(folder.path("opened"));
+        let ran = folder.command().env("PATH", &path).args(words.split_whitespace()).output().unwrap();
+        assert_eq!(ran.status.code(), Some(code), "{words}: {ran:?}");
+        // The programs run by themselves.
+        let deadline = std::time::Instant::now() + std::time::Duration::from_secs(20);
+        loop {
+            let text = std::fs::read_to_string(folder.path("opened")).unwrap_or_default();
+            let mut opened: Vec<&str> = text.lines().collect();
+            opened.sort_unstable();
+            if opened == lines {
+                break;
+            }
+            assert!(std::time::Instant::now() < deadline, "{words}: {opened:?}");
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+    };
+    run("run dda-line --to 8,6 -o a.vcd --open", &["gtkwave a.gtkw"], 0);
+    run("run ppc-line --to 6,4 --width f=3 -o t.vcd --open -q", &["gtkwave t.gtkw"], 1);
+    run("run dda-line --to 8,6 -o a.vcd -o a.fst --open", &["gtkwave a.fst.gtkw", "gtkwave a.gtkw"], 0);
+    run("run dda-line --to 8,6 -o a.fst --viewer surfer --open", &["surfer --command-file a.sucl a.fst"], 0);
+    run("run dda-line --to 8,6 -o a.html -o a.svg --open", &["xdg-open a.html", "xdg-open a.svg"], 0);
+}
+
+#[test]
+fn open_without_a_file_or_a_viewer_is_refused_with_its_remedy() {
+    let folder = Folder::new();
+    let ran = folder.run("run dda-line --to 8,6 --open --steps -");
+    assert!(ran.code == 2 && ran.err.contains("there is nothing to show: give -o FILE.vcd"), "{ran:?}");
+    let mut command = folder.command();
+    command.env("PATH", folder.path("none")).args(["run", "dda-line", "--to", "8,6", "-o", "a.vcd", "--open"]);
+    let ran = command.output().unwrap();
+    let err = String::from_utf8(ran.stderr).unwrap();
+    assert!(
+        ran.status.code() == Some(2)
+            && err.contains("gtkwave cannot be started")
+            && err.contains("by hand: gtkwave a.gtkw"),
+        "{err}"
+    );
+    assert!(folder.path("a.vcd").exists());
+}
