@@ -70,15 +70,15 @@ fn shown(waves: &WaveOptions, plot: Option<&PathBuf>) -> Vec<Shown> {
     for (place, path) in traced.into_iter().enumerate() {
         // As the files next to a wave are named.
         let stem = if twins && place == 1 { path.file_name() } else { path.file_stem() }.unwrap_or_default();
-        let beside = |ending: &str| {
+        let next_to = |ending: &str| {
             let mut name = stem.to_owned();
             name.push(ending);
             path.with_file_name(name).into_os_string()
         };
         match waves.viewer.unwrap_or_default() {
-            Viewer::Gtkwave | Viewer::Both => all.push(Shown::Viewer("gtkwave", vec![beside(".gtkw")])),
+            Viewer::Gtkwave | Viewer::Both => all.push(Shown::Viewer("gtkwave", vec![next_to(".gtkw")])),
             Viewer::Surfer => {
-                let words = vec!["--command-file".into(), beside(".sucl"), path.clone().into_os_string()];
+                let words = vec!["--command-file".into(), next_to(".sucl"), path.clone().into_os_string()];
                 all.push(Shown::Viewer("surfer", words));
             }
         }
