@@ -197,7 +197,7 @@ impl HeatMap {
             page.text([left + 24.0, 48.0], "", &HeatMap::greatest(what, unit, greatest, point));
             page.text([left + 24.0, 63.0], r#"font-family="monospace""#, worst);
         }
-        page.axes(&view, [&format!("{} (BLU)", self.names[0]), &format!("{} (BLU)", self.names[1])], false, 1.0);
+        page.axes(&view, [&format!("{} (BLU)", self.names[0]), &format!("{} (BLU)", self.names[1])], false, [1.0; 2]);
         self.draw(&mut page, &view);
         if let Some((_, point)) = self.worst {
             page.symbol(WORST, view.at(point.map(|coordinate| coordinate as f64)));

@@ -1,14 +1,18 @@
-//! The picture of a run as SVG: the pulses as a staircase over the ideal curve, and below it the deviation after every step
-//! and the speed over 32 steps.
+//! The picture of a run as SVG: the pulses as a staircase over the ideal curve, and below it the deviation after every step,
+//! of an arc also over its angle, the pulses of a short run in time, and the speed over 32 steps.
 //!
 //! Both axes have one scale. The memory is bounded whatever the length of the run: a long path is thinned, but the
 //! greatest deviation and its step are exact, and no peak is lost from the chart. The same run gives the same bytes.
 
+mod angle;
 mod envelope;
+mod pulses;
 
 use stepwave_nc::Curve;
 
+use self::angle::Angle;
 use self::envelope::Envelope;
+use self::pulses::Pulses;
 use crate::testbench::SpeedTrack;
 
 /// Points of the path that are kept; when they are full, every second one goes.
@@ -64,6 +68,9 @@ pub struct Plot {
     stride: u64,
     /// The deviation after each step.
     deviation: Envelope,
+    /// The same over the angle of an arc.
+    angle: Option<Angle>,
+    pulses: Pulses,
     /// The speed over 32 steps, over v_max; in BLU a clock where that is not known.
     speed: Envelope,
     track: SpeedTrack,
@@ -89,6 +96,8 @@ impl Plot {
             path: Vec::new(),
             stride: 1,
             deviation: Envelope::new(0),
+            angle: if let Curve::Arc(arc) = curve { Some(Angle::new(arc)) } else { None },
+            pulses: Pulses::default(),
             speed: Envelope::new(SpeedTrack::STEPS),
             track,
             step_clocks,
@@ -118,6 +127,10 @@ impl Plot {
             self.path.push(at);
         }
         self.deviation.take(deviation);
+        self.pulses.take(clock, position);
+        if let Some(angle) = &mut self.angle {
+            angle.take(at, deviation);
+        }
         if let Some(window) = self.track.row(position, clock) {
             self.speed.take(self.step_clocks.unwrap_or(1.0) * window.speed());
         }
@@ -167,13 +180,22 @@ impl Plot {
         self.draw_path(&mut page, &panel, coarse);
         symbols.iter().for_each(|(point, symbol, _)| page.symbol(symbol, panel.at(*point)));
         let mut top = panel.origin[1] + panel.size[1] + BETWEEN;
-        let size = [width, CHART_HEIGHT];
-        self.draw_deviation(&mut page, &View { origin: [left, top], size, ranges }, steps);
-        if let Some(speeds) = speeds {
-            top += CHART_HEIGHT + BETWEEN;
-            self.draw_speed(&mut page, &View { origin: [left, top], size, ranges: [ranges[0], speeds] }, steps);
+        let mut chart = |height: f64, ranges: [Pair; 2]| {
+            let view = View { origin: [left, top], size: [width, height], ranges };
+            top += height + BETWEEN;
+            view
+        };
+        self.draw_deviation(&mut page, &chart(CHART_HEIGHT, ranges), steps);
+        if let Some(angle) = &self.angle {
+            angle.draw(&mut page, &chart(CHART_HEIGHT, [angle.range(), ranges[1]]));
         }
-        let (wide, high) = ((left + width + 26.0).ceil(), (top + CHART_HEIGHT + BELOW).ceil());
+        if let Some(height) = self.pulses.height() {
+            self.pulses.draw(&mut page, &chart(height, self.pulses.ranges()));
+        }
+        if let Some(speeds) = speeds {
+            self.draw_speed(&mut page, &chart(CHART_HEIGHT, [ranges[0], speeds]), steps);
+        }
+        let (wide, high) = ((left + width + 26.0).ceil(), (top - BETWEEN + BELOW).ceil());
         let size = format!(r#"width="{wide}" height="{high}" viewBox="0 0 {wide} {high}" font-size="{FONT}""#);
         format!("<svg {HEAD} {size}>\n{}</svg>\n", page.0)
     }
@@ -202,7 +224,7 @@ impl Plot {
     }
 
     fn draw_path(&self, page: &mut Page, view: &View, coarse: usize) {
-        page.axes(view, ["x (BLU)", "y (BLU)"], true, 1.0);
+        page.axes(view, ["x (BLU)", "y (BLU)"], true, [1.0; 2]);
         let path: Vec<Pair> = self.path.iter().copied().chain(self.last.iter().map(|last| plane(&last.1))).collect();
         page.path(view, IDEAL[coarse], &self.curve.outline(OUTLINE_POINTS));
         page.path(view, PULSES[coarse], &path);
@@ -215,7 +237,7 @@ impl Plot {
     /// The deviation against the step as an area from zero: bars if they are few, otherwise an envelope.
     fn draw_deviation(&self, page: &mut Page, view: &View, steps: f64) {
         let step = format!("step (deviation {})", self.curve.positive_side());
-        page.axes(view, [&step, "deviation (BLU)"], false, 0.1);
+        page.axes(view, [&step, "deviation (BLU)"], false, [1.0, 0.1]);
         let spans = &self.deviation.spans;
         let gap = if spans.len() <= FEW_STEPS + 1 { (0.5 - 8.0 / view.scale(0)).max(0.15) } else { 0.0 };
         let (mut area, mut below) = (Vec::new(), Vec::new());
@@ -229,19 +251,14 @@ impl Plot {
         }
         area.extend(below.into_iter().rev());
         page.path(view, r##"fill="#56b4e9""##, &area);
-        for (level, dash) in [(0.0, "none"), (1.0, "5 3"), (-1.0, "5 3")] {
-            if level == 0.0 || (level > view.ranges[1][0] && view.scale(1) > 6.0) {
-                let style = format!(r##"stroke="#000" stroke-dasharray="{dash}""##);
-                page.path(view, &style, &view.ranges[0].map(|step| [step, level]));
-            }
-        }
+        page.levels(view);
         self.worst.iter().for_each(|(step, _, worst)| page.symbol(WORST, view.at([*step as f64, *worst])));
     }
 
     /// The speed against the last step of a window, as an area from the least to the greatest of each span.
     fn draw_speed(&self, page: &mut Page, view: &View, steps: f64) {
         let unit = if self.step_clocks.is_some() { "v/v_max" } else { "BLU/clock" };
-        page.axes(view, ["step (speed over the 32 steps to it)", unit], false, 0.1);
+        page.axes(view, ["step (speed over the 32 steps to it)", unit], false, [1.0, 0.1]);
         let (mut upper, mut lower) = (Vec::new(), Vec::new());
         for (place, &[least, most]) in self.speed.spans.iter().enumerate() {
             let [from, to] = self.speed.place(place, steps);
@@ -339,10 +356,20 @@ impl Page {
         y + 12.0
     }
 
-    /// Grid, ticks no finer than 1 to the right and `finest` upwards, frame and names of both axes; where `pulses` show,
-    /// a fine line for every BLU.
-    pub(super) fn axes(&mut self, view: &View, names: [&str; 2], pulses: bool, finest: f64) {
-        let ticks = [view.tick(0, 1.0), view.tick(1, finest)];
+    /// Lines where a deviation is 0, and where it is 1 BLU.
+    fn levels(&mut self, view: &View) {
+        for (level, dash) in [(0.0, "none"), (1.0, "5 3"), (-1.0, "5 3")] {
+            if level == 0.0 || (level > view.ranges[1][0] && view.scale(1) > 6.0) {
+                let style = format!(r##"stroke="#000" stroke-dasharray="{dash}""##);
+                self.path(view, &style, &view.ranges[0].map(|along| [along, level]));
+            }
+        }
+    }
+
+    /// Grid, ticks no finer than given to the right and upwards, none where that is infinite, frame and names of both axes;
+    /// where `pulses` show, a fine line for every BLU.
+    pub(super) fn axes(&mut self, view: &View, names: [&str; 2], pulses: bool, finest: Pair) {
+        let ticks = [view.tick(0, finest[0]), view.tick(1, finest[1])];
         let ticks = if pulses { [ticks[0].max(ticks[1]); 2] } else { ticks };
         let fine = (pulses && view.scale(0) >= 8.0).then_some((1.0, r##"stroke="#eee""##));
         for (axis, tick) in ticks.into_iter().enumerate() {

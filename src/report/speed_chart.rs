@@ -110,7 +110,7 @@ impl SpeedChart {
         let of = if of_output { "output's speed" } else { "speed" };
         let rotary = if self.had == [true; 2] { "; where A, B, C move alone in degrees" } else { "" };
         let below = format!("time ({unit}); {of} along the axes of F over 32 steps{rotary}");
-        page.axes(view, [&below, speed], false, 0.1);
+        page.axes(view, [&below, speed], false, [1.0, 0.1]);
         let (mut upper, mut lower) = (Vec::new(), Vec::new());
         let end = self.clock.map_or(0, |clock| clock + 1);
         for (index, span) in (0_u64..).zip(&self.spans) {

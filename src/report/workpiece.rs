@@ -131,7 +131,7 @@ impl<W> Workpiece<W> {
         }
         view.origin = [left, 62.0];
         let names = self.axes.map(|axis| ["x (BLU)", "y (BLU)", "z (BLU)"][axis]);
-        page.axes(&view, names, true, 1.0);
+        page.axes(&view, names, true, [1.0; 2]);
         let scale = view.size[0] / (view.ranges[0][1] - view.ranges[0][0]);
         for &(at, radius) in &self.tools {
             page.symbol(&format!(r#"<circle r="{:.2}" {TOOL}/>"#, radius * scale), view.at(at));
