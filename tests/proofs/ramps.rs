@@ -43,6 +43,13 @@ fn a_box_of_a_ramp_is_simulated_to_its_ends() {
             assert!(out.lines().any(|line| line.starts_with("PROVED") && line.ends_with(claim)), "{words}: {out}");
         }
     }
+    // One travel, and not all of 5 bits, in the certificate too.
+    let out = folder.good("prove ramp --box 5..5 --certificate one.cert");
+    assert!(
+        out.starts_with("ramp --box 5..5: every travel of one axis from the origin to a coordinate within 5..5\n"),
+        "{out}"
+    );
+    assert!(folder.good("prove check one.cert").starts_with("ramp --box 5..5: "));
     // 2 · 63 travels of 6 bits.
     assert!(folder.good("prove ramp --box 6").contains("(exhausted: 126 geometries)"));
 }
@@ -82,6 +89,10 @@ fn what_has_no_proof_says_so() {
         ran.code == 1 && ran.out.contains("UNKNOWN: ") && ran.err.contains("no counterexample was found"),
         "{ran:?}"
     );
+    for model in ["ramp", "ppc-line"] {
+        let ran = folder.run(&format!("prove {model} --any-preset"));
+        assert!(ran.code == 2 && ran.err.contains("has no remainder to preset: leave --any-preset out"), "{ran:?}");
+    }
     let ran = folder.run("prove ramp --travel 100,5");
     assert!(
         ran.code == 2 && ran.err.contains("a box of 2 axes is not proved: give one range, such as 0..9"),

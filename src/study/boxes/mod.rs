@@ -57,6 +57,10 @@ impl fmt::Display for Extent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Extent::Bits(bits) => write!(f, "{bits} bits"),
+            // One number alone would be bits.
+            Extent::Grid(Grid(ranges)) if ranges.len() == 1 && ranges[0].count() == 1 => {
+                write!(f, "{place}..{place}", place = ranges[0].at(0))
+            }
             Extent::Grid(grid) => grid.fmt(f),
         }
     }

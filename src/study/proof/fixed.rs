@@ -106,7 +106,7 @@ impl Fixed {
         let about = self.claims.geometries.describe();
         match &self.extent {
             Extent::Bits(bits) => about.replace("of k bits", &format!("of {bits} {}", bit(*bits))),
-            Extent::Grid(grid) => about.replace("of k bits", &format!("within {grid}")),
+            grid @ Extent::Grid(_) => about.replace("of k bits", &format!("within {grid}")),
         }
     }
 

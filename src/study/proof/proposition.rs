@@ -72,7 +72,7 @@ impl Proposition {
         let extent = self.extent.iter().flat_map(|extent| {
             let extent = match extent {
                 Extent::Bits(bits) => bits.to_string(),
-                Extent::Grid(grid) => grid.to_string(),
+                grid @ Extent::Grid(_) => grid.to_string(),
             };
             ["--box".to_owned(), extent]
         });
@@ -152,6 +152,10 @@ impl Proposition {
     /// The hardware of every width.
     pub(super) fn subject(&self) -> Result<Subject, ProofError> {
         let subject = Subject::new(self.model, &self.options, &self.narrower)?;
-        Ok(if self.any_preset { subject.with_any_preset() } else { subject })
+        let subject = if self.any_preset { subject.with_any_preset() } else { subject };
+        if self.any_preset && subject.presets().is_empty() {
+            return Err(ProofError::NoRemainder { model: self.model.name });
+        }
+        Ok(subject)
     }
 }
