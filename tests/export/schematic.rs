@@ -36,6 +36,8 @@ fn every_model_has_a_drawing_that_can_be_read() {
     let machines = machines();
     assert_eq!(machines.len(), catalogue().len());
     for (name, netlist, outputs) in machines {
+        let closed = draw(&netlist, &outputs, &Part { depth: Some(0), ..Part::default() }).unwrap();
+        assert_eq!(Figure::read(&closed.svg).faults(), Vec::<String>::new(), "{name} with closed scopes");
         let drawn = all(&netlist, &outputs);
         let figure = Figure::read(&drawn.svg);
         assert_eq!(figure.faults(), Vec::<String>::new(), "{name}");

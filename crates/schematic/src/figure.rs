@@ -95,6 +95,19 @@ pub(crate) struct Figure {
 }
 
 impl Figure {
+    /// Draws the beginnings of wires on to the right of the whole, which the last of them may have moved.
+    pub(crate) fn reached(mut self) -> Figure {
+        let leaving: Vec<Net> = self.right.iter().map(|&(net, _)| net).collect();
+        for shape in &mut self.shapes {
+            if let Shape::Wire { net, lines, .. } = shape
+                && leaving.contains(net)
+            {
+                lines.iter_mut().for_each(|line| line[2] = self.size[0]);
+            }
+        }
+        self
+    }
+
     pub(crate) fn text(&mut self, at: [i32; 2], font: Font, text: impl Into<String>) {
         self.shapes.push(Shape::Text { at, font, text: text.into(), net: None });
     }

@@ -363,7 +363,7 @@ impl<'s> View<'s> {
             figure.text([wide - 8 - width(&text, false), y + 4], Font::Text, text);
             context.stub(&mut figure, net, y, wide);
         }
-        figure
+        figure.reached()
     }
 
     /// A scope with its frame and its name.

@@ -44,11 +44,12 @@ impl Line {
 impl Context<'_> {
     /// The shapes of a symbol; none of one that is drawn with another.
     pub(crate) fn figure(&self, draft: &Draft) -> Figure {
-        match draft.kind {
+        let figure = match draft.kind {
             Kind::Input => self.input(draft.outputs[0]),
             Kind::Operator => self.operator(draft),
             _ => self.boxed(draft),
-        }
+        };
+        figure.reached()
     }
 
     /// The nets in a symbol that have no name: each has a number in a circle.

@@ -138,7 +138,27 @@ impl Figure {
             }
         }
         faults.extend(self.shared());
+        faults.extend(self.torn());
         faults
+    }
+
+    /// Nets whose lines are in several pieces.
+    fn torn(&self) -> Vec<String> {
+        let mut nets: BTreeMap<usize, Vec<Line>> = BTreeMap::new();
+        self.lines.iter().for_each(|line| nets.entry(line.net).or_default().push(*line));
+        let touches = |a: &Line, b: &Line| {
+            let (a, b) = (a.frame(), b.frame());
+            a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom
+        };
+        let mut torn = Vec::new();
+        for (net, mut left) in nets {
+            let mut piece = vec![left.remove(0)];
+            while let Some(next) = left.iter().position(|line| piece.iter().any(|of| touches(of, line))) {
+                piece.push(left.remove(next));
+            }
+            torn.extend(left.first().map(|line| format!("net {net} is in pieces at {:?}", line.ends)));
+        }
+        torn
     }
 
     /// Lines of two nets on one another.
