@@ -1,5 +1,8 @@
 //! `stepwave show`: a wave in the terminal, and as a picture for documents.
 
+#[cfg(unix)]
+mod follow;
+
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -23,6 +26,7 @@ use crate::trace::read::{Wave, WaveError};
     stepwave run dda-line --to 8,6 --vcd - | stepwave show -\n  \
     stepwave show line.vcd --from 8 --to 20 --signals f --signals 'x*' --radix binary\n  \
     stepwave show line.vcd --to 19 --svg line.svg --wavedrom line.json\n  \
+    stepwave show line.vcd --follow\n  \
     stepwave show other.fst --by-time --ascii --columns 132")]
 pub(crate) struct ShowArgs {
     /// The wave: VCD or FST; - is standard input
@@ -56,6 +60,11 @@ pub(crate) struct ShowArgs {
     /// The clock: a dotted path, or the end of one [default: the 1-bit `clk` or `clock` nearest the top]
     #[arg(long, value_name = "NAME", conflicts_with = "by_time")]
     clock: Option<String>,
+
+    /// Step through the wave with keys, in a terminal: ← → a clock, PgUp PgDn what fits in a line, Home, End, q
+    #[cfg(unix)]
+    #[arg(long, conflicts_with_all = ["svg", "wavedrom"])]
+    follow: bool,
 
     /// With the characters of ASCII alone
     #[arg(long)]
@@ -108,10 +117,15 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
         by_time: args.by_time,
         names,
     };
-    let window = drawing.window(&wave, &signals).map_err(|reason| {
+    let trouble = |reason: String| {
         let remedy = if args.by_time { "" } else { ", or --by-time" };
         Error::Invalid(format!("{}: {reason}: give other clocks{remedy}", args.wave.display()))
-    })?;
+    };
+    #[cfg(unix)]
+    if args.follow {
+        return follow::follow(drawing, &wave, &signals, trouble);
+    }
+    let window = drawing.window(&wave, &signals).map_err(trouble)?;
     let mut outputs = Outputs::reading(files.iter().chain([&args.wave]));
     let views = [(&args.svg, Window::svg as fn(&Window) -> String), (&args.wavedrom, Window::wavedrom)];
     let views = views.into_iter().filter_map(|(path, view)| Some((path.as_ref()?, view)));

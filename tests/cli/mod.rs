@@ -8,6 +8,8 @@ mod choices;
 mod completions;
 mod endings;
 mod files;
+#[cfg(unix)]
+mod follow;
 mod golden;
 mod html;
 mod inputs;
