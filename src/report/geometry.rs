@@ -1,6 +1,7 @@
 //! A curve in words, in JSON, and as the options of a command: `stepwave run dda-line --to 8,6 --width 4`.
 
 use serde_json::{Value, json};
+use stepwave_models::options::{PERIOD, RAMP, RampAt, SMOOTH};
 use stepwave_models::{Hardware, Model, Options, Takes};
 use stepwave_nc::{Curve, Description, Direction, Drawn, NURBS_UNIT, Nurbs, SplineForm};
 
@@ -151,11 +152,17 @@ fn command(verb: &str, model: &Model, curve: &Curve, choices: &Options) -> Strin
     words.join(" ")
 }
 
+/// The options of a model without those that do nothing as the others are chosen.
+pub(super) fn in_force<'h>(model: &'h Model, hardware: &'h Hardware) -> impl Iterator<Item = &'h &'static dyn Takes> {
+    let idle = model.takes(&RAMP) && hardware.get(&RAMP) == RampAt::Before;
+    model.options.iter().filter(move |takes| !(idle && [SMOOTH.name, PERIOD.name].contains(&takes.name())))
+}
+
 /// One line for wave headers: model, geometry, choices.
 #[must_use]
 pub fn title(model: &Model, hardware: &Hardware, curve: &Curve) -> String {
     let choice = |takes: &&'static dyn Takes| format!("{} {}", takes.name(), hardware.text(takes.option()));
-    let choices: Vec<_> = model.options.iter().map(choice).collect();
+    let choices: Vec<_> = in_force(model, hardware).map(choice).collect();
     // A netlist is the same wherever it is.
     let name = if model.is_described() { file_name(model.source) } else { model.name };
     format!("{name}; {}; {}", geometry(curve), choices.join("; "))

@@ -6,6 +6,7 @@ use stepwave_models::CutWord;
 use stepwave_models::options::{Takes, WIDTH};
 use stepwave_netlist::bits::Reading;
 
+use super::geometry::in_force;
 use super::{Report, Subject};
 use crate::program::CutWords;
 use crate::testbench::{Ending, OverflowEvent, OverflowTally, RegisterRange};
@@ -141,7 +142,7 @@ impl Report {
             Subject::Curve(of) => of.head(self),
             Subject::Program(of) => of.head(self),
         };
-        let taken = self.model.options.iter().filter(|takes| takes.name() != WIDTH.name);
+        let taken = in_force(self.model, &self.hardware).filter(|takes| takes.name() != WIDTH.name);
         let choices: Map<String, Value> =
             taken.map(|takes| (takes.name().replace('-', "_"), self.json_choice(*takes))).collect();
         let widths: Map<String, Value> =

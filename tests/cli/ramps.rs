@@ -1,5 +1,7 @@
 //! Ramps: how they are given, what an operator does, and what is refused.
 
+use serde_json::Value;
+
 use super::{Folder, good, refused};
 
 #[test]
@@ -100,4 +102,20 @@ fn what_cannot_be_is_refused_with_a_remedy() {
     ] {
         refused(command, hints);
     }
+}
+
+#[test]
+fn a_machine_without_filters_says_nothing_of_them() {
+    let of = |words: &str| -> (Value, String) {
+        let folder = Folder::new();
+        let json = folder.good(&format!("run dda-machine --to 8,6,2 {words} --json - --vcd m.vcd"));
+        (serde_json::from_str(&json).unwrap(), folder.read("m.vcd"))
+    };
+    let (report, wave) = of("");
+    assert!(report["choices"]["smooth"].is_null() && report["choices"]["period"].is_null(), "{report}");
+    assert_eq!(report["choices"]["ramp"], "before");
+    assert!(!wave.contains("smooth"), "{}", &wave[..400]);
+    let (report, wave) = of("--ramp after --smooth sum=2 --period 16");
+    assert_eq!((&report["choices"]["smooth"], &report["choices"]["period"]), (&"sum=2".into(), &16.into()));
+    assert!(wave.contains("ramp after; smooth sum=2; period 16"), "{}", &wave[..400]);
 }
