@@ -237,6 +237,15 @@ async function keys({ page, open }) {
     await settled();
     assert.match(await page.textContent('#readout'), /\(100, 62\)$/);
   }
+  const names = await page.$$eval('#run option', (all) => all.map((option) => option.textContent));
+  const others = () => page.$$eval('#legend .other', (all) => all.map((item) => item.textContent));
+  const picture = () => page.$eval('#path canvas', (canvas) => canvas.toDataURL());
+  assert.deepEqual(await others(), names.filter((name) => name !== 'mindev-line'), 'the paths of all methods');
+  const together = await picture();
+  await page.click('#others');
+  await settled();
+  assert.deepEqual(await others(), []);
+  assert.notEqual(await picture(), together, 'one path alone is another picture');
   console.log('keys, buttons, moves and methods: as they should');
 }
 

@@ -13,6 +13,23 @@ async function loadRun(index) {
   return loaded[index];
 }
 
+/** Draws the paths of all methods of a comparison, or that of the one that is shown. */
+async function showOthers() {
+  const all = $('others').getAttribute('aria-pressed') === 'true';
+  const others = await Promise.all(all ? runs.map(async (run, index) => ({ name: run.dataset.run, run: await loadRun(index) })) : []);
+  path.overlay(others);
+}
+
+/** Whether the paths of other methods are drawn too. */
+function buildOthers() {
+  const others = make('button', { id: 'others', type: 'button', data: { word: 'others' }, hidden: !comparison, onclick: () => {
+    others.setAttribute('aria-pressed', String(others.getAttribute('aria-pressed') !== 'true'));
+    showOthers();
+  } });
+  others.setAttribute('aria-pressed', String(Boolean(comparison)));
+  $('path-tools').prepend(others);
+}
+
 /** Shows another run, at the same clock. */
 async function showRun(index) {
   const run = await loadRun(index);
@@ -27,6 +44,7 @@ async function showRun(index) {
   panels.show(run, comparison, index);
   document.body.classList.toggle('without-path', !run.path);
   wave.show(run);
+  if (comparison) await showOthers();
   $('run').value = String(index);
   showAlerts(run);
   moved();
@@ -243,6 +261,7 @@ async function begin() {
   wave = new WaveView(cursor);
   panels = new Panels(cursor, showRun);
   buildTransport();
+  buildOthers();
   listen();
   language = (navigator.language ?? '').toLowerCase().startsWith('zh') ? 'zh' : 'en';
   setWords();

@@ -2,10 +2,14 @@
 
 /** Points in a piece of the path whose bounds are known. */
 const PIECE = 512;
+/** Colours of the paths of other methods, readable on a light and on a dark ground. */
+const OTHERS = ['#1f9e89', '#d9713c', '#8d6bc4', '#a98600', '#4a86b8', '#c8506b', '#6f9a2d', '#8a7f78'];
 
 class PathView {
   constructor(cursor) {
     this.cursor = cursor;
+    /** Other methods that are drawn too: name and run. */
+    this.others = [];
     this.element = $('path');
     this.surface = new Surface(this.element, [(context) => this.drawBase(context), (context) => this.drawTool(context)]);
     this.surface.resized = () => this.fitted && this.fit();
@@ -36,6 +40,15 @@ class PathView {
     if (!run.path) return;
     this.choosePlanes();
     this.project();
+  }
+
+  /** Draws these runs of other methods too. */
+  overlay(others) {
+    this.others = others.filter(({ run }) => run !== this.run && run.path)
+      .map((other, index) => ({ ...other, colour: OTHERS[index % OTHERS.length] }));
+    if (!this.run?.path) return;
+    this.legend();
+    this.surface.redraw();
   }
 
   /** The planes of x, y and z that there are. */
@@ -72,7 +85,13 @@ class PathView {
 
   legend() {
     const kinds = ['ideal', 'pulses', ...(this.rapids.some(Boolean) ? ['rapid'] : []), 'tool', ...(worstOf(this.run) ? ['worst'] : [])];
-    $('legend').replaceChildren(...kinds.map((kind) => make('li', { className: kind }, make('span', { data: { word: kind }, textContent: word(kind) }))));
+    const items = kinds.map((kind) => make('li', { className: kind }, make('span', { data: { word: kind }, textContent: word(kind) })));
+    const others = this.others.map(({ name, colour }) => {
+      const item = make('li', { className: 'other' }, make('span', { textContent: name }));
+      item.style.setProperty('--accent', colour);
+      return item;
+    });
+    $('legend').replaceChildren(...items, ...others);
   }
 
   fit() {
@@ -193,10 +212,31 @@ class PathView {
     for (const outline of this.outlines) this.trace(context, outline);
     context.stroke();
     context.globalAlpha = 1;
+    this.drawOthers(context);
     const all = this.xs.length;
     this.stroke(context, all, colours.pale, 1.6, false);
     if (this.rapids.some(Boolean)) this.stroke(context, all, colours.rapid, 1, true);
     this.drawMarks(context);
+  }
+
+  /** The paths of other methods, without points less than a pixel from the one before. */
+  drawOthers(context) {
+    const { scale, origin: [left, top], plane: [right, up] } = this;
+    context.lineWidth = 1.2;
+    for (const { run: { path: { axes } }, colour } of this.others) {
+      const [xs, ys] = [axes[right], axes[up]];
+      if (!xs || !ys) continue;
+      context.strokeStyle = colour;
+      context.beginPath();
+      let [lastX, lastY] = [NaN, NaN];
+      for (let at = 0; at < xs.length; at++) {
+        const [x, y] = [left + xs[at] * scale, top - ys[at] * scale];
+        if (at && at < xs.length - 1 && Math.abs(x - lastX) + Math.abs(y - lastY) < 1) continue;
+        if (at) context.lineTo(x, y); else context.moveTo(x, y);
+        [lastX, lastY] = [x, y];
+      }
+      context.stroke();
+    }
   }
 
   /** Adds a line of points to what is drawn, without those less than a pixel apart. */
