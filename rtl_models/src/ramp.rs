@@ -238,6 +238,14 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
             plan.bits(PHASE)
         )));
     }
+    if bits(of.speeds[1]) > plan.bits(V) {
+        return Err(ModelError::Widths(format!(
+            "{NAME}: v of {} bits does not hold the drive speed, {}: give --width v={} or a lower --speed",
+            plan.bits(V),
+            of.speeds[1],
+            bits(of.speeds[1])
+        )));
+    }
     if let Some(block) = of.s_block(pulses, preset(plan, of.n)) {
         let SBlock { up, down, length, .. } = block;
         let gain = up.most().max(of.gains[0]);
@@ -245,6 +253,13 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
         plan.set(TICKS, bits(up.ticks().max(down.ticks())));
         plan.set_each(GROWTH, bits(up.j.max(down.j)));
         plan.set_each(PARTS, bits([up.m, up.h, down.m, down.h].into_iter().max().unwrap_or(1)));
+        let (ticks, parts) = (plan.bits(TICKS), (0..4).map(|part| plan.bits(PARTS.of(part))).max().unwrap_or(0));
+        if ticks < parts {
+            return Err(ModelError::Widths(format!(
+                "{NAME}: k of {ticks} bits counts fewer ticks than the parts of a ramp have (mu, hu, md, hd: {parts} bits): give \
+                 --width k={parts}"
+            )));
+        }
         plan.set(LENGTH, Width::needed_unsigned(length));
         plan.set_each(GAINS, bits(gain));
     }

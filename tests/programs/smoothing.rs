@@ -169,6 +169,25 @@ fn circles_lose_the_radius_of_the_formula() {
 
 /// With f BLU a period before and after a square corner a moving sum of k passes it at f·k/8 from both legs.
 #[test]
+fn the_radius_lost_is_the_same_by_every_engine_and_up_to_the_end_of_the_arc() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "G21 G90 G64 P0.2\nG1 F600\nG64 P0.05\nG1 Y-0.15 X-0.50\nG2 X-0.97 Y0.38 I-0.50 J0.03\nG64 P0.01\nG2 X-0.19 Y0.58 I0.49 J-0.29\nM2\n";
+    let measured = |engine: EngineKind| {
+        let options = ["--normalize", "--ramp", "after", "--smooth", "sum=16", "--period", "333"];
+        let file = folder.path().join("r.json");
+        let simulation = simulation(&folder, "dda", text, &options).clock_hz(50_000.0).engine(engine);
+        simulation.rapid(600.0).json(&file).run().unwrap();
+        let json: serde_json::Value = serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap();
+        let arcs = json["after"]["radius_loss"]["arcs"].as_array().unwrap().clone();
+        arcs.iter().map(|arc| arc["measured"].as_f64()).collect::<Vec<_>>()
+    };
+    let all: Vec<_> = [EngineKind::Compiled, EngineKind::Word, EngineKind::Gates].map(measured).to_vec();
+    assert!(all.windows(2).all(|pair| pair[0] == pair[1]), "{all:?}");
+    // By the wave, at the ends of periods from 17 of them after the beginning of the arc to its end.
+    assert!((all[0][0].unwrap() - 8.417_751_926).abs() < 1e-6 && all[0][1].is_none(), "{all:?}");
+}
+
+#[test]
 fn the_output_is_as_far_off_a_corner_as_the_integral_says() {
     let folder = tempfile::tempdir().unwrap();
     let text = "G21 G90 G64 F3000\nG1 X5\nG1 Y5\nM2\n";

@@ -74,6 +74,49 @@ fn a_register_that_is_too_narrow_is_refuted_by_a_run_that_shows_it() {
 }
 
 #[test]
+fn the_limits_of_the_speed_are_as_wide_as_v_and_no_other_width_is_taken() {
+    let folder = Folder::new();
+    for words in ["prove ramp --narrower vc=7", "prove ramp --width vs=3 --box 4", "widths ramp --box 4 --width ve=2"] {
+        let ran = folder.run(words);
+        assert!(
+            ran.code == 2 && ran.err.contains("no register") && ran.err.contains("did you mean 'v'"),
+            "{words}: {ran:?}"
+        );
+    }
+    let ran = folder.run("run ramp --to 12 --width vs=3");
+    assert!(ran.code == 2 && ran.err.contains("no register 'vs' here for --width"), "{ran:?}");
+    let ran = folder.run("run ramp --to 12 --width v=7");
+    assert!(
+        ran.code == 2 && ran.err.contains("v of 7 bits does not hold the drive speed, 144: give --width v=8"),
+        "{ran:?}"
+    );
+    folder.good("run ramp --to 12 --width v=8");
+    let ran = folder.run("run ramp --to 12 --jerk 4 --width k=1");
+    assert!(ran.code == 2 && ran.err.contains("give --width k=3"), "{ran:?}");
+}
+
+#[test]
+fn the_least_width_of_an_exponential_holds_in_every_run_of_the_box() {
+    let folder = Folder::new();
+    for (words, k) in [("--smooth exp=1 --step 3", 6), ("--smooth exp=2 --step 35", 7), ("--smooth exp=3 --step 10", 7)]
+    {
+        let model = find("ramp-after").unwrap();
+        let options = Options::parse(words.split_whitespace()).unwrap();
+        let found = widths(model, &options, &Extent::Bits(k), &|_| {}).unwrap();
+        let least: Vec<String> = found.registers.iter().map(|own| format!("{}={}", own.name, own.needed)).collect();
+        let least = least.join(",");
+        for to in 1..1 << k {
+            folder.good(&format!("run ramp-after --to {to} {words} --width {least} -q"));
+        }
+        let acc = found.registers.iter().find(|own| own.name == "acc").unwrap();
+        let fault = acc.witness.as_ref().unwrap();
+        let to = fault.curve.to()[0];
+        let ran = folder.run(&format!("run ramp-after --to {to} {words} --width acc={}", acc.needed - 1));
+        assert!(ran.code == 1 && ran.err.contains("overflow of ramp_after"), "{ran:?}");
+    }
+}
+
+#[test]
 fn what_has_no_proof_says_so() {
     let folder = Folder::new();
     let ran = folder.run("prove ramp --jerk 4 --accel 12");

@@ -17,6 +17,8 @@ use super::{BlockReport, Observer, ObserverError, Testbench};
 const MOVES: usize = 4096;
 /// Arcs that are kept.
 const ARCS: usize = 100;
+/// Periods of an arc of which it may not be known yet whether it had ended: far more than an engine hands over at once.
+const RECENT: usize = 1 << 14;
 
 /// A place that the output has come to by a pulse.
 #[derive(Clone, Copy, Debug)]
@@ -42,13 +44,44 @@ struct Passed {
 }
 
 /// An arc: its radius, and what it was at the ends of periods.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Turning {
     of: ToolMove,
     radius: f64,
     /// Of the interpolator's radius less that of the output.
     sum: f64,
     count: u64,
+    /// The same of the last periods, with their clocks: the end of a move is reported after its samples.
+    recent: VecDeque<(u64, f64)>,
+}
+
+impl Turning {
+    fn take(&mut self, clock: u64, lost: f64) {
+        if self.recent.len() == RECENT {
+            self.settle_first();
+        }
+        self.recent.push_back((clock, lost));
+    }
+
+    fn settle_first(&mut self) {
+        if let Some((_, lost)) = self.recent.pop_front() {
+            self.sum += lost;
+            self.count += 1;
+        }
+    }
+
+    /// It has ended at this clock.
+    fn end(&mut self, clock: u64) {
+        self.recent.retain(|(at, _)| *at <= clock);
+    }
+
+    /// The mean of all periods, if there are any.
+    fn mean(mut self) -> Option<f64> {
+        while !self.recent.is_empty() {
+            self.settle_first();
+        }
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
 }
 
 /// Where both are after a sample.
@@ -124,7 +157,7 @@ impl OutputTrack {
         let of = block.of;
         let arc = matches!(of.segment.shape, SegmentShape::Arc { .. }) && radii_apart(&of.segment) < 0.5;
         let outline = Outline::of(&of);
-        let arc = arc.then(|| Turning { of, radius: outline.radius(), sum: 0.0, count: 0 });
+        let arc = arc.then(|| Turning { of, radius: outline.radius(), sum: 0.0, count: 0, recent: VecDeque::new() });
         if self.moves.len() == MOVES {
             self.leave();
         }
@@ -135,7 +168,11 @@ impl OutputTrack {
     pub fn ended(&mut self, block: &BlockReport) {
         let f = block.length * self.after.period as f64 / block.clocks.max(1) as f64;
         if let Some(last) = self.moves.back_mut() {
-            last.ended = Some((block.begun + block.clocks, f));
+            let ended = block.begun + block.clocks;
+            last.ended = Some((ended, f));
+            if let Some(arc) = &mut last.arc {
+                arc.end(ended);
+            }
         }
     }
 
@@ -193,9 +230,9 @@ impl OutputTrack {
     fn leave(&mut self) {
         let Some(Passed { line, ended, arc, .. }) = self.moves.pop_front() else { return };
         self.nearest = self.nearest.saturating_sub(1);
-        if let (Some(Turning { radius, sum, count, .. }), Some((_, f))) = (arc, ended) {
-            let expected = self.after.radius_loss(f, radius);
-            let measured = (count > 0).then(|| sum / count as f64);
+        if let (Some(arc), Some((_, f))) = (arc, ended) {
+            let radius = arc.radius;
+            let (expected, measured) = (self.after.radius_loss(f, radius), arc.mean());
             self.arcs.push(ArcLoss { line, radius, displacement: f, expected, measured });
         }
     }
@@ -232,8 +269,7 @@ impl OutputTrack {
                 let is_in = passed.begun + settling <= now && passed.ended.is_none_or(|(ended, _)| now <= ended);
                 if let Some(arc) = passed.arc.as_mut().filter(|_| is_in) {
                     let [given, sent] = places.each_ref().map(|place| Outline::radius_at(&arc.of, place));
-                    arc.sum += given - sent;
-                    arc.count += 1;
+                    arc.take(now, given - sent);
                 }
             }
         }

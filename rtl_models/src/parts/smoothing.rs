@@ -104,7 +104,7 @@ pub(crate) fn moving_sum<'m>(
 
 /// The share 1/2^s of what is inside, rounded away from 0: acc += in, out = acc/2^s, acc -= out.
 ///
-/// `inside` and `input` are both unsigned or both in two's complement; |acc| <= 2^s·max|in| before out is taken off.
+/// `inside` and `input` are both unsigned or both in two's complement; |acc| <= (2^s - 1)·max|in|.
 pub(crate) fn exponential<'m>(
     m: Scope<'m>,
     inside: Register<'m>,
@@ -115,13 +115,24 @@ pub(crate) fn exponential<'m>(
     let is_signed = input.is_signed();
     let read = |signal: Signal<'m>| if is_signed { signal.as_signed() } else { signal };
     let s = u32::try_from(s).unwrap_or(0);
-    let all = inside.q.strict_add(input, at.begins);
-    let bits = all.bits().max(s) + 1;
+    // As wide as it needs: acc holds what is left after out is taken off.
+    let wide = inside.q.bits().max(input.bits()) + 1;
+    let all = m.name("all", read(read(inside.q.extend(wide)).wrapping_add(read(input.extend(wide)))));
+    let bits = wide.max(s) + 1;
     let up = m.lit(bits, (1 << s) - 1);
     // Below 0 the shift rounds away from it by itself.
     let up = if is_signed { all.msb().mux(m.lit(bits, 0), up).as_signed() } else { up };
     let out = m.name("out", read(all.extend(bits).wrapping_add(up).slice(s, bits - s)));
-    let rest = all.wrapping_sub(out.extend(all.bits().max(out.bits())).slice(0, all.bits()));
+    let change = out.bits().max(input.bits()) + 1;
+    let [input, taken] = [input, out].map(|signal| read(signal.extend(change)));
+    let rest = if is_signed {
+        inside.q.strict_add(input.wrapping_sub(taken), at.begins)
+    } else {
+        let grows = !input.less_than(taken);
+        let more = inside.q.strict_add(input.wrapping_sub(taken), at.begins & grows);
+        let less = inside.q.strict_sub(taken.wrapping_sub(input), at.begins & !grows);
+        grows.mux(more, less)
+    };
     at.close(m, inside, rest);
     out
 }
