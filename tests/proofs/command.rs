@@ -140,7 +140,7 @@ fn bad_input_is_refused_in_a_sentence() {
     for (words, hint) in [
         ("prove", "required"),
         ("prove nonsense", "no model"),
-        ("prove ppc-conic", "no box of geometries"),
+        ("prove ppc-conic", "ppc-conic claims nothing for every k: give a box (--box 4)"),
         ("prove ppc-line --narrower g=1", "has no register g"),
         ("prove ppc-line --narrower f", "such as f=1"),
         ("prove ppc-line --narrower f=40", "cannot be 40 bits narrower"),

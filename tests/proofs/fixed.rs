@@ -133,7 +133,7 @@ fn a_model_that_claims_nothing_is_run_over_a_box() {
     assert!(ran.code == 1 && ran.out.contains("\nCOUNTEREXAMPLE: stepwave run stepgen --to "), "{ran:?}");
     assert!(ran.err.contains("overflow of stepgen."), "{ran:?}");
     for (words, hint) in [
-        ("prove stepgen", "no box of geometries over which something is claimed"),
+        ("prove stepgen", "stepgen claims nothing for every k: give a box (--box 4)"),
         ("prove stepgen --width 8 --certificate a.cert", "--certificate does not go with the geometries of a box"),
     ] {
         let ran = folder.run(words);

@@ -136,6 +136,8 @@ fn what_has_no_proof_says_so() {
         let ran = folder.run(&format!("prove {model} --any-preset"));
         assert!(ran.code == 2 && ran.err.contains("has no remainder to preset: leave --any-preset out"), "{ran:?}");
     }
+    let ran = folder.run("prove ramp --brake count --narrower r=1");
+    assert!(ran.code == 2 && ran.err.contains("is another circuit at each number of bits"), "{ran:?}");
     let ran = folder.run("prove ramp --travel 100,5");
     assert!(
         ran.code == 2 && ran.err.contains("a box of 2 axes is not proved: give one range, such as 0..9"),

@@ -42,7 +42,7 @@ pub use verdict::{Attempt, Claim, Evidence, Scope, Shown, Verdict, names, proved
 pub enum ProofError {
     /// The model claims nothing.
     #[error(
-        "{model} has no box of geometries over which something is claimed: `stepwave run` and `stepwave sweep` study it by simulation"
+        "{model} claims nothing for every k: give a box (--box 4), of which every geometry is simulated, or study it by `stepwave sweep`"
     )]
     NoClaims {
         /// The model.

@@ -70,8 +70,13 @@ impl Subject {
         let designs: Vec<(u32, Design)> = members.iter().map(|(k, _, machine)| (*k, machine.design.clone())).collect();
         let family = if claims.geometries == Region::Travels {
             let alike = alike(&designs, members.iter().position(|(k, ..)| Some(*k) == at));
-            // Where there are not two alike, the error names what differs between the first two.
-            let alike = if alike.len() < 2 { 0..designs.len() } else { alike };
+            if alike.len() < 2 {
+                return Err(ProofError::Box(format!(
+                    "{} with these widths is another circuit at each number of bits, so that nothing is proved for every k: give \
+                     a box (--box 8), of which every travel is simulated",
+                    model.name
+                )));
+            }
             members = members.drain(alike.clone()).collect();
             Family::of(&designs[alike])?
         } else {
