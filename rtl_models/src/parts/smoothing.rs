@@ -117,7 +117,7 @@ pub(crate) fn exponential<'m>(
     let s = u32::try_from(s).unwrap_or(0);
     // As wide as it needs: acc holds what is left after out is taken off.
     let wide = inside.q.bits().max(input.bits()) + 1;
-    let all = m.name("all", read(read(inside.q.extend(wide)).wrapping_add(read(input.extend(wide)))));
+    let all = read(read(inside.q.extend(wide)).wrapping_add(read(input.extend(wide))));
     let bits = wide.max(s) + 1;
     let up = m.lit(bits, (1 << s) - 1);
     // Below 0 the shift rounds away from it by itself.
