@@ -281,18 +281,15 @@ impl<'a> Waves<'a> {
         outputs: &mut Outputs,
     ) -> Result<(), Error> {
         let (vcd, fst) = (self.vcd.take(), self.fst.take());
-        let vcd_stem = vcd.as_ref().and_then(|wave| wave.path.file_stem());
-        // The files next to two waves of one stem would have the same names.
-        let twins = vcd_stem.is_some() && vcd_stem == fst.as_ref().and_then(|wave| wave.path.file_stem());
+        let stems = stems([vcd.as_ref().map(|wave| wave.path), fst.as_ref().map(|wave| wave.path)]);
         if let Some(Wave { path, writer }) = vcd {
             let (written, background) = finish(writer, clocks)?;
             background.finish()?;
-            self.viewer_files(path, path.file_stem(), written, overflows, outputs)?;
+            self.viewer_files(path, stems[0], written, overflows, outputs)?;
         }
         if let Some(Wave { path, writer }) = fst {
             let (written, _) = finish(writer, clocks)?;
-            let stem = if twins { path.file_name() } else { path.file_stem() };
-            self.viewer_files(path, stem, written, overflows, outputs)?;
+            self.viewer_files(path, stems[1], written, overflows, outputs)?;
         }
         Ok(())
     }
@@ -347,6 +344,13 @@ impl<'a> Waves<'a> {
         }
         files.iter().try_for_each(|file| outputs.write(&path.with_file_name(&file.name), &file.text))
     }
+}
+
+/// What the names of the files next to a VCD and an FST begin with: the name of the wave without its ending, or with it for an FST
+/// next to a VCD of the same name, whose files would have the same names.
+pub(crate) fn stems(waves: [Option<&Path>; 2]) -> [Option<&OsStr>; 2] {
+    let [vcd, fst] = waves.map(|wave| wave.and_then(Path::file_stem));
+    [vcd, if vcd.is_some() && vcd == fst { waves[1].and_then(Path::file_name) } else { fst }]
 }
 
 /// What a wave holds.

@@ -56,6 +56,8 @@ pub struct Hardware {
     pub rate_bound: Option<f64>,
     /// Registers that share one scale and are widened together.
     pub scale: Vec<&'static str>,
+    /// Registers that are as wide as another, each with that one.
+    pub leaders: Vec<(&'static str, &'static str)>,
     /// Numbers that the plan fixes besides widths and options, such as the modulus of remainders.
     pub constants: Vec<(&'static str, i128)>,
     /// What to do where a component overflows that no width helps, by its name: `give a greater --divisions`.
@@ -194,6 +196,8 @@ impl Hardware {
     /// `all` bits that the widest of them needs, where one alone would no longer fit the others.
     #[must_use]
     pub fn widening(&self, register: &str, bits: u32, all: u32) -> String {
+        let leader = self.leaders.iter().find(|(follower, _)| *follower == register);
+        let register = leader.map_or(register, |(_, leader)| leader);
         let axis = (0..AXES.len()).find(|&axis| JV.of(axis).name() == register);
         let room = axis.map(|axis| self.bits(JR.of(axis)));
         let fits =

@@ -288,11 +288,13 @@ impl Plan {
     /// The hardware: widths and all options as given or by default.
     pub(crate) fn finish(self) -> Result<Hardware, ModelError> {
         let presets = self.presets()?;
-        let (mut widths, mut table, mut scale) = (Vec::with_capacity(16), Vec::with_capacity(16), Vec::new());
+        let (mut widths, mut table) = (Vec::with_capacity(16), Vec::with_capacity(16));
+        let (mut scale, mut leaders) = (Vec::new(), Vec::new());
         self.resolve(|name, width, declaration| {
             widths.extend(width.map(|width| (name, width)));
             table.extend(declaration.shown.then_some(name));
             scale.extend(declaration.scaled.then_some(name));
+            leaders.extend(declaration.leader.map(|leader| (name, leader)));
         })?;
         let count = widths.len();
         let widths: BTreeMap<_, _> = widths.into_iter().collect();
@@ -314,6 +316,7 @@ impl Plan {
             pace: self.pace,
             rate_bound: self.rate_bound,
             scale,
+            leaders,
             constants: self.constants,
             remedies: self.remedies,
         })

@@ -238,14 +238,6 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
             plan.bits(PHASE)
         )));
     }
-    if bits(of.speeds[1]) > plan.bits(V) {
-        return Err(ModelError::Widths(format!(
-            "{NAME}: v of {} bits does not hold the drive speed, {}: give --width v={} or a lower --speed",
-            plan.bits(V),
-            of.speeds[1],
-            bits(of.speeds[1])
-        )));
-    }
     if let Some(block) = of.s_block(pulses, preset(plan, of.n)) {
         let SBlock { up, down, length, .. } = block;
         let gain = up.most().max(of.gains[0]);

@@ -123,7 +123,7 @@ fn plan(line: &Line, plan: &mut Plan) -> Result<(), ModelError> {
             k
         }
         Smooth::Exponential(s) => {
-            plan.set(INSIDE, bits(f << s));
+            plan.set(INSIDE, bits(f * ((1 << s) - 1)));
             1 << s
         }
     };

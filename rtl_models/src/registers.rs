@@ -157,6 +157,8 @@ pub struct Declaration {
     pub count: fn(&Plan) -> usize,
     /// Whether their width follows from that of others, so that the user cannot change it.
     pub follows: fn(&Plan) -> bool,
+    /// The register as whose value they are used, and as wide as which they are, if they follow one.
+    pub leader: Option<&'static str>,
 }
 
 /// A register, or K registers that are declared together; 9 are those of each [axis](PerAxis).
@@ -210,6 +212,7 @@ impl<const K: usize> Reg<K> {
             when: &ALWAYS,
             count: if K == AXES.len() { Plan::axes } else { |_| K },
             follows: |_| false,
+            leader: None,
         };
         Reg { names, axis: 0, declaration }
     }
@@ -286,6 +289,13 @@ impl<const K: usize> Reg<K> {
     pub const fn count(mut self, count: fn(&Plan) -> usize) -> Reg<K> {
         self.declaration.count = count;
         self
+    }
+
+    /// As wide as this register, which takes what they hold: without a choice of the user.
+    #[must_use]
+    pub const fn as_wide_as(mut self, leader: Reg) -> Reg<K> {
+        self.declaration.leader = Some(leader.name());
+        self.follows(|_| true)
     }
 
     /// As wide as other registers require, where this is true: without a choice of the user.

@@ -5,30 +5,11 @@ use std::ffi::OsString;
 
 use clap::{Args, Command, CommandFactory};
 
-use super::{Cli, TextArgs};
+use super::{Cli, GeometryArgs, TextArgs};
 use crate::commands::run::TEXTBOOK_MODELS;
 use crate::models::options::{ACCEL, STEP, all};
 use crate::models::{Model, find};
 use crate::nc::{Drawn, SplineForm};
-
-/// Options of a geometry, as `run` and `export` have them.
-const GEOMETRY: [&str; 15] = [
-    "from",
-    "to",
-    "center",
-    "ellipse",
-    "parabola",
-    "hyperbola",
-    "bezier",
-    "hermite",
-    "points",
-    "b_spline",
-    "nurbs",
-    "degree",
-    "knots",
-    "opens",
-    "cw",
-];
 
 /// What `stepwave COMMAND MODEL --help` prints; `None` where these words ask for something else.
 pub(crate) fn help_of_model(words: &[OsString]) -> Option<String> {
@@ -50,17 +31,19 @@ pub(crate) fn help_of_model(words: &[OsString]) -> Option<String> {
 /// The command without the options that this model refuses.
 fn shortened(command: Command, model: &Model) -> Command {
     let taken: BTreeSet<&str> = model.options.iter().map(|option| option.name()).collect();
-    let (drawn, of_program) = (geometry(model), TextArgs::augment_args(Command::new("program")));
+    let drawn = geometry(model);
+    let of_program = TextArgs::augment_args(Command::new("program"));
+    let of_geometry = GeometryArgs::augment_args(Command::new("geometry"));
+    let has = |group: &Command, id: &str| group.get_arguments().any(|argument| argument.get_id() == id);
     let is_hardware = |id: &str| all().iter().any(|option| option.name() == id);
     let is_hidden = |id: &str| match id {
         "model" | "bench" | "program" | "method" => true,
         "feed" => !taken.contains(STEP.name),
         "event" => !taken.contains(ACCEL.name),
         "textbook" => !TEXTBOOK_MODELS.contains(&model.name),
-        "ccw" => !drawn.contains("cw"),
         _ if is_hardware(id) => !taken.contains(id),
-        _ if GEOMETRY.contains(&id) => !drawn.contains(id),
-        _ => of_program.get_arguments().any(|argument| argument.get_id() == id),
+        _ if has(&of_geometry, id) => !drawn.contains(id),
+        _ => has(&of_program, id),
     };
     let about = format!(
         "{}\n\nIt takes {}. `stepwave list {}` shows its registers and the source of the method.",

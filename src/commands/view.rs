@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use crate::Error;
 use crate::cli::ShownArgs;
 use crate::output::is_stream;
-use crate::waves::{Viewer, WaveOptions};
+use crate::waves::{Viewer, WaveOptions, stems};
 
 /// A file, and what shows it.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -61,15 +61,13 @@ impl View {
     }
 }
 
-/// The files that can be shown: of two waves with one kind of files next to them each.
+/// The files that can be shown, each with what shows it.
 fn shown(waves: &WaveOptions, plot: Option<&PathBuf>) -> Vec<Shown> {
     let file = |path: &&PathBuf| !is_stream(path);
-    let traced: Vec<&PathBuf> = waves.vcd.iter().chain(&waves.fst).filter(file).collect();
-    let twins = traced.len() == 2 && traced[0].file_stem() == traced[1].file_stem();
+    let traced = [&waves.vcd, &waves.fst].map(|path| path.as_ref().filter(file));
     let mut all = Vec::new();
-    for (place, path) in traced.into_iter().enumerate() {
-        // As the files next to a wave are named.
-        let stem = if twins && place == 1 { path.file_name() } else { path.file_stem() }.unwrap_or_default();
+    for (path, stem) in traced.into_iter().zip(stems(traced.map(|path| path.map(PathBuf::as_path)))) {
+        let (Some(path), Some(stem)) = (path, stem) else { continue };
         let next_to = |ending: &str| {
             let mut name = stem.to_owned();
             name.push(ending);

@@ -34,7 +34,7 @@ impl Report {
         Some((self.sent.as_ref()?, After::of(&self.hardware)?))
     }
 
-    /// For the summary; nothing where there is no such output.
+    /// For the summary; nothing without such an output.
     pub(super) fn after_text(&self) -> String {
         let Some((sent, After { smooth, period })) = self.after() else { return String::new() };
         let (ms, um) = (period as f64 / self.clock_hz * 1e3, self.blu_mm * 1e3);

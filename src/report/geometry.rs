@@ -1,7 +1,6 @@
 //! A curve in words, in JSON, and as the options of a command: `stepwave run dda-line --to 8,6 --width 4`.
 
 use serde_json::{Value, json};
-use stepwave_models::options::{PERIOD, RAMP, RampAt, SMOOTH};
 use stepwave_models::{Hardware, Model, Options, Takes};
 use stepwave_nc::{Curve, Description, Direction, Drawn, NURBS_UNIT, Nurbs, SplineForm};
 
@@ -154,8 +153,7 @@ fn command(verb: &str, model: &Model, curve: &Curve, choices: &Options) -> Strin
 
 /// The options of a model without those that do nothing as the others are chosen.
 pub(super) fn in_force<'h>(model: &'h Model, hardware: &'h Hardware) -> impl Iterator<Item = &'h &'static dyn Takes> {
-    let idle = model.takes(&RAMP) && hardware.get(&RAMP) == RampAt::Before;
-    model.options.iter().filter(move |takes| !(idle && [SMOOTH.name, PERIOD.name].contains(&takes.name())))
+    model.options.iter().filter(|takes| takes.idle(&hardware.options).is_none())
 }
 
 /// One line for wave headers: model, geometry, choices.

@@ -183,8 +183,8 @@ fn what_cannot_be_drawn_is_refused() {
     let folder = Folder::new();
     folder.good("export dda-line --to 8,6 --netlist line.net");
     for (more, message) in [
-        ("--scope axis_w", "there is no scope 'axis_w' (did you mean 'axis_x'?)"),
-        ("--scope wave", "there is no scope 'wave'; there are block, axis_x, axis_y"),
+        ("--scope axis_w", "no scope is called 'axis_w' (did you mean 'axis_x'?)"),
+        ("--scope wave", "no scope is called 'wave'; there are block, axis_x, axis_y"),
         ("--width 4", "line.net is drawn as it is: leave --width out, or give a geometry for its bench file"),
     ] {
         let ran = folder.run(&format!("export line.net --schematic f.svg {more}"));

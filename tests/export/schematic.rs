@@ -139,7 +139,7 @@ fn scopes_are_closed_below_a_depth_and_one_can_be_drawn_alone() {
     }
     let error = draw(&netlist, &[], &part(Some("prat"), None)).unwrap_err();
     assert!(matches!(&error, DrawError::NoScope { path, .. } if path == "prat"));
-    assert!(error.to_string().starts_with("there is no scope 'prat'"), "{error}");
+    assert!(error.to_string().starts_with("no scope is called 'prat'"), "{error}");
 }
 
 #[test]

@@ -69,7 +69,7 @@ pub struct Drawing {
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 pub enum DrawError {
     /// No scope has this path.
-    #[error("there is no scope '{path}'{hint}")]
+    #[error("no scope is called '{path}'{hint}")]
     NoScope {
         /// The path.
         path: String,

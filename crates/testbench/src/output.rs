@@ -298,7 +298,7 @@ pub struct Sent {
     pub reached: Vec<i64>,
     /// What the position counters show in the last sample, in BLU.
     pub counters: Vec<i64>,
-    /// The greatest distance from the contour of the tool's centre; `None` where there is no contour.
+    /// The greatest distance from the contour of the tool's centre; `None` without a contour.
     pub off: Option<OffContour>,
     /// Arcs; the first of many.
     pub arcs: Vec<ArcLoss>,

@@ -74,6 +74,14 @@ impl Drawing {
         Window::new(self, wave, signals)
     }
 
+    /// The clocks or times from the first to the last that is to be drawn, however many fit in a line.
+    ///
+    /// # Errors
+    /// As [`window`](Self::window).
+    pub fn places(&self, wave: &Wave) -> Result<Vec<u64>, String> {
+        window::places(self, wave)
+    }
+
     /// The [window](Self::window) as text; a line at the end says what is left out.
     ///
     /// # Errors

@@ -356,10 +356,10 @@ fn zoom_and_markers(view: &View<'_>, pixels: usize) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn probe(scopes: &[&str], name: &str, width: u32, format: Format, role: Role) -> Probe {
+    pub(crate) fn probe(scopes: &[&str], name: &str, width: u32, format: Format, role: Role) -> Probe {
         Probe {
             scopes: scopes.iter().map(|&scope| scope.to_owned()).collect(),
             name: name.to_owned(),
@@ -367,6 +367,25 @@ mod tests {
             format,
             role,
             columns: vec![0],
+        }
+    }
+
+    /// 17 clocks at 1 MHz of these.
+    pub(crate) fn view(probes: &[Probe]) -> View<'_> {
+        View {
+            dump_name: "w.vcd",
+            stem: "w",
+            probes,
+            clk: true,
+            without: &[],
+            time: ClockTime::from_hz(1e6).unwrap(),
+            first_clock: 0,
+            last_clock: 16,
+            ranges: &[],
+            scaled_in_view: false,
+            leading: &[],
+            flagged: false,
+            marks: &[],
         }
     }
 
@@ -379,21 +398,8 @@ mod tests {
             probe(&["m", "x"], "jrx", 4, Format::Unsigned, Role::Register),
             probe(&["m", "x"], "x", 5, Format::Analog, Role::Register),
         ];
-        let view = View {
-            dump_name: "w.vcd",
-            stem: "w",
-            probes: &probes,
-            clk: true,
-            without: &[],
-            time: ClockTime::from_hz(1e6).unwrap(),
-            first_clock: 0,
-            last_clock: 16,
-            ranges: &[],
-            scaled_in_view: false,
-            leading: &[],
-            flagged: false,
-            marks: &[(3, "overflow".into())],
-        };
+        let marks = [(3, "overflow".into())];
+        let view = View { marks: &marks, ..view(&probes) };
         let files = side_files(&view);
         assert_eq!(files[1], SideFile { name: "w.beat.states".into(), text: "0001 JUDGE\n0010 FEED\n".into() });
         let nones = " -1".repeat(25);

@@ -118,12 +118,7 @@ fn format<'s>(probe: &Probe, states: &'s [(&Probe, String)]) -> Option<&'s str> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::timescale::ClockTime;
-
-    fn probe(scopes: &[&str], name: &str, width: u32, format: Format, role: Role) -> Probe {
-        let scopes = scopes.iter().map(|&scope| scope.to_owned()).collect();
-        Probe { scopes, name: name.to_owned(), width, format, role, columns: vec![0] }
-    }
+    use crate::gtkw::tests::{probe, view};
 
     #[test]
     fn every_row_is_added_in_the_order_of_the_save_file_with_its_format() {
@@ -135,20 +130,14 @@ mod tests {
             probe(&["m", "x", "sum"], "x", 5, Format::Analog, Role::Register),
             probe(&["m", "x", "sum"], "x_overflow", 1, Format::Unsigned, Role::Flag),
         ];
+        let marks = [(3, "overflow".into())];
         let view = View {
             dump_name: "a b.vcd",
             stem: "a b",
-            probes: &probes,
-            clk: true,
-            without: &[],
-            time: ClockTime::from_hz(1e6).unwrap(),
-            first_clock: 0,
-            last_clock: 16,
-            ranges: &[],
-            scaled_in_view: false,
             leading: &["x.sum.x"],
             flagged: true,
-            marks: &[(3, "overflow".into())],
+            marks: &marks,
+            ..view(&probes)
         };
         let files = side_files(&view);
         let expected = "# In the folder of this file: surfer --command-file a b.sucl a b.vcd\n\

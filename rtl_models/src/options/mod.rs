@@ -28,7 +28,7 @@ pub use table::{
     ON_OVERFLOW, OVERRIDE, PERIOD, PICK_OFF, PRESET, RADIX, RAMP, SMOOTH, SPEED, STEP, STRICT, SYSTEM, TIMING,
     TOLERANCE, WEIGHTS, WIDTH, WRAPS,
 };
-pub use taken::{Taken, Takes};
+pub use taken::{Taken, Takes, With};
 pub(crate) use taken::{chosen, taken};
 pub use values::{Gains, Millionths, Named, PerRegister, Preset, Quantity, StepTiming};
 

@@ -21,7 +21,12 @@ pub trait Takes: Sync {
     fn about(&'static self) -> String;
     /// Why the model does not take this value, if it does not.
     fn refusal(&'static self, value: &Value) -> Option<String>;
+    /// Why it does nothing with these other options, if it does not.
+    fn idle(&'static self, others: &Options) -> Option<&'static str>;
 }
+
+/// Whether an option does something with these others.
+pub type With = fn(&Options) -> bool;
 
 /// Some values of an option, or all with a text of the model's own.
 pub struct Taken<T: 'static> {
@@ -33,6 +38,8 @@ pub struct Taken<T: 'static> {
     about: &'static str,
     /// Why not the others.
     why_not: &'static str,
+    /// With which other options it does something, and what to do else.
+    counts: Option<(With, &'static str)>,
 }
 
 impl<T> OptionDef<T> {
@@ -45,13 +52,19 @@ impl<T> OptionDef<T> {
         words: &'static [(T, &'static str)],
         why_not: &'static str,
     ) -> Taken<T> {
-        Taken { option: self, default, words, about: "", why_not }
+        Taken { option: self, default, words, about: "", why_not, counts: None }
     }
 
     /// All values, with what they are here in `about`, and the default.
     #[must_use]
     pub const fn about(&'static self, about: &'static str) -> Taken<T> {
-        Taken { option: self, default: None, words: &[], about, why_not: "" }
+        Taken { option: self, default: None, words: &[], about, why_not: "", counts: None }
+    }
+
+    /// All values, where other options are so that it does something; given else it is refused with this reason.
+    #[must_use]
+    pub const fn counts(&'static self, with: With, reason: &'static str) -> Taken<T> {
+        Taken { option: self, default: None, words: &[], about: "", why_not: "", counts: Some((with, reason)) }
     }
 }
 
@@ -102,6 +115,10 @@ impl<T: Clone + PartialEq + Send + Sync + 'static> Takes for OptionDef<T> {
     fn refusal(&'static self, _: &Value) -> Option<String> {
         None
     }
+
+    fn idle(&'static self, _: &Options) -> Option<&'static str> {
+        None
+    }
 }
 
 impl<T: Clone + PartialEq + Send + Sync + 'static> Takes for Taken<T> {
@@ -137,7 +154,15 @@ impl<T: Clone + PartialEq + Send + Sync + 'static> Takes for Taken<T> {
     }
 
     fn about(&'static self) -> String {
-        if self.about.is_empty() { listed(self.words(), self.default_value()) } else { self.about.to_owned() }
+        match (self.about, self.words) {
+            ("", []) => Takes::about(self.option),
+            ("", _) => listed(self.words(), self.default_value()),
+            (about, _) => about.to_owned(),
+        }
+    }
+
+    fn idle(&'static self, others: &Options) -> Option<&'static str> {
+        self.counts.filter(|(with, _)| !with(others)).map(|(_, reason)| reason)
     }
 
     fn refusal(&'static self, value: &Value) -> Option<String> {
@@ -177,7 +202,8 @@ pub(crate) fn chosen(
     let mut chosen = given.clone();
     for value in given.given() {
         let option = value.option();
-        if let Some(reason) = taken(model, list, option)?.refusal(value) {
+        let takes = taken(model, list, option)?;
+        if let Some(reason) = takes.refusal(value).or_else(|| takes.idle(given).map(str::to_owned)) {
             return Err(ModelError::Value { model, option: option.name(), value: value.text().to_owned(), reason });
         }
     }

@@ -16,7 +16,7 @@ pub const PHASE: Reg = Reg::new("phase", N, "phase of the pulses, from --preset"
 pub const V: Reg = Reg::new("v", N, "speed, in 2^-n pulses a tick");
 /// Start, drive and stop speed.
 pub const LIMITS: Reg<3> =
-    Reg::each(["vs", "vc", "ve"], N, "start, drive and stop speed, as wide as v").hidden().follows(|_| true);
+    Reg::each(["vs", "vc", "ve"], N, "start, drive and stop speed, as wide as v").hidden().as_wide_as(V);
 /// Acceleration and deceleration.
 pub const GAINS: Reg<2> =
     Reg::each(["a", "d"], AS_NEEDED, "acceleration and deceleration, in 2^-n pulses a tick each tick").hidden();

@@ -48,7 +48,7 @@ impl FilterBits {
         let bits = |most: u64| Width::needed_unsigned(most.into()) + 1;
         let (held, remainder) = match smooth {
             Smooth::Sum(k) => (bits(most.saturating_mul(k)), Width::needed_unsigned(u128::from(k) - 1)),
-            Smooth::Exponential(s) => (bits(most.saturating_mul(1 << s)), 0),
+            Smooth::Exponential(s) => (bits(most.saturating_mul((1 << s) - 1)), 0),
         };
         FilterBits { displacement: bits(most), held, remainder }
     }

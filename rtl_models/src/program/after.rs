@@ -4,7 +4,7 @@ use stepwave_netlist::Width;
 
 use crate::error::ModelError;
 use crate::hardware::Hardware;
-use crate::options::{ACCEL, JERK, Millionths, PERIOD, RAMP, RampAt, SMOOTH, Smooth};
+use crate::options::{ACCEL, Gains, JERK, Millionths, Options, PERIOD, Quantity, RAMP, RampAt, SMOOTH, Smooth, Taken};
 use crate::plan::Plan;
 
 /// The filter after the interpolator of a machine.
@@ -16,31 +16,27 @@ pub struct After {
     pub smooth: Smooth,
 }
 
+fn is_after(options: &Options) -> bool {
+    options.value(&RAMP) == RampAt::After
+}
+
+const FOR_AFTER: &str = "this is of an acceleration after the interpolator: give --ramp after too, or leave it out";
+const FOR_BEFORE: &str = "with --ramp after the filter accelerates, from 0 to f BLU a period in K periods of sum=K: choose --smooth and \
+                          --period by that, and leave this out, or leave out --ramp after";
+
+/// Acceleration and jerk in front of the pulse source.
+pub(super) static PATH_ACCEL: Taken<Option<Gains>> = ACCEL.counts(|options| !is_after(options), FOR_BEFORE);
+pub(super) static PATH_JERK: Taken<Option<Quantity>> = JERK.counts(|options| !is_after(options), FOR_BEFORE);
+/// Filter and period after the interpolator.
+pub(super) static OUTPUT_SMOOTH: Taken<Smooth> = SMOOTH.counts(is_after, FOR_AFTER);
+pub(super) static OUTPUT_PERIOD: Taken<Option<u64>> = PERIOD.counts(is_after, FOR_AFTER);
+
 /// Plans the filter of a machine, if it has one.
 pub(super) fn plan(plan: &mut Plan) -> Result<(), ModelError> {
-    let model = plan.model();
-    let refused = |option, value: String, reason: &str| {
-        Err(ModelError::Value { model, option, value, reason: reason.to_owned() })
-    };
-    let options = plan.options().clone();
     if plan.get(&RAMP) == RampAt::Before {
-        let reason = "this is of an acceleration after the interpolator: give --ramp after too, or leave it out";
-        if let Some(smooth) = options.get(&SMOOTH) {
-            return refused(SMOOTH.name, smooth.to_string(), reason);
-        }
-        if let Some(Some(period)) = options.get(&PERIOD) {
-            return refused(PERIOD.name, period.to_string(), reason);
-        }
         return Ok(());
     }
-    let reason = "with --ramp after the filter accelerates, from 0 to f BLU a period in K periods of sum=K: choose --smooth and \
-                  --period by that, and leave this out, or leave out --ramp after";
-    if let Some(Some(gains)) = options.get(&ACCEL) {
-        return refused(ACCEL.name, gains.to_string(), reason);
-    }
-    if let Some(Some(jerk)) = options.get(&JERK) {
-        return refused(JERK.name, jerk.to_string(), reason);
-    }
+    let options = plan.options().clone();
     let hz = options.clock_hz.map_or(1e6, Millionths::units);
     let period = plan.get(&PERIOD).unwrap_or_else(|| usual(hz));
     let after = After { period, smooth: plan.get(&SMOOTH) };
@@ -52,7 +48,8 @@ pub(super) fn plan(plan: &mut Plan) -> Result<(), ModelError> {
             period + 1,
             period - 1
         );
-        return refused(PERIOD.name, period.to_string(), &reason);
+        let (model, option, value) = (plan.model(), PERIOD.name, period.to_string());
+        return Err(ModelError::Value { model, option, value, reason });
     }
     plan.fix(&PERIOD, Some(period));
     plan.fix(&SMOOTH, after.smooth);

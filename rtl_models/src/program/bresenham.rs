@@ -19,7 +19,7 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::model::Model;
-use crate::options::{ACCEL, COMPARE, FORM, JERK, ON_OVERFLOW, PERIOD, RAMP, SMOOTH, WIDTH};
+use crate::options::{COMPARE, FORM};
 use crate::parts::{Buffer, pulse_source_while};
 use crate::plan::Plan;
 
@@ -30,17 +30,7 @@ pub static MODEL: Model = Model {
     method: bresenham::MODEL.method,
     source: bresenham::MODEL.source,
     registers: bresenham::MODEL.registers,
-    options: &[
-        &WIDTH,
-        &bresenham::FORMS,
-        &bresenham::COMPARISONS,
-        &ON_OVERFLOW,
-        &ACCEL,
-        &JERK,
-        &RAMP,
-        &SMOOTH,
-        &PERIOD,
-    ],
+    options: machine_options![&bresenham::FORMS, &bresenham::COMPARISONS],
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
         arcs: None,

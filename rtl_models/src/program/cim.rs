@@ -21,7 +21,7 @@ use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::Model;
-use crate::options::{ACCEL, JERK, ON_OVERFLOW, PERIOD, RAMP, SMOOTH, WIDTH, Weights};
+use crate::options::Weights;
 use crate::parts::{A_B, BASE, Change, END, F, PLANE, POSITION, QUAD, WHOLE, Weighing};
 use crate::registers::{N, Reg, Where};
 use crate::words;
@@ -46,7 +46,7 @@ pub static MODEL: Model = Model {
     method: cim_line::MODEL.method,
     source: cim_line::MODEL.source,
     registers: &[&MODE, &PLANE, &QUAD, &F, &A_B.when(&XYZ_ALONE), &WA_WB, &BASE, &END.pair(), &WHOLE, &POSITION],
-    options: &[&WIDTH, &ON_OVERFLOW, &ACCEL, &JERK, &RAMP, &SMOOTH, &PERIOD],
+    options: machine_options![],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: planar::judging(CROSSING, load, |_, block| Some(planar::bound(block, 1.0))),
     hardware,

@@ -26,7 +26,7 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::model::Model;
-use crate::options::{ACCEL, JERK, NORMALIZE, ON_OVERFLOW, PERIOD, PRESET, Preset, RAMP, SMOOTH, WIDTH};
+use crate::options::{NORMALIZE, PRESET, Preset};
 use crate::parts::{
     Buffer, END, Iteration, JR, JV, PLANE, POSITION, QUAD, WHOLE, integrator, shifted_left, up_down_counter,
 };
@@ -49,17 +49,7 @@ pub static MODEL: Model = Model {
     method: dda_line::MODEL.method,
     source: dda_line::MODEL.source,
     registers: &[&MODE, &PLANE, &QUAD, &(JV.pair(), JR.pair()), &UNIT, &END.pair(), &WHOLE, &POSITION],
-    options: &[
-        &WIDTH,
-        &PRESET.about("half (default) | zero | full | N"),
-        &NORMALIZE,
-        &ON_OVERFLOW,
-        &ACCEL,
-        &JERK,
-        &RAMP,
-        &SMOOTH,
-        &PERIOD,
-    ],
+    options: machine_options![&PRESET.about("half (default) | zero | full | N"), &NORMALIZE],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: Interpolates::Moves(Paced {
         arcs: Some(CROSSING),

@@ -21,7 +21,7 @@ use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::machine::Words;
 use crate::model::Model;
-use crate::options::{ACCEL, END_POINT, EndPoint, JERK, ON_OVERFLOW, PERIOD, RAMP, Radix, SMOOTH, WIDTH};
+use crate::options::{END_POINT, EndPoint, Radix};
 use crate::parts::{Buffer, COEFFICIENT, POSITION, Q, RateMultiplier, SIGN, Units, axis_scope, pulse_source};
 use crate::plan::Plan;
 use crate::registers::Reg;
@@ -33,7 +33,7 @@ pub static MODEL: Model = Model {
     method: dpm_line::MODEL.method,
     source: dpm_line::MODEL.source,
     registers: &[&Q, &COEFFICIENT, &POSITION],
-    options: &[&WIDTH, &ON_OVERFLOW, &ACCEL, &JERK, &RAMP, &SMOOTH, &PERIOD],
+    options: machine_options![],
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
         arcs: None,

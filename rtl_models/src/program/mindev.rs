@@ -18,7 +18,6 @@ use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::mindev_line;
 use crate::model::Model;
-use crate::options::{ACCEL, JERK, ON_OVERFLOW, PERIOD, RAMP, SMOOTH, WIDTH};
 use crate::parts::{DeviationAccumulator, F, LeastDeviation, XI_YI, line_change, square_gains};
 
 /// Where arcs are split.
@@ -31,7 +30,7 @@ pub static MODEL: Model = Model {
     method: mindev_line::MODEL.method,
     source: mindev_line::MODEL.source,
     registers: planar::JUDGED,
-    options: &[&WIDTH, &ON_OVERFLOW, &ACCEL, &JERK, &RAMP, &SMOOTH, &PERIOD],
+    options: machine_options![],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: planar::judging(CROSSING, load, |_, block| Some(planar::bound(block, 0.5))),
     hardware,

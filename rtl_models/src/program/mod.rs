@@ -6,6 +6,22 @@
 //! Every step is one clock, and the clock after the last step of a block loads the next, while the phase of the pulse
 //! source continues: pulses keep their distance across blocks.
 
+/// The options of a machine with our pulse source: its own after the width, and those that all have.
+macro_rules! machine_options {
+    ($($own:expr),* $(,)?) => {
+        &[
+            &crate::options::WIDTH,
+            $($own,)*
+            &crate::options::ON_OVERFLOW,
+            &crate::program::after::PATH_ACCEL,
+            &crate::program::after::PATH_JERK,
+            &crate::options::RAMP,
+            &crate::program::after::OUTPUT_SMOOTH,
+            &crate::program::after::OUTPUT_PERIOD,
+        ]
+    };
+}
+
 mod acceleration;
 mod after;
 pub mod bresenham;

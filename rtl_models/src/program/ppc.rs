@@ -18,7 +18,6 @@ use crate::claims::{Claims, Region};
 use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::model::Model;
-use crate::options::{ACCEL, JERK, ON_OVERFLOW, PERIOD, RAMP, SMOOTH, WIDTH};
 use crate::parts::{DeviationAccumulator, F, XI_YI, judged_by_sign, step_of_circle};
 use crate::ppc_line;
 
@@ -32,7 +31,7 @@ pub static MODEL: Model = Model {
     method: ppc_line::MODEL.method,
     source: ppc_line::MODEL.source,
     registers: planar::JUDGED,
-    options: &[&WIDTH, &ON_OVERFLOW, &ACCEL, &JERK, &RAMP, &SMOOTH, &PERIOD],
+    options: machine_options![],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: planar::judging(CROSSING, load, |_, block| Some(planar::bound(block, 1.0))),
     hardware,

@@ -20,7 +20,6 @@ use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
 use crate::model::Model;
-use crate::options::{ACCEL, JERK, ON_OVERFLOW, PERIOD, RAMP, SMOOTH, WIDTH};
 use crate::parts::{Buffer, E, pulse_source_while};
 use crate::plan::Plan;
 use crate::stepgen;
@@ -32,18 +31,7 @@ pub static MODEL: Model = Model {
     method: stepgen::MODEL.method,
     source: stepgen::MODEL.source,
     registers: stepgen::MODEL.registers,
-    options: &[
-        &WIDTH,
-        &stepgen::PART_OF_A_STEP,
-        &stepgen::PICKED,
-        &stepgen::TIMES,
-        &ON_OVERFLOW,
-        &ACCEL,
-        &JERK,
-        &RAMP,
-        &SMOOTH,
-        &PERIOD,
-    ],
+    options: machine_options![&stepgen::PART_OF_A_STEP, &stepgen::PICKED, &stepgen::TIMES],
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
         arcs: None,

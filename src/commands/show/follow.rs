@@ -87,7 +87,7 @@ fn moved(place: usize, key: Key, page: usize, count: usize) -> Option<usize> {
 /// Shows as much as fits in a line from the first place on, and moves by keys.
 ///
 /// # Errors
-/// There is no terminal, or nothing of the wave is to be shown.
+/// Standard input or output is not a terminal, or nothing of the wave is to be shown.
 pub(super) fn follow(
     mut drawing: Drawing,
     wave: &Wave,
@@ -100,27 +100,26 @@ pub(super) fn follow(
             "--follow takes keys from a terminal and draws in it: leave it out where there is none".to_owned(),
         ));
     }
-    let last = drawing.to.unwrap_or(u64::MAX);
-    let all: Vec<u64> = if drawing.by_time {
-        wave.times().to_vec()
-    } else {
-        (0..wave.cycles().map_err(|error| trouble(error.to_string()))?).collect()
-    };
-    let places: Vec<u64> = all.into_iter().filter(|place| (drawing.from..=last).contains(place)).collect();
-    drawing.to = None;
+    let places = drawing.places(wave).map_err(&trouble)?;
     let raw = Raw::new()?;
     let (mut place, mut bytes) = (0, [0; 64]);
     loop {
-        drawing.from = places.get(place).copied().unwrap_or(drawing.from);
-        let window = drawing.window(wave, signals).map_err(&trouble)?;
+        let end = places.last().copied().unwrap_or_default();
+        (drawing.from, drawing.to) = (places.get(place).copied().unwrap_or(end), None);
+        let mut window = drawing.window(wave, signals).map_err(&trouble)?;
+        let page = window.cells();
+        if place + page > places.len() {
+            drawing.to = Some(end);
+            window = drawing.window(wave, signals).map_err(&trouble)?;
+        }
         let text = window.text(drawing.ascii, drawing.colour);
-        let (what, end) = (if drawing.by_time { "time" } else { "clock" }, places.last().copied().unwrap_or_default());
+        let what = if drawing.by_time { "time" } else { "clock" };
         write!(stdout, "\x1b[H\x1b[2J{text}\n{what} {} of {end}   {HELP}", drawing.from)?;
         stdout.flush()?;
         let read = stdin.lock().read(&mut bytes)?;
         let pressed = if read == 0 { vec![Key::Quit] } else { keys(&bytes[..read]) };
         for key in pressed {
-            match moved(place, key, window.cells(), places.len()) {
+            match moved(place, key, page, places.len()) {
                 Some(next) => place = next,
                 None => {
                     drop(raw);

@@ -112,18 +112,17 @@ impl Subject {
     /// Registers that are loaded with any word, with the names and the greatest values of these words: numbers of the
     /// geometry themselves.
     pub(super) fn any_words(&self) -> Vec<(String, Symbol)> {
-        let (_, _, machine) = &self.members[0];
-        let any = |register: &&String| (self.claims.loaded_any)(&self.members[0].1, register);
-        let loaded = machine.inputs.keys().filter(any).map(|register| {
-            let symbol = Symbol { name: format!("loaded {register}"), least: number(0), greatest: self.mask(register) };
-            (register.clone(), symbol)
-        });
-        let preset = |register: String| {
-            let symbol =
-                Symbol { name: format!("preset {register}"), least: number(0), greatest: self.mask(&register) };
-            (register, symbol)
+        let (_, hardware, machine) = &self.members[0];
+        let presets = self.presets();
+        let named = |register: &String| {
+            let preset = presets.contains(register).then_some("preset");
+            preset.or((self.claims.loaded_any)(hardware, register).then_some("loaded"))
         };
-        self.presets().into_iter().map(preset).chain(loaded).collect()
+        let any = machine.inputs.keys().filter_map(|register| {
+            let name = format!("{} {register}", named(register)?);
+            Some((register.clone(), Symbol { name, least: number(0), greatest: self.mask(register) }))
+        });
+        any.collect()
     }
 
     /// The greatest number of the input of a register.

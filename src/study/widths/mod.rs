@@ -21,7 +21,7 @@ use super::proof::{Narrower, ProofError, Subject};
 use crate::testbench::Testbench;
 pub(super) use simulate::LIMIT;
 pub use simulate::ranges_alone;
-use simulate::{Runs, Seen, simulate, too_narrow};
+use simulate::{Runs, Seen, loaded, simulate, too_narrow};
 
 /// How the width of a register is known to be enough, and to be least.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -198,6 +198,7 @@ pub fn simulated(
     let known = if all && cut == 0 { Known::Exhaustive } else { Known::Sampled };
     let row = |(name, seen): (String, Seen)| {
         let (needed, worst) = seen.needs(is_signed(&bench, &name));
+        let needed = loaded(model, &wide, &name, needed, &curves[worst]);
         let below = needed.checked_sub(1)?;
         Some(RegisterWidth {
             witness: too_narrow(model, &wide, (&name, below), &curves[worst], false),
@@ -249,6 +250,7 @@ fn by_form(
     for (name, seen) in seen {
         let signed = is_signed(&bench, &name);
         let (shown, worst) = seen.needs(signed);
+        let shown = loaded(model, &set.choices, &name, shown, &set.curves[worst]);
         let concluded = bounds
             .get(&name)
             .map(|(least, greatest)| Width::needed(*least, signed).max(Width::needed(*greatest, signed)));
@@ -281,7 +283,8 @@ pub(super) fn least_seen(model: &'static Model, set: &Geometries) -> Result<Vec<
     set.curves.first().map(|curve| bench.of(model, curve)).transpose()?;
     let runs = simulate(&bench, &set.curves, LIMIT, &|_| {})?;
     let row = |(name, seen): (String, Seen)| {
-        let (needed, _) = seen.needs(is_signed(&bench, &name));
+        let (needed, worst) = seen.needs(is_signed(&bench, &name));
+        let needed = loaded(model, &set.choices, &name, needed, &set.curves[worst]);
         let given = bench.hardware().bits_of(&name);
         (name, given, needed)
     };

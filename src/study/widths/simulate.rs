@@ -208,6 +208,23 @@ pub(super) fn too_narrow(
     Some(Witness { curve: curve.clone(), choices, ran })
 }
 
+/// The bits of a register, of which its values need `needed`, that also hold what is loaded into registers as wide as it.
+pub(super) fn loaded(model: &Model, wide: &Options, name: &str, needed: u32, curve: &Curve) -> u32 {
+    let fits = |bits: &u32| {
+        let Some(choices) = with_width(wide.clone(), name, *bits) else { return true };
+        let Ok(hardware) = model.plan(curve, &choices) else { return true };
+        let Ok(machine) = model.machine(&hardware) else { return true };
+        let words = model.words(&hardware, curve).unwrap_or_default();
+        !matches!(machine.encode(&hardware, &words), Err(ModelError::DoesNotFit { .. }))
+    };
+    match model.plan(curve, wide) {
+        Ok(plan) if plan.leaders.iter().any(|(_, leader)| *leader == name) => {
+            (needed..=plan.bits_of(name)).find(fits).unwrap_or(needed)
+        }
+        _ => needed,
+    }
+}
+
 /// The same options with a register of this many bits.
 fn with_width(choices: Options, name: &str, bits: u32) -> Option<Options> {
     Some(choices.with_one(&WIDTH, name, Width::new(u64::from(bits)).ok()?))

@@ -71,7 +71,7 @@ pub(super) struct Piece<'w> {
 
 impl Window {
     pub(super) fn new(drawing: &Drawing, wave: &Wave, signals: &[usize]) -> Result<Window, String> {
-        let mut places = places(drawing, wave)?;
+        let mut places = drawing.places(wave)?;
         let all = places.len();
         let names = short_names(wave, signals);
         let name = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).min(NAME);
@@ -205,7 +205,7 @@ impl Shape {
 }
 
 /// The clocks or times that may be shown.
-fn places(drawing: &Drawing, wave: &Wave) -> Result<Vec<u64>, String> {
+pub(super) fn places(drawing: &Drawing, wave: &Wave) -> Result<Vec<u64>, String> {
     let to = drawing.to.unwrap_or(u64::MAX);
     let (what, all): (_, Vec<u64>) = if drawing.by_time {
         ("time", wave.times().to_vec())
