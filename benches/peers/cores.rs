@@ -8,12 +8,12 @@ use std::process::Command;
 use stepwave::engine::EngineKind;
 use stepwave::netlist::{Net, elaborate, text};
 
-use crate::contender::{Wave, shell};
+use crate::contender::shell;
 use crate::measure::{Job, race};
-use crate::sections::{Sizes, rate};
+use crate::sections::{Sizes, built, rate};
 use crate::table::{Table, number, times};
 use crate::unit::Unit;
-use crate::{Fallible, cxxrtl, own, verilator};
+use crate::{Fallible, own};
 
 /// RISC-V: from x1 and x2 = 50 on `x1 += x2; x3 = x1 << 3; x4 = x3 ^ x1; x5 = x4 >> 2`, x5 to address 512, x4 to an
 /// address outside of 1 GiB, the word at 512 to x6, `x1 += x6`, until x2 has counted to 0; and again, for ever.
@@ -154,11 +154,13 @@ pub(crate) fn cores(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let unit = import(core, &folder, &dir)?;
         let clocks = 1 << sizes.wave;
         let blocks = unit.line(&block(&unit, clocks));
+        let (verilator, cxxrtl) = built(&unit.rtl(), &dir, &blocks);
+        // The word engine takes up to a minute, in which nothing disturbs it for long.
         let jobs = [
             own::core("compiled", EngineKind::Compiled, clocks, &dir)?,
-            own::core("word", EngineKind::Word, clocks, &dir)?,
-            verilator::run(&unit.rtl(), &dir.join("verilator"), Wave::None, &blocks)?.says(last),
-            cxxrtl::run(&unit.rtl(), &dir.join("cxxrtl"), Wave::None, &blocks)?.says(last),
+            own::core("word", EngineKind::Word, clocks, &dir)?.rounds(1),
+            verilator?.says(last),
+            cxxrtl?.says(last),
         ];
         let mut runs = race(sizes.rounds, &jobs)?;
         // Icarus is slow: fewer clocks, and the same as of our own engine.

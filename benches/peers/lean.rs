@@ -14,11 +14,11 @@ use stepwave::nc::{Arc, Curve, Direction};
 use crate::Fallible;
 use crate::contender::Wave;
 use crate::measure::race;
+use crate::own;
 use crate::rtl::{Rtl, Shown};
-use crate::sections::{Sizes, peak, rate};
+use crate::sections::{Sizes, built, peak, rate};
 use crate::table::{Table, number, times};
 use crate::unit::Case;
-use crate::{cxxrtl, own, verilator};
 
 /// Bits of their registers; a deviation has two more.
 const BITS: u32 = 24;
@@ -74,11 +74,8 @@ pub(crate) fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let (case, words) = case(model, BITS)?;
         let blocks = words.iter().map(i64::to_string).collect::<Vec<_>>().join(" ") + "\n";
         let rtl = rtl(model)?;
-        let jobs = [
-            own::program(&case, &dir, Wave::None),
-            verilator::run(&rtl, &dir, Wave::None, &blocks)?,
-            cxxrtl::run(&rtl, &dir.join("cxxrtl"), Wave::None, &blocks)?,
-        ];
+        let (verilator, cxxrtl) = built(&rtl, &dir, &blocks);
+        let jobs = [own::program(&case, &dir, Wave::None), verilator?, cxxrtl?];
         // These runs are short.
         let runs = race(3 * sizes.rounds, &jobs)?;
         let rates: Vec<f64> = runs.iter().map(|runs| rate(runs)).collect();

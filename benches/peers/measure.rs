@@ -1,15 +1,13 @@
 //! One run of a program: what it took. A program is started by this one anew (`--measure`), which waits for it and
 //! reports the processor time and the peak memory of it and of all that it started.
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use nix::sched::{CpuSet, sched_getaffinity, sched_setaffinity};
-use nix::sys::resource::{UsageWho, getrusage};
-use nix::sys::time::TimeValLike;
-use nix::unistd::Pid;
+use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
+use wait4::Wait4;
 
 use crate::Fallible;
 
@@ -129,26 +127,28 @@ pub(crate) fn child(words: &[String]) -> Fallible<()> {
     let [cores, round, program, words @ ..] = words else { return Err("no program to measure".into()) };
     allow(cores.parse()?, round.parse()?)?;
     let start = Instant::now();
-    let output = Command::new(program).args(words).stderr(Stdio::inherit()).output()?;
+    let mut program = Command::new(program).args(words).stdout(Stdio::piped()).spawn()?;
+    let mut said = Vec::new();
+    program.stdout.take().ok_or("no output")?.read_to_end(&mut said)?;
+    let ended = program.wait4()?;
     let wall = start.elapsed().as_secs_f64();
-    let usage = getrusage(UsageWho::RUSAGE_CHILDREN)?;
-    let computed = (usage.user_time() + usage.system_time()).num_microseconds() as f64 / 1e6;
+    let computed = (ended.rusage.utime + ended.rusage.stime).as_secs_f64();
     let mut out = io::stdout();
-    out.write_all(&output.stdout)?;
-    let failed = u8::from(!output.status.success());
-    Ok(writeln!(out, "\n--\n{failed} {wall} {computed} {}", usage.max_rss() as f64 / 1024.0)?)
+    out.write_all(&said)?;
+    let failed = u8::from(!ended.status.success());
+    Ok(writeln!(out, "\n--\n{failed} {wall} {computed} {}", ended.rusage.maxrss as f64 / f64::from(1 << 20))?)
 }
 
 /// Leaves this many cores to this process; which ones changes from round to round.
 fn allow(cores: usize, round: usize) -> Fallible<()> {
-    let all = sched_getaffinity(Pid::from_raw(0))?;
-    let mine: Vec<usize> = (0..CpuSet::count()).filter(|&core| all.is_set(core).unwrap_or(false)).collect();
+    let all = sched_getaffinity(None)?;
+    let mine: Vec<usize> = (0..CpuSet::MAX_CPU).filter(|&core| all.is_set(core)).collect();
     if cores == 0 {
         return Ok(());
     }
     let mut set = CpuSet::new();
     for index in 0..cores.min(mine.len()) {
-        set.set(mine[(round + index) % mine.len()])?;
+        set.set(mine[(round + index) % mine.len()]);
     }
-    Ok(sched_setaffinity(Pid::from_raw(0), &set)?)
+    Ok(sched_setaffinity(None, &set)?)
 }

@@ -10,6 +10,7 @@ use std::time::Instant;
 use crate::choice::Choice;
 use crate::contender::{Wave, first_line};
 use crate::measure::{Job, Measurement, race};
+use crate::rtl::Rtl;
 use crate::table::{Table, median, number, times};
 use crate::unit::{Case, MODELS, Unit, block};
 use crate::{Fallible, cores, cxxrtl, growth, icarus, lean, own, verilator};
@@ -38,7 +39,7 @@ pub(crate) const MOST_CELLS: usize = 100_000;
 pub(crate) const FULL: Sizes = Sizes {
     models: Cow::Borrowed(&MODELS),
     rounds: 3,
-    run: 26,
+    run: 25,
     wave: 20,
     icarus: 16,
     lane: 16,
@@ -186,7 +187,7 @@ fn first_wave(sizes: &Sizes, dir: &Path) -> Fallible<String> {
             verilator::first_wave(&unit.rtl(), &dir.join("verilator"), &blocks)?,
         ];
         // The slow ones need fewer rounds: what disturbs is milliseconds long.
-        let rounds = [4 * sizes.rounds, 4 * sizes.rounds, sizes.rounds, sizes.rounds.min(2)];
+        let rounds = [4 * sizes.rounds, 4 * sizes.rounds, sizes.rounds.min(2), sizes.rounds.min(2)];
         let own = own::program(&case, &dir, Wave::Vcd).wave("own.vcd");
         let jobs = [own].into_iter().chain(peers.map(|job| job.wave("wave.vcd"))).zip(rounds);
         let jobs: Vec<Job> = jobs.map(|(job, rounds)| job.cores(None).rounds(rounds)).collect();
@@ -197,6 +198,14 @@ fn first_wave(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         table.row(model, walls.iter().map(|wall| number(wall * 1e3)).chain(ratios));
     }
     Ok(table.text())
+}
+
+/// Long runs without a wave in Verilator and in CXXRTL, both built at once.
+pub(crate) fn built(rtl: &Rtl, dir: &Path, blocks: &str) -> (Fallible<Job>, Fallible<Job>) {
+    rayon::join(
+        || verilator::run(rtl, &dir.join("verilator"), Wave::None, blocks),
+        || cxxrtl::run(rtl, &dir.join("cxxrtl"), Wave::None, blocks),
+    )
 }
 
 /// Whether all waves show the same, by `stepwave diff`.
@@ -237,12 +246,9 @@ fn no_trace(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let bench = case.bench()?;
         let unit = Unit::of(&bench);
         let blocks = unit.line(&block(&bench));
-        let jobs = [
-            own::engine(&case, &dir)?,
-            own::program(&case, &dir, Wave::None).rounds(2),
-            verilator::run(&unit.rtl(), &dir, Wave::None, &blocks)?,
-            cxxrtl::run(&unit.rtl(), &dir.join("cxxrtl"), Wave::None, &blocks)?,
-        ];
+        let (verilator, cxxrtl) = built(&unit.rtl(), &dir, &blocks);
+        let own = own::program(&case, &dir, Wave::None).rounds(2);
+        let jobs = [own::engine(&case, &dir)?, own, verilator?, cxxrtl?];
         let mut runs = race(sizes.rounds, &jobs)?;
         // Icarus is so slow that a shorter block must do.
         let case = Case::new(model, sizes.icarus)?;
@@ -273,13 +279,12 @@ fn waves(sizes: &Sizes, dir: &Path) -> Fallible<String> {
         let unit = Unit::of(&bench);
         let blocks = unit.line(&block(&bench));
         let own = |wave, name: &str| own::program(&case, &dir, wave).wave(name);
-        let jobs = [
-            own(Wave::Vcd, "own.vcd"),
-            verilator::run(&unit.rtl(), &dir.join("vcd"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
-            cxxrtl::run(&unit.rtl(), &dir.join("cxxrtl"), Wave::Vcd, &blocks)?.wave("wave.vcd"),
-            own(Wave::Fst, "own.fst"),
-            verilator::run(&unit.rtl(), &dir.join("fst"), Wave::Fst, &blocks)?.wave("wave.vcd"),
-        ];
+        let rtl = unit.rtl();
+        let verilated = |wave, name| Ok(verilator::run(&rtl, &dir.join(name), wave, &blocks)?.wave("wave.vcd"));
+        let cxxrtl = || Ok(cxxrtl::run(&rtl, &dir.join("cxxrtl"), Wave::Vcd, &blocks)?.wave("wave.vcd"));
+        let (to_vcd, (to_fst, cxxrtl)): (Fallible<Job>, (Fallible<Job>, Fallible<Job>)) =
+            rayon::join(|| verilated(Wave::Vcd, "vcd"), || rayon::join(|| verilated(Wave::Fst, "fst"), cxxrtl));
+        let jobs = [own(Wave::Vcd, "own.vcd"), to_vcd?, cxxrtl?, own(Wave::Fst, "own.fst"), to_fst?];
         fs::create_dir_all(&dir)?;
         let mut runs = race(sizes.rounds, &jobs)?;
         let [to_vcd, to_fst] = icarus_waves(model, sizes, &dir)?;
@@ -329,7 +334,7 @@ fn lanes(sizes: &Sizes, dir: &Path) -> Fallible<String> {
             own::lanes(&case, sizes.geometries, 1, &dir)?,
             own::lanes(&case, sizes.geometries, all, &dir)?,
             own::bare_lanes(&case, sizes.geometries, &dir)?,
-            verilator::run(&unit.rtl(), &dir, Wave::None, &blocks)?.rounds(2),
+            verilator::run(&unit.rtl(), &dir, Wave::None, &blocks)?.rounds(1),
         ];
         let runs = race(sizes.rounds, &jobs)?;
         let computed = |runs: &Vec<Measurement>| median(runs, |run| run.all_clocks() / run.computed / 1e6);

@@ -27,10 +27,12 @@ impl Wanted {
         })
     }
 
-    /// Index of a form, which is added.
+    /// Index of a form, which is added if it is not wanted yet.
     pub fn form(&mut self, form: Form) -> usize {
-        self.forms.push(form);
-        self.forms.len() - 1
+        self.forms.iter().position(|other| *other == form).unwrap_or_else(|| {
+            self.forms.push(form);
+            self.forms.len() - 1
+        })
     }
 
     /// Index of the range of a register, which is added if it is not wanted yet.

@@ -144,12 +144,7 @@ impl BatchGauge {
     #[must_use]
     pub fn within(&self, ends: [i64; 2]) -> f64 {
         match self.0 {
-            Plane::Line { from: [x0, y0], delta: [dx, dy], length } => {
-                let cross = |end: i64| {
-                    (i128::from(end) + i128::from(dy) * i128::from(x0) - i128::from(dx) * i128::from(y0)).unsigned_abs()
-                };
-                cross(ends[0]).max(cross(ends[1])) as f64 / length
-            }
+            Plane::Line { length, .. } => self.crossed(ends).unwrap_or_default() as f64 / length,
             Plane::Circle { center: [x0, y0], radius_squared, radius } => {
                 let off = |end: i64| {
                     let reached = i128::from(end) + i128::from(x0).pow(2) + i128::from(y0).pow(2);
@@ -159,6 +154,15 @@ impl BatchGauge {
                 off(ends[0]).max(off(ends[1]))
             }
         }
+    }
+
+    /// The greatest cross product, in BLU², of a line and positions on it for which that number lies in a range; both its
+    /// ends are reached. `None` of a circle.
+    #[must_use]
+    pub fn crossed(&self, ends: [i64; 2]) -> Option<u128> {
+        let Plane::Line { from: [x0, y0], delta: [dx, dy], .. } = self.0 else { return None };
+        let start = i128::from(dy) * i128::from(x0) - i128::from(dx) * i128::from(y0);
+        ends.map(|end| (i128::from(end) + start).unsigned_abs()).into_iter().max()
     }
 }
 

@@ -52,8 +52,7 @@ impl<'a> PathWatch<'a> {
         let ports = bench.machine().positions.clone();
         let tool = Tool::of(bench);
         let gauge = curve.gauge();
-        let widest = ports.iter().map(|port| port.width.get()).max().unwrap_or(64);
-        let batch = gauge.batch(1 << (widest - 1)).filter(|_| ports.len() == 2 && tool.is_trusted());
+        let batch = batch(bench, &gauge);
         let (columns, level) = (StepColumns::of(bench), Level::new());
         let every_pulse = bench.hardware().sampling.is_some();
         let (rows, moved, form, stepped, worst) = (0, false, 0, 0, None);
@@ -71,6 +70,20 @@ impl<'a> PathWatch<'a> {
         let greatest = dispatch!(self.level, _simd => batch.greatest(positions));
         greatest <= worst.error
     }
+}
+
+/// What sorts out many positions of a machine; `None` where its counters may not say where the tool is.
+pub(super) fn batch(bench: &Testbench, gauge: &Gauge<'_>) -> Option<BatchGauge> {
+    let ports = &bench.machine().positions;
+    let widest = ports.iter().map(|port| port.width.get()).max().unwrap_or(64);
+    gauge.batch(1 << (widest - 1)).filter(|_| ports.len() == 2 && Tool::of(bench).is_trusted())
+}
+
+/// The number that the deviation of a position follows from.
+pub(super) fn form(bench: &Testbench, batch: &BatchGauge) -> Option<Form> {
+    let terms = bench.machine().positions.iter().zip(batch.factors());
+    let terms = terms.map(|(port, [linear, square])| Term { net: port.net, linear, square }).collect();
+    Form::new(bench.design().netlist(), terms)
 }
 
 /// What a watch writes down: rows, position, and step and position of the worst error.
@@ -103,10 +116,7 @@ impl Observer for PathWatch<'_> {
     }
 
     fn want(&mut self, bench: &Testbench, wanted: &mut Wanted) -> bool {
-        let Some(factors) = self.batch.map(|batch| batch.factors()) else { return false };
-        let terms = self.ports.iter().zip(factors);
-        let terms = terms.map(|(port, [linear, square])| Term { net: port.net, linear, square }).collect();
-        let Some(form) = Form::new(bench.design().netlist(), terms) else { return false };
+        let Some(form) = self.batch.and_then(|batch| form(bench, &batch)) else { return false };
         self.form = wanted.form(form);
         self.stepped = wanted.train(bench.machine().stepped.net);
         true

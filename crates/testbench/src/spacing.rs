@@ -8,6 +8,11 @@ use stepwave_nc::Curve;
 use super::ahead::StepTrains;
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Observer, ObserverError, StepColumns, Testbench};
+use reach::Reach;
+use totals::Totals;
+
+mod reach;
+mod totals;
 
 /// Samples looked at together.
 const SPAN: usize = 64;
@@ -44,6 +49,9 @@ struct Train {
     last: Option<u64>,
     /// Least and greatest distance, in this order once there was one.
     spacing: [u64; 2],
+    /// Distances less than the least, and up to the greatest.
+    closer: Reach,
+    usual: Reach,
     /// The first pulses and steps with which the axis was farthest off, and how far, as [`off`](Train::off) says.
     worst: (u64, u64),
     greatest: u128,
@@ -81,6 +89,12 @@ fn octets(rate: Option<(i64, i64)>) -> Vec<Octet> {
 }
 
 impl Train {
+    fn new(rate: Option<(i64, i64)>, octets: Vec<Octet>) -> Train {
+        let spacing = [u64::MAX, 0];
+        let [closer, usual] = [spacing[0] - 1, spacing[1]].map(Reach::up_to);
+        Train { rate, pulses: 0, last: None, spacing, closer, usual, worst: (0, 0), greatest: 0, octets }
+    }
+
     /// How far off the uniform rate the axis is after these pulses and steps, times the steps of the line.
     fn off(&self, pulses: u64, steps: u64) -> i128 {
         let (all, travel) = self.rate.unwrap_or_default();
@@ -103,10 +117,8 @@ impl Train {
         }
         self.last = Some(at(pulses.ilog2()));
         let later = pulses & (pulses - 1);
-        let [least, greatest] = self.spacing;
-        let closer = later != 0 && (1..least.min(64)).any(|gap| later & (pulses << gap) != 0);
         // Most samples hold no distance that is new.
-        if closer || later & !reached(pulses, greatest) != 0 {
+        if later & (self.closer.of(pulses) | !self.usual.of(pulses)) != 0 {
             let (mut before, mut rest) = (pulses.trailing_zeros(), later);
             while rest != 0 {
                 let index = rest.trailing_zeros();
@@ -116,8 +128,17 @@ impl Train {
         }
     }
 
+    #[inline(always)]
     fn apart(&mut self, clocks: u64) {
-        self.spacing = [self.spacing[0].min(clocks), self.spacing[1].max(clocks)];
+        let [least, greatest] = self.spacing;
+        if clocks < least || clocks > greatest {
+            self.set_spacing([least.min(clocks), greatest.max(clocks)]);
+        }
+    }
+
+    fn set_spacing(&mut self, spacing: [u64; 2]) {
+        (self.spacing, self.closer, self.usual) =
+            (spacing, Reach::up_to(spacing[0].saturating_sub(1)), Reach::up_to(spacing[1]));
     }
 
     /// Measures the axis right before each of these pulses, a bit each, and right after it: only there can it be
@@ -187,6 +208,7 @@ pub struct SpacingWatch {
     /// Clocks after which the first block was loaded and the last step completed.
     loaded: Option<u64>,
     stepped: u64,
+    totals: Option<Totals>,
     level: Level,
 }
 
@@ -201,8 +223,7 @@ impl SpacingWatch {
         let steps = steps.filter(|steps| (1..=1 << 56).contains(steps));
         let train = |&travel: &u64| {
             let rate = steps.zip(i64::try_from(travel).ok()).filter(|(steps, travel)| travel <= steps);
-            let (spacing, worst, octets) = ([u64::MAX, 0], (0, 0), octets(rate));
-            Train { rate, pulses: 0, last: None, spacing, worst, greatest: 0, octets }
+            Train::new(rate, octets(rate))
         };
         SpacingWatch {
             columns: StepColumns::of(bench),
@@ -211,11 +232,23 @@ impl SpacingWatch {
             steps: 0,
             loaded: None,
             stepped: 0,
+            totals: Totals::of(bench, curve),
             level: Level::new(),
         }
     }
 
+    #[inline(always)]
+    fn take_in<const MEASURED: bool>(&mut self, digest: &Digest) {
+        let clocks = (digest.first_clock..).step_by(digest.span);
+        for ((word, &stepped), clock) in digest.trains[self.digested.stepped].iter().enumerate().zip(clocks) {
+            let pulses = |axis: usize| digest.trains[self.digested.pulses[axis]][word];
+            scan::<MEASURED>(&mut self.trains, pulses, clock, stepped, self.steps);
+            self.count(stepped, clock);
+        }
+    }
+
     /// Counts steps, a bit each, in the samples from a clock on.
+    #[inline(always)]
     fn count(&mut self, stepped: u64, clock: u64) {
         self.steps += u64::from(stepped.count_ones());
         if stepped != 0 {
@@ -262,30 +295,23 @@ fn rounds(pulses: u64, stepped: u64) -> Option<(u16, bool)> {
     Some((u16::try_from(bits).ok()?, step < pulse))
 }
 
-/// The bits at most so far above one that is set, but not those themselves.
-#[inline(always)]
-fn reached(bits: u64, distance: u64) -> u64 {
-    if distance == 0 {
-        return 0;
-    }
-    let (mut reached, mut so_far) = (bits << 1, 1);
-    while so_far < distance.min(63) {
-        let more = so_far.min(distance - so_far);
-        reached |= reached << more;
-        so_far += more;
-    }
-    reached
-}
-
 /// Samples from `clock` on, at most [`SPAN`]: a bit for each in which an axis pulses, or which completes a step; `steps`
-/// are those before.
+/// are those before. `MEASURED`: nobody knows yet that no axis is farther off the uniform rate than it was.
 #[inline(always)]
-fn scan(trains: &mut [Train], pulses: impl Fn(usize) -> u64, clock: u64, stepped: u64, steps: u64) {
+fn scan<const MEASURED: bool>(
+    trains: &mut [Train],
+    pulses: impl Fn(usize) -> u64,
+    clock: u64,
+    stepped: u64,
+    steps: u64,
+) {
     for (axis, train) in trains.iter_mut().enumerate() {
         let pulses = pulses(axis);
         if pulses != 0 {
             train.space(pulses, clock);
-            train.measure(pulses, stepped, steps);
+            if MEASURED {
+                train.measure(pulses, stepped, steps);
+            }
             train.pulses += u64::from(pulses.count_ones());
         }
     }
@@ -316,13 +342,17 @@ impl Observer for SpacingWatch {
         }
         (self.steps, self.loaded, self.stepped) = (steps, loaded, stepped);
         for (train, gathered) in self.trains.iter_mut().zip(trains) {
-            (train.pulses, train.last, train.spacing, train.worst) = gathered;
+            (train.pulses, train.last, _, train.worst) = gathered;
+            train.set_spacing(gathered.2);
             train.greatest = train.off(train.worst.0, train.worst.1).unsigned_abs();
         }
     }
 
     fn want(&mut self, bench: &Testbench, wanted: &mut Wanted) -> bool {
         self.digested = StepTrains::want(bench, wanted);
+        if let Some(totals) = &mut self.totals {
+            totals.want(bench, wanted, &self.digested);
+        }
         true
     }
 
@@ -330,13 +360,14 @@ impl Observer for SpacingWatch {
         self.loaded.is_some()
     }
 
-    fn digest(&mut self, digest: &Digest, _: &[u64]) {
-        let clocks = (digest.first_clock..).step_by(digest.span);
-        for ((word, &stepped), clock) in digest.trains[self.digested.stepped].iter().enumerate().zip(clocks) {
-            let pulses = |axis: usize| digest.trains[self.digested.pulses[axis]][word];
-            dispatch!(self.level, _simd => scan(&mut self.trains, pulses, clock, stepped, self.steps));
-            self.count(stepped, clock);
-        }
+    fn digest(&mut self, digest: &Digest, last: &[u64]) {
+        let greatest = self.trains.iter().map(|train| train.greatest).min().unwrap_or(0);
+        let begun = [self.steps, self.trains[0].pulses, self.trains.get(1).map_or(0, |train| train.pulses)];
+        let known = self.totals.as_ref().is_some_and(|totals| totals.are_no_farther(digest, last, begun, greatest));
+        dispatch!(self.level, _simd => match known {
+            true => self.take_in::<false>(digest),
+            false => self.take_in::<true>(digest),
+        });
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
@@ -349,7 +380,7 @@ impl Observer for SpacingWatch {
             let stepped = rows.nonzero(self.columns.stepped, first);
             let pulses = |axis: usize| rows.nonzero(self.columns.pulses[axis], first);
             let clock = rows.first_clock() + first as u64;
-            dispatch!(self.level, _simd => scan(&mut self.trains, pulses, clock, stepped, self.steps));
+            dispatch!(self.level, _simd => scan::<true>(&mut self.trains, pulses, clock, stepped, self.steps));
             self.count(stepped, clock);
         }
         Ok(())
@@ -363,15 +394,7 @@ mod tests {
     #[test]
     fn octets_say_what_a_look_at_each_pulse_says() {
         let (all, travel) = (1_000_003, 618_034);
-        let train = |octets: Vec<Octet>| Train {
-            rate: Some((all, travel)),
-            pulses: 0,
-            last: None,
-            spacing: [u64::MAX, 0],
-            worst: (0, 0),
-            greatest: 0,
-            octets,
-        };
+        let train = |octets: Vec<Octet>| Train::new(Some((all, travel)), octets);
         let (fast, plain) = (train(octets(Some((all, travel)))), train(Vec::new()));
         let mut random = 1_u64;
         for index in 0..4000 {
