@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use clap::{CommandFactory, Parser};
 
 use crate::Error;
-use crate::cli::{Cli, by_ending, help_of_model, usage};
+use crate::cli::{Cli, by_ending, by_value, help_of_model, usage};
 use crate::models::Catalogue;
 use crate::{commands, output, stop};
 
@@ -66,7 +66,7 @@ fn run(models: Catalogue) -> Result<(), Error> {
     if let Some(help) = help_of_model(&words) {
         return output::print(&help);
     }
-    match Cli::try_parse_from(by_ending(words, Cli::command)) {
+    match Cli::try_parse_from(by_ending(by_value(words), Cli::command)) {
         Ok(cli) => commands::dispatch(&cli),
         Err(error) if error.use_stderr() => Err(usage(&error)),
         Err(help) => output::print(&help.render().to_string()),

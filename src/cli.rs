@@ -7,7 +7,6 @@ use crate::nc::{Drawn, Opens, SplineForm};
 use clap::{Args, Parser, Subcommand};
 
 use crate::commands::diff::DiffArgs;
-use crate::commands::show::ShowArgs;
 
 mod endings;
 mod hardware;
@@ -17,6 +16,8 @@ mod of_model;
 mod own;
 mod program;
 mod proof;
+mod run;
+mod show;
 mod sweep;
 mod titled;
 mod usage;
@@ -35,6 +36,8 @@ pub(crate) use own::{BenchArgs, CheckArgs, ImportArgs, SimArgs};
 use program::MethodParser;
 pub(crate) use program::{Method, ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
+pub(crate) use run::MachineRun;
+pub(crate) use show::{ShowArgs, by_value};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use titled::Titled;
 pub(crate) use usage::usage;
@@ -73,8 +76,8 @@ pub(crate) enum Command {
     Prove(Box<Titled<ProveArgs>>),
     /// First divergence of two wave files (VCD or FST, ours or anybody's)
     Diff(Titled<DiffArgs>),
-    /// A wave in the terminal (VCD or FST, ours or anybody's)
-    Show(Titled<ShowArgs>),
+    /// A wave in the terminal: VCD or FST, ours or anybody's, or that of the run of a model
+    Show(Box<Titled<ShowArgs>>),
     /// Write a machine as Verilog, with a test bench that runs the geometry, or for model checkers and solvers
     Export(Box<Titled<ExportArgs>>),
     /// A design of one's own, in Verilog or VHDL, as a netlist
@@ -188,15 +191,7 @@ pub(crate) struct RunArgs {
     #[arg(value_parser = model_name(), hide_possible_values = true)]
     pub(crate) model: String,
     #[command(flatten)]
-    pub(crate) bench: BenchArgs,
-    #[command(flatten)]
-    pub(crate) geometry: GeometryArgs,
-    #[command(flatten)]
-    pub(crate) hardware: HardwareArgs,
-    #[command(flatten)]
-    pub(crate) clock: ClockArgs,
-    #[command(flatten)]
-    pub(crate) simulation: SimulationArgs,
+    pub(crate) of: MachineRun,
     #[command(flatten)]
     pub(crate) trace: WaveOptions,
     /// Add to the wave testbench.speed_e4, a row that is not of the hardware: v/v_max over the last 32 steps, in 10^-4

@@ -2,6 +2,7 @@
 //! output replaces what the command reads.
 
 pub(crate) mod identity;
+mod kept;
 pub(crate) mod temporary;
 
 use std::borrow::Cow;
@@ -15,6 +16,7 @@ use crate::Error;
 use crate::stop;
 
 pub(crate) use self::identity::is_stream;
+pub(crate) use self::kept::Kept;
 
 /// An open output.
 pub(crate) type Sink = BufWriter<Box<dyn Write + Send>>;
@@ -30,6 +32,8 @@ pub(crate) struct Outputs {
     staged: Vec<(Temporary, PathBuf)>,
     named: Vec<(Identity, PathBuf)>,
     stdout: bool,
+    /// In place of files.
+    kept: Option<Kept>,
 }
 
 fn cannot_write(path: &Path, error: &io::Error) -> Error {
@@ -52,11 +56,25 @@ impl Outputs {
         Outputs { inputs, ..Outputs::default() }
     }
 
+    /// Outputs that stay in memory, and what they are then taken from.
+    pub(crate) fn in_memory() -> (Kept, Outputs) {
+        let kept = Kept::default();
+        (kept.clone(), Outputs { kept: Some(kept), ..Outputs::default() })
+    }
+
+    /// Of a run that begins again: nothing is open.
+    pub(crate) fn begun_again(&mut self) {
+        *self = Outputs { inputs: std::mem::take(&mut self.inputs), kept: self.kept.take(), ..Outputs::default() };
+    }
+
     /// Opens an output; `-` is standard output.
     ///
     /// # Errors
     /// The file cannot be created, the command reads it, or another output goes there already.
     pub(crate) fn open(&mut self, path: &Path) -> Result<Sink, Error> {
+        if let Some(kept) = &self.kept {
+            return Ok(BufWriter::with_capacity(1 << 16, Box::new(kept.file(path))));
+        }
         if path == Path::new("-") {
             if std::mem::replace(&mut self.stdout, true) {
                 return Err(Error::Invalid("two outputs cannot both go to standard output: name a file".to_owned()));

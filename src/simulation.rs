@@ -290,7 +290,7 @@ impl Simulation {
         let trapped = (ran.report.outcome.ending == Ending::Trapped).then(|| ran.report.overflows.first()).flatten();
         match trapped.filter(|event| self.shows_trap(event)).and_then(|event| bench.showing(event)) {
             Some(bench) => {
-                *outputs = Outputs::default();
+                outputs.begun_again();
                 self.once(&bench, outputs, &onlookers)
             }
             None => Ok(ran),

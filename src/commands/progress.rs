@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use crate::engine::{Digest, Rows, Wanted};
 use crate::nc::Curve;
+use crate::simulation::Onlookers;
 use crate::testbench::{BlockReport, Memory, Observer, ObserverError, Testbench};
 use indicatif::{HumanCount, ProgressBar, ProgressStyle};
 
@@ -229,6 +230,12 @@ impl RunProgress {
         }
         shared.part.fetch_add(pulses, Ordering::Relaxed);
         shared.done.store(first_clock + clocks - 1, Ordering::Relaxed);
+    }
+}
+
+impl Onlookers for RunProgress {
+    fn observers(&mut self) -> Vec<&mut dyn Observer> {
+        vec![self]
     }
 }
 

@@ -9,7 +9,8 @@ use super::geometry::{self, curve};
 use super::progress::RunProgress;
 use super::view::View;
 use crate::Error;
-use crate::cli::RunArgs;
+use crate::cli::{MachineRun, RunArgs};
+use crate::nc::Curve;
 use crate::output::{self, Outputs};
 use crate::waves::WaveOptions;
 
@@ -19,7 +20,7 @@ pub(crate) const TEXTBOOK_MODELS: [&str; 3] = ["dda-arc", "dda-conic", "dda-heli
 /// Runs a model and writes what was asked for.
 pub(crate) fn run(args: &RunArgs) -> Result<(), Error> {
     // States that exist are read; else they are an output.
-    let own: Vec<_> = args.bench.files([&args.model]).into_iter().chain(args.geometry.file()).collect();
+    let own = args.of.files(&args.model);
     let mut outputs = Outputs::reading(args.checkpoints.iter().filter(|path| path.exists()).chain(&own));
     let view = View::new(&args.by_ending, &args.trace, args.outputs.plot.as_ref())?;
     simulate(args, &mut outputs)?.print(outputs, &view)
@@ -66,27 +67,19 @@ impl<T: Observer> Onlookers for Terminal<T> {
 /// # Errors
 /// Bad input, or an output cannot be written; nothing has got its final name.
 pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished, Error> {
-    let model = args.bench.model(&args.model)?;
+    let of = &args.of;
+    let model = of.bench.model(&args.model)?;
     if args.textbook && !TEXTBOOK_MODELS.contains(&model.name) {
         let (name, models) = (model.name, TEXTBOOK_MODELS.join(", "));
         return Err(Error::Invalid(format!(
             "textbooks print the registers of {name} as the step table does: leave --textbook out; it is for {models}"
         )));
     }
-    let curve = curve(model.name, model.curve(), &args.geometry, args.hardware.radii())?;
-    let options = geometry::choices(model, &curve, &args.hardware, args.clock.clock_hz);
-    let simulation = Simulation::new(model, curve.clone())
-        .options(options)
-        .engine(args.simulation.engine)
-        .max_clocks(args.simulation.max_clocks)
-        .events(args.simulation.event.clone())
-        .clock_hz(args.clock.clock_hz)
-        .blu_mm(args.hardware.blu)
+    let (simulation, curve) = simulation(&args.model, of)?;
+    let simulation = simulation
         .waves(WaveOptions { speed: args.trace_speed, ..args.trace.clone() })
         .files(args.outputs.clone(), args.checkpoints.clone());
-    // A clock that is not possible is refused as such, before a model finds it too slow.
-    ClockTime::from_hz(args.clock.clock_hz)?;
-    let bench = simulation.prepare().map_err(|error| args.hardware.explain(error))?.bench;
+    let bench = simulation.prepare().map_err(|error| of.hardware.explain(error))?.bench;
     let ran = simulation.run_on(bench, outputs, |bench, outputs| {
         if outputs.uses_stdout() {
             no_table(args)?;
@@ -96,11 +89,31 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
     })?;
     let report = ran.report;
     let mut text = text(&report, &ran.onlookers.table);
-    text += &geometry::moved_center(&curve, &args.geometry).unwrap_or_default();
+    text += &geometry::moved_center(&curve, &of.geometry).unwrap_or_default();
     if let Some(clock) = ran.begun {
         text += &format!("begun from the state at clock {clock}; the report is that of the whole run\n");
     }
     Ok(Finished { text, failures: report.failures() })
+}
+
+/// The run of a model that these options describe, with its curve, without outputs.
+///
+/// # Errors
+/// There is no such model, curve or clock.
+pub(super) fn simulation(model: &str, of: &MachineRun) -> Result<(Simulation, Curve), Error> {
+    let model = of.bench.model(model)?;
+    let curve = curve(model.name, model.curve(), &of.geometry, of.hardware.radii())?;
+    let options = geometry::choices(model, &curve, &of.hardware, of.clock.clock_hz);
+    // A clock that is not possible is refused as such, before a model finds it too slow.
+    ClockTime::from_hz(of.clock.clock_hz)?;
+    let simulation = Simulation::new(model, curve.clone())
+        .options(options)
+        .engine(of.simulation.engine)
+        .max_clocks(of.simulation.max_clocks)
+        .events(of.simulation.event.clone())
+        .clock_hz(of.clock.clock_hz)
+        .blu_mm(of.hardware.blu);
+    Ok((simulation, curve))
 }
 
 /// Refuses what is about the printed table, where a file is printed in its place.

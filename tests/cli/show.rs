@@ -110,3 +110,76 @@ fn a_wave_may_come_from_standard_input() {
     let (code, _, said) = piped(&["diff", "-", "-"]);
     assert!(code == Some(2) && said.contains("standard input is one wave: give the other one as a file"), "{said}");
 }
+
+#[test]
+fn a_model_is_run_and_shown_as_the_wave_that_run_writes() {
+    let folder = Folder::new();
+    // One of each kind of curve, with names of states, decimal digits, one axis, and the operands of a trap.
+    for run in [
+        "ppc-line --to 6,4",
+        "dda-line --to 8,6 --radix 10",
+        "ppc-arc --from 5,0 --to 0,5 --ccw --clock-hz 2e6",
+        "sampled-spline --bezier 0,0,30,90,60,-40,90,20",
+        "ramp --to 12",
+        "ppc-line --to 6,4 --width f=3",
+    ] {
+        let written = folder.run(&format!("run {run} --vcd w.vcd"));
+        for shown in ["", "--trace-from 3 --trace-to 20", "--ascii --columns 60 --values hex", "--by-time"] {
+            let (ours, theirs) =
+                (folder.run(&format!("show {run} {shown}")), folder.good(&format!("show w.vcd {shown}")));
+            assert_eq!(ours.out, theirs, "{run} {shown}");
+            assert_eq!((ours.code, &ours.err), (written.code, &written.err), "{run} {shown}");
+        }
+        folder.files().iter().for_each(|file| std::fs::remove_file(folder.path(file)).unwrap());
+    }
+    // Nothing was written, but for what is asked for.
+    folder.good("show ppc-line --to 6,4 --svg line.svg");
+    assert_eq!(folder.files(), ["line.svg"]);
+}
+
+#[test]
+fn one_number_is_a_clock_and_numbers_with_commas_are_a_point() {
+    let folder = Folder::new();
+    let shown = folder.good("show dda-line --to 8,6 --to=7 --from 2,1 --from 4 --signals e --radix hex");
+    assert_eq!(
+        shown,
+        folder.good("show dda-line --from 2,1 --to 8,6 --trace-from 4 --trace-to 7 --signals e --values hex")
+    );
+    assert_eq!(shown.lines().last(), Some("clock 4 to 7"));
+    // Of one axis a number is its travel.
+    let shown = folder.good("show ramp --to 12 --trace-to 3");
+    assert_eq!(shown.lines().last(), Some("clock 0 to 3"));
+}
+
+#[test]
+fn a_name_that_is_no_wave_and_no_model_is_refused_with_what_is_near() {
+    let folder = Folder::new();
+    folder.write("c.vcd", ICARUS);
+    let refused = |words: &str| {
+        let ran = folder.run(words);
+        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{ran:?}");
+        ran.err
+    };
+    let near = refused("show dda-lin --to 8,6");
+    assert!(near.contains("dda-lin is neither the file of a wave nor a model"), "{near}");
+    assert!(near.contains("did you mean 'dda-line'?") && near.contains("give the path of a VCD or FST"), "{near}");
+    // The ending says that a wave is meant, whether it is there or not.
+    assert!(refused("show dda-line.vcd").contains("dda-line.vcd: cannot be read"));
+    assert!(refused("show c.vcd --to 8,6").contains("--to is of the run of a model, and c.vcd is the file of a wave"));
+    assert!(refused("show c.vcd --width 4").contains("--width is of the run of a model"));
+    assert!(refused("show dda-line --to 8,6 --from 99").contains("nothing is left from clock 99 on"));
+    assert!(refused("show dda-line --to 8,6 --center 1,1").contains("--center"));
+    assert_eq!(folder.files(), ["c.vcd"]);
+    // A file of the name of a model is what is shown.
+    folder.write("dda-line", ICARUS);
+    assert_eq!(folder.good("show dda-line"), folder.good("show c.vcd"));
+}
+
+#[test]
+fn a_netlist_of_ones_own_is_run_and_shown() {
+    let folder = Folder::new();
+    folder.good("export dda-line --to 8,6 --width 4 --netlist own.net");
+    let refused = folder.run("show own.net --to 8,6");
+    assert_eq!(refused.code, 2, "{refused:?}");
+    assert!(refused.err.contains("own.toml"), "{}", refused.err);
+}
