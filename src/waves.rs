@@ -136,6 +136,21 @@ impl WaveOptions {
     pub fn wanted(&self) -> bool {
         self.vcd.is_some() || self.fst.is_some() || self.html.is_some()
     }
+
+    /// Refuses a viewer where no wave is written into a file, next to which its files are.
+    ///
+    /// # Errors
+    /// So it is.
+    pub(crate) fn check_viewer(&self) -> Result<(), Error> {
+        let mut files = self.vcd.iter().chain(&self.fst);
+        if self.viewer.is_some() && files.all(|file| output::is_stream(file)) {
+            return Err(Error::Invalid(
+                "--viewer is about files next to a wave, and no wave is written into a file: give --vcd FILE or --fst FILE"
+                    .to_owned(),
+            ));
+        }
+        Ok(())
+    }
 }
 
 /// Where the waves go.
@@ -153,13 +168,7 @@ impl<'a> Sinks<'a> {
     pub(crate) fn open(args: &'a WaveOptions, outputs: &mut Outputs) -> Result<Option<Sinks<'a>>, Error> {
         let vcd = args.vcd.as_deref().map(|path| Ok::<_, Error>((path, outputs.open(path)?))).transpose()?;
         let fst = args.fst.as_deref().map(|path| Ok::<_, Error>((path, outputs.open_seekable(path)?))).transpose()?;
-        let mut files = args.vcd.iter().chain(&args.fst);
-        if args.viewer.is_some() && files.all(|file| output::is_stream(file)) {
-            return Err(Error::Invalid(
-                "--viewer is about files next to a wave, and no wave is written into a file: give --vcd FILE or --fst FILE"
-                    .to_owned(),
-            ));
-        }
+        args.check_viewer()?;
         Ok((vcd.is_some() || fst.is_some()).then_some(Sinks { vcd, fst, viewer: args.viewer.unwrap_or_default() }))
     }
 }

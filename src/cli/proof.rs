@@ -12,7 +12,8 @@ use clap::{Args, Subcommand};
 use super::endings::{Format, file_of};
 use super::names::{all_widths, listed, model_name};
 use super::values::{self, Narrower, parse_narrower};
-use super::{BenchArgs, HardwareArgs};
+use super::{BenchArgs, HardwareArgs, ShownArgs};
+use crate::waves::{Viewer, WaveOptions};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -27,7 +28,7 @@ use super::{BenchArgs, HardwareArgs};
     does not claim is named and changes nothing. `prove check` ends likewise: 1 also for a certificate of a part.\n\n\
     Examples:\n  \
     stepwave prove ppc-line\n  \
-    stepwave prove ppc-line --narrower f=1 --vcd trap.vcd\n  \
+    stepwave prove ppc-line --narrower f=1 --vcd trap.vcd --open\n  \
     stepwave prove ppc-line --width 12,f=14 --travel 1000,600\n  \
     stepwave prove dda-line --preset half --certificate line.cert\n  \
     stepwave prove dpm-line --bits 12\n  \
@@ -81,8 +82,13 @@ pub(crate) struct ProveArgs {
     /// Write the wave of a counterexample, or of a step that keeps the proof from being one, as VCD
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Vcd]))]
     pub(crate) vcd: Option<PathBuf>,
+    /// The viewer whose files are written next to the wave [default: gtkwave]
+    #[arg(long, requires = "vcd", value_name = "VIEWER")]
+    pub(crate) viewer: Option<Viewer>,
+    #[command(flatten)]
+    pub(crate) by_ending: ShownArgs,
     /// Tell the invariants that were proved, and the paths on which something could not be shown
-    #[arg(long)]
+    #[arg(long, help_heading = None)]
     pub(crate) details: bool,
 }
 
@@ -145,6 +151,11 @@ impl NetlistProofArgs {
 }
 
 impl ProveArgs {
+    /// The wave of a counterexample, if one is wanted.
+    pub(crate) fn waves(&self) -> WaveOptions {
+        WaveOptions { vcd: self.vcd.clone(), viewer: self.viewer, ..WaveOptions::default() }
+    }
+
     /// The first option that is given and that only a model takes.
     pub(crate) fn of_models(&self) -> Option<String> {
         let options = self.hardware.choices();

@@ -17,6 +17,7 @@ use crate::study::proof::{
 };
 
 use super::progress::Progress;
+use super::view::View;
 use crate::Error;
 use crate::cli::{ProveArgs, ProveCommand};
 use crate::output::{self, Outputs, Sink, temporary};
@@ -25,6 +26,11 @@ use crate::study::Extent;
 
 /// Attempts a proof, or checks one.
 pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
+    // Refused before anything is attempted.
+    View::new(&args.by_ending, &args.waves(), None)?;
+    if args.vcd.is_some() {
+        args.waves().check_viewer()?;
+    }
     match &args.check {
         Some(ProveCommand::Check { file }) => check(file),
         None => match args.model.as_deref() {
@@ -54,10 +60,19 @@ fn unclaimed(args: &ProveArgs) -> Result<Option<(&'static str, Extent)>, Error> 
     Ok(extent.map(|extent| (asked.model.name, extent)))
 }
 
-/// Prints a text, unless standard output is where a file goes.
+/// Opens the wave that was written, or says on a terminal how to.
+fn open_wave(args: &ProveArgs) -> Result<(), Error> {
+    View::new(&args.by_ending, &args.waves(), None)?.show()
+}
+
+/// Prints a text, unless standard output is where a file goes, or nothing is to be printed.
 fn tell(args: &ProveArgs, text: &str) -> Result<(), Error> {
     let is_stdout = |path: &Option<PathBuf>| path.as_deref() == Some(Path::new("-"));
-    if is_stdout(&args.certificate) || is_stdout(&args.vcd) { Ok(()) } else { output::print(text) }
+    if args.by_ending.outputs.quiet || is_stdout(&args.certificate) || is_stdout(&args.vcd) {
+        Ok(())
+    } else {
+        output::print(text)
+    }
 }
 
 /// Bits of coordinates that a solver is asked about unless the user says otherwise.

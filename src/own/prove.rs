@@ -52,7 +52,7 @@ pub struct Prove {
     hold: Vec<String>,
     goals: Vec<String>,
     limits: Limits,
-    vcd: Option<PathBuf>,
+    waves: WaveOptions,
     csv: Option<PathBuf>,
     json: Option<PathBuf>,
     solver: Option<Solver>,
@@ -70,7 +70,7 @@ impl Prove {
             hold: Vec::new(),
             goals: Vec::new(),
             limits,
-            vcd: None,
+            waves: WaveOptions::default(),
             csv: None,
             json: None,
             solver: None,
@@ -110,7 +110,12 @@ impl Prove {
 
     /// With the wave of the first counterexample as VCD in this file.
     pub fn vcd(self, path: Option<PathBuf>) -> Prove {
-        Prove { vcd: path, ..self }
+        Prove { waves: WaveOptions { vcd: path, ..self.waves }, ..self }
+    }
+
+    /// With the wave of the first counterexample in these files, of these signals and for this viewer.
+    pub fn waves(self, waves: WaveOptions) -> Prove {
+        Prove { waves, ..self }
     }
 
     /// With the inputs of the first counterexample as CSV in this file, a [stimulus](Stimulus::table).
@@ -342,9 +347,9 @@ impl Prove {
             sink.write_all(example.stimulus.as_bytes())?;
             sink.flush()?;
         }
-        if self.vcd.is_some() {
+        if self.waves.wanted() {
             let table = Stimulus::default().table(&self.design, &example.stimulus)?;
-            let waves = WaveOptions { vcd: self.vcd.clone(), ..WaveOptions::default() };
+            let waves = self.waves.clone();
             Sim::new(self.design.clone(), table, example.clock).waves(waves).staged(outputs, &mut std::io::sink())?;
         }
         Ok(())

@@ -198,3 +198,40 @@ fn a_solver_that_contradicts_a_proof_or_talks_nonsense_is_reported() {
     assert_eq!(ran.code, 2);
     assert!(ran.err.contains("more than 4096 geometries"), "{ran:?}");
 }
+
+#[test]
+fn the_wave_of_a_counterexample_has_the_files_of_its_viewer_as_that_of_a_run() {
+    let folder = Folder::new();
+    let ran = folder.run("prove ppc-line --narrower f=1 -o trap.vcd --viewer both -q");
+    assert_eq!((ran.code, ran.out.as_str()), (1, ""), "{ran:?}");
+    let files = folder.files();
+    for file in ["trap.vcd", "trap.gtkw", "trap.sucl"] {
+        assert!(files.iter().any(|known| known == file), "{file}: {files:?}");
+    }
+    let surfer = folder.read("trap.sucl");
+    folder.run("run ppc-line --to 1,3 --width 2,f=2 --vcd trap.vcd --viewer both");
+    assert_eq!(folder.read("trap.sucl"), surfer);
+    // A proof writes no wave, and a stream has no files next to it.
+    assert!(folder.run("prove ppc-line --viewer surfer").err.contains("--vcd"));
+    let ran = folder.run("prove ppc-line --narrower f=1 --vcd - --viewer surfer");
+    assert!(
+        ran.code == 2 && ran.out.is_empty() && ran.err.contains("--viewer is about files next to a wave"),
+        "{ran:?}"
+    );
+    let ran = folder.run("prove ppc-line --open");
+    assert!(ran.code == 2 && ran.err.contains("there is nothing to show"), "{ran:?}");
+}
+
+#[test]
+fn every_command_that_writes_a_wave_of_hardware_takes_a_viewer_and_opens_it() {
+    let folder = Folder::new();
+    for command in ["run", "program", "sim", "prove"] {
+        let help = folder.good(&format!("{command} --help"));
+        for option in ["--vcd", "--viewer", "--open", "--quiet", "--output"] {
+            assert!(
+                help.contains(&format!("{option} ")) || help.contains(&format!("{option}\n")),
+                "{command} {option}"
+            );
+        }
+    }
+}

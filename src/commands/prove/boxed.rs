@@ -1,16 +1,15 @@
 //! `stepwave prove F.net --box …`: a netlist with a bench file, or a model whose author claims nothing, over all geometries of
 //! a box.
 
-use super::Progress;
+use super::{Progress, open_wave, tell};
 use crate::cli::ProveArgs;
 use crate::models::{Model, Options};
 use crate::nc::Curve;
-use crate::output::{self, Outputs};
+use crate::output::Outputs;
 use crate::own::is_netlist;
 use crate::report::run_command;
 use crate::study::Extent;
 use crate::study::exhausted::{Exhausted, exhausted};
-use crate::waves::WaveOptions;
 use crate::{Error, Simulation};
 
 /// Runs every geometry of the box.
@@ -43,16 +42,17 @@ pub(super) fn prove(args: &ProveArgs, name: &str, extent: &Extent) -> Result<(),
     let Some(example) = example else {
         let what = "no operator loses a carry that is not announced, no assertion is violated, every end point is reached exactly";
         return if all {
-            output::print(&format!("{hardware}PROVED at these widths: {what} ({simulated} geometries, exhausted)\n"))
+            tell(args, &format!("{hardware}PROVED at these widths: {what} ({simulated} geometries, exhausted)\n"))
         } else {
-            output::print(&format!("{hardware}UNKNOWN: {simulated} extreme geometries were simulated\n"))?;
+            tell(args, &format!("{hardware}UNKNOWN: {simulated} extreme geometries were simulated\n"))?;
             let sentence = "not proved: the box has too many geometries to simulate all: give a smaller one";
             Err(Error::Check(vec![sentence.to_owned()]))
         };
     };
     let (sentences, wave) = shown(args, model, &options, (&example, &why), &files)?;
     let command = run_command(model, &example, &options);
-    output::print(&format!("{hardware}COUNTEREXAMPLE: {command}{wave}\n"))?;
+    tell(args, &format!("{hardware}COUNTEREXAMPLE: {command}{wave}\n"))?;
+    open_wave(args)?;
     Err(Error::Check(sentences))
 }
 
@@ -64,8 +64,7 @@ fn shown(
     (example, why): (&Curve, &str),
     files: &[std::path::PathBuf],
 ) -> Result<(Vec<String>, String), Error> {
-    let waves = WaveOptions { vcd: args.vcd.clone(), ..WaveOptions::default() };
-    let simulation = Simulation::new(model, example.clone()).options(options.clone()).waves(waves);
+    let simulation = Simulation::new(model, example.clone()).options(options.clone()).waves(args.waves());
     let mut outputs = Outputs::reading(files);
     let report = simulation.run_on(simulation.prepare()?.bench, &mut outputs, |_, _| Ok(()))?.report;
     outputs.commit()?;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Duration;
 
-use super::Progress;
+use super::{Progress, open_wave};
 use crate::Error;
 use crate::cli::ProveArgs;
 use crate::models::options::WRAPS;
@@ -39,7 +39,7 @@ pub(super) fn prove(args: &ProveArgs, path: &Path) -> Result<(), Error> {
         .goals(own.goal.clone())
         .limits(limits)
         .csv(own.stimulus_out.clone())
-        .vcd(args.vcd.clone())
+        .waves(args.waves())
         .json(own.json.clone());
     if let Some(command) = &args.solver {
         let language = if own.dimacs { SolverLanguage::Dimacs } else { SolverLanguage::Smt2 };
@@ -53,16 +53,20 @@ pub(super) fn prove(args: &ProveArgs, path: &Path) -> Result<(), Error> {
     let progress = Progress::new("clocks");
     let report = proof.staged(&mut outputs, &mut |at| progress.set(at.clock))?;
     drop(progress);
-    let quiet = outputs.uses_stdout();
+    let quiet = args.by_ending.outputs.quiet || outputs.uses_stdout();
     outputs.commit()?;
+    let refuted = report.goals.iter().any(|goal| matches!(goal.verdict, Verdict::Counterexample(_)));
     if !quiet {
         let mut text = shown(&name, &report);
-        if !report.goals.iter().any(|goal| matches!(goal.verdict, Verdict::Counterexample(_))) {
+        if !refuted {
             for path in own.stimulus_out.iter().chain(&args.vcd) {
                 let _ = writeln!(text, "{} is not written: there is no counterexample", path.display());
             }
         }
         output::print(&text)?;
+    }
+    if refuted {
+        open_wave(args)?;
     }
     let failures = report.failures();
     if failures.is_empty() { Ok(()) } else { Err(Error::Check(failures)) }

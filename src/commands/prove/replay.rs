@@ -10,19 +10,14 @@ use crate::study::proof::{Counterexample, CounterexampleToInduction, Fault, Prop
 use crate::testbench::{Observer, OverflowWatch, Testbench};
 use crate::trace::timescale::ClockTime;
 
-use super::tell;
+use super::{open_wave, tell};
 use crate::cli::ProveArgs;
 use crate::output::Outputs;
-use crate::waves::{Sinks, WaveOptions, Waves};
+use crate::waves::{Sinks, Waves};
 use crate::{Error, Simulation};
 
 /// The clock of `run` where none is given.
 const CLOCK_HZ: f64 = 1e6;
-
-/// The wave that is wanted.
-fn wave(args: &ProveArgs) -> WaveOptions {
-    WaveOptions { vcd: args.vcd.clone(), ..WaveOptions::default() }
-}
 
 /// Runs a counterexample as its command does, with its wave if one is wanted, and reports it.
 pub(super) fn refuted(args: &ProveArgs, proposition: &Proposition, example: &Counterexample) -> Result<(), Error> {
@@ -34,7 +29,7 @@ pub(super) fn refuted(args: &ProveArgs, proposition: &Proposition, example: &Cou
         command += &format!(" --vcd {}", shlex::try_quote(&path).unwrap_or(Cow::Borrowed(&path)));
     }
     let options = choices.clone().at_clock(CLOCK_HZ);
-    let simulation = Simulation::new(model, curve.clone()).options(options).clock_hz(CLOCK_HZ).waves(wave(args));
+    let simulation = Simulation::new(model, curve.clone()).options(options).clock_hz(CLOCK_HZ).waves(args.waves());
     let mut outputs = Outputs::default();
     let ran = simulation
         .prepare()
@@ -61,6 +56,7 @@ pub(super) fn refuted(args: &ProveArgs, proposition: &Proposition, example: &Cou
     }
     outputs.commit()?;
     tell(args, &format!("COUNTEREXAMPLE at k = {k}: {command}\n"))?;
+    open_wave(args)?;
     Err(Error::Check(vec![format!("refuted at k = {k}: {shown}{}", of_smaller(proposition, *k))]))
 }
 
@@ -85,7 +81,7 @@ pub(super) fn not_inductive(
     let title = format!("{}, from a state that may be unreachable", report::title(model, bench.hardware(), curve));
     let mut outputs = Outputs::default();
     let time = ClockTime::from_hz(CLOCK_HZ)?;
-    let wave = wave(args);
+    let wave = args.waves();
     let sinks = Sinks::open(&wave, &mut outputs)?;
     let mut waves = sinks.map(|sinks| Waves::new(&bench, &wave, sinks, time, &title, None)).transpose()?;
     let mut overflow = OverflowWatch::new(&bench);
@@ -96,6 +92,7 @@ pub(super) fn not_inductive(
         waves.finish(&overflow.events(), *clocks, &mut outputs)?;
     }
     outputs.commit()?;
+    open_wave(args)?;
     let mut text = format!("NOT INDUCTIVE at k = {k}, {kind}: {wrong}\n");
     let held: Vec<String> = state.iter().map(|(register, number)| format!("{register} = {number}")).collect();
     // Writing to a string cannot fail.
