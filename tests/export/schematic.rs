@@ -6,9 +6,9 @@ use std::collections::BTreeSet;
 
 use stepwave::models::options::Options;
 use stepwave::models::{catalogue, find};
-use stepwave::netlist::cells::Op;
+use stepwave::netlist::cells::{Op, ScopeId};
 use stepwave::netlist::{Net, Netlist, text};
-use stepwave::schematic::{DrawError, Drawing, Part, draw};
+use stepwave::schematic::{DrawError, Drawing, Part, draw, unread};
 use stepwave::testbench::Testbench;
 
 use reading::Figure;
@@ -149,4 +149,88 @@ fn a_netlist_is_always_drawn_alike() {
     let bench = Testbench::new(model, &curve, &Options::default()).unwrap();
     let draw = || all(bench.design().netlist(), &bench.ports()).svg;
     assert_eq!(draw(), draw());
+}
+
+/// The netlist as a synthesiser leaves it: every name at the top, with the scopes that it was in before it.
+fn flattened(netlist: &Netlist) -> Netlist {
+    let mut flat = netlist.clone();
+    let place = |scope| netlist.scope_path(scope).split('.').skip(1).map(|word| format!("{word}_")).collect::<String>();
+    for named in &mut flat.names {
+        named.name = place(named.scope) + &named.name;
+        named.scope = ScopeId::TOP;
+    }
+    for memory in &mut flat.memories {
+        memory.name = place(memory.scope) + &memory.name;
+        memory.scope = ScopeId::TOP;
+    }
+    flat.scopes.truncate(1);
+    flat
+}
+
+/// Draws a netlist without scopes as it is drawn by default, and each of its groups alone.
+fn groups_can_be_read(what: &str, netlist: &Netlist, outputs: &[Net], most: usize) -> usize {
+    let mut pending = vec![None];
+    let mut drawings = 0;
+    while let Some(scope) = pending.pop() {
+        let drawn = draw(netlist, outputs, &Part { scope: scope.clone(), ..Part::default() }).unwrap();
+        let name = scope.unwrap_or_else(|| "all".to_owned());
+        let figure = Figure::read(&drawn.svg);
+        assert_eq!(figure.faults(), Vec::<String>::new(), "{what}: {name}");
+        assert!(drawn.symbols <= most, "{what}: {name} has {} symbols", drawn.symbols);
+        // Closed groups have more wires than symbols have: those of a net count as those of one.
+        let (crossings, nets) = (figure.crossings(), figure.nets());
+        assert!(crossings <= 8 * (drawn.symbols + nets), "{what}: {name}: {crossings} crossings of {nets} nets");
+        // What is closed can be opened, by the path that is said.
+        assert_eq!(drawn.closed().is_some(), !drawn.scopes.is_empty(), "{what}: {name}");
+        pending.extend(drawn.scopes.into_iter().map(Some));
+        drawings += 1;
+    }
+    drawings
+}
+
+#[test]
+fn a_netlist_without_scopes_is_drawn_in_groups_that_can_be_opened() {
+    let mut grouped = 0;
+    for (name, netlist, outputs) in machines() {
+        let flat = flattened(&netlist);
+        let inputs = netlist.cells.iter().filter(|cell| cell.op == Op::Input).count();
+        let open = all(&flat, &outputs);
+        if open.levels == 0 {
+            // What can be read as it is stays so.
+            assert!(open.symbols <= 135 + inputs, "{name}: {} symbols", open.symbols);
+            continue;
+        }
+        grouped += 1;
+        let drawn = draw(&flat, &outputs, &Part::default()).unwrap();
+        assert!(drawn.symbols - inputs.min(drawn.symbols) <= 40, "{name}: {} symbols", drawn.symbols);
+        assert!(groups_can_be_read(&name, &flat, &outputs, 60 + inputs) > 4, "{name}");
+        // Every register is in one of them.
+        let whole = draw(&flat, &outputs, &Part { depth: Some(9), ..Part::default() }).unwrap();
+        let drawn: BTreeSet<usize> = Figure::read(&whole.svg).cells.keys().copied().collect();
+        let missing = &wanted(&flat, &outputs) - &drawn;
+        assert!(missing.is_empty(), "{name}: {missing:?}");
+    }
+    // `.ci/import` names a folder of processors that others wrote.
+    for path in std::env::var("STEPWAVE_NETLISTS").into_iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()) {
+        let path = path.unwrap().path();
+        let netlist = text::parse(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        assert!(groups_can_be_read(&path.display().to_string(), &netlist, &unread(&netlist), 70) > 4);
+    }
+    assert!(grouped > 0);
+}
+
+#[test]
+fn ports_of_a_memory_say_what_they_are() {
+    let (_, netlist, outputs) = machines().into_iter().find(|machine| machine.0 == "sampled-spline").unwrap();
+    let figure = Figure::read(&all(&netlist, &outputs).svg);
+    let memories: Vec<_> = figure.frames.iter().filter(|frame| frame.class == "memory").collect();
+    assert_eq!(memories.len(), netlist.memories.len());
+    for frame in memories {
+        let texts = figure.texts_in(frame);
+        let has = |from: &str, to: &str| texts.iter().any(|text| text.starts_with(from) && text.contains(to));
+        for port in [("write", "data"), ("write", "address"), ("read", "address")] {
+            assert!(has(port.0, port.1), "{port:?}: {texts:?}");
+        }
+        assert!(!texts.iter().any(|text| text.starts_with("else")), "{texts:?}");
+    }
 }

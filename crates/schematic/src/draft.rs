@@ -37,9 +37,22 @@ pub(crate) struct Draft {
 /// A row of a box, or an operand of an operator.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
+    /// What it is to a memory.
+    pub(crate) role: Option<Role>,
     /// When the value is taken.
     pub(crate) condition: Option<Formula>,
     pub(crate) value: Value,
+}
+
+/// What a row is to a memory, with the number of its port, from 0.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Role {
+    /// What is written.
+    Data(usize),
+    /// Where it is written.
+    Written(usize),
+    /// Where is read.
+    Read(usize),
 }
 
 /// What a row takes.
@@ -75,7 +88,7 @@ impl Drafts {
         let mut operators: HashMap<(bool, Net, Net), usize> = HashMap::new();
         let netlist = fold.netlist;
         for (memory, data) in netlist.memories.iter().enumerate() {
-            let rows = data.writes.iter().flat_map(|port| written(fold, *port)).collect();
+            let rows = data.writes.iter().enumerate().flat_map(|(number, port)| written(fold, number, *port)).collect();
             let draft = Draft { kind: Kind::Memory, sign: data.name.clone(), rows, ..Draft::empty() };
             debug_assert_eq!(drafts.all.len(), memory);
             drafts.all.push(draft);
@@ -105,7 +118,8 @@ impl Drafts {
 
     fn read(&mut self, fold: &Fold<'_>, net: Net, memory: usize, address: Net) {
         let draft = &mut self.all[memory];
-        draft.rows.push(Row { condition: None, value: value(fold, address) });
+        let role = Some(Role::Read(draft.outputs.len()));
+        draft.rows.push(Row { role, condition: None, value: value(fold, address) });
         draft.outputs.push(net);
         draft.cells.push(net);
         self.of.insert(net, (memory, net));
@@ -147,7 +161,7 @@ impl Drafts {
         }
         family.map(|family| known.insert(family, self.all.len()));
         let mut rows = Vec::new();
-        op.visit_inputs(|input| rows.push(Row { condition: None, value: operand(fold, input) }));
+        op.visit_inputs(|input| rows.push(Row { role: None, condition: None, value: operand(fold, input) }));
         let draft = Draft { kind: Kind::Operator, sign: sign.to_owned(), rows, ..Draft::empty() };
         self.add(Draft { outputs: vec![net], cells: vec![net], ..draft });
     }
@@ -248,7 +262,7 @@ fn plain(fold: &Fold<'_>, net: Net, op: Op) -> Draft {
             (Kind::Register, rows)
         }
         Op::Mux { .. } if fold.choices(net).len() > 1 => (Kind::Choice, rows(fold, net)),
-        _ => (Kind::Logic, vec![Row { condition: None, value: Value::Text(fold.inner(net)) }]),
+        _ => (Kind::Logic, vec![Row { role: None, condition: None, value: Value::Text(fold.inner(net)) }]),
     };
     Draft { kind, rows, outputs: vec![net], cells: vec![net], ..Draft::empty() }
 }
@@ -256,6 +270,7 @@ fn plain(fold: &Fold<'_>, net: Net, op: Op) -> Draft {
 fn rows(fold: &Fold<'_>, net: Net) -> Vec<Row> {
     let condition = |(select, high): (Net, bool)| if high { fold.formula(select) } else { fold.inverted(select) };
     let row = |choice: &crate::fold::Choice| Row {
+        role: None,
         condition: choice.condition.map(condition),
         value: value(fold, choice.value),
     };
@@ -263,10 +278,10 @@ fn rows(fold: &Fold<'_>, net: Net) -> Vec<Row> {
 }
 
 /// What writes a memory.
-fn written(fold: &Fold<'_>, port: WritePort) -> Vec<Row> {
+fn written(fold: &Fold<'_>, number: usize, port: WritePort) -> Vec<Row> {
     let condition = (fold.constant(port.enable) != Some(1)).then(|| fold.formula(port.enable));
-    let data = Row { condition, value: value(fold, port.data) };
-    vec![data, Row { condition: None, value: value(fold, port.address) }]
+    let data = Row { role: Some(Role::Data(number)), condition, value: value(fold, port.data) };
+    vec![data, Row { role: Some(Role::Written(number)), condition: None, value: value(fold, port.address) }]
 }
 
 /// A net as a wire, if it is one or bits of one, else as a text.

@@ -57,6 +57,14 @@ impl<'n> Fold<'n> {
         fold
     }
 
+    /// The same of a netlist that differs in its scopes alone.
+    pub(crate) fn with_scopes<'g>(self, netlist: &'g Netlist) -> Fold<'g>
+    where
+        'n: 'g,
+    {
+        Fold { netlist, ..self }
+    }
+
     /// No cell reads it, and it is not an input.
     pub(crate) fn is_unread(&self, net: Net) -> bool {
         self.uses[net.index()] == 0 && self.netlist.cell(net).op != Op::Input

@@ -25,6 +25,7 @@ mod draft;
 mod figure;
 mod fold;
 mod formula;
+mod group;
 mod layout;
 mod scene;
 mod svg;
@@ -35,6 +36,8 @@ use stepwave_netlist::{Net, Netlist, did_you_mean};
 
 /// Symbols that a drawing has at most where its depth is not given.
 pub const MOST_SYMBOLS: usize = 135;
+/// The same where groups are drawn for want of scopes.
+const MOST_GROUPED: usize = 40;
 /// Symbols that a drawing has at most.
 pub const MOST_DRAWN: usize = 4000;
 
@@ -63,6 +66,8 @@ pub struct Drawing {
     pub levels: usize,
     /// Symbols, closed scopes among them.
     pub symbols: usize,
+    /// Dotted paths, without the name of the netlist, of the scopes that are closed.
+    pub scopes: Vec<String>,
 }
 
 /// Why nothing is drawn.
@@ -78,8 +83,12 @@ pub enum DrawError {
     },
     /// There would be too many symbols.
     #[error(
-        "{scope} has {symbols} symbols in its block diagram, and {most} are the most: draw one scope alone, as `stepwave export` \
-         does with --schematic FILE --scope PATH"
+        "{scope} has {symbols} symbols in its block diagram, and {most} are the most: {}",
+        if scopes.is_empty() {
+            "it has no scopes or groups of which one could be drawn alone".to_owned()
+        } else {
+            format!("draw one scope alone, as `stepwave export` does with --schematic FILE --scope PATH, of {}", listed(scopes))
+        }
     )]
     TooMany {
         /// What would be drawn.
@@ -88,6 +97,8 @@ pub enum DrawError {
         symbols: usize,
         /// Symbols that there may be.
         most: usize,
+        /// Paths of scopes in it.
+        scopes: Vec<String>,
     },
 }
 
@@ -98,7 +109,8 @@ impl Drawing {
         let Drawing { depth, levels, .. } = self;
         (depth < levels).then(|| {
             let more = depth + 1;
-            format!("scopes {depth} of {levels} levels deep: --levels {more} opens more of them, --scope PATH draws one alone")
+            let names = listed(&self.scopes);
+            format!("scopes {depth} of {levels} levels deep: --levels {more} opens more of them, --scope PATH draws one of {names} alone")
         })
     }
 }
@@ -108,20 +120,38 @@ impl Drawing {
 /// # Errors
 /// No scope has the path given, or there are more symbols than [`MOST_DRAWN`].
 pub fn draw(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Drawing, DrawError> {
+    let own = netlist.scopes.len();
+    let flat = fold::Fold::new(netlist, outputs);
+    let drafts = draft::Drafts::new(&flat);
+    let mut scopes = scene::Places::scopes(&flat, &drafts);
+    let grouped = group::grouped(&flat, &drafts, &mut scopes);
+    let netlist = grouped.as_ref().unwrap_or(netlist);
+    let fold = flat.with_scopes(netlist);
     let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(netlist, path))?;
-    let fold = fold::Fold::new(netlist, outputs);
-    let drafts = draft::Drafts::new(&fold);
-    let scene = scene::Scene::new(&fold, &drafts);
+    let scene = scene::Scene { fold: &fold, drafts: &drafts, scopes, own };
     let levels = scene.levels(root);
-    let readable = || (0..=levels).rev().find(|&depth| scene.count(root, depth) <= MOST_SYMBOLS).unwrap_or(0);
-    let depth = part.depth.map_or_else(readable, |depth| depth.min(levels));
+    let readable = if grouped.is_some() { MOST_GROUPED } else { MOST_SYMBOLS };
+    let deepest = || (0..=levels).rev().find(|&depth| scene.count(root, depth) <= readable).unwrap_or(0);
+    let depth = part.depth.map_or_else(deepest, |depth| depth.min(levels));
     let symbols = scene.count(root, depth);
     let most = part.most.unwrap_or(MOST_DRAWN).min(MOST_DRAWN);
     if symbols > most {
-        return Err(DrawError::TooMany { scope: netlist.scope_path(root), symbols, most });
+        return Err(DrawError::TooMany {
+            scope: netlist.scope_path(root),
+            symbols,
+            most,
+            scopes: scene.inner(root, 0),
+        });
     }
+    let scopes = scene.inner(root, depth);
     let figure = scene::View::new(&scene, root, depth, outputs).figure();
-    Ok(Drawing { svg: svg::svg(&figure, &netlist.scope_path(root)), depth, levels, symbols })
+    Ok(Drawing { svg: svg::svg(&figure, &netlist.scope_path(root)), depth, levels, symbols, scopes })
+}
+
+/// Some names, with commas.
+fn listed(names: &[String]) -> String {
+    let more = if names.len() > MOST_LISTED { ", …" } else { "" };
+    names.iter().take(MOST_LISTED).map(String::as_str).collect::<Vec<_>>().join(", ") + more
 }
 
 /// Nets with a name at the top that nothing reads: the outputs of a netlist of which no more is known.
@@ -142,9 +172,8 @@ fn scope(netlist: &Netlist, path: &str) -> Result<ScopeId, DrawError> {
     found.map(|found| found.0).ok_or_else(|| {
         let known: Vec<String> = all.iter().filter_map(|(_, full)| inner(full)).collect();
         let guess = did_you_mean(path, known.iter().map(String::as_str));
-        let listed = known.iter().take(MOST_LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
-        let more = if known.len() > MOST_LISTED { ", …" } else { "" };
-        let list = if known.is_empty() { ": it has none".to_owned() } else { format!("; there are {listed}{more}") };
+        let list =
+            if known.is_empty() { ": it has none".to_owned() } else { format!("; there are {}", listed(&known)) };
         DrawError::NoScope { path: path.to_owned(), hint: if guess.is_empty() { list } else { guess } }
     })
 }

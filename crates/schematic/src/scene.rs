@@ -14,6 +14,8 @@ use crate::symbol::Context;
 /// Symbols that read a net of one bit, and one of more, by a wire; a net with more readers is written at each of them by
 /// its name.
 const MOST_WIRES: [usize; 2] = [5, 8];
+/// Nets between groups that have a wire: those of the most bits.
+const MOST_BETWEEN: usize = 40;
 /// Pixels between the frame of a scope and what is in it, and the height of its title.
 const PADDING: i32 = 12;
 const TITLE: i32 = 20;
@@ -24,6 +26,8 @@ pub(crate) struct Scene<'n> {
     pub(crate) drafts: &'n Drafts,
     /// The scope of each symbol.
     pub(crate) scopes: Vec<ScopeId>,
+    /// Scopes of the netlist itself: those after them are groups.
+    pub(crate) own: usize,
 }
 
 /// Where a net is, seen from a scope that is drawn.
@@ -33,6 +37,9 @@ enum Holder {
     Child(ScopeId),
     Outside,
 }
+
+/// A symbol that is drawn, or the closed scope that it is in.
+type Place = (usize, Option<ScopeId>);
 
 /// A scope that is drawn as the whole, and how deep.
 pub(crate) struct View<'s> {
@@ -49,12 +56,7 @@ pub(crate) struct View<'s> {
     readers: BTreeMap<Net, Vec<usize>>,
 }
 
-impl<'n> Scene<'n> {
-    pub(crate) fn new(fold: &'n Fold<'n>, drafts: &'n Drafts) -> Scene<'n> {
-        let scopes = Places { fold, drafts }.scopes();
-        Scene { fold, drafts, scopes }
-    }
-
+impl Scene<'_> {
     /// Scopes from the top to this one.
     pub(crate) fn line(&self, scope: ScopeId) -> Vec<ScopeId> {
         let mut line = vec![scope];
@@ -87,6 +89,17 @@ impl<'n> Scene<'n> {
         count + closed.len()
     }
 
+    /// Paths, without the name of the netlist, of the scopes with symbols that are this many levels below one and
+    /// one more.
+    pub(crate) fn inner(&self, root: ScopeId, depth: usize) -> Vec<String> {
+        let above = self.line(root).len();
+        let drawn = (0..self.scopes.len()).filter(|&index| !self.drafts.all[index].is_gone());
+        let lines = drawn.map(|index| self.line(self.scopes[index])).filter(|line| line.contains(&root));
+        let closed: BTreeSet<ScopeId> = lines.filter_map(|line| line.get(above + depth).copied()).collect();
+        let path = |scope| self.fold.netlist.scope_path(scope);
+        closed.into_iter().filter_map(|scope| Some(path(scope).split_once('.')?.1.to_owned())).collect()
+    }
+
     /// Levels of scopes with symbols below a scope.
     pub(crate) fn levels(&self, root: ScopeId) -> usize {
         let above = self.line(root).len();
@@ -96,13 +109,18 @@ impl<'n> Scene<'n> {
 }
 
 /// Finds the scope of every symbol.
-struct Places<'p> {
+pub(crate) struct Places<'p> {
     fold: &'p Fold<'p>,
     drafts: &'p Drafts,
 }
 
-impl Places<'_> {
-    fn scopes(&self) -> Vec<ScopeId> {
+impl<'p> Places<'p> {
+    /// The scope of each symbol.
+    pub(crate) fn scopes(fold: &'p Fold<'p>, drafts: &'p Drafts) -> Vec<ScopeId> {
+        Places { fold, drafts }.found()
+    }
+
+    fn found(&self) -> Vec<ScopeId> {
         let netlist = self.fold.netlist;
         let mut named: HashMap<Net, Vec<&NamedNet>> = HashMap::new();
         for name in &netlist.names {
@@ -215,6 +233,7 @@ impl<'s> View<'s> {
                 }
             }
         }
+        let mut between = Vec::new();
         for (&net, symbols) in &readers {
             let Some(&(driver, _)) = self.scene.drafts.of.get(&net) else { continue };
             let place = |symbol: usize| self.hidden(symbol).map_or((symbol, None), |scope| (0, Some(scope)));
@@ -227,12 +246,28 @@ impl<'s> View<'s> {
             let by_name = self.names.contains_key(&net) && inside.len() > most;
             if !only_hidden && !by_name && !inside.is_empty() {
                 self.wired.insert(net);
+                if self.is_of_group(net, &inside, here) {
+                    between.push((self.scene.fold.width(net), std::cmp::Reverse(inside.len()), net));
+                }
             }
+        }
+        // As bits and all that is narrow would hide the data.
+        between.sort_unstable();
+        let kept = between.iter().rev().take(MOST_BETWEEN).take_while(|(bits, ..)| *bits > 1).count();
+        for (_, _, net) in &between[..between.len() - kept] {
+            self.wired.remove(net);
         }
         for &output in &self.outputs {
             self.wired.insert(self.pin(output));
         }
         self.readers = readers;
+    }
+
+    /// A net from or to closed groups that needs no wire, as it has a name that is written where a symbol reads it, or none reads it.
+    fn is_of_group(&self, net: Net, readers: &BTreeSet<Place>, driver: Option<Place>) -> bool {
+        let in_group = |place: &Place| place.1.is_some_and(|scope| scope.index() >= self.scene.own);
+        let places = || readers.iter().chain(&driver);
+        (self.names.contains_key(&net) || places().all(in_group)) && places().any(in_group)
     }
 
     /// The whole drawing.
@@ -343,7 +378,10 @@ impl<'s> View<'s> {
             crossing.iter().filter(|crossing| crossing.1 == enters).map(|crossing| crossing.0).collect()
         });
         let name = netlist.scopes[child.index()].name.clone();
-        let count = format!("{registers} register{}, {} symbols", if registers == 1 { "" } else { "s" }, symbols.len());
+        let memories = symbols.iter().filter(|&&symbol| self.scene.drafts.all[symbol].kind == Kind::Memory).count();
+        let of = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
+        let held = if memories == 0 { String::new() } else { of(memories, "memory, ", "memories, ") };
+        let count = held + &format!("{}, {} symbols", of(registers, "register", "registers"), symbols.len());
         let longest = |nets: &[Net]| nets.iter().map(|net| width(&label(net), false)).max().unwrap_or(0);
         let pins = longest(&left) + longest(&right) + 24;
         let wide = even((width(&name, false).max(width(&count, true)) + 16).max(pins + 16));

@@ -3,7 +3,7 @@
 use stepwave_netlist::Net;
 use stepwave_netlist::cells::Format;
 
-use crate::draft::{Draft, Kind, Row, Value};
+use crate::draft::{Draft, Kind, Role, Row, Value};
 use crate::figure::{Figure, Font, Shape, Style, even, width};
 use crate::fold::Fold;
 
@@ -58,7 +58,7 @@ impl Context<'_> {
         let mut pinned: Vec<Net> = Vec::new();
         let mut lines = Vec::new();
         for row in &draft.rows {
-            let text = self.row(row, draft.rows.len() == 1, &mut numbered);
+            let text = self.row(row, draft, &mut numbered);
             let mut wired: Vec<Net> = row.nets().into_iter().filter(|&net| (self.is_wired)(net)).collect();
             wired.dedup();
             let net = match (&row.value, wired.as_slice()) {
@@ -93,13 +93,19 @@ impl Context<'_> {
     }
 
     /// A row as text: `condition: value`, or the condition alone where the value is a wire.
-    fn row(&self, row: &Row, is_only: bool, numbered: &mut Vec<Net>) -> String {
+    fn row(&self, row: &Row, draft: &Draft, numbered: &mut Vec<Net>) -> String {
+        let is_only = draft.rows.len() == 1;
         let value = match &row.value {
             Value::Wire(net, bits) if (self.is_wired)(*net) => bits.clone(),
             Value::Wire(net, bits) => format!("{}{bits}", self.called(*net, numbered)),
             Value::Text(formula) => formula.written(|net| self.called(net, numbered)),
         };
         let condition = row.condition.as_ref().map(|formula| formula.written(|net| self.called(net, numbered)));
+        if let Some(role) = row.role {
+            let condition = condition.map_or_else(String::new, |condition| format!(" if {condition}"));
+            let value = if value.is_empty() { value } else { format!(": {value}") };
+            return called(role, draft) + &condition + &value;
+        }
         match (condition, value.is_empty()) {
             (Some(condition), true) => condition,
             (Some(condition), false) => format!("{condition}: {value}"),
@@ -221,7 +227,12 @@ impl Context<'_> {
         };
         let labels: Vec<String> = wires.iter().map(label).collect();
         let name = draft.outputs.first().map_or_else(String::new, |&net| self.title(net));
-        let caption = if name.is_empty() { 0 } else { 14 };
+        // The width of the upper of two outputs is above its wire.
+        let caption = match draft.outputs.len() {
+            _ if name.is_empty() => 0,
+            0 | 1 => 14,
+            _ => 22,
+        };
         let labels_wide = labels.iter().map(|label| width(label, true)).max().unwrap_or(0);
         let wide = even((labels_wide + if labels_wide > 0 { 6 } else { 0 } + width(&sign, false) + 2 * 9).max(ROUND));
         let high = ROUND.max(16 * crate::figure::pixels(wires.len().max(draft.outputs.len())));
@@ -310,4 +321,15 @@ fn broken(text: &str) -> Vec<String> {
     }
     lines.push(line.trim_end().to_owned());
     lines
+}
+
+/// A port of a memory; of several of its kind with its number, of those that are read in the order of the outputs.
+fn called(role: Role, draft: &Draft) -> String {
+    let writes = draft.rows.iter().filter(|row| matches!(row.role, Some(Role::Data(_)))).count();
+    let (word, number, of, what) = match role {
+        Role::Data(number) => ("write", number, writes, "data"),
+        Role::Written(number) => ("write", number, writes, "address"),
+        Role::Read(number) => ("read", number, draft.outputs.len(), "address"),
+    };
+    if of > 1 { format!("{word} {} {what}", number + 1) } else { format!("{word} {what}") }
 }

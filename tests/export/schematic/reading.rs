@@ -95,6 +95,11 @@ impl Figure {
         figure
     }
 
+    /// Nets with a wire.
+    pub(super) fn nets(&self) -> usize {
+        self.lines.iter().map(|line| line.net).collect::<std::collections::BTreeSet<_>>().len()
+    }
+
     /// Texts whose middle is in a frame.
     pub(super) fn texts_in(&self, frame: &Frame) -> Vec<&str> {
         let inside = self.texts.iter().filter(|text| frame.overlaps(&text.frame));
