@@ -353,6 +353,36 @@ async function looks({ page, open }) {
   console.log('contrast, languages, a small screen: as they should');
 }
 
+/** What the tool travelled is the same drawn move by move, forwards and backwards, as drawn at once. */
+async function travels({ page, open }) {
+  await open('arc/page.html');
+  const differ = await page.evaluate(async () => {
+    const frame = () => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); });
+    const layer = document.querySelectorAll('#path canvas')[1];
+    const drawn = () => {
+      const copy = Object.assign(document.createElement('canvas'), { width: layer.width, height: layer.height });
+      const context = copy.getContext('2d', { willReadFrequently: true });
+      context.drawImage(layer, 0, 0);
+      return context.getImageData(0, 0, layer.width, layer.height).data.filter((_, at) => at % 4 === 3);
+    };
+    const counts = [];
+    for (const parts of [[0.1, 0.2, 0.35, 0.6], [0.9, 0.8, 0.7, 0.6], [0.2, 0.9, 0.3, 0.95, 0.6]]) {
+      for (const part of parts) {
+        stepwave.seek(Math.floor(part * stepwave.clocks[1]));
+        await frame();
+      }
+      const moved = drawn();
+      for (const _ of [0, 1]) {
+        document.getElementById('theme').click();
+        await frame();
+      }
+      counts.push(drawn().filter((opacity, at) => Math.abs(opacity - moved[at]) > 90).length, moved.filter((opacity) => opacity > 200).length);
+    }
+    return counts;
+  });
+  for (let at = 0; at < differ.length; at += 2) assert.ok(differ[at] <= 12 && differ[at + 1] > 100, `${differ}`);
+}
+
 async function check() {
   const one = await browser();
   const decimal = ['jvx', 'jvy', 'jrx', 'jry', 'jvx_in', 'jvy_in', 'jrx_in', 'jry_in'];
@@ -361,13 +391,14 @@ async function check() {
   await keys(one);
   await zoom(one);
   await diagram(one);
+  await travels(one);
   await looks(one);
   await one.context.close();
   assert.deepEqual(one.wrong, []);
   console.log('no request, no message of the browser');
 }
 
-/** Sizes, load times, and frames a second while scrubbing: the cursor goes to another clock in every frame. */
+/** Sizes, load times, and frames a second while scrubbing: the cursor goes to another clock in every frame. Script and layout are the time that a frame takes of a core for each, whatever else runs. */
 async function measure() {
   for (const radius of [31, 3125, 31250]) {
     const { context, page, open } = await browser();
@@ -375,6 +406,10 @@ async function measure() {
     const begun = performance.now();
     await open(file);
     const load = performance.now() - begun;
+    const browserOf = await context.newCDPSession(page);
+    await browserOf.send('Performance.enable');
+    const spent = async () => new Map((await browserOf.send('Performance.getMetrics')).metrics.map(({ name, value }) => [name, value * 1000]));
+    const before = await spent();
     const { rate, slow, clocks } = await page.evaluate(async () => {
       const [first, last] = stepwave.clocks;
       const frame = () => new Promise((done) => { requestAnimationFrame(done); });
@@ -391,9 +426,11 @@ async function measure() {
       frames.sort((a, b) => a - b);
       return { rate: count * 1000 / frames.reduce((a, b) => a + b), slow: frames[Math.floor(count * 0.95)], clocks: last - first };
     });
+    const after = await spent();
+    const [script, layout, style] = ['ScriptDuration', 'LayoutDuration', 'RecalcStyleDuration'].map((name) => (after.get(name) - before.get(name)) / 300);
     const size = statSync(join(folder, file)).size;
     const kilobytes = (size / 1000).toFixed(0);
-    console.log(`${clocks} clocks: ${kilobytes} kB, shown after ${load.toFixed(0)} ms, ${rate.toFixed(1)} frames/s, 95 % within ${slow.toFixed(1)} ms`);
+    console.log(`${clocks} clocks: ${kilobytes} kB, shown after ${load.toFixed(0)} ms, ${rate.toFixed(1)} frames/s, 95 % within ${slow.toFixed(1)} ms; of a frame ${script.toFixed(1)} ms are script, ${(layout + style).toFixed(1)} ms layout`);
     await context.close();
   }
 }

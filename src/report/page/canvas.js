@@ -13,6 +13,13 @@ function make(tag, properties = {}, ...children) {
   return element;
 }
 
+/** Writes a text in the place of that in an element: its node stays. */
+function setText(element, text) {
+  const node = element.firstChild;
+  if (!node) element.textContent = text;
+  else if (node.data !== text) node.data = text;
+}
+
 /** Shapes of signs, in a square of 16. */
 const SIGNS = {
   first: 'M3 3h2v10H3zM13 3v10L6 8z', last: 'M11 3h2v10h-2zM3 3v10l7-5z', play: 'M4 2.5v11l9-5.5z', pause: 'M4 3h3v10H4zM9 3h3v10H9z',

@@ -17,11 +17,12 @@ class Cursor {
     this.clock = Math.max(run.first, Math.min(run.last, this.clock));
   }
 
-  /** Moves to a clock, in the bounds of the run. */
-  seek(clock) {
+  /** Moves to a clock, in the bounds of the run; `runs` where it goes on to others at once. */
+  seek(clock, runs = false) {
     const to = Math.max(this.run.first, Math.min(this.run.last, Math.round(clock)));
     if (!Number.isFinite(to) || to === this.clock) return;
     this.clock = to;
+    this.runs = runs;
     this.follow();
   }
 
@@ -74,7 +75,7 @@ class Cursor {
         return;
       }
       this.frame = requestAnimationFrame(go);
-      this.seek(Math.floor(exact));
+      this.seek(Math.floor(exact), true);
     };
     this.frame = requestAnimationFrame(go);
     this.follow();

@@ -189,7 +189,7 @@ Object.assign(WaveView.prototype, {
     // 7 pixels a digit, and its frame.
     const right = this.surface.width - text.length * 7 - 12;
     this.label.style.transform = `translateX(${Math.round(Math.max(0, Math.min(right, x)))}px)`;
-    this.label.textContent = text;
+    setText(this.label, text);
   },
 
   drawRuler(context) {

@@ -95,13 +95,14 @@ function readout(separator) {
 /** Everything follows the cursor. */
 function moved() {
   const { clock } = cursor;
+  // A table that scrolls asks for the layout: before anything else is written.
+  panels.moved();
   path.moved();
   wave.moved();
-  panels.moved();
   const time = $('time');
   time.value = String(clock);
   time.setAttribute('aria-valuetext', readout(', '));
-  $('readout').textContent = readout('  ·  ');
+  setText($('readout'), readout('  ·  '));
   if ($('play').dataset.title !== (cursor.isPlaying ? 'pause' : 'play')) setPlay();
   clearTimeout(moved.later);
   moved.later = setTimeout(() => {
@@ -225,7 +226,7 @@ function buildTransport() {
 }
 
 function listen() {
-  $('time').addEventListener('input', () => cursor.seek(Number($('time').value)));
+  $('time').addEventListener('input', () => cursor.seek(Number($('time').value), true));
   $('radix').addEventListener('change', () => {
     cursor.radix = $('radix').value;
     wave.values(true);

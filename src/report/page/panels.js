@@ -137,9 +137,9 @@ class Panels {
 
   /** The cursor has moved. */
   moved() {
-    const { clock } = this.cursor;
-    if (this.opened === 'steps') this.steps?.mark(this.run.row(clock));
-    if (this.opened === 'program') this.moves?.mark(this.rowOfMove.get(this.run.block(clock)) ?? -1);
+    const { clock, runs } = this.cursor;
+    if (this.opened === 'steps') this.steps?.mark(this.run.row(clock), runs);
+    if (this.opened === 'program') this.moves?.mark(this.rowOfMove.get(this.run.block(clock)) ?? -1, runs);
     this.diagram.moved();
   }
 }

@@ -11,7 +11,10 @@ class PathView {
     /** Other methods that are drawn too: name and run. */
     this.others = [];
     this.element = $('path');
-    this.surface = new Surface(this.element, [(context) => this.drawBase(context), (context) => this.drawTool(context)]);
+    this.surface = new Surface(this.element, [(context) => this.drawBase(context), (context) => this.drawTravelled(context)]);
+    // No part of a drawing, so that a move of it draws nothing anew.
+    this.tool = make('div', { className: 'tool' });
+    this.element.append(this.tool);
     this.surface.resized = () => this.fitted && this.fit();
     gestures(this.element, {
       drag: ([dx, dy]) => this.pan(dx, dy),
@@ -126,12 +129,49 @@ class PathView {
     this.surface.redraw();
   }
 
-  /** The cursor has moved. */
+  /** The cursor has moved: what lies between is added to what is drawn, or taken from it. */
   moved() {
-    if (!this.run?.path) return;
-    // In this very frame.
-    this.surface.layers[1].stale = true;
-    this.surface.draw();
+    if (!this.run?.path || !this.scale) return;
+    const point = lastUpTo(this.run.path.clocks, this.cursor.clock) + 1;
+    this.placeTool(point);
+    const [, layer] = this.surface.layers;
+    if (layer.stale || this.travelled === undefined) return;
+    const before = this.travelled;
+    this.travelled = point;
+    if (point > before) this.drawFrom(layer.context, before, point);
+    else if (point < before) this.withdraw(layer.context, before, point);
+  }
+
+  placeTool(point) {
+    const [x, y] = [this.origin[0] + this.xs[point] * this.scale, this.origin[1] - this.ys[point] * this.scale];
+    this.tool.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+  }
+
+  /** The index in what is visible of the last point up to this one. */
+  seenUpTo(point) {
+    const { at } = this.visible();
+    let [low, high] = [0, at.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if ((at[middle] < 0 ? -1 - at[middle] : at[middle]) <= point) low = middle + 1; else high = middle;
+    }
+    return low - 1;
+  }
+
+  /** Clears what was travelled between two points, and draws what else is there. */
+  withdraw(context, before, point) {
+    const { x, y } = this.visible();
+    const [first, last] = [Math.max(0, this.seenUpTo(point)), this.seenUpTo(before)];
+    const [left, low, right, high] = boundsOf(x, y, first, last + 1);
+    if (left > right) return;
+    const box = [left - 4, low - 4, right - left + 8, high - low + 8];
+    context.save();
+    context.beginPath();
+    context.rect(...box);
+    context.clip();
+    context.clearRect(...box);
+    this.drawFrom(context, -1, point);
+    context.restore();
   }
 
   /** Sets the cursor to where the tool is nearest to a place. */
@@ -178,20 +218,21 @@ class PathView {
     return line;
   }
 
-  /** Draws the path from the first point up to one. */
-  stroke(context, upTo, style, width, rapid) {
+  /** Draws the path up to a point, from the first one or from another on. */
+  stroke(context, upTo, style, width, rapid, from = -1) {
     const { x, y, at } = this.visible();
     const { clocks } = this.run.path;
     context.beginPath();
     let block = -1, isRapid = false;
-    for (let index = 0; index < at.length; index++) {
+    const begin = Math.max(0, this.seenUpTo(from));
+    for (let index = begin; index < at.length; index++) {
       const point = at[index] < 0 ? -1 - at[index] : at[index];
       if (point > upTo) break;
       if (this.rapids.length) {
         const now = this.run.block(point ? clocks[point - 1] : this.run.first);
         if (now !== block) [block, isRapid] = [now, this.rapids[now] ?? false];
       }
-      if (at[index] < 0 || isRapid !== rapid) context.moveTo(x[index], y[index]); else context.lineTo(x[index], y[index]);
+      if (index === begin || at[index] < 0 || isRapid !== rapid) context.moveTo(x[index], y[index]); else context.lineTo(x[index], y[index]);
     }
     context.strokeStyle = style;
     context.lineWidth = width;
@@ -329,31 +370,23 @@ class PathView {
     }
   }
 
-  drawTool(context) {
+  drawTravelled(context) {
     if (!this.run?.path || !this.scale) return;
-    const { clocks } = this.run.path;
-    const at = lastUpTo(clocks, this.cursor.clock) + 1;
+    const point = lastUpTo(this.run.path.clocks, this.cursor.clock) + 1;
+    this.travelled = point;
+    this.placeTool(point);
+    this.drawFrom(context, -1, point);
+  }
+
+  /** What the tool travels between two points. */
+  drawFrom(context, from, upTo) {
     context.lineJoin = 'round';
-    this.stroke(context, at, colours.accent, 2.2, false);
-    const dots = this.scale >= 7;
-    const spot = (point) => [this.origin[0] + this.xs[point] * this.scale, this.origin[1] - this.ys[point] * this.scale];
-    if (dots) {
-      context.fillStyle = colours.accent;
-      for (const index of this.visible().at) {
-        const point = index < 0 ? -1 - index : index;
-        if (point > at) break;
-        const [x, y] = spot(point);
-        context.fillRect(x - 2, y - 2, 4, 4);
-      }
-    }
-    const [x, y] = spot(at);
-    context.beginPath();
-    context.arc(x, y, 6, 0, 7);
-    context.fillStyle = colours.cursor;
-    context.fill();
-    context.lineWidth = 2;
-    context.strokeStyle = colours.panel;
-    context.stroke();
+    this.stroke(context, upTo, colours.accent, 2.2, false, from);
+    if (this.scale < 7) return;
+    context.fillStyle = colours.accent;
+    const { x, y } = this.visible();
+    const last = this.seenUpTo(upTo);
+    for (let index = Math.max(0, this.seenUpTo(from)); index <= last; index++) context.fillRect(x[index] - 2, y[index] - 2, 4, 4);
   }
 }
 

@@ -1,6 +1,8 @@
 // Tables of any length: only the rows that are seen are in the page.
 
 const LINE = 24;
+/** Milliseconds between two pages of rows while the cursor runs through them. */
+const PAUSE = 90;
 /** Pixels that a browser lets an element be high, with room. */
 const MOST_PIXELS = 8e6;
 
@@ -27,7 +29,7 @@ class Table {
     element.replaceChildren(this.body);
     this.lines = [];
     // Kept, as asking an element for them lays the page out anew.
-    [this.top, this.seen] = [0, 0];
+    [this.top, this.seen, this.turned] = [0, 0, -PAUSE];
     this.body.addEventListener('scroll', () => {
       this.top = this.body.scrollTop;
       this.draw();
@@ -84,8 +86,7 @@ class Table {
     line.dataset.row = row;
     line.setAttribute('aria-rowindex', row + 2);
     this.row(row).forEach((text, column) => {
-      const cell = line.children[column];
-      if (cell.textContent !== text) cell.textContent = text;
+      setText(line.children[column], text);
     });
     line.className = this.style?.(row) ?? '';
     this.setCurrent(line, row === this.current);
@@ -99,21 +100,37 @@ class Table {
     return this.lines.find((line) => Number(line.dataset.row) === row);
   }
 
-  /** Marks a row and brings it into view. */
-  mark(row) {
+  /** Marks a row and brings it into view, soon where the cursor `runs`. */
+  mark(row, runs = false) {
     if (row === this.current) return;
     this.setCurrent(this.lineOf(this.current), false);
     this.current = row;
+    clearTimeout(this.later);
     if (row < 0 || !this.seen) return;
-    const room = this.seen - 2 * LINE;
     const top = this.top * this.ratio;
-    if (row * LINE < top || row * LINE > top + room) {
-      const most = Math.max(0, this.height + LINE - this.seen);
-      this.top = Math.min(most, Math.round(Math.max(0, row * LINE - room / 2) / this.ratio));
-      this.body.scrollTop = this.top;
-      this.draw();
+    if (row * LINE < top || row * LINE > top + this.seen - 2 * LINE) {
+      // Another page is laid out anew as a whole: at once, but not in every frame.
+      const wait = runs ? this.turned + PAUSE - performance.now() : 0;
+      if (wait > 0) this.later = setTimeout(() => this.turn(), wait);
+      else this.turn();
     }
-    const line = this.lineOf(row);
+    this.point();
+  }
+
+  /** Brings the marked row into view. */
+  turn() {
+    if (this.current < 0 || !this.seen) return;
+    this.turned = performance.now();
+    const most = Math.max(0, this.height + LINE - this.seen);
+    this.top = Math.min(most, Math.round(Math.max(0, this.current * LINE - (this.seen - 2 * LINE) / 2) / this.ratio));
+    this.body.scrollTop = this.top;
+    this.draw();
+    this.point();
+  }
+
+  /** Marks the line of the row where it is in view. */
+  point() {
+    const line = this.lineOf(this.current);
     this.setCurrent(line, true);
     if (line) this.body.setAttribute('aria-activedescendant', line.id);
   }

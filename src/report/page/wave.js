@@ -27,7 +27,7 @@ class WaveView {
     new ResizeObserver(() => this.place()).observe(this.rows);
     const scrub = {
       press: ([x]) => cursor.seek(this.clockAt(x)),
-      drag: (_, [x]) => cursor.seek(this.clockAt(x)),
+      drag: (_, [x]) => cursor.seek(this.clockAt(x), true),
       pan: ([dx]) => this.pan(dx),
       zoom: (factor, [x]) => this.zoom(factor, x),
       wheel: (event, [x]) => this.wheel(event, x),
@@ -241,7 +241,7 @@ class WaveView {
       if (bits === item.bits && radix === item.radix && item.signal.radix === item.own) continue;
       Object.assign(item, { bits, radix, own: item.signal.radix });
       item.element.dataset.value = String(item.signal.number(bits));
-      item.value.textContent = item.signal.text(bits, radix);
+      setText(item.value, item.signal.text(bits, radix));
       if (item.flagged) item.element.classList.toggle('raised', bits === 1);
     }
     if (all) return;
