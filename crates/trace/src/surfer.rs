@@ -21,9 +21,11 @@ pub fn side_files(view: &View<'_>) -> Vec<SideFile> {
     let mut states: Vec<(&Probe, String)> = Vec::new();
     for probe in view.probes {
         if matches!(probe.format, Format::States(_)) && !states.iter().any(|(known, _)| alike(known, probe)) {
-            let name = format!("{}.{}", plain(view.stem), probe.name);
-            let again = states.iter().filter(|(_, known)| known.starts_with(&name)).count();
-            states.push((probe, if again == 0 { name } else { format!("{name}.{again}") }));
+            let base = format!("{}.{}", plain(view.stem), probe.name);
+            let free = |name: &String| states.iter().all(|(_, known)| known != name);
+            let numbered = (1..).map(|again| format!("{base}.{again}"));
+            let name = std::iter::once(base.clone()).chain(numbered).find(free);
+            states.push((probe, name.unwrap_or(base)));
         }
     }
     let mut files = vec![SideFile { name: format!("{}.sucl", view.stem), text: commands(view, &states) }];
@@ -40,10 +42,25 @@ fn alike(a: &Probe, b: &Probe) -> bool {
     a.width == b.width && a.format == b.format
 }
 
-/// A text without what begins a comment or ends a command.
+/// A text as one word, without what begins a comment or ends a command: two texts never have the same. What a word cannot
+/// hold is its number in hexadecimal between two `~`.
 fn plain(text: &str) -> String {
-    let kept = |c: char| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' };
-    text.chars().map(kept).collect()
+    let word = |c: char| match c {
+        c if c.is_alphanumeric() || "._-".contains(c) => c.to_string(),
+        c => format!("~{:x}~", u32::from(c)),
+    };
+    text.chars().map(word).collect()
+}
+
+/// A word for a POSIX shell.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-/".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) && !word.starts_with('-') {
+        return word.to_owned();
+    }
+    // The name of a file may begin as an option does.
+    let path = if word.starts_with('-') { format!("./{word}") } else { word.to_owned() };
+    format!("'{}'", path.replace('\'', "'\\''"))
 }
 
 fn mapping(name: &str, width: u32, names: &[(u64, String)]) -> String {
@@ -57,8 +74,10 @@ fn mapping(name: &str, width: u32, names: &[(u64, String)]) -> String {
 }
 
 fn commands(view: &View<'_>, states: &[(&Probe, String)]) -> String {
-    let mut text =
-        format!("# In the folder of this file: surfer --command-file {}.sucl {}\n", view.stem, view.dump_name);
+    // A comment is one line, whatever a name holds.
+    let line = |word: &str| quoted(word).replace(char::is_control, "?");
+    let [own, wave] = [line(&format!("{}.sucl", view.stem)), line(view.dump_name)];
+    let mut text = format!("# In the folder of this file: surfer --command-file {own} {wave}\n");
     let (first, rest) = leading(view);
     let top = view.probes.first().map_or("top", |probe| probe.scopes[0].as_str());
     let mut is_first = true;
@@ -140,13 +159,40 @@ mod tests {
             ..view(&probes)
         };
         let files = side_files(&view);
-        let expected = "# In the folder of this file: surfer --command-file a b.sucl a b.vcd\n\
+        let expected = "# In the folder of this file: surfer --command-file 'a b.sucl' 'a b.vcd'\n\
             variable_add m.x.sum.x\nitem_focus a\nitem_set_format Signed\nvariable_add m.clk\nvariable_add m.busy\n\
-            variable_add m.beat\nitem_set_format a_b.beat\ndivider_add x_sum\nvariable_add m.x.sum.jrx\n\
+            variable_add m.beat\nitem_set_format a~20~b.beat\ndivider_add x_sum\nvariable_add m.x.sum.jrx\n\
             item_set_format Unsigned\ndivider_add overflow\nvariable_add m.x.sum.x_overflow\nitem_set_color Red\n\
             marker_set overflow 30\nitem_unfocus\nzoom_fit\n";
         assert_eq!((files[0].name.as_str(), files[0].text.as_str()), ("a b.sucl", expected));
-        let text = "Name = a_b.beat\nBits = 4\n0b0001 JUDGE\n0b0010 FEED\n".to_owned();
-        assert_eq!(files[1..], [SideFile { name: ".surfer/mappings/a_b.beat".into(), text }]);
+        let text = "Name = a~20~b.beat\nBits = 4\n0b0001 JUDGE\n0b0010 FEED\n".to_owned();
+        assert_eq!(files[1..], [SideFile { name: ".surfer/mappings/a~20~b.beat".into(), text }]);
+    }
+
+    #[test]
+    fn names_that_differ_in_a_blank_have_mappings_of_their_own_and_every_command_is_a_line() {
+        let states = || Format::States(vec![(1, "JUDGE".into())]);
+        let probes = [probe(&["m"], "beat", 4, states(), Role::Register)];
+        let mapping = |stem: &str| side_files(&View { stem, ..view(&probes) })[1].name.clone();
+        let names = ["a b", "a_b", "a\tb", "a~20~b", "a#b", "a;b"].map(mapping);
+        let different: std::collections::BTreeSet<&String> = names.iter().collect();
+        assert_eq!(different.len(), names.len(), "{names:?}");
+        assert!(names.iter().all(|name| !name.contains([' ', '#', ';'])), "{names:?}");
+        // Others of the same name in one wave too.
+        let again = |name: &str, state: &str| {
+            probe(&["m", name], "beat", 4, Format::States(vec![(1, state.into())]), Role::Register)
+        };
+        let probes = [again("x", "A"), again("y", "B"), again("z", "C")];
+        let files: Vec<String> = side_files(&view(&probes)).into_iter().skip(1).map(|file| file.name).collect();
+        let stem = view(&probes).stem;
+        assert_eq!(files, ["", ".1", ".2"].map(|end| format!("{MAPPINGS}/{stem}.beat{end}")));
+        // An end of a line in a name begins no command, and a quotation mark ends no word.
+        let odd = View { stem: "a\nvariable_add it's", dump_name: "-w.vcd", ..view(&probes) };
+        let text = &side_files(&odd)[0].text;
+        let first = text.lines().next().unwrap();
+        assert_eq!(
+            first,
+            "# In the folder of this file: surfer --command-file 'a?variable_add it'\\''s.sucl' './-w.vcd'"
+        );
     }
 }
