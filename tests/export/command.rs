@@ -170,7 +170,8 @@ fn a_schematic_is_drawn_of_models_programs_and_netlists_without_a_bench_file() {
     assert_eq!(printed.lines().last(), Some("the block diagram has 34 symbols"));
     assert!(folder.read("line.svg").starts_with("<svg "));
     let printed = folder.good("export line.net --schematic again.svg --levels 0");
-    let closed = ", scopes 0 of 1 levels deep: --levels 1 opens more of them, --scope PATH draws one alone\n";
+    let closed = ", scopes 0 of 1 levels deep: --levels 1 opens more of them, --scope PATH draws one of block, axis_x, axis_y \
+                  alone\n";
     assert!(printed.starts_with("dda_line: ") && printed.ends_with(closed), "{printed}");
     folder.good("export line.net --schematic axis.svg --scope axis_x");
     assert!(folder.read("axis.svg").contains(">jrx<") && !folder.read("axis.svg").contains(">jry<"));
