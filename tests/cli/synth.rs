@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::{Folder, Ran, good};
+use super::{Folder, Ran, good, machine};
 
 const SMALL: &str = "machine ppc-line mindev-line --travel 0.02mm,0.015mm --blu 1um --feed 30mm/min";
 
@@ -192,9 +192,8 @@ fn merit(machine: &Value) -> [f64; 3] {
 
 #[test]
 fn pareto_leaves_out_what_a_kept_row_of_the_same_curve_beats_and_nothing_else() {
-    let words = "machine --travel 0.02mm,0.015mm --blu 1um --feed 30mm/min --json";
-    let json = |words: &str| -> Value { serde_json::from_str(&good(words)).unwrap() };
-    let (all, kept) = (json(words), json(&format!("{words} --pareto")));
+    let kept: Value = serde_json::from_str(&good(&format!("{} --json --pareto", machine::SMALL))).unwrap();
+    let all = &*machine::ALL;
     let list = |all: &Value| all["machines"].as_array().unwrap().clone();
     let name = |machine: &Value| machine["model"].as_str().unwrap().to_owned();
     let is_arc = |machine: &Value| name(machine).ends_with("arc");
@@ -203,7 +202,7 @@ fn pareto_leaves_out_what_a_kept_row_of_the_same_curve_beats_and_nothing_else() 
         let nowhere_worse = (0..3).all(|index| own[index] <= others[index]);
         is_arc(one) == is_arc(other) && nowhere_worse && own != others
     };
-    let (all, beaten) = (list(&all), kept["beaten"].as_array().unwrap().clone());
+    let (all, beaten) = (list(all), kept["beaten"].as_array().unwrap().clone());
     let kept: Vec<String> = list(&kept).iter().map(name).collect();
     assert!(kept.len() > 2 && beaten.len() > 2 && kept.len() + beaten.len() == all.len(), "{kept:?} {beaten:?}");
     for machine in &all {
@@ -214,7 +213,7 @@ fn pareto_leaves_out_what_a_kept_row_of_the_same_curve_beats_and_nothing_else() 
             assert!(better.contains(&by) && kept.contains(&by), "{row}");
         }
     }
-    let text = good(&words.replace(" --json", " --pareto"));
+    let text = good(&format!("{} --pareto", machine::SMALL));
     assert!(text.contains(&format!("\nleft out by --pareto: {} of {}\n", beaten.len(), all.len())), "{text}");
     let first = &beaten[0];
     let line = format!("\n  {}, beaten by {}\n", first["model"].as_str().unwrap(), first["by"].as_str().unwrap());

@@ -14,7 +14,7 @@ use stepwave_netlist::Width;
 
 use super::conics::every_quarter_ellipse;
 use super::dda_helix::helix;
-use super::{arc, bench, every_lattice_arc, every_line, line};
+use super::{arc, bench, every_lattice_arc, every_line, line, squares_below};
 
 /// Greatest path error so far, where, and how many geometries were measured.
 type Worst = Mutex<(f64, String, u32)>;
@@ -60,7 +60,9 @@ fn lines_with(model: &str, what: &str, choices: &Options) -> f64 {
 
 fn arcs(model: &str, choices: &Options) -> f64 {
     let worst = Worst::default();
-    every_lattice_arc(900, |from, to, clockwise| measure(&worst, model, &arc(from, to, [0, 0], clockwise), choices));
+    every_lattice_arc(&squares_below(900), |from, to, clockwise| {
+        measure(&worst, model, &arc(from, to, [0, 0], clockwise), choices)
+    });
     let options: Vec<String> = [
         choices.get(&WEIGHTS).copied().map(|weights| format!("{weights:?}")),
         choices.of_all(&PRESET).map(|preset| format!("{preset:?}")),
@@ -228,7 +230,7 @@ fn ellipses_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_noth
 fn helices_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_nothing() {
     for preset in [Preset::Zero, Preset::Half, Preset::Full] {
         let worst = Worst::default();
-        every_lattice_arc(122, |from, to, clockwise| {
+        every_lattice_arc(&squares_below(122), |from, to, clockwise| {
             for rise in [0, 1, -5, 20, -100] {
                 let curve = helix([from[0], from[1], 0], [to[0], to[1], rise], [0, 0], clockwise);
                 measure(&worst, "dda-helix", &curve, &Options::default().with_all(&PRESET, preset));

@@ -81,7 +81,7 @@ pub(super) fn check_hang(model: &str, curve: &Curve, choices: &Options, engine: 
     let at_rest = table.rows.iter().rposition(|row| Some(row) != table.rows.last()).map_or(0, |row| row + 1);
     table.rows.truncate(at_rest + 1);
     let rest = ran.rows.split_off(table.rows.len());
-    assert_equal(&what, &ran, &table);
+    assert_equal(|| what.clone(), &ran, &table);
     for name in &table.columns {
         let last = if name.starts_with('d') { 0 } else { table.column(name)[at_rest] };
         let index = ran.columns.iter().position(|column| column == name).unwrap();
@@ -160,7 +160,7 @@ fn one_counter_for_both_axes_of_an_arc_follows_the_recurrence_and_misses_where_i
         let table = dda_arc(n, from, to, [0, 0], false, [0, 0], false, reference::EndPoint::Total);
         let ran = run("dda-arc", &curve, &choices(n, Preset::Zero, false, EndPoint::Total), EngineKind::Word);
         if !table.overflow {
-            assert_equal(&format!("{curve:?}"), &ran, &table);
+            assert_equal(|| format!("{curve:?}"), &ran, &table);
             missed += u32::from(ran.outcome.reached != to);
         }
     }

@@ -8,7 +8,7 @@ use stepwave_nc::{Curve, Direction, Helix};
 use stepwave_netlist::Width;
 
 use super::dda::{check_hang, preset_value};
-use super::{check, every_lattice_arc, run};
+use super::{check, every_lattice_arc, run, squares_below};
 use crate::reference::{dda_helix, helix_words};
 
 pub(super) fn helix(from: [i64; 3], to: [i64; 3], center: [i64; 2], clockwise: bool) -> Curve {
@@ -43,7 +43,7 @@ fn check_helix(curve: &Curve, spare: u32, fraction: u32, preset: Preset, engine:
 
 #[test]
 fn every_lattice_helix_up_to_radius_8_upwards_downwards_and_flat() {
-    every_lattice_arc(65, |from, to, clockwise| {
+    every_lattice_arc(&squares_below(65), |from, to, clockwise| {
         for (rise, preset) in [(0, Preset::Zero), (1, Preset::Half), (-2, Preset::Full), (7, Preset::Zero)] {
             let curve = helix([from[0], from[1], 3], [to[0], to[1], 3 + rise], [0, 0], clockwise);
             check_helix(&curve, 0, 8, preset, EngineKind::Word);

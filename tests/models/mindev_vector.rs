@@ -4,7 +4,7 @@ use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, END_POINT};
 use stepwave_models::{Beats, EndPoint, Options};
 
-use super::{arc, check, every_lattice_arc, every_line, line};
+use super::{arc, check, every_lattice_arc, every_line, line, some_below_30, squares_below};
 use crate::reference::{self, Table, mindev_arc, mindev_line, vector_arc, vector_line};
 
 type LineTable = fn([i64; 2], [i64; 2]) -> Table;
@@ -44,11 +44,21 @@ fn every_line_of_up_to_five_bits_in_every_quadrant() {
     every_line(|to| check_line([0, 0], to, Beats::One, EngineKind::Word));
 }
 
-#[test]
-fn every_lattice_arc_and_full_circle_of_a_radius_below_30() {
-    every_lattice_arc(900, |from, to, clockwise| {
+fn check_lattice_arcs(squares: &[i64]) {
+    every_lattice_arc(squares, |from, to, clockwise| {
         check_arc(from, to, [0, 0], clockwise, Beats::One, EngineKind::Word);
     });
+}
+
+#[test]
+fn every_lattice_arc_and_full_circle_of_a_radius_below_14_and_of_some_below_30() {
+    check_lattice_arcs(&some_below_30());
+}
+
+#[test]
+#[ignore = "exhaustive"]
+fn every_lattice_arc_and_full_circle_of_a_radius_below_30() {
+    check_lattice_arcs(&squares_below(900));
 }
 
 #[test]

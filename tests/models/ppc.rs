@@ -5,7 +5,7 @@ use stepwave_engine::EngineKind;
 use stepwave_models::options::{BEATS, END_POINT, FORM};
 use stepwave_models::{Beats, EndPoint, Form, Options};
 
-use super::{arc, check, every_lattice_arc, every_line, lattice, line};
+use super::{arc, check, every_lattice_arc, every_line, lattice, line, some_below_30, squares_below};
 use crate::reference::{self, ppc_arc, ppc_line};
 
 const END_POINTS: [(EndPoint, reference::EndPoint); 3] = [
@@ -56,11 +56,21 @@ fn every_line_of_up_to_three_bits_in_four_beats_on_every_engine_from_a_translate
     }
 }
 
-#[test]
-fn every_lattice_arc_and_full_circle_of_a_radius_below_30_in_both_directions() {
-    every_lattice_arc(900, |from, to, clockwise| {
+fn check_lattice_arcs(squares: &[i64]) {
+    every_lattice_arc(squares, |from, to, clockwise| {
         check_arc(from, to, [0, 0], clockwise, Beats::One, EngineKind::Word);
     });
+}
+
+#[test]
+fn every_lattice_arc_and_full_circle_of_a_radius_below_14_and_of_some_below_30_in_both_directions() {
+    check_lattice_arcs(&some_below_30());
+}
+
+#[test]
+#[ignore = "exhaustive"]
+fn every_lattice_arc_and_full_circle_of_a_radius_below_30_in_both_directions() {
+    check_lattice_arcs(&squares_below(900));
 }
 
 #[test]

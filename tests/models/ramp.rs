@@ -37,7 +37,7 @@ fn check(block: &RampBlock, engine: EngineKind) {
     let bench = Testbench::new(find(NAME).unwrap(), &curve, &options(block)).unwrap();
     let bench = bench.with_events(&events(block)).unwrap();
     let ran = run_on(&bench, engine);
-    assert_equal(&format!("{block:?} on {}", engine.name()), &ran, &ramp(block));
+    assert_equal(|| format!("{block:?} on {}", engine.name()), &ran, &ramp(block));
     assert_eq!(ran.outcome.ending, Ending::Done);
     assert_eq!(ran.outcome.reached, curve.to());
 }

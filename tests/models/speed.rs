@@ -1,14 +1,14 @@
 //! Speed along the path, against what the rows of the step table say one by one.
 
 use proptest::prelude::*;
-use stepwave::testbench::{Observer, PathWatch, Speed, SpeedWatch, SpeedWindow, Step};
+use stepwave::testbench::{Observer, ObserverError, PathWatch, Speed, SpeedWatch, SpeedWindow, Step};
 use stepwave_engine::EngineKind;
 use stepwave_models::options::{ADDER, BEATS, NORMALIZE, ON_OVERFLOW, OVERRIDE, PRESET, RADIX, SYSTEM, TIMING, WIDTH};
 use stepwave_models::{Adder, Beats, Options, Preset, Radix, StepTiming, System, catalogue};
 use stepwave_nc::Curve;
 use stepwave_netlist::{OnOverflow, Width};
 
-use super::{Keep, arc, bench, line};
+use super::{arc, bench, line};
 
 /// What the rows say: windows of 32 steps, or of all of them where there are less, the first slowest and fastest one.
 fn plain(rows: &[Step]) -> Option<Speed> {
@@ -27,6 +27,16 @@ fn plain(rows: &[Step]) -> Option<Speed> {
     let least = speeds.clone().reduce(|least, next| if slower(&next, &least) { next } else { least })?;
     let greatest = speeds.reduce(|greatest, next| if slower(&greatest, &next) { next } else { greatest })?;
     Some(Speed { clocks: rows.last()?.clock - rows[0].clock, least, greatest })
+}
+
+/// Keeps the whole step table.
+struct Keep(Vec<Step>);
+
+impl Observer for Keep {
+    fn step(&mut self, step: &Step) -> Result<(), ObserverError> {
+        self.0.push(step.clone());
+        Ok(())
+    }
 }
 
 /// The rows of a run, and what the watch says where it sees samples, and where it may see digests of many.

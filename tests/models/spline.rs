@@ -136,7 +136,7 @@ fn with_a_fraction_the_registers_are_those_of_the_rounded_recurrence() {
                 let choices = Options::default().with(&FRACTION, Some(bits));
                 let ran = run(NAME, &spline(form, points), &choices, engine);
                 let table = spline_dda_fraction(&segments, s, bits);
-                assert_equal(&format!("{form:?}, {bits} bits of fraction"), &ran, &table);
+                assert_equal(|| format!("{form:?}, {bits} bits of fraction"), &ran, &table);
                 let exact = spline_dda(&segments, s);
                 assert!(farthest(&table, bits, &exact, &segments, s) <= bound(s, bits), "{form:?} {bits}");
                 let whole = form == SplineForm::CatmullRom || ran.outcome.reached == spline(form, points).to();

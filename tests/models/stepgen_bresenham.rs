@@ -30,7 +30,7 @@ fn check_counters(from: &[i64], to: &[i64], engine: EngineKind) {
             let misses = (0..from.len()).all(|axis| travel(axis) <= 1) && !right && (form == Form::Magnitude || idle);
             if misses {
                 let ran = run("bresenham", &line(from, to), &choices, engine);
-                assert_equal(&format!("{from:?} {to:?} {choices:?}"), &ran, &table);
+                assert_equal(|| format!("{from:?} {to:?} {choices:?}"), &ran, &table);
                 assert_eq!(ran.outcome.ending, Ending::Done);
                 assert_ne!(ran.outcome.reached, to);
             } else {
@@ -238,7 +238,7 @@ fn an_accumulator_too_narrow_traps_where_the_recurrence_leaves_it() {
                 let table = stepgen(bits, 4, 4, &[0, 0], &[x, y], &[0, 0]);
                 let ran = with_accumulators_of(bits, &[x, y], OnOverflow::Trap);
                 let what = format!("({x}, {y}) in {bits} bits");
-                assert_equal(&what, &ran, &table);
+                assert_equal(|| what.clone(), &ran, &table);
                 let ending = if table.overflow { Ending::Trapped } else { Ending::Done };
                 assert_eq!(ran.outcome.ending, ending, "{what}");
             }

@@ -201,7 +201,7 @@ impl EngineKind {
     pub fn build_digesting(self, design: &Design, watch: &Watch, wanted: Option<&Wanted>) -> Box<dyn Engine> {
         match self {
             #[cfg(feature = "jit")]
-            EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch).digesting(wanted.cloned())),
+            EngineKind::Compiled => Box::new(compiled::Compiled::new(design, watch).digesting_unless_large(wanted)),
             _ => self.build(design, watch),
         }
     }

@@ -37,18 +37,21 @@ impl Width {
     }
 
     /// The number of bits.
+    #[inline]
     #[must_use]
     pub fn get(self) -> u32 {
         u32::from(self.0)
     }
 
     /// All ones in this width; also the greatest unsigned value.
+    #[inline]
     #[must_use]
     pub fn mask(self) -> u64 {
         u64::MAX >> (64 - self.0)
     }
 
     /// The sign bit of this width.
+    #[inline]
     #[must_use]
     pub fn sign_bit(self) -> u64 {
         1 << (self.0 - 1)
@@ -101,6 +104,7 @@ pub struct Bits {
 
 impl Bits {
     /// The low bits of `value`; what does not fit is cut off.
+    #[inline]
     #[must_use]
     pub fn truncated(width: Width, value: u64) -> Bits {
         Bits { width, value: value & width.mask() }
@@ -123,6 +127,7 @@ impl Bits {
     }
 
     /// The bits as an unsigned number.
+    #[inline]
     #[must_use]
     pub fn value(self) -> u64 {
         self.value

@@ -155,6 +155,15 @@ impl Compiled {
         this
     }
 
+    /// Looks ahead for what is wanted, unless the machine is large: its digests would take longer to compile than most runs.
+    /// Runs that nobody sees clock by clock are many, and often short: it is compiled no earlier than others.
+    pub(super) fn digesting_unless_large(self, wanted: Option<&Wanted>) -> Compiled {
+        match wanted {
+            Some(_) if self.large.is_some() => Compiled { warm_up: self.warm_up.max(WARM_UP), ..self },
+            wanted => self.digesting(wanted.cloned()),
+        }
+    }
+
     /// Looks ahead for what is wanted.
     pub(super) fn digesting(self, wanted: Option<Wanted>) -> Compiled {
         // What digests are made of are short loops.
