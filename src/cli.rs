@@ -37,7 +37,7 @@ use program::MethodParser;
 pub(crate) use program::{Method, ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use run::MachineRun;
-pub(crate) use show::{ShowArgs, by_value};
+pub(crate) use show::{ShowArgs, by_value, one_axis};
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use titled::Titled;
 pub(crate) use usage::usage;

@@ -145,7 +145,7 @@ impl WaveOptions {
         let mut files = self.vcd.iter().chain(&self.fst);
         if self.viewer.is_some() && files.all(|file| output::is_stream(file)) {
             return Err(Error::Invalid(
-                "--viewer is about files next to a wave, and no wave is written into a file: give --vcd FILE or --fst FILE"
+                "--viewer is about files next to a wave, and no wave is written into a file: give --vcd FILE"
                     .to_owned(),
             ));
         }

@@ -2,7 +2,7 @@
 //! numbers with commas are points, so that what `run` and `show` take can be given together.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
@@ -133,14 +133,19 @@ impl<T: Args> FromArgMatches for Given<T> {
     }
 }
 
+/// A model of one axis has this name, of which one number is a point.
+pub(crate) fn one_axis(name: &Path) -> bool {
+    name.to_str().and_then(|name| find(name).ok()).is_some_and(|model| model.curve().max_axes() == 1)
+}
+
 /// The words of a `show` with the options that it shares with `run` told apart by their values: one number is a clock, the
 /// name of a form no radix of the hardware. Of a model of one axis one number is a point.
 pub(crate) fn by_value(mut words: Vec<OsString>) -> Vec<OsString> {
     if words.get(1).is_none_or(|command| command != "show") {
         return words;
     }
-    let model = words.iter().skip(2).find_map(|word| find(word.to_str()?).ok());
-    let lone = model.is_some_and(|model| model.curve().max_axes() == 1);
+    let model = words.iter().skip(2).find(|word| word.to_str().is_some_and(|word| find(word).is_ok()));
+    let lone = model.is_some_and(|model| one_axis(Path::new(model)));
     let clock = |value: &str| !lone && !value.is_empty() && value.bytes().all(|byte| byte.is_ascii_digit());
     let form = |value: &str| RADICES.iter().any(|(name, _)| *name == value);
     let other = |option: &str, value: &str| match option {

@@ -31,7 +31,7 @@ pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
     if args.vcd.is_some() {
         args.waves().check_viewer()?;
     }
-    match &args.check {
+    let done = match &args.check {
         Some(ProveCommand::Check { file }) => check(file),
         None => match args.model.as_deref() {
             Some(path) if is_netlist(path) => {
@@ -50,7 +50,12 @@ pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
                 None => attempt(args),
             },
         },
-    }
+    };
+    done?;
+    // A wave of an earlier proof may have this name.
+    args.vcd.as_ref().map_or(Ok(()), |file| {
+        tell(args, &format!("there is no counterexample: nothing is written into {}\n", file.display()))
+    })
 }
 
 /// A model whose author claims nothing, of given widths, with its box: every geometry is run.

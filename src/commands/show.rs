@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use self::source::Source;
 use crate::Error;
-use crate::cli::ShowArgs;
+use crate::cli::{ShowArgs, one_axis};
 use crate::output::{Kept, Outputs, Screen};
 use crate::trace::draw::{Drawing, LEAST_COLUMNS, Window};
 use crate::trace::pattern::{Glob, fits_an_end, glob};
@@ -39,6 +39,7 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
         to: args.to,
         by_time: args.by_time,
         names,
+        option: if one_axis(&args.wave) { "--trace-from" } else { "--from" },
     };
     let trouble = |reason: String| {
         let remedy = if args.by_time { "" } else { ", or --by-time" };

@@ -36,7 +36,7 @@ impl View {
         let view = View { quiet: args.outputs.quiet, open: args.open, shown: shown(waves, plot) };
         if view.open && view.shown.is_empty() {
             return Err(Error::Invalid(
-                "--open shows what is written into a file, but there is nothing to show: give -o FILE.vcd, FILE.html or another wave, page or picture".to_owned(),
+                "--open shows what is written into a file, but there is nothing to show: give -o FILE.vcd".to_owned(),
             ));
         }
         Ok(view)

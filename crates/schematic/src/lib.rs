@@ -68,6 +68,8 @@ pub struct Drawing {
     pub symbols: usize,
     /// Dotted paths, without the name of the netlist, of the scopes that are closed.
     pub scopes: Vec<String>,
+    /// Nets from or to closed groups that have no wire.
+    pub unwired: usize,
 }
 
 /// Why nothing is drawn.
@@ -106,11 +108,16 @@ impl Drawing {
     /// What is not shown, and how it is, where scopes are closed.
     #[must_use]
     pub fn closed(&self) -> Option<String> {
-        let Drawing { depth, levels, .. } = self;
+        let Drawing { depth, levels, unwired, .. } = self;
         (depth < levels).then(|| {
             let more = depth + 1;
             let names = listed(&self.scopes);
-            format!("scopes {depth} of {levels} levels deep: --levels {more} opens more of them, --scope PATH draws one of {names} alone")
+            let wires = match unwired {
+                0 => String::new(),
+                1 => "; 1 net of a closed group has no wire".to_owned(),
+                _ => format!("; {unwired} nets of closed groups have no wire"),
+            };
+            format!("scopes {depth} of {levels} levels deep: --levels {more} opens more of them, --scope PATH draws one of {names} alone{wires}")
         })
     }
 }
@@ -144,8 +151,9 @@ pub fn draw(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Drawing, 
         });
     }
     let scopes = scene.inner(root, depth);
-    let figure = scene::View::new(&scene, root, depth, outputs).figure();
-    Ok(Drawing { svg: svg::svg(&figure, &netlist.scope_path(root)), depth, levels, symbols, scopes })
+    let view = scene::View::new(&scene, root, depth, outputs);
+    let svg = svg::svg(&view.figure(), &netlist.scope_path(root));
+    Ok(Drawing { svg, depth, levels, symbols, scopes, unwired: view.unwired })
 }
 
 /// Some names, with commas.

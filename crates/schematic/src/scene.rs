@@ -52,6 +52,8 @@ pub(crate) struct View<'s> {
     /// Names that nets have in a scope.
     local: HashMap<(Net, ScopeId), String>,
     wired: BTreeSet<Net>,
+    /// Nets from or to closed groups without a wire.
+    pub(crate) unwired: usize,
     /// Symbols that read each net.
     readers: BTreeMap<Net, Vec<usize>>,
 }
@@ -203,7 +205,7 @@ impl<'s> View<'s> {
             local.entry((named.net, named.scope)).or_insert_with(|| named.name.clone());
         }
         let (wired, readers) = (BTreeSet::new(), BTreeMap::new());
-        let mut view = View { scene, root, depth, outputs, names, local, wired, readers };
+        let mut view = View { scene, root, depth, outputs, names, local, wired, unwired: 0, readers };
         view.find_wires();
         view
     }
@@ -254,9 +256,11 @@ impl<'s> View<'s> {
         // As bits and all that is narrow would hide the data.
         between.sort_unstable();
         let kept = between.iter().rev().take(MOST_BETWEEN).take_while(|(bits, ..)| *bits > 1).count();
-        for (_, _, net) in &between[..between.len() - kept] {
+        let left_out = &between[..between.len() - kept];
+        for (_, _, net) in left_out {
             self.wired.remove(net);
         }
+        self.unwired = left_out.len();
         for &output in &self.outputs {
             self.wired.insert(self.pin(output));
         }

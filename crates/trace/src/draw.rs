@@ -49,6 +49,8 @@ pub struct Drawing {
     pub by_time: bool,
     /// Names of values by signal: those of states, by the bits of a value.
     pub names: BTreeMap<String, BTreeMap<String, String>>,
+    /// The option that gives the first clock, which the text names where more follows.
+    pub option: &'static str,
 }
 
 /// The narrowest line.
@@ -59,7 +61,7 @@ impl Default for Drawing {
     fn default() -> Drawing {
         let (ascii, colour, by_time) = (false, false, false);
         let (radix, from, to, names) = (Radix::default(), 0, None, BTreeMap::new());
-        Drawing { columns: 80, ascii, colour, radix, from, to, by_time, names }
+        Drawing { columns: 80, ascii, colour, radix, from, to, by_time, names, option: "--from" }
     }
 }
 

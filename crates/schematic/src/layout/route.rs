@@ -148,19 +148,26 @@ fn ordered(trunks: &mut Vec<Trunk>) -> Vec<usize> {
         let rises = trunk.right.iter().min() < trunk.left.iter().min();
         (if rises { trunk.top() } else { -trunk.bottom() }, at)
     });
+    let mut relations = Relations::default();
+    for index in 0..open.len() {
+        relations.enter(trunks, open[index], &open[..index]);
+    }
     while !open.is_empty() {
-        let free = |&at: &usize| !open.iter().any(|&other| other != at && before(&trunks[other], &trunks[at]));
-        let ready: Vec<usize> = open.iter().copied().filter(free).collect();
-        let choice = ready.into_iter().min_by_key(|&at| {
-            open.iter().filter(|&&other| other != at).map(|&other| excess(&trunks[at], &trunks[other])).sum::<i64>()
-        });
+        let ready = open.iter().copied().filter(|&at| relations.before[at] == 0);
+        let choice = ready.min_by_key(|&at| relations.excess[at]);
         // Where none is ready, some want that of each other: one that blocks another one is cut.
-        let blocks = |at: usize| open.iter().any(|&other| other != at && before(&trunks[at], &trunks[other]));
-        let whole = |&at: &usize| trunks[at].joint.is_none() && !trunks[at].right.is_empty() && blocks(at);
+        let whole = |&at: &usize| trunks[at].joint.is_none() && !trunks[at].right.is_empty() && relations.after[at] > 0;
         match (choice, open.iter().copied().find(whole)) {
-            (None, Some(at)) => open.push(cut(trunks, at)),
+            (None, Some(at)) => {
+                relations.leave(trunks, at, &open);
+                open.push(cut(trunks, at));
+                let others: Vec<usize> = open.iter().copied().filter(|&other| other != at).collect();
+                relations.enter(trunks, at, &others[..others.len() - 1]);
+                relations.enter(trunks, trunks.len() - 1, &open[..open.len() - 1]);
+            }
             (chosen, _) => {
                 let at = chosen.unwrap_or(open[0]);
+                relations.leave(trunks, at, &open);
                 open.retain(|&other| other != at);
                 order.push(at);
             }
@@ -168,6 +175,47 @@ fn ordered(trunks: &mut Vec<Trunk>) -> Vec<usize> {
     }
     improve(trunks, &mut order);
     order
+}
+
+/// What each net that has no place yet is to the others that have none.
+#[derive(Default)]
+struct Relations {
+    /// Nets that must be at its left, and at its right.
+    before: Vec<usize>,
+    after: Vec<usize>,
+    /// How many more crossings there are with it left of them than right of them.
+    excess: Vec<i64>,
+}
+
+impl Relations {
+    /// A net that others are compared with from now on.
+    fn enter(&mut self, trunks: &[Trunk], at: usize, others: &[usize]) {
+        self.before.resize(trunks.len(), 0);
+        self.after.resize(trunks.len(), 0);
+        self.excess.resize(trunks.len(), 0);
+        (self.before[at], self.after[at], self.excess[at]) = (0, 0, 0);
+        for &other in others {
+            self.compare(trunks, at, other, 1);
+            self.compare(trunks, other, at, 1);
+        }
+    }
+
+    /// A net that the open ones are not compared with any more.
+    fn leave(&mut self, trunks: &[Trunk], at: usize, open: &[usize]) {
+        open.iter().filter(|&&other| other != at).for_each(|&other| self.compare(trunks, other, at, -1));
+    }
+
+    /// Counts `b` among those that `a` is compared with, or takes it off.
+    fn compare(&mut self, trunks: &[Trunk], a: usize, b: usize, sign: i64) {
+        let step = |count: &mut usize, is: bool| {
+            if is {
+                *count = count.saturating_add_signed(if sign > 0 { 1 } else { -1 });
+            }
+        };
+        step(&mut self.before[a], before(&trunks[b], &trunks[a]));
+        step(&mut self.after[a], before(&trunks[a], &trunks[b]));
+        self.excess[a] += sign * excess(&trunks[a], &trunks[b]);
+    }
 }
 
 /// How many more crossings there are with `a` left of `b` than the other way round.

@@ -103,7 +103,7 @@ impl Window {
     fn footer(&self) -> String {
         let next = match (self.more, self.places.last()) {
             (1.., Some(last)) => {
-                format!("; {} more: --from {} shows the next", self.more, last.saturating_add(1))
+                format!("; {} more: {} {} shows the next", self.more, self.option, last.saturating_add(1))
             }
             _ => String::new(),
         };

@@ -25,6 +25,8 @@ pub struct Window {
     /// Characters of a cell, and cells of a line.
     pub(super) cell: usize,
     pub(super) fit: usize,
+    /// The option that gives the first clock.
+    pub(super) option: &'static str,
 }
 
 /// A signal.
@@ -91,7 +93,7 @@ impl Window {
             rows.iter_mut().for_each(|row| row.truncate(fit));
         }
         let (more, by_time, unit) = (all - places.len(), drawing.by_time, wave.timescale());
-        Ok(Window { rows, places, more, by_time, unit, name, cell, fit })
+        Ok(Window { rows, places, more, by_time, unit, name, cell, fit, option: drawing.option })
     }
 
     /// Number of clocks or times that are shown.
