@@ -290,3 +290,19 @@ fn textbooks_print_the_integrands_that_a_step_used() {
     run_refused("dda-line --to 8,6 --textbook", &["--textbook", "dda-arc, dda-conic, dda-helix"]);
     run_refused("ppc-arc --from 5,0 --to 0,5 --ccw --textbook", &["--textbook", "leave"]);
 }
+
+/// Long enough that most samples are taken together, of which the word engine sees each.
+#[test]
+fn reports_of_long_lines_are_those_of_an_engine_that_sees_every_sample() {
+    for (from, to) in
+        [("0,0", "40000,20003"), ("-7000,300", "50000,-18699"), ("5,5", "-40000,6"), ("3,-9", "-31000,-31040")]
+    {
+        for beats in [4, 1] {
+            let report = |engine: &str| {
+                let words = format!("run ppc-line --from {from} --to {to} --beats {beats} --json - --engine {engine}");
+                good(&words).replace(&format!("\"engine\": \"{engine}\""), "")
+            };
+            assert_eq!(report("compiled"), report("word"), "{from} {to} {beats}");
+        }
+    }
+}
