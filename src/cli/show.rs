@@ -138,8 +138,8 @@ pub(crate) fn one_axis(name: &Path) -> bool {
     name.to_str().and_then(|name| find(name).ok()).is_some_and(|model| model.curve().max_axes() == 1)
 }
 
-/// The words of a `show` with the options that it shares with `run` told apart by their values: one number is a clock, the
-/// name of a form no radix of the hardware. Of a model of one axis one number is a point.
+/// The words of a `show` in which the values of the options that it shares with `run` say which are its own: one number is a
+/// clock, the name of a form no radix of the hardware. Of a model of one axis one number is a point.
 pub(crate) fn by_value(mut words: Vec<OsString>) -> Vec<OsString> {
     if words.get(1).is_none_or(|command| command != "show") {
         return words;

@@ -53,9 +53,9 @@ pub(crate) fn run(args: &ProveArgs) -> Result<(), Error> {
     };
     done?;
     // A wave of an earlier proof may have this name.
-    args.vcd.as_ref().map_or(Ok(()), |file| {
-        tell(args, &format!("there is no counterexample: nothing is written into {}\n", file.display()))
-    })
+    args.vcd
+        .as_ref()
+        .map_or(Ok(()), |file| tell(args, &format!("no counterexample: {} is not written\n", file.display())))
 }
 
 /// A model whose author claims nothing, of given widths, with its box: every geometry is run.

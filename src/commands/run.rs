@@ -99,7 +99,7 @@ pub(crate) fn simulate(args: &RunArgs, outputs: &mut Outputs) -> Result<Finished
 /// The run of a model that these options describe, with its curve, without outputs.
 ///
 /// # Errors
-/// There is no such model, curve or clock.
+/// The model is unknown, or the curve or the clock is invalid.
 pub(super) fn simulation(model: &str, of: &MachineRun) -> Result<(Simulation, Curve), Error> {
     let model = of.bench.model(model)?;
     let curve = curve(model.name, model.curve(), &of.geometry, of.hardware.radii())?;

@@ -10,6 +10,13 @@ pub(super) const ICARUS: &str = "$date\n\tMon Nov 30 09:38:39 2026\n$end\n$versi
     #25000\nb10 !\nb10 $\n1\"\n#30000\n0\"\n#35000\nb1 !\nb1 $\n1\"\n#40000\n0\"\n#45000\nb0 !\nb0 $\n1\"\n#50000\n0\"\n\
     #55000\nb1111 !\nb1111 $\n1\"\n#60000\n0\"\n";
 
+/// What a command says that is refused and prints nothing else.
+fn refused_in(folder: &Folder, words: &str) -> String {
+    let ran = folder.run(words);
+    assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{ran:?}");
+    ran.err
+}
+
 #[test]
 fn a_run_is_shown_clock_by_clock_with_the_names_of_its_states() {
     let folder = Folder::new();
@@ -77,11 +84,7 @@ fn a_wave_of_icarus_is_shown_by_clock_and_by_time() {
 fn what_cannot_be_shown_is_refused_with_the_remedy() {
     let folder = Folder::new();
     folder.write("c.vcd", ICARUS);
-    let refused = |words: &str| {
-        let ran = folder.run(words);
-        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{ran:?}");
-        ran.err
-    };
+    let refused = |words: &str| refused_in(&folder, words);
     assert!(refused("show c.vcd --signals q").contains("no signal of c.vcd is called 'q'"));
     assert!(refused("show c.vcd --from 7").contains("nothing is left from clock 7 on: the wave ends at clock 6"));
     assert!(refused("show c.vcd --from 5 --to 3").contains("--to 3 is before --from 5: exchange them"));
@@ -163,11 +166,7 @@ fn one_number_is_a_clock_and_numbers_with_commas_are_a_point() {
 fn a_name_that_is_no_wave_and_no_model_is_refused_with_what_is_near() {
     let folder = Folder::new();
     folder.write("c.vcd", ICARUS);
-    let refused = |words: &str| {
-        let ran = folder.run(words);
-        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{ran:?}");
-        ran.err
-    };
+    let refused = |words: &str| refused_in(&folder, words);
     let near = refused("show dda-lin --to 8,6");
     assert!(near.contains("dda-lin is neither the file of a wave nor a model"), "{near}");
     assert!(near.contains("did you mean 'dda-line'?") && near.contains("give the path of a VCD or FST"), "{near}");

@@ -132,8 +132,7 @@ impl Observer for PathWatch<'_> {
 
     fn digest(&mut self, digest: &Digest, last: &[u64]) {
         self.rows += ahead::count(&digest.trains[self.stepped]);
-        let places = self.tool.place.iter_mut().zip(&self.columns.positions).zip(&self.ports);
-        places.for_each(|((place, &column), port)| *place = to_signed(port.width, last[column]));
+        self.tool.jump(last);
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {

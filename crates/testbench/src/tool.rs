@@ -44,6 +44,18 @@ impl Tool {
         self.trusted
     }
 
+    /// The place that the counters have in a sample of these columns.
+    pub(super) fn counted(&self, columns: &[u64]) -> impl Iterator<Item = i64> {
+        self.counters.iter().map(|&(column, port)| to_signed(port.width, columns[column]))
+    }
+
+    /// Takes what the counters say in a sample of these columns, whatever came before.
+    pub(super) fn jump(&mut self, columns: &[u64]) {
+        for (place, &(column, port)) in self.place.iter_mut().zip(&self.counters) {
+            *place = to_signed(port.width, columns[column]);
+        }
+    }
+
     /// Takes a sample, each in its order; true if the place is another than before.
     #[inline]
     pub(super) fn sample(&mut self, rows: &Rows, row: usize) -> bool {

@@ -211,9 +211,9 @@ pub(super) fn too_narrow(
 /// The bits of a register, of which its values need `needed`, that also hold what is loaded into registers as wide as it.
 pub(super) fn loaded(model: &Model, wide: &Options, name: &str, needed: u32, curve: &Curve) -> u32 {
     let fits = |bits: &u32| {
-        let Some(choices) = with_width(wide.clone(), name, *bits) else { return true };
-        let Ok(hardware) = model.plan(curve, &choices) else { return true };
-        let Ok(machine) = model.machine(&hardware) else { return true };
+        let Some(choices) = with_width(wide.clone(), name, *bits) else { return false };
+        let Ok(hardware) = model.plan(curve, &choices) else { return false };
+        let Ok(machine) = model.machine(&hardware) else { return false };
         let words = model.words(&hardware, curve).unwrap_or_default();
         !matches!(machine.encode(&hardware, &words), Err(ModelError::DoesNotFit { .. }))
     };

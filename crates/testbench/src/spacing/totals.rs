@@ -2,12 +2,12 @@
 //! and position, x·(X + Y) - X·(x + y) = x·Y - X·y, whose extremes a digest has.
 
 use stepwave_engine::{Digest, Wanted};
-use stepwave_models::{Pace, Port};
+use stepwave_models::Pace;
 use stepwave_nc::{BatchGauge, Curve};
-use stepwave_netlist::bits::to_signed;
 
 use crate::ahead::StepTrains;
-use crate::{StepColumns, Testbench, path};
+use crate::tool::Tool;
+use crate::{Testbench, path};
 
 /// One sample in four.
 const FIRST: u64 = 0x1111_1111_1111_1111;
@@ -15,10 +15,8 @@ const FIRST: u64 = 0x1111_1111_1111_1111;
 /// What is known of such a line.
 pub(super) struct Totals {
     batch: BatchGauge,
-    start: Vec<i64>,
-    /// Of the positions of both axes.
-    columns: Vec<usize>,
-    ports: Vec<Port>,
+    /// Where it is at the start.
+    tool: Tool,
     /// Where a digest has them; no form, no use.
     form: Option<usize>,
     digested: StepTrains,
@@ -31,15 +29,7 @@ impl Totals {
             return None;
         }
         let batch = path::batch(bench, &curve.gauge())?;
-        let (columns, ports) = (StepColumns::of(bench).positions, bench.machine().positions.clone());
-        Some(Totals {
-            batch,
-            start: curve.from().to_vec(),
-            columns,
-            ports,
-            form: None,
-            digested: StepTrains::default(),
-        })
+        Some(Totals { batch, tool: Tool::of(bench), form: None, digested: StepTrains::default() })
     }
 
     pub(super) fn want(&mut self, bench: &Testbench, wanted: &mut Wanted, digested: &StepTrains) {
@@ -76,8 +66,7 @@ impl Totals {
         }
         let samples = xs.iter().zip(ys).zip(stepped);
         let odd = samples.fold(0, |odd, ((x, y), stepped)| odd | (x & y) | ((x | y) ^ first) | (stepped ^ step));
-        let reached = self.columns.iter().zip(&self.ports).zip(&self.start);
-        let reached = reached.map(|((&column, port), start)| to_signed(port.width, last[column]).abs_diff(*start));
+        let reached = self.tool.counted(last).zip(&self.tool.place).map(|(now, start)| now.abs_diff(*start));
         let pulses = [(x, xs), (y, ys)].map(|(before, train)| before + crate::ahead::count(train));
         odd == 0 && reached.eq(pulses)
     }
