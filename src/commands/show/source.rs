@@ -11,6 +11,7 @@ use crate::output::{Kept, Outputs};
 use crate::own::is_netlist;
 use crate::trace::read::Wave;
 use crate::waves::WaveOptions;
+use crate::waves::limited::REMEDIES;
 
 /// The wave of a run among what it leaves in memory.
 pub(super) const RUN: &str = "run.vcd";
@@ -68,7 +69,11 @@ fn simulated(args: &ShowArgs, model: &str) -> Result<Source, Error> {
     let (simulation, curve) = run::simulation(model, of)?;
     let simulation = simulation.waves(waves);
     let bench = simulation.prepare().map_err(|error| of.hardware.explain(error))?.bench;
-    let ran = simulation.run_on(bench, &mut outputs, |bench, _| Ok(RunProgress::new(bench, &curve)))?;
+    let ran = simulation.run_on(bench, &mut outputs, |bench, _| Ok(RunProgress::new(bench, &curve)));
+    let ran = ran.map_err(|error| match error {
+        Error::Invalid(sentence) => Error::Invalid(sentence.replace(REMEDIES, "give the last clock, --trace-to N")),
+        other => other,
+    })?;
     let wave = Wave::from_bytes(kept.take(Path::new(RUN)).unwrap_or_default())?;
     Ok(Source { wave, side: Some(kept), reads, failures: ran.report.failures() })
 }
