@@ -190,7 +190,7 @@ fn groups_can_be_read(what: &str, netlist: &Netlist, outputs: &[Net], most: usiz
 
 #[test]
 fn a_netlist_without_scopes_is_drawn_in_groups_that_can_be_opened() {
-    let mut grouped = 0;
+    let (mut grouped, mut unwired) = (0, 0);
     for (name, netlist, outputs) in machines() {
         let flat = flattened(&netlist);
         let inputs = netlist.cells.iter().filter(|cell| cell.op == Op::Input).count();
@@ -204,6 +204,11 @@ fn a_netlist_without_scopes_is_drawn_in_groups_that_can_be_opened() {
         let drawn = draw(&flat, &outputs, &Part::default()).unwrap();
         assert!(drawn.symbols - inputs.min(drawn.symbols) <= 40, "{name}: {} symbols", drawn.symbols);
         assert!(groups_can_be_read(&name, &flat, &outputs, 60 + inputs) > 4, "{name}");
+        // Nets without a wire are counted where groups are closed, and all have one where they are open.
+        unwired += drawn.unwired;
+        let counted = format!("{} nets of closed groups have no wire", drawn.unwired);
+        assert_eq!(drawn.closed().unwrap().contains(&counted), drawn.unwired > 1, "{name}");
+        assert_eq!(open.unwired, 0, "{name}");
         // Every register is in one of them.
         let whole = draw(&flat, &outputs, &Part { depth: Some(9), ..Part::default() }).unwrap();
         let drawn: BTreeSet<usize> = Figure::read(&whole.svg).cells.keys().copied().collect();
@@ -217,7 +222,7 @@ fn a_netlist_without_scopes_is_drawn_in_groups_that_can_be_opened() {
         // Scopes of their own that can be read as they are stay so.
         assert!(groups_can_be_read(&path.display().to_string(), &netlist, &unread(&netlist), 135) > 4);
     }
-    assert!(grouped > 0);
+    assert!(grouped > 0 && unwired > 1, "{grouped} {unwired}");
 }
 
 #[test]
