@@ -31,7 +31,7 @@ pub(super) fn of_netlist(args: &ExportArgs, file: &Path) -> Result<(), Error> {
     }
     let design = read_netlist(file)?;
     let mut files = Outputs::reading(source_files(&design).iter().chain([&file.to_path_buf()]));
-    let outputs = schematic::unread(design.netlist());
+    let outputs = schematic::outputs(design.netlist());
     let Some(path) = &args.schematic else { return Ok(()) };
     let notes = crate::own::summary(&design) + "\n" + &draw(args, &design, &outputs, path, &mut files)?;
     let quiet = args.by_ending.quiet || files.uses_stdout();

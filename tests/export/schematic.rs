@@ -8,7 +8,7 @@ use stepwave::models::options::Options;
 use stepwave::models::{catalogue, find};
 use stepwave::netlist::cells::{Op, ScopeId};
 use stepwave::netlist::{Net, Netlist, text};
-use stepwave::schematic::{DrawError, Drawing, Part, draw, unread};
+use stepwave::schematic::{DrawError, Drawing, Part, draw, outputs};
 use stepwave::testbench::Testbench;
 
 use reading::Figure;
@@ -132,6 +132,7 @@ fn scopes_are_closed_below_a_depth_and_one_can_be_drawn_alone() {
     let figure = Figure::read(&closed.svg);
     assert_eq!(figure.faults(), Vec::<String>::new());
     assert!(figure.texts.iter().any(|text| text.text.starts_with("1 register, ")), "{}", closed.svg);
+    assert_eq!(figure.closed.iter().map(|closed| closed.path.as_str()).collect::<Vec<_>>(), ["m.part"]);
     assert!(!figure.texts.iter().any(|text| text.text == "± 1"));
     for path in ["part", "m.part"] {
         let alone = draw(&netlist, &[], &part(Some(path), None)).unwrap();
@@ -151,6 +152,31 @@ fn a_netlist_is_always_drawn_alike() {
     assert_eq!(draw(), draw());
 }
 
+/// A flat netlist as it is imported: output ports that logic reads too, that have one net with another port, or an input's,
+/// and a named net that nothing reads.
+const PORTS: &str = "netlist m\n%0:1 = input\n%1:4 = register reset 0x0 next %3\n%2:4 = const 0x1\n%3:4 = add %1 %2\n\
+    %4:1 = slice %1 3\n%5:1 = xor %0 %4\n%6:1 = const 0x0\nname %0 in 0 \"go\" unsigned\n\
+    name %1 in 0 \"count\" output unsigned\nname %1 in 0 \"again\" output unsigned\nname %0 in 0 \"through\" output unsigned\n\
+    name %6 in 0 \"zero\" output unsigned\nname %5 in 0 \"dead\" unsigned\n";
+
+#[test]
+fn every_port_that_a_netlist_declares_is_drawn_as_one_and_nothing_else() {
+    let netlist = text::parse(PORTS).unwrap();
+    assert_eq!(text::print(&netlist), PORTS);
+    // Whatever else is asked for as an output.
+    for asked in [outputs(&netlist), vec![]] {
+        let figure = Figure::read(&draw(&netlist, &asked, &Part::default()).unwrap().svg);
+        assert_eq!(figure.faults(), Vec::<String>::new());
+        let ports = figure.frames.iter().filter(|frame| frame.class == "port");
+        let mut ports: Vec<&str> = ports.flat_map(|frame| figure.texts_in(frame)).collect();
+        ports.sort_unstable();
+        assert_eq!(ports, ["again", "count", "go", "through", "zero"]);
+    }
+    // Where none is declared, what nothing reads is one.
+    let undeclared = text::parse(&PORTS.replace(" output ", " ")).unwrap();
+    assert_eq!(outputs(&undeclared), [Net(6), Net(5)]);
+}
+
 /// The netlist as a synthesiser leaves it: every name at the top, with the scopes that it was in before it.
 fn flattened(netlist: &Netlist) -> Netlist {
     let mut flat = netlist.clone();
@@ -167,30 +193,62 @@ fn flattened(netlist: &Netlist) -> Netlist {
     flat
 }
 
-/// Draws a netlist without scopes as it is drawn by default, and each of its groups alone.
+/// Draws a netlist without scopes as it is drawn by default, each of its groups alone, and both with all scopes closed.
 fn groups_can_be_read(what: &str, netlist: &Netlist, outputs: &[Net], most: usize) -> usize {
     let mut pending = vec![None];
     let mut drawings = 0;
     while let Some(scope) = pending.pop() {
-        let drawn = draw(netlist, outputs, &Part { scope: scope.clone(), ..Part::default() }).unwrap();
-        let name = scope.unwrap_or_else(|| "all".to_owned());
-        let figure = Figure::read(&drawn.svg);
-        assert_eq!(figure.faults(), Vec::<String>::new(), "{what}: {name}");
-        assert!(drawn.symbols <= most, "{what}: {name} has {} symbols", drawn.symbols);
-        // Closed groups have more wires than symbols have: those of a net count as those of one.
-        let (crossings, nets) = (figure.crossings(), figure.nets());
-        assert!(crossings <= 8 * (drawn.symbols + nets), "{what}: {name}: {crossings} crossings of {nets} nets");
-        // What is closed can be opened, by the path that is said.
-        assert_eq!(drawn.closed().is_some(), !drawn.scopes.is_empty(), "{what}: {name}");
-        pending.extend(drawn.scopes.into_iter().map(Some));
+        let name = scope.as_deref().unwrap_or("all");
+        for depth in [None, Some(0)] {
+            let part = Part { scope: scope.clone(), depth, ..Part::default() };
+            let drawn = draw(netlist, outputs, &part).unwrap();
+            let figure = Figure::read(&drawn.svg);
+            assert_eq!(figure.faults(), Vec::<String>::new(), "{what}: {name}");
+            assert!(drawn.symbols <= most, "{what}: {name} has {} symbols", drawn.symbols);
+            // Closed groups have more wires than symbols have: those of a net count as those of one.
+            let (crossings, nets) = (figure.crossings(), figure.nets());
+            assert!(crossings <= 8 * (drawn.symbols + nets), "{what}: {name}: {crossings} crossings of {nets} nets");
+            // What is closed can be opened, by the path that is said.
+            assert_eq!(drawn.closed().is_some(), !drawn.scopes.is_empty(), "{what}: {name}");
+            assert_eq!(figure.closed.len(), drawn.scopes.len(), "{what}: {name}");
+            pending.extend(drawn.scopes.into_iter().map(Some).filter(|_| depth.is_none()));
+        }
         drawings += 1;
     }
     drawings
 }
 
+/// Every net between two closed boxes, or between one and a symbol, has a wire or is named at both ends: the boxes say which
+/// cells are in them, so that the nets follow from the netlist alone.
+fn named_at_boxes(what: &str, netlist: &Netlist, drawn: &Drawing) -> usize {
+    let figure = Figure::read(&drawn.svg);
+    let boxes: Vec<&reading::Closed> = figure.closed.iter().collect();
+    let mut named_nets = 0;
+    for net in netlist.nets() {
+        // Of the nets with a name those of registers: what reads one directly is a wire of it.
+        let Some(named) = netlist.name_of(net) else { continue };
+        let (Op::Register { .. }, Some(from)) = (netlist.cell(net).op, boxes.iter().find(|closed| closed.holds(net)))
+        else {
+            continue;
+        };
+        for to in boxes.iter().filter(|to| !std::ptr::eq(**to, *from)) {
+            let mut reads = false;
+            for &cell in &to.cells {
+                netlist.cells[cell].op.visit_inputs(|input| reads |= input == net);
+            }
+            if reads && !figure.has_wire(net.index()) {
+                assert!(from.names("gives").contains(&named.name.as_str()), "{what}: {} at its driver", named.name);
+                assert!(to.names("reads").contains(&named.name.as_str()), "{what}: {} at a reader", named.name);
+                named_nets += 1;
+            }
+        }
+    }
+    named_nets
+}
+
 #[test]
 fn a_netlist_without_scopes_is_drawn_in_groups_that_can_be_opened() {
-    let (mut grouped, mut unwired) = (0, 0);
+    let (mut grouped, mut unwired, mut named) = (0, 0, 0);
     for (name, netlist, outputs) in machines() {
         let flat = flattened(&netlist);
         let inputs = netlist.cells.iter().filter(|cell| cell.op == Op::Input).count();
@@ -208,6 +266,7 @@ fn a_netlist_without_scopes_is_drawn_in_groups_that_can_be_opened() {
         unwired += drawn.unwired;
         let counted = format!("{} nets of closed groups have no wire", drawn.unwired);
         assert_eq!(drawn.closed().unwrap().contains(&counted), drawn.unwired > 1, "{name}");
+        named += named_at_boxes(&name, &flat, &drawn);
         assert_eq!(open.unwired, 0, "{name}");
         // Every register is in one of them.
         let whole = draw(&flat, &outputs, &Part { depth: Some(9), ..Part::default() }).unwrap();
@@ -220,9 +279,9 @@ fn a_netlist_without_scopes_is_drawn_in_groups_that_can_be_opened() {
         let path = path.unwrap().path();
         let netlist = text::parse(&std::fs::read_to_string(&path).unwrap()).unwrap();
         // Scopes of their own that can be read as they are stay so.
-        assert!(groups_can_be_read(&path.display().to_string(), &netlist, &unread(&netlist), 135) > 4);
+        assert!(groups_can_be_read(&path.display().to_string(), &netlist, &outputs(&netlist), 135) > 4);
     }
-    assert!(grouped > 0 && unwired > 1, "{grouped} {unwired}");
+    assert!(grouped > 0 && unwired > 1 && named > 1, "{grouped} {unwired} {named}");
 }
 
 #[test]

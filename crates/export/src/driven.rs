@@ -224,7 +224,7 @@ impl<'a> Loader<'a> {
         let name = claim(&mut in_top.chain(inner).collect::<HashSet<String>>(), "loader");
         let scope = ScopeId(u32::try_from(old.scopes.len()).unwrap_or(u32::MAX));
         for (name, net) in [("step", self.step), ("age", self.age)] {
-            names.push(NamedNet { net, above: Vec::new(), scope, name: name.to_owned(), format: Format::Unsigned });
+            names.push(NamedNet::new(net, scope, name, Format::Unsigned));
         }
         let mut scopes = old.scopes.clone();
         scopes.push(ScopeData { parent: Some(ScopeId::TOP), name });

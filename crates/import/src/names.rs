@@ -87,7 +87,8 @@ impl Design<'_> {
             let format = if of.is_signed() { Format::Signed } else { Format::Unsigned };
             if let Some((&net, above)) = word.parts.split_first() {
                 let above = above.to_vec();
-                self.builder.netlist.names.push(NamedNet { net, above, scope, name: own, format });
+                let output = rank(name) == 1;
+                self.builder.netlist.names.push(NamedNet { net, above, scope, name: own, format, output });
             }
         }
     }

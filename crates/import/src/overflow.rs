@@ -183,8 +183,7 @@ impl<'a> Design<'a> {
         self.builder.netlist.scopes.push(ScopeData { parent: Some(ScopeId::TOP), name: own });
         for (name, net) in flags {
             let name = scopes.fresh(scope, &crate::names::cleaned(&name));
-            let (above, format) = (Vec::new(), Format::Unsigned);
-            self.builder.netlist.names.push(NamedNet { net, above, scope, name, format });
+            self.builder.netlist.names.push(NamedNet::new(net, scope, &name, Format::Unsigned));
         }
     }
 

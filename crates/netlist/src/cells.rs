@@ -425,13 +425,7 @@ impl Netlist {
         netlist.scopes.push(ScopeData { parent: Some(ScopeId::TOP), name: "trap".to_owned() });
         let shown = |signed: bool| if signed { Format::Signed } else { Format::Unsigned };
         let names = [("left", left_shown, left.signed), ("right", right_shown, right.signed), ("exact", exact, true)];
-        netlist.names.extend(names.map(|(name, net, signed)| NamedNet {
-            net,
-            above: Vec::new(),
-            scope,
-            name: name.to_owned(),
-            format: shown(signed),
-        }));
+        netlist.names.extend(names.map(|(name, net, signed)| NamedNet::new(net, scope, name, shown(signed))));
         Some(netlist)
     }
 

@@ -15,7 +15,7 @@
 //! ```
 //!
 //! `at` gives file, line and column of a cell's source. `name` ends in the format: `unsigned`, `signed`, `analog`,
-//! `binary`, `decimal` or `states 0x1 "JUDGE" 0x2 "FEED"`.
+//! `binary`, `decimal` or `states 0x1 "JUDGE" 0x2 "FEED"`, after the word `output` where it is an output port.
 //! `memory 0 in 1 "ram" width 8 words 16` comes before the cells `read 0 %4`, followed by `initial 0 0x12 0x0*15`, its
 //! first words, and `write 0 enable %1 address %2 data %3 mask %4`, its ports; a mask may be missing. `property`
 //! ends in `invariant`, `assumption` or `cover`, in the strict operation with its operands, or in `fits`, the bits that are kept of a result, their
@@ -144,7 +144,8 @@ impl fmt::Display for Netlist {
             writeln!(f)?;
         }
         for named in &self.names {
-            writeln!(f, "name{} in {} {:?} {}", list(named.nets()), named.scope.0, named.name, named.format)?;
+            let output = if named.output { "output " } else { "" };
+            writeln!(f, "name{} in {} {:?} {output}{}", list(named.nets()), named.scope.0, named.name, named.format)?;
         }
         for property in &self.properties {
             write!(f, "property {:?} never {}", property.name, property.never)?;
@@ -269,8 +270,9 @@ impl Parser {
                 words.keyword("in")?;
                 let scope = ScopeId(words.number()?);
                 let name = words.quoted()?;
+                let output = words.optional("output");
                 let format = words.format()?;
-                self.netlist.names.push(NamedNet { net, above, scope, name, format });
+                self.netlist.names.push(NamedNet { net, above, scope, name, format, output });
             }
             "property" => {
                 let name = words.quoted()?;

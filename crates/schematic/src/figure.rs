@@ -1,6 +1,7 @@
 //! Shapes of a drawing, in pixels, and how large texts are.
 
 use stepwave_netlist::Net;
+use stepwave_netlist::cells::ScopeId;
 
 /// Pixels of a character, in tenths: of the font, and of the small font.
 const CHARACTER: usize = 67;
@@ -31,7 +32,6 @@ pub(crate) enum Style {
     Operator,
     Memory,
     Scope,
-    Closed,
     Port,
 }
 
@@ -51,6 +51,8 @@ pub(crate) enum Font {
 pub(crate) enum Shape {
     /// A box: left, top, width and height.
     Frame { at: [i32; 4], style: Style, cells: Vec<Net>, flags: Vec<String> },
+    /// A box for a scope whose inside is not shown: its path, and what it says to a reader who points at it.
+    Closed { at: [i32; 4], path: String, about: String, cells: Vec<Net>, flags: Vec<String> },
     /// A text that begins here, on this line.
     Text { at: [i32; 2], font: Font, text: String, net: Option<Net> },
     /// A text in the middle of a symbol.
@@ -68,7 +70,7 @@ impl Shape {
     pub(crate) fn moved(mut self, [right, down]: [i32; 2]) -> Shape {
         let go = |at: &mut [i32; 2]| *at = [at[0] + right, at[1] + down];
         match &mut self {
-            Shape::Frame { at, .. } => *at = [at[0] + right, at[1] + down, at[2], at[3]],
+            Shape::Frame { at, .. } | Shape::Closed { at, .. } => *at = [at[0] + right, at[1] + down, at[2], at[3]],
             Shape::Text { at, .. } | Shape::Sign { at, .. } | Shape::Clock { at } | Shape::Slash { at } => go(at),
             Shape::Wire { lines, dots, ends, .. } => {
                 lines.iter_mut().for_each(|[a, b, c, d]| {
@@ -92,6 +94,8 @@ pub(crate) struct Figure {
     pub(crate) right: Vec<(Net, i32)>,
     /// Its outputs change at edges alone.
     pub(crate) holds: bool,
+    /// It is the box of this scope, whose pins may be in any order.
+    pub(crate) closed: Option<ScopeId>,
 }
 
 impl Figure {

@@ -85,6 +85,16 @@ impl<'n> Fold<'n> {
         self.names[net.index()].map(|index| &self.netlist.names[index])
     }
 
+    /// A name as that of one of its nets: with the bits that the net has of a word.
+    pub(crate) fn part(&self, named: &NamedNet, net: Net) -> String {
+        if !named.is_wide() {
+            return named.name.clone();
+        }
+        let at = named.nets().position(|part| part == net).unwrap_or(0);
+        let low = at * NamedNet::PART as usize;
+        format!("{}[{}:{low}]", named.name, low + self.width(net) as usize - 1)
+    }
+
     pub(crate) fn is_signed(&self, net: Net) -> bool {
         self.named(net).is_some_and(|named| !named.is_wide() && named.format.is_signed())
     }

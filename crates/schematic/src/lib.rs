@@ -21,12 +21,14 @@
 //! assert!(drawn.svg.contains(">+ 1<"));
 //! ```
 
+mod closed;
 mod draft;
 mod figure;
 mod fold;
 mod formula;
 mod group;
 mod layout;
+mod places;
 mod scene;
 mod svg;
 mod symbol;
@@ -114,8 +116,8 @@ impl Drawing {
             let names = listed(&self.scopes);
             let wires = match unwired {
                 0 => String::new(),
-                1 => "; 1 net of a closed group has no wire".to_owned(),
-                _ => format!("; {unwired} nets of closed groups have no wire"),
+                1 => "; 1 net of a closed group has no wire, and is named in its box".to_owned(),
+                _ => format!("; {unwired} nets of closed groups have no wire, and are named in their boxes"),
             };
             format!("scopes {depth} of {levels} levels deep: --levels {more} opens more of them, --scope PATH draws one of {names} alone{wires}")
         })
@@ -128,9 +130,10 @@ impl Drawing {
 /// No scope has the path given, or there are more symbols than [`MOST_DRAWN`].
 pub fn draw(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Drawing, DrawError> {
     let own = netlist.scopes.len();
+    let outputs = &with_declared(netlist, outputs)[..];
     let flat = fold::Fold::new(netlist, outputs);
     let drafts = draft::Drafts::new(&flat);
-    let mut scopes = scene::Places::scopes(&flat, &drafts);
+    let mut scopes = places::Places::scopes(&flat, &drafts);
     let grouped = group::grouped(&flat, &drafts, &mut scopes);
     let netlist = grouped.as_ref().unwrap_or(netlist);
     let fold = flat.with_scopes(netlist);
@@ -162,9 +165,20 @@ fn listed(names: &[String]) -> String {
     names.iter().take(MOST_LISTED).map(String::as_str).collect::<Vec<_>>().join(", ") + more
 }
 
-/// Nets with a name at the top that nothing reads: the outputs of a netlist of which no more is known.
+/// These outputs, and those that the netlist declares.
+fn with_declared(netlist: &Netlist, outputs: &[Net]) -> Vec<Net> {
+    let declared = netlist.names.iter().filter(|named| named.output).flat_map(|named| named.nets());
+    outputs.iter().copied().chain(declared).collect()
+}
+
+/// The outputs of a netlist of which no more is known: those that it declares, or nets with a name at the top that nothing
+/// reads.
 #[must_use]
-pub fn unread(netlist: &Netlist) -> Vec<Net> {
+pub fn outputs(netlist: &Netlist) -> Vec<Net> {
+    let declared = with_declared(netlist, &[]);
+    if !declared.is_empty() {
+        return declared;
+    }
     let fold = fold::Fold::new(netlist, &[]);
     let flags: Vec<Net> = netlist.properties.iter().map(|property| property.never).collect();
     let at_top = netlist.names.iter().filter(|named| named.scope == ScopeId::TOP).flat_map(|named| named.nets());

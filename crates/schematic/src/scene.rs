@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use stepwave_netlist::cells::{NamedNet, Op, ScopeId};
+use stepwave_netlist::cells::ScopeId;
 use stepwave_netlist::{Net, Netlist};
 
+use crate::closed::closed;
 use crate::draft::{Drafts, Kind};
-use crate::figure::{Figure, Font, Shape, Style, even, pixels, width};
+use crate::figure::{Figure, Font, Shape, Style, even, width};
 use crate::fold::Fold;
 use crate::layout::{Item, Pin, Plan, Side, lay_out};
 use crate::symbol::Context;
@@ -32,7 +33,7 @@ pub(crate) struct Scene<'n> {
 
 /// Where a net is, seen from a scope that is drawn.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-enum Holder {
+pub(crate) enum Holder {
     Symbol(usize),
     Child(ScopeId),
     Outside,
@@ -43,16 +44,20 @@ type Place = (usize, Option<ScopeId>);
 
 /// A scope that is drawn as the whole, and how deep.
 pub(crate) struct View<'s> {
-    scene: &'s Scene<'s>,
+    pub(crate) scene: &'s Scene<'s>,
     root: ScopeId,
     /// Levels of scopes that are open.
     depth: usize,
     outputs: BTreeSet<Net>,
-    names: HashMap<Net, String>,
+    /// Names of output ports, by the pin that they are at.
+    ports: BTreeMap<Net, Vec<String>>,
+    pub(crate) names: HashMap<Net, String>,
     /// Names that nets have in a scope.
     local: HashMap<(Net, ScopeId), String>,
-    wired: BTreeSet<Net>,
-    /// Nets from or to closed groups without a wire.
+    pub(crate) wired: BTreeSet<Net>,
+    /// Nets between symbols or closed scopes that have no wire, and are written where they are read.
+    pub(crate) wireless: BTreeSet<Net>,
+    /// How many of these are from or to closed groups.
     pub(crate) unwired: usize,
     /// Symbols that read each net.
     readers: BTreeMap<Net, Vec<usize>>,
@@ -110,102 +115,17 @@ impl Scene<'_> {
     }
 }
 
-/// Finds the scope of every symbol.
-pub(crate) struct Places<'p> {
-    fold: &'p Fold<'p>,
-    drafts: &'p Drafts,
-}
-
-impl<'p> Places<'p> {
-    /// The scope of each symbol.
-    pub(crate) fn scopes(fold: &'p Fold<'p>, drafts: &'p Drafts) -> Vec<ScopeId> {
-        Places { fold, drafts }.found()
-    }
-
-    fn found(&self) -> Vec<ScopeId> {
-        let netlist = self.fold.netlist;
-        let mut named: HashMap<Net, Vec<&NamedNet>> = HashMap::new();
-        for name in &netlist.names {
-            name.nets().for_each(|net| named.entry(net).or_default().push(name));
-        }
-        let mut scopes: Vec<Option<ScopeId>> = vec![None; self.drafts.all.len()];
-        for (index, draft) in self.drafts.all.iter().enumerate() {
-            let of_memory = netlist.memories.get(index).map(|memory| memory.scope);
-            let net = draft.outputs.first();
-            scopes[index] = match (draft.kind, net) {
-                (Kind::Memory, _) => of_memory,
-                (Kind::Input, _) => Some(ScopeId::TOP),
-                (_, Some(net)) => self.of_names(index, named.get(net).map_or(&[][..], Vec::as_slice), &named),
-                (_, None) => Some(ScopeId::TOP),
-            };
-        }
-        // What has no name is where its readers are.
-        let mut readers: Vec<Vec<usize>> = vec![Vec::new(); scopes.len()];
-        for (index, draft) in self.drafts.all.iter().enumerate() {
-            for net in draft.rows.iter().flat_map(|row| row.nets()) {
-                if let Some((driver, _)) = self.drafts.of.get(&net) {
-                    readers[*driver].push(index);
-                }
-            }
-        }
-        for index in (0..scopes.len()).rev() {
-            if scopes[index].is_none() {
-                let of_readers = readers[index].iter().filter_map(|&reader| scopes[reader]);
-                let common = of_readers.reduce(|a, b| self.common(a, b)).unwrap_or(ScopeId::TOP);
-                scopes[index] = Some(
-                    self.of_operands(index, &scopes)
-                        .filter(|scope| self.depth(*scope) > self.depth(common))
-                        .unwrap_or(common),
-                );
-            }
-        }
-        scopes.into_iter().map(|scope| scope.unwrap_or(ScopeId::TOP)).collect()
-    }
-
-    /// Of several scopes in which a net has a name, the one in which most of what drives it has one too.
-    fn of_names(&self, index: usize, names: &[&NamedNet], named: &HashMap<Net, Vec<&NamedNet>>) -> Option<ScopeId> {
-        let votes = |scope: ScopeId| {
-            let nets = self.drafts.all[index].rows.iter().flat_map(|row| row.nets());
-            nets.filter(|net| named.get(net).is_some_and(|names| names.iter().any(|name| name.scope == scope))).count()
-        };
-        let best = names.iter().enumerate().max_by_key(|(at, name)| (votes(name.scope), std::cmp::Reverse(*at)));
-        best.map(|(_, name)| name.scope)
-    }
-
-    /// The one scope that everything a symbol reads is in, but for ports.
-    fn of_operands(&self, index: usize, scopes: &[Option<ScopeId>]) -> Option<ScopeId> {
-        let nets = self.drafts.all[index].rows.iter().flat_map(|row| row.nets());
-        let drivers = nets.filter_map(|net| self.drafts.of.get(&net)).map(|(driver, _)| *driver);
-        let mut drivers = drivers.filter(|&driver| self.drafts.all[driver].kind != Kind::Input);
-        let first = scopes[drivers.next()?]?;
-        drivers.all(|driver| scopes[driver] == Some(first)).then_some(first)
-    }
-
-    fn parent(&self, scope: ScopeId) -> Option<ScopeId> {
-        self.fold.netlist.scopes[scope.index()].parent
-    }
-
-    fn depth(&self, scope: ScopeId) -> usize {
-        std::iter::successors(Some(scope), |&scope| self.parent(scope)).count()
-    }
-
-    fn common(&self, a: ScopeId, b: ScopeId) -> ScopeId {
-        let above: Vec<ScopeId> = std::iter::successors(Some(a), |&scope| self.parent(scope)).collect();
-        let found = std::iter::successors(Some(b), |&scope| self.parent(scope)).find(|scope| above.contains(scope));
-        found.unwrap_or(ScopeId::TOP)
-    }
-}
-
 impl<'s> View<'s> {
     pub(crate) fn new(scene: &'s Scene<'s>, root: ScopeId, depth: usize, outputs: &[Net]) -> View<'s> {
         let outputs = outputs.iter().copied().collect();
         let names = names(scene);
+        let ports = ports(scene);
         let mut local = HashMap::new();
         for named in scene.fold.netlist.names.iter().filter(|named| !named.is_wide()) {
             local.entry((named.net, named.scope)).or_insert_with(|| named.name.clone());
         }
-        let (wired, readers) = (BTreeSet::new(), BTreeMap::new());
-        let mut view = View { scene, root, depth, outputs, names, local, wired, unwired: 0, readers };
+        let (wired, wireless, readers) = (BTreeSet::new(), BTreeSet::new(), BTreeMap::new());
+        let mut view = View { scene, root, depth, outputs, ports, names, local, wired, wireless, unwired: 0, readers };
         view.find_wires();
         view
     }
@@ -246,7 +166,12 @@ impl<'s> View<'s> {
             let only_hidden = inside.iter().all(|place| Some(*place) == here && place.1.is_some());
             let most = MOST_WIRES[usize::from(self.scene.fold.width(net) > 1)];
             let by_name = self.names.contains_key(&net) && inside.len() > most;
-            if !only_hidden && !by_name && !inside.is_empty() {
+            if only_hidden || inside.is_empty() {
+                continue;
+            }
+            if by_name {
+                self.wireless.insert(net);
+            } else {
                 self.wired.insert(net);
                 if self.is_of_group(net, &inside, here) {
                     between.push((self.scene.fold.width(net), std::cmp::Reverse(inside.len()), net));
@@ -259,10 +184,13 @@ impl<'s> View<'s> {
         let left_out = &between[..between.len() - kept];
         for (_, _, net) in left_out {
             self.wired.remove(net);
+            self.wireless.insert(*net);
         }
         self.unwired = left_out.len();
         for &output in &self.outputs {
-            self.wired.insert(self.pin(output));
+            let pin = self.pin(output);
+            self.wired.insert(pin);
+            self.wireless.remove(&pin);
         }
         self.readers = readers;
     }
@@ -285,7 +213,7 @@ impl<'s> View<'s> {
     }
 
     /// Whether a symbol that is outside of the view, or of this scope, has a net of it, or reads one.
-    fn holder(&self, scope: ScopeId, level: usize, symbol: usize) -> Holder {
+    pub(crate) fn holder(&self, scope: ScopeId, level: usize, symbol: usize) -> Holder {
         let line = self.scene.line(self.scene.scopes[symbol]);
         let above = self.scene.line(self.root).len() + level;
         if line.get(above - 1) != Some(&scope) {
@@ -308,20 +236,24 @@ impl<'s> View<'s> {
                 Holder::Symbol(_) if draft.kind == Kind::Input => (context.figure(draft), Side::First),
                 Holder::Symbol(_) => (self.pinned(context.figure(draft)), Side::Free),
                 Holder::Child(child) if level < self.depth => (self.scope(child, level + 1), Side::Free),
-                Holder::Child(child) => (self.closed(child, scope, level, context), Side::Free),
+                Holder::Child(child) => (closed(self, child, (scope, level), context, None), Side::Free),
             };
             figures.insert(holder, entry);
         }
         let mut all: Vec<(Figure, Side)> = figures.into_values().collect();
-        for (net, enters) in self.crossing(scope, level) {
-            all.push(match (is_root, enters) {
-                (true, true) => (self.flag(net, true, context), Side::First),
-                (true, false) => (self.flag(net, false, context), Side::Last),
-                (false, true) => (Figure { right: vec![(net, 0)], ..Figure::default() }, Side::First),
-                (false, false) => (Figure { left: vec![(net, 0)], ..Figure::default() }, Side::Last),
+        for (net, enters) in self.crossing(&self.wired, scope, level) {
+            if is_root {
+                let side = if enters { Side::First } else { Side::Last };
+                all.extend(self.called(net).into_iter().map(|name| (flag(net, name, enters, context), side)));
+                continue;
+            }
+            all.push(match enters {
+                true => (Figure { right: vec![(net, 0)], ..Figure::default() }, Side::First),
+                false => (Figure { left: vec![(net, 0)], ..Figure::default() }, Side::Last),
             });
         }
-        let figure = composed(&all, context);
+        let turned = |child, order| closed(self, child, (scope, level), context, Some(order));
+        let figure = composed(all, context, &turned);
         if is_root { figure } else { self.framed(scope, figure) }
     }
 
@@ -331,10 +263,10 @@ impl<'s> View<'s> {
         figure
     }
 
-    /// Nets that cross the frame of a scope, and whether they enter.
-    fn crossing(&self, scope: ScopeId, level: usize) -> Vec<(Net, bool)> {
+    /// Of some nets those that cross the frame of a scope, and whether they enter.
+    pub(crate) fn crossing(&self, nets: &BTreeSet<Net>, scope: ScopeId, level: usize) -> Vec<(Net, bool)> {
         let mut crossing = Vec::new();
-        for &net in &self.wired {
+        for &net in nets {
             let Some(&(driver, _)) = self.scene.drafts.of.get(&net) else { continue };
             let inside = self.holder(scope, level, driver) != Holder::Outside;
             let mut readers = self.readers.get(&net).into_iter().flatten();
@@ -352,60 +284,11 @@ impl<'s> View<'s> {
         crossing
     }
 
-    /// A port of the whole: an output, or a net from or to what is not shown.
-    fn flag(&self, net: Net, enters: bool, context: &Context<'_>) -> Figure {
-        let name = self.names.get(&net).cloned().unwrap_or_else(|| format!("net {}", net.index()));
-        let wide = even(width(&name, false) + 16);
-        let mut figure = Figure { size: [wide, 24], ..Figure::default() };
-        let frame = Shape::Frame { at: [0, 2, wide, 20], style: Style::Port, cells: Vec::new(), flags: Vec::new() };
-        figure.shapes.push(frame);
-        figure.text([8, 16], Font::Text, name);
-        if enters {
-            context.stub(&mut figure, net, 12, wide);
-        } else {
-            figure.left.push((net, 12));
-        }
-        figure
-    }
-
-    /// A scope whose inside is not shown: its name, what is in it, and its nets.
-    fn closed(&self, child: ScopeId, around: ScopeId, level: usize, context: &Context<'_>) -> Figure {
-        let netlist = self.scene.fold.netlist;
-        let within = |index: &usize| self.holder(around, level, *index) == Holder::Child(child);
-        let symbols: Vec<usize> = (0..self.scene.drafts.all.len()).filter(within).collect();
-        let cells = symbols.iter().flat_map(|&symbol| &self.scene.drafts.all[symbol].cells);
-        let registers = cells.clone().filter(|&&net| matches!(netlist.cell(net).op, Op::Register { .. })).count();
-        let flags = symbols.iter().flat_map(|&symbol| self.scene.drafts.all[symbol].flags.clone()).collect();
-        let crossing = self.crossing(child, level + 1);
-        let label = |net: &Net| self.names.get(net).cloned().unwrap_or_default();
-        let [left, right] = [true, false].map(|enters| -> Vec<Net> {
-            crossing.iter().filter(|crossing| crossing.1 == enters).map(|crossing| crossing.0).collect()
-        });
-        let name = netlist.scopes[child.index()].name.clone();
-        let memories = symbols.iter().filter(|&&symbol| self.scene.drafts.all[symbol].kind == Kind::Memory).count();
-        let of = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
-        let held = if memories == 0 { String::new() } else { of(memories, "memory, ", "memories, ") };
-        let count = held + &format!("{}, {} symbols", of(registers, "register", "registers"), symbols.len());
-        let longest = |nets: &[Net]| nets.iter().map(|net| width(&label(net), false)).max().unwrap_or(0);
-        let pins = longest(&left) + longest(&right) + 24;
-        let wide = even((width(&name, false).max(width(&count, true)) + 16).max(pins + 16));
-        let high = 40 + (16 * pixels(left.len())).max(26 * pixels(right.len()));
-        let mut figure = Figure { size: [wide, high], holds: true, ..Figure::default() };
-        let cells = cells.copied().collect();
-        figure.shapes.push(Shape::Frame { at: [0, 0, wide, high], style: Style::Closed, cells, flags });
-        figure.text([8, 14], Font::Title, name);
-        figure.text([8, 26], Font::Small, count);
-        for (at, &net) in left.iter().enumerate() {
-            let y = 40 + 16 * pixels(at);
-            figure.text([8, y + 4], Font::Text, label(&net));
-            figure.left.push((net, y));
-        }
-        for (at, &net) in right.iter().enumerate() {
-            let (y, text) = (40 + 26 * pixels(at), label(&net));
-            figure.text([wide - 8 - width(&text, false), y + 4], Font::Text, text);
-            context.stub(&mut figure, net, y, wide);
-        }
-        figure.reached()
+    /// What ports of the whole a net has: each output that it is, or one with its own name.
+    fn called(&self, net: Net) -> Vec<String> {
+        let is_top = self.root == ScopeId::TOP;
+        let own = || self.names.get(&net).cloned().unwrap_or_else(|| format!("net {}", net.index()));
+        self.ports.get(&net).filter(|_| is_top).cloned().unwrap_or_else(|| vec![own()])
     }
 
     /// A scope with its frame and its name.
@@ -433,8 +316,26 @@ impl<'s> View<'s> {
     }
 }
 
+/// A port of the whole: an output, or a net from or to what is not shown.
+fn flag(net: Net, name: String, enters: bool, context: &Context<'_>) -> Figure {
+    let wide = even(width(&name, false) + 16);
+    let mut figure = Figure { size: [wide, 24], ..Figure::default() };
+    let frame = Shape::Frame { at: [0, 2, wide, 20], style: Style::Port, cells: Vec::new(), flags: Vec::new() };
+    figure.shapes.push(frame);
+    figure.text([8, 16], Font::Text, name);
+    if enters {
+        context.stub(&mut figure, net, 12, wide);
+    } else {
+        figure.left.push((net, 12));
+    }
+    figure
+}
+
+/// The box of a closed scope with its pins in another order.
+type Turned<'t> = &'t dyn Fn(ScopeId, [Vec<Net>; 2]) -> Figure;
+
 /// Figures placed and connected. Ports without a size become pins of the whole.
-fn composed(all: &[(Figure, Side)], context: &Context<'_>) -> Figure {
+fn composed(all: Vec<(Figure, Side)>, context: &Context<'_>, turned: Turned<'_>) -> Figure {
     let mut nets: Vec<Net> = Vec::new();
     let mut number = |net: Net| {
         nets.iter().position(|&other| other == net).unwrap_or_else(|| {
@@ -443,23 +344,26 @@ fn composed(all: &[(Figure, Side)], context: &Context<'_>) -> Figure {
         })
     };
     let mut items = Vec::new();
-    for (figure, side) in all {
+    for (figure, side) in &all {
         let mut pins = |pins: &[(Net, i32)]| pins.iter().map(|&(net, y)| Pin { net: number(net), y }).collect();
         let (left, right) = (pins(&figure.left), pins(&figure.right));
-        items.push(Item { size: figure.size, left, right, side: *side, holds: figure.holds });
+        let (holds, free) = (figure.holds, figure.closed.is_some());
+        items.push(Item { size: figure.size, left, right, side: *side, holds, free });
     }
-    let Plan { size, at, wires } = lay_out(&items);
+    let Plan { size, at, pins, wires } = lay_out(&items);
     let mut whole = Figure { size, ..Figure::default() };
     let is_port = |figure: &Figure| figure.shapes.is_empty();
     let mut ports = Vec::new();
-    for ((figure, _), place) in all.iter().zip(at) {
-        if is_port(figure) {
+    for (((figure, _), place), pins) in all.into_iter().zip(at).zip(pins) {
+        let order = || pins.map(|pins| pins.into_iter().map(|pin| nets[pin]).collect());
+        let figure = if let Some(child) = figure.closed { turned(child, order()) } else { figure };
+        if is_port(&figure) {
             // A net that enters leaves its port at the right.
             whole.left.extend(figure.right.iter().map(|&(net, y)| (net, place[1] + y)));
             whole.right.extend(figure.left.iter().map(|&(net, y)| (net, place[1] + y)));
             ports.extend(figure.left.iter().map(|_| place));
         }
-        whole.shapes.extend(figure.shapes.iter().map(|shape| shape.clone().moved(place)));
+        whole.shapes.extend(figure.shapes.into_iter().map(|shape| shape.moved(place)));
     }
     for wire in wires {
         let net = nets[wire.net];
@@ -468,6 +372,18 @@ fn composed(all: &[(Figure, Side)], context: &Context<'_>) -> Figure {
         whole.shapes.push(Shape::Wire { net, bits, lines: wire.lines, dots: wire.dots, ends });
     }
     whole
+}
+
+/// Output ports that the netlist declares, by the pin of each.
+fn ports(scene: &Scene<'_>) -> BTreeMap<Net, Vec<String>> {
+    let mut ports: BTreeMap<Net, Vec<String>> = BTreeMap::new();
+    for named in scene.fold.netlist.names.iter().filter(|named| named.output) {
+        for net in named.nets() {
+            let pin = scene.drafts.of.get(&net).map_or(net, |&(_, pin)| pin);
+            ports.entry(pin).or_default().push(scene.fold.part(named, net));
+        }
+    }
+    ports
 }
 
 /// How each net that is drawn is written: its own name, with that of its scope where others have the same.
@@ -481,10 +397,7 @@ fn names(scene: &Scene<'_>) -> HashMap<Net, String> {
     let written = |net: Net| {
         let named = scene.fold.named(net)?;
         if named.is_wide() {
-            let at = named.nets().position(|part| part == net).unwrap_or(0);
-            let low = at * NamedNet::PART as usize;
-            let high = low + scene.fold.width(net) as usize - 1;
-            return Some((net, format!("{}[{high}:{low}]", named.name)));
+            return Some((net, scene.fold.part(named, net)));
         }
         let is_unique = count.get(named.name.as_str()) == Some(&1) || named.scope == ScopeId::TOP;
         let scope = &netlist.scopes[named.scope.index()].name;

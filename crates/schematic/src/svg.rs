@@ -32,9 +32,11 @@ pub(crate) fn svg(figure: &Figure, title: &str) -> String {
 fn one(svg: &mut String, shape: &Shape) {
     // Writing to a string cannot fail.
     let _ = match shape {
-        Shape::Frame { at, style, cells, flags } => {
-            frame(svg, *at, *style, cells, flags);
-            Ok(())
+        Shape::Frame { at, style, cells, flags } => writeln!(svg, "{}/>", frame(*at, *style, cells, flags)),
+        Shape::Closed { at, path, about, cells, flags } => {
+            let look = "fill=\"#f2f2f2\" stroke=\"#000\" stroke-width=\"1.6\"";
+            let open = rectangle(*at, ["closed", look], 4, cells, flags);
+            writeln!(svg, "{open} data-scope=\"{}\"><title>{}</title></rect>", escaped(path), escaped(about))
         }
         Shape::Text { text, net: None, .. } if text.is_empty() => Ok(()),
         Shape::Text { at: [x, y], font, text, net } => {
@@ -63,7 +65,7 @@ fn one(svg: &mut String, shape: &Shape) {
     };
 }
 
-fn frame(svg: &mut String, [x, y, width, height]: [i32; 4], style: Style, cells: &[Net], flags: &[String]) {
+fn frame(at: [i32; 4], style: Style, cells: &[Net], flags: &[String]) -> String {
     let (class, look) = match style {
         Style::Register => ("register", "fill=\"#e8eef7\" stroke=\"#000\" stroke-width=\"1.6\""),
         Style::Logic => ("logic", "fill=\"#fff\" stroke=\"#000\""),
@@ -71,15 +73,25 @@ fn frame(svg: &mut String, [x, y, width, height]: [i32; 4], style: Style, cells:
         Style::Operator => ("operator", "fill=\"#fff\" stroke=\"#000\" stroke-width=\"1.4\""),
         Style::Memory => ("memory", "fill=\"#eaf3ea\" stroke=\"#000\" stroke-width=\"1.6\""),
         Style::Scope => ("scope", "fill=\"none\" stroke=\"#777\" stroke-dasharray=\"6 3\""),
-        Style::Closed => ("closed", "fill=\"#f2f2f2\" stroke=\"#000\" stroke-width=\"1.6\""),
         Style::Port => ("port", "fill=\"#fff\" stroke=\"#000\""),
     };
     let round = match style {
-        Style::Operator => height / 2,
+        Style::Operator => at[3] / 2,
         Style::Port => 9,
-        Style::Scope | Style::Closed => 4,
+        Style::Scope => 4,
         _ => 0,
     };
+    rectangle(at, [class, look], round, cells, flags)
+}
+
+/// A rectangle, but for the end of its tag.
+fn rectangle(
+    [x, y, width, height]: [i32; 4],
+    [class, look]: [&str; 2],
+    round: i32,
+    cells: &[Net],
+    flags: &[String],
+) -> String {
     let mut more = String::new();
     if !cells.is_empty() {
         let cells: Vec<String> = cells.iter().map(|net| net.index().to_string()).collect();
@@ -88,10 +100,9 @@ fn frame(svg: &mut String, [x, y, width, height]: [i32; 4], style: Style, cells:
     if !flags.is_empty() {
         let _ = write!(more, " data-component=\"{}\"", flags.join(" "));
     }
-    let _ = writeln!(
-        svg,
-        "<rect class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{round}\" {look}{more}/>"
-    );
+    format!(
+        "<rect class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{round}\" {look}{more}"
+    )
 }
 
 fn wire(svg: &mut String, net: Net, bits: u32, [dots, ends]: [&[[i32; 2]]; 2], lines: &[[i32; 4]]) {

@@ -1,7 +1,7 @@
 //! The command file for Surfer and its mappings of state names, written next to a wave where they are asked for.
 //!
-//! `surfer --command-file w.sucl w.vcd` shows the rows of the GTKWave save file in the same order. Read in the source of
-//! Surfer 0.7: a row that is added takes the focus only where a row has it, so the first is focused by `item_focus`; a
+//! `surfer --command-file w.sucl w.vcd` shows the rows of the GTKWave save file in the same order. Seen in Surfer 0.7, and
+//! looked at there: a row that is added takes the focus only where a row has it, so the first is focused by `item_focus`; a
 //! format or a colour is that of the focused row; the name of a divider is one word. Names of states are formats of their
 //! own, found in `.surfer/mappings` of the folder in which Surfer is started, which is therefore that of the wave. A command
 //! that draws a curve does not exist: positions are numbers.

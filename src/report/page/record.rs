@@ -66,7 +66,7 @@ impl RunRecord {
     /// # Errors
     /// The options name no signal.
     pub(crate) fn of_design(shown: Shown<'_>, args: &WaveOptions, limit: Limit) -> Result<RunRecord, Error> {
-        let outputs = schematic::unread(shown.design.netlist());
+        let outputs = schematic::outputs(shown.design.netlist());
         RunRecord::new(shown, [&[], &outputs], args, limit, None)
     }
 

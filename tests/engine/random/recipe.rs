@@ -262,7 +262,8 @@ fn with_words(mut netlist: Netlist) -> Netlist {
     let scopes = u32::try_from(netlist.scopes.len()).unwrap();
     for (index, above, format) in [(0, vec![top], Format::Signed), (1, vec![last, top], Format::Unsigned)] {
         let scope = ScopeId((index + top.0) % scopes);
-        netlist.names.push(NamedNet { net: first, above, scope, name: format!("w{index}"), format });
+        let output = index == 1;
+        netlist.names.push(NamedNet { above, output, ..NamedNet::new(first, scope, &format!("w{index}"), format) });
     }
     netlist
 }

@@ -56,12 +56,34 @@ impl Line {
     }
 }
 
+/// A scope whose inside is not shown.
+#[derive(Debug)]
+pub(super) struct Closed {
+    pub(super) path: String,
+    pub(super) cells: Vec<usize>,
+    /// What it says to a reader who points at it.
+    about: String,
+}
+
+impl Closed {
+    pub(super) fn holds(&self, net: stepwave::netlist::Net) -> bool {
+        self.cells.contains(&net.index())
+    }
+
+    /// The nets without a wire of a line that begins so.
+    pub(super) fn names(&self, verb: &str) -> Vec<&str> {
+        let head = format!("{verb} without a wire: ");
+        self.about.lines().filter_map(|line| line.strip_prefix(&head)).flat_map(|names| names.split(", ")).collect()
+    }
+}
+
 #[derive(Debug, Default)]
 pub(super) struct Figure {
     size: [f64; 4],
     pub(super) frames: Vec<Frame>,
     pub(super) texts: Vec<Text>,
     lines: Vec<Line>,
+    pub(super) closed: Vec<Closed>,
     /// The frame that each cell is drawn in.
     pub(super) cells: BTreeMap<usize, Frame>,
 }
@@ -82,6 +104,7 @@ impl Figure {
                     let cells = node.attribute("data-cells").unwrap_or_default().split_whitespace();
                     cells.for_each(|cell| assert!(figure.cells.insert(cell.parse().unwrap(), frame.clone()).is_none()));
                     figure.frames.push(frame);
+                    figure.closed.extend(closed(&node));
                 }
                 "text" => figure.texts.extend(text(&node, class)),
                 "path" if class.starts_with("wire") => {
@@ -93,6 +116,10 @@ impl Figure {
             }
         }
         figure
+    }
+
+    pub(super) fn has_wire(&self, net: usize) -> bool {
+        self.lines.iter().any(|line| line.net == net)
     }
 
     /// Nets with a wire.
@@ -209,6 +236,13 @@ fn ends(line: &str) -> [f64; 4] {
     let (x, y) = start.split_once(' ').unwrap();
     let (x, y, end) = (number(x), number(y), number(end));
     if line.contains('H') { [x, y, end, y] } else { [x, y, x, end] }
+}
+
+fn closed(node: &roxmltree::Node<'_, '_>) -> Option<Closed> {
+    let path = node.attribute("data-scope")?.to_owned();
+    let cells = node.attribute("data-cells").unwrap_or_default().split_whitespace();
+    let about = node.children().find_map(|child| child.text()).unwrap_or_default().to_owned();
+    Some(Closed { path, cells: cells.map(|cell| cell.parse().unwrap()).collect(), about })
 }
 
 /// A text that is not empty, as large as letters of a fixed width are: 0.602 of the size of the font.

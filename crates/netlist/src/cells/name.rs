@@ -54,9 +54,17 @@ pub struct NamedNet {
     pub name: String,
     /// How to show it.
     pub format: Format,
+    /// It is an output port of the whole: an author's own, which logic inside may read too.
+    pub output: bool,
 }
 
 impl NamedNet {
+    /// A name of one net, no output port.
+    #[must_use]
+    pub fn new(net: Net, scope: ScopeId, name: &str, format: Format) -> NamedNet {
+        NamedNet { net, above: Vec::new(), scope, name: name.to_owned(), format, output: false }
+    }
+
     /// Bits of every net of a word but the highest.
     pub const PART: u32 = 64;
 

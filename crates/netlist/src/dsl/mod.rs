@@ -260,7 +260,7 @@ impl<'m> Scope<'m> {
         self.claim_name(name);
         let above = parts[1..].iter().map(|part| part.q.net()).collect();
         let format = Format::Unsigned;
-        let named = NamedNet { net: parts[0].q.net(), above, scope: self.id, name: name.to_owned(), format };
+        let named = NamedNet { above, ..NamedNet::new(parts[0].q.net(), self.id, name, format) };
         self.module.state.borrow_mut().netlist.names.push(named);
         parts
     }
@@ -297,7 +297,7 @@ impl<'m> Scope<'m> {
     pub fn show(self, name: &str, signal: Signal<'m>, format: Format) -> Signal<'m> {
         self.claim_name(name);
         let signal = self.own(signal);
-        let named = NamedNet { net: signal.net(), above: Vec::new(), scope: self.id, name: name.to_owned(), format };
+        let named = NamedNet::new(signal.net(), self.id, name, format);
         self.module.state.borrow_mut().netlist.names.push(named);
         signal
     }

@@ -28,6 +28,15 @@ impl<'a> Words<'a> {
         if self.word()? == keyword { Ok(()) } else { Err(format!("'{keyword}'")) }
     }
 
+    /// Takes a word if it is next.
+    pub(super) fn optional(&mut self, keyword: &str) -> bool {
+        let is_next = self.rest.split(' ').next() == Some(keyword);
+        if is_next {
+            self.rest = self.rest[keyword.len()..].trim_start();
+        }
+        is_next
+    }
+
     pub(super) fn number<T: TryFrom<u64>>(&mut self) -> Result<T, Expected> {
         let number = digits(self.word()?, 10).and_then(|number| T::try_from(number).ok());
         number.ok_or_else(|| "a number".to_owned())

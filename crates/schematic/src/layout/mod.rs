@@ -23,6 +23,8 @@ pub(crate) struct Item {
     pub(crate) side: Side,
     /// Its outputs change at edges alone: where a loop must be drawn backwards, it is here.
     pub(crate) holds: bool,
+    /// The nets of a side may have each other's places.
+    pub(crate) free: bool,
 }
 
 /// Where a net meets a box.
@@ -53,6 +55,8 @@ pub(crate) struct Plan {
     pub(crate) size: [i32; 2],
     /// Left and top of each box.
     pub(crate) at: Vec<[i32; 2]>,
+    /// The nets at the left and at the right of each box, from the top.
+    pub(crate) pins: Vec<[Vec<usize>; 2]>,
     /// The nets that have a wire.
     pub(crate) wires: Vec<Wire>,
 }
@@ -78,6 +82,7 @@ struct Slot {
     height: i32,
     left: Vec<Pin>,
     right: Vec<Pin>,
+    free: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -88,12 +93,13 @@ enum What {
 
 impl Slot {
     fn of(index: usize, item: &Item) -> Slot {
-        Slot { what: What::Item(index), y: 0, height: item.size[1], left: item.left.clone(), right: item.right.clone() }
+        let (left, right) = (item.left.clone(), item.right.clone());
+        Slot { what: What::Item(index), y: 0, height: item.size[1], left, right, free: item.free }
     }
 
     fn pass(net: usize) -> Slot {
         let pin = Pin { net, y: 0 };
-        Slot { what: What::Pass, y: 0, height: 0, left: vec![pin], right: vec![pin] }
+        Slot { what: What::Pass, y: 0, height: 0, left: vec![pin], right: vec![pin], free: false }
     }
 
     /// Pixels between this one and the next of its column.

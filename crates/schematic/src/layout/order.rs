@@ -21,6 +21,7 @@ pub(super) fn order(columns: &mut [Vec<Slot>], nets: usize) {
                 sort(&mut left[at - 1], &right[0], nets, false);
             }
         }
+        turn(columns, nets);
         if round % 4 == 3 {
             switch(columns, nets);
         }
@@ -31,6 +32,32 @@ pub(super) fn order(columns: &mut [Vec<Slot>], nets: usize) {
     }
     columns.clone_from_slice(&best);
     switch(columns, nets);
+    turn(columns, nets);
+}
+
+/// Gives the nets of boxes whose pins are free the order of where they come from and lead to.
+fn turn(columns: &mut [Vec<Slot>], nets: usize) {
+    for at in 0..columns.len() {
+        for right in [false, true] {
+            let next = if right { columns.get(at + 1) } else { at.checked_sub(1).map(|before| &columns[before]) };
+            let there = next.map_or_else(|| vec![Vec::new(); nets], |next| ends(next, nets, !right));
+            let here = ends(&columns[at], nets, right);
+            for slot in columns[at].iter_mut().filter(|slot| slot.free) {
+                let all = if right { &mut slot.right } else { &mut slot.left };
+                let Some(first) = all.first().map(|pin| here[pin.net].clone()) else { continue };
+                let own = first.first().copied().unwrap_or(0);
+                // A net that turns round in this gap comes from above the box or from below it.
+                let key = |pin: &Pin| match there[pin.net].as_slice() {
+                    [] if here[pin.net].iter().any(|&end| end + all.len() < own) => (0, 0),
+                    [] => (2, 0),
+                    ends => (1, ends[(ends.len() - 1) / 2]),
+                };
+                let mut order: Vec<_> = all.iter().map(|pin| (key(pin), pin.net)).collect();
+                order.sort_by_key(|of| of.0);
+                all.iter_mut().zip(order).for_each(|(pin, (_, net))| pin.net = net);
+            }
+        }
+    }
 }
 
 /// The pins of a slot at one side.

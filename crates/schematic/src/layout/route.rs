@@ -70,7 +70,8 @@ fn cost(a: &Trunk, b: &Trunk) -> usize {
 
 /// The drawing of ordered columns whose heights are known.
 pub(super) fn route(items: &[Item], columns: &[Vec<Slot>], nets: usize) -> Plan {
-    let mut plan = Plan { at: vec![[0; 2]; items.len()], ..Plan::default() };
+    let mut plan =
+        Plan { at: vec![[0; 2]; items.len()], pins: vec![Default::default(); items.len()], ..Plan::default() };
     let mut wires: Vec<Wire> = (0..nets).map(|net| Wire { net, ..Wire::default() }).collect();
     let mut x = 0;
     for (at, column) in columns.iter().enumerate() {
@@ -83,6 +84,7 @@ pub(super) fn route(items: &[Item], columns: &[Vec<Slot>], nets: usize) -> Plan 
                 What::Pass => wires[slot.left[0].net].lines.push([x, slot.y, x + width, slot.y]),
                 What::Item(index) => {
                     plan.at[index] = [x, slot.y];
+                    plan.pins[index] = [&slot.left, &slot.right].map(|pins| pins.iter().map(|pin| pin.net).collect());
                     let right = x + items[index].size[0];
                     for pin in slot.right.iter().filter(|_| right < x + width) {
                         wires[pin.net].lines.push([right, slot.y + pin.y, x + width, slot.y + pin.y]);
