@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::models::options::{AnyOption, Shape, WIDTH, all};
-use crate::nc::{Drawn, Opens};
+use crate::nc::{Drawn, Opens, SplineForm};
 use crate::study::{Grid, Range};
 use clap::builder::StringValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
@@ -43,19 +43,21 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     stepwave sweep ppc-arc --radius 1..100 --ccw --parquet circles.parquet\n  \
     stepwave sweep dda-arc --from 50,0 --to-grid -51..51x-51..51 --ccw --csv arcs.csv\n  \
     stepwave sweep dda-line --to-grid 1..127x1..127 --heat error_mean --plot mean.png\n  \
-    stepwave sweep dda-line --to-grid 0..4095x0..4095 --samples 5000 --seed 7 --csv -\n\
+    stepwave sweep dda-line --to-grid 0..4095x0..4095 --samples 5000 --seed 7 --csv -\n  \
+    stepwave sweep spline-dda --bezier 0,0,-20..20/4,-20..20/4,40,0 --csv - --plot curves.svg\n\
     \n\
     Geometries. A grid gives a geometry for every point; of arcs, helices and conics those of its\n\
     points that lie within 1 BLU of the curve, arcs and helices with --tolerance also farther off: the\n\
     arc is then one about the nearest whole centre, as in `stepwave run`. Grids of start points and of end points make a product.\n\
-    Without an end point an arc or ellipse is a whole one. Ranges are FIRST..LAST or FIRST..LAST/STEP,\n\
-    both ends in them.\n\
+    Without an end point an arc or ellipse is a whole one. Of free curves each coordinate of each point is\n\
+    a number or a range. Ranges are FIRST..LAST or FIRST..LAST/STEP, both ends in them.\n\
     \n\
     Hardware choices. Each takes a list with commas, numbers also ranges; every value of each goes with\n\
     every value of the others. Without --width each geometry has the least widths that hold it, as in\n\
     `stepwave run`. Data sampling has a clock of 1 MHz.\n\
     \n\
-    Rows. One a run: index (all points of the grid count, those without a curve too), geometry, choices,\n\
+    Rows. One a run: index (all points of the grid count, those without a curve too), geometry (of free\n\
+    curves p0_x, p0_y, p1_x, … of each point, of NURBS p0_w, …, degree and knots too), choices,\n\
     ending (done, trapped, stalled, limit, refused), clocks, steps, pulses and end point of each axis,\n\
     whether that is exact, error_max and error_mean (BLU, after all steps), v_mean (mean speed over\n\
     v_max, one BLU in each step that nothing delays), overflows and the first\n\
@@ -134,6 +136,8 @@ pub(crate) struct SpaceArgs {
     /// Where parabolas or hyperbolas open to [default: where both ends lie on them]
     #[arg(long, value_name = "WHERE", allow_hyphen_values = true, value_parser = opens())]
     pub(crate) opens: Option<Opens>,
+    #[command(flatten)]
+    pub(crate) free: FreeCurveArgs,
     /// Clockwise; together with --ccw both ways
     #[arg(long)]
     pub(crate) cw: bool,
@@ -146,9 +150,50 @@ pub(crate) struct SpaceArgs {
     /// Tells this draw of --samples from others
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Geometries from a CSV file: to_x,to_y and what else is not by default (from_x, center_x, direction, …)
+    /// Geometries from a CSV file: to_x,to_y and what else is not by default (from_x, center_x, direction, …); of free curves
+    /// curve (bezier, hermite, catmull-rom, b-spline) and p0_x,p0_y,p1_x,…, of NURBS p0_w,…, degree and knots
     #[arg(long, value_name = "FILE", conflicts_with_all = ["from", "from_grid", "to", "to_grid", "radius", "center", "sizes", "opens", "cw", "ccw"])]
     pub(crate) file: Option<PathBuf>,
+}
+
+/// Free curves, each coordinate of each point in a range.
+#[derive(Debug, Args)]
+pub(crate) struct FreeCurveArgs {
+    /// Bezier curves with three or four control points in these ranges
+    #[arg(long, value_name = "RANGE,RANGE,…", allow_hyphen_values = true, value_parser = ranges, group = "sizes")]
+    pub(crate) bezier: Option<Grid>,
+    /// Cubic segments from a point with a tangent to a point with a tangent
+    #[arg(long, value_name = "RANGE,RANGE,…", allow_hyphen_values = true, value_parser = ranges, group = "sizes")]
+    pub(crate) hermite: Option<Grid>,
+    /// Catmull-Rom splines through points in these ranges
+    #[arg(long, value_name = "RANGE,RANGE,…", allow_hyphen_values = true, value_parser = ranges, group = "sizes")]
+    pub(crate) points: Option<Grid>,
+    /// Uniform cubic B-splines along --points instead
+    #[arg(long, requires = "points")]
+    pub(crate) b_spline: bool,
+    /// NURBS with control points and weights in these ranges; a weight may be 0.5..2/0.25
+    #[arg(long, value_name = "RANGE,RANGE,W,…", allow_hyphen_values = true, group = "sizes")]
+    pub(crate) nurbs: Option<String>,
+    /// Degree of the NURBS [default: 3, or as many as the points allow]
+    #[arg(long, requires = "nurbs", value_name = "P")]
+    pub(crate) degree: Option<u32>,
+    /// Knots of the NURBS [default: uniform, those at the ends degree + 1 times]
+    #[arg(long, requires = "nurbs", value_name = "U,U,…", allow_hyphen_values = true)]
+    pub(crate) knots: Option<String>,
+}
+
+impl FreeCurveArgs {
+    /// What is drawn, where one of them says it.
+    pub(crate) fn drawn(&self) -> Option<Drawn> {
+        let through = if self.b_spline { SplineForm::BSpline } else { SplineForm::CatmullRom };
+        let drawn = [
+            self.bezier.as_ref().map(|_| Drawn::Spline(SplineForm::Bezier)),
+            self.hermite.as_ref().map(|_| Drawn::Spline(SplineForm::Hermite)),
+            self.points.as_ref().map(|_| Drawn::Spline(through)),
+            self.nurbs.as_ref().map(|_| Drawn::Nurbs),
+        ];
+        drawn.into_iter().flatten().next()
+    }
 }
 
 impl SpaceArgs {

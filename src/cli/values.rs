@@ -6,7 +6,8 @@ use stepwave_import::Unknown;
 use crate::engine::EngineKind;
 use crate::models::Millionths;
 use crate::models::events::Timed;
-use crate::nc::{NURBS_MOST, NURBS_UNIT, Opens};
+use crate::nc::{NURBS_MOST, Opens};
+use crate::study::units;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
@@ -30,13 +31,9 @@ pub(crate) fn parse_point(text: &str) -> Result<Point, String> {
 /// Decimal numbers in units of 10^-9, to which they are rounded.
 pub(crate) fn parse_decimals(text: &str) -> Result<Vec<i64>, String> {
     let number = |word: &str| {
-        let word = word.trim();
-        let value: Option<f64> = word.parse().ok().filter(|value: &f64| value.abs() <= NURBS_MOST as f64);
-        // Below 2^53.
-        #[allow(clippy::cast_possible_truncation)]
-        value
-            .map(|value| (value * NURBS_UNIT as f64).round() as i64)
-            .ok_or_else(|| format!("invalid number '{word}': give one within ±{NURBS_MOST}, such as 0.707106781"))
+        units(word).ok_or_else(|| {
+            format!("invalid number '{}': give one within ±{NURBS_MOST}, such as 0.707106781", word.trim())
+        })
     };
     text.split(',').map(number).collect()
 }

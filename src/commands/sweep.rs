@@ -15,6 +15,7 @@ use crate::study::{
 };
 use rayon::prelude::*;
 
+mod free_curves;
 mod kept;
 
 use self::kept::Kept;
@@ -61,13 +62,19 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
 
 /// All geometries that the options tell.
 fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Error> {
-    if let kind @ (CurveKind::Spline | CurveKind::Nurbs) = model.curve() {
-        let (name, what) = (model.name, kind.in_box());
-        return invalid(format!("a sweep has no {what}: give {name} one at a time to `stepwave run`"));
-    }
     if let Some(file) = &args.file {
         return Ok(study::read_points(file, model, radii)?);
     }
+    let cells = if let Some(cells) = free_curves::cells(model, args)? { cells } else { cells(model, args, radii)? };
+    Ok(match args.samples {
+        Some(count) if cells.count() <= u128::from(u64::MAX) => Space::Samples { cells, count, seed: args.seed },
+        Some(_) => return invalid(format!("a grid of {} geometries is too large to draw from", cells.count())),
+        None => Space::Cells(cells),
+    })
+}
+
+/// The grid of geometries that have ends.
+fn cells(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Cells, Error> {
     let drawn = drawn(model, args)?;
     let points = |one: &Option<Point>, many: &Option<Grid>| {
         let one = one.as_ref().map(|Point(point)| point.iter().map(|&coordinate| Range::one(coordinate)).collect());
@@ -102,12 +109,7 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
     let center = center(args)?;
     let flags = [(args.cw, Direction::Clockwise), (args.ccw, Direction::CounterClockwise)];
     let directions = flags.into_iter().filter(|(given, _)| *given).map(|(_, direction)| direction).collect();
-    let cells = Cells { drawn, sizes, from, to, center, directions, radii };
-    Ok(match args.samples {
-        Some(count) if cells.count() <= u128::from(u64::MAX) => Space::Samples { cells, count, seed: args.seed },
-        Some(_) => return invalid(format!("a grid of {} geometries is too large to draw from", cells.count())),
-        None => Space::Cells(cells),
-    })
+    Ok(Cells { drawn, sizes, from, to, center, directions, radii })
 }
 
 /// The radius and height, the semi-axes or the parameter: as many as the curve has.
@@ -194,7 +196,11 @@ fn variants(args: &VariantArgs) -> Result<Variants, StudyError> {
 fn radii(model: &Model, variants: &mut Variants) -> Result<Millionths, Error> {
     let is_tolerance = |dimension: &Dimension| dimension.option.name() == TOLERANCE.name;
     let Some(place) = variants.0.iter().position(is_tolerance) else { return Ok(Millionths(0)) };
-    if !model.curve().drawn().iter().any(|drawn| drawn.is_round()) {
+    let is_round = model.curve().drawn().iter().any(|drawn| drawn.is_round());
+    if !is_round && model.takes(&TOLERANCE) {
+        return Ok(Millionths(0));
+    }
+    if !is_round {
         let takes = model.curve().describe();
         return invalid(format!("{} interpolates {takes}, which have no --tolerance: leave it out", model.name));
     }
@@ -231,7 +237,10 @@ impl Heat {
             return Err(StudyError::Column { what, known: known.join(", ") }.into());
         }
         let Some((point, ranges)) = sweep.map() else {
-            return invalid("a heat map shows a grid of points: give --to-grid or --from-grid".to_owned());
+            return invalid(
+                "a heat map shows a grid of points: give --to-grid or --from-grid, or ranges for a point of free curves"
+                    .to_owned(),
+            );
         };
         let names = ["x", "y"].map(|axis| format!("{point}_{axis}"));
         let column = |name: &str| sweep.column(name).unwrap_or(0);

@@ -5,7 +5,7 @@ use stepwave_nc::{Description, Drawn};
 
 use super::space::Space;
 use super::table::{Column, ColumnType, Row, Value};
-use super::{StudyError, Variants};
+use super::{StudyError, Variants, free_curves};
 use crate::testbench::{Ending, Measured, is_ended};
 
 /// The columns of a sweep.
@@ -13,6 +13,8 @@ pub(super) struct Layout {
     pub(super) columns: Vec<Column>,
     drawn: Drawn,
     axes: usize,
+    /// Most points of a free curve.
+    points: usize,
 }
 
 /// What the end of a run is called in a row.
@@ -41,6 +43,10 @@ impl Layout {
         let mut add = |name: &str, kind| columns.push(Column { name: name.to_owned(), kind });
         let letters = &AXES[..axes];
         add("index", ColumnType::Whole);
+        let points = space.points();
+        if drawn.is_spline() {
+            free_curves::columns(drawn, points, &mut add);
+        }
         if drawn.sizes() > 0 {
             add("curve", ColumnType::Word);
             add("size_a", ColumnType::Whole);
@@ -75,13 +81,16 @@ impl Layout {
             add(&format!("spacing_max_{axis}"), ColumnType::Whole);
         }
         add("reason", ColumnType::Word);
-        Ok(Layout { columns, drawn, axes })
+        Ok(Layout { columns, drawn, axes, points })
     }
 
     /// The row of a run, or of a refusal with its reason.
     pub(super) fn row(&self, index: u64, site: &Description, words: &[&str], run: Result<Measured, String>) -> Row {
         let word_of = |text: &str| Value::Word(text.to_owned());
         let mut row = vec![index.into()];
+        if self.drawn.is_spline() {
+            row.extend(free_curves::values(site, self.points));
+        }
         if self.drawn.sizes() > 0 {
             row.extend([word_of(site.drawn.name()), size(site, 0), size(site, 1)]);
             row.push(site.drawn.opens().map(|opens| opens.to_string()).into());
@@ -158,13 +167,17 @@ pub fn words(model: &Model, columns: &[Column], row: &[Value]) -> String {
             words += &format!(" --{option} {text}");
         }
     };
-    if let Some(curve) = value("curve") {
+    let free = free_curves::options(columns, value);
+    let is_free = free.is_some();
+    if let Some(options) = free {
+        options.into_iter().for_each(|(option, text)| add(&option, Some(text)));
+    } else if let Some(curve) = value("curve") {
         let sizes: Vec<String> = ["size_a", "size_b"].into_iter().filter_map(value).collect();
         add(&curve, Some(sizes.join(",")));
         add("opens", value("opens"));
     }
-    add("from", point("from").filter(moved));
-    add("to", point("to"));
+    add("from", point("from").filter(|from| moved(from) && !is_free));
+    add("to", point("to").filter(|_| !is_free));
     add("center", point("center").filter(moved));
     if let Some(direction) = value("direction") {
         add(&direction, Some(String::new()));

@@ -7,12 +7,13 @@ use stepwave_models::{AXES, CurveKind, Millionths, Model};
 use stepwave_nc::{Description, Direction, Drawn, Opens};
 use stepwave_netlist::did_you_mean;
 
-use super::StudyError;
 use super::space::Space;
 use super::table::fields;
+use super::{StudyError, free_curves};
 
 /// Reads geometries for a model: `to_x,to_y` and every other column that is not as by default: `from_x`, `center_x`,
-/// `direction` (`cw`, `ccw`), and of conics `curve`, `size_a`, `size_b`, `opens`. The two radii of an arc may differ by
+/// `direction` (`cw`, `ccw`), and of conics `curve`, `size_a`, `size_b`, `opens`. Free curves have `curve` and the points
+/// `p0_x,p0_y,p1_x,…` instead, NURBS also their weights `p0_w,…`, `degree` and `knots`. The two radii of an arc may differ by
 /// `radii` BLU beyond what rounding makes.
 ///
 /// # Errors
@@ -21,9 +22,13 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
     let text = std::fs::read_to_string(file).map_err(|error| StudyError::reading(file, error))?;
     let mistake = |line: usize, what: String| StudyError::Points { file: file.display().to_string(), line, what };
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let (_, first) = lines.next().ok_or_else(|| mistake(1, "there is no heading: begin with to_x,to_y".to_owned()))?;
+    let (_, first) = lines.next().ok_or_else(|| {
+        mistake(1, "there is no heading: begin with to_x,to_y, or of free curves with p0_x,p0_y".to_owned())
+    })?;
     let heading: Vec<String> = fields(first).iter().map(|name| name.trim().to_owned()).collect();
-    let known = known(model);
+    let free = model.curve().drawn().iter().all(|drawn| drawn.is_spline());
+    let points = (0..).take_while(|point| heading.contains(&format!("p{point}_x"))).count();
+    let known = if free { free_curves::known(model.curve(), points.max(2)) } else { known(model) };
     if let Some(unknown) = heading.iter().find(|name| !known.contains(name)) {
         let hint = did_you_mean(unknown, known.iter().map(String::as_str));
         let message =
@@ -34,8 +39,11 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
         return Err(mistake(1, "a column is given twice".to_owned()));
     }
     let axes = AXES.iter().take_while(|axis| heading.contains(&format!("to_{axis}"))).count();
-    if axes < 2 {
+    if axes < 2 && !free {
         return Err(mistake(1, "the columns to_x and to_y are missing".to_owned()));
+    }
+    if free && points < 2 {
+        return Err(mistake(1, "the columns p0_x, p0_y, p1_x, … are missing".to_owned()));
     }
     let site = |(index, line): (usize, &str)| {
         let words = fields(line);
@@ -44,9 +52,13 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
             return Err(mistake(index + 1, format!("{count} values under {} columns", heading.len())));
         }
         let line = Line { heading: &heading, words: &words, axes, radii };
-        line.site(model.curve()).map_err(|what| mistake(index + 1, what))
+        let site = match free {
+            true => free_curves::of_words(model.curve(), points, |name| line.word(name)),
+            false => line.site(model.curve()),
+        };
+        site.map_err(|what| mistake(index + 1, what))
     };
-    let points: Vec<Description> = lines.map(site).collect::<Result<_, _>>()?;
+    let points = lines.map(site).collect::<Result<_, _>>()?;
     let mut hasher = DefaultHasher::new();
     text.hash(&mut hasher);
     Ok(Space::Points { points, content: hasher.finish() })
@@ -66,6 +78,11 @@ fn known(model: &Model) -> Vec<String> {
     known
 }
 
+/// A coordinate in a column.
+pub(super) fn whole(name: &str, word: &str) -> Result<i64, String> {
+    word.parse().map_err(|_| format!("'{word}' in {name} is no whole number of BLU"))
+}
+
 /// One line of the file.
 struct Line<'a> {
     heading: &'a [String],
@@ -81,8 +98,7 @@ impl Line<'_> {
     }
 
     fn number(&self, name: &str) -> Result<i64, String> {
-        let number = |word: &str| word.parse().map_err(|_| format!("'{word}' in {name} is no whole number of BLU"));
-        self.word(name).map_or(Ok(0), number)
+        self.word(name).map_or(Ok(0), |word| whole(name, word))
     }
 
     fn point(&self, name: &str, axes: usize) -> Result<Vec<i64>, String> {

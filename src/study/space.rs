@@ -4,14 +4,15 @@
 use stepwave_models::Millionths;
 use stepwave_nc::{Curve, Description, Direction, Drawn, GeometryError};
 
-use super::Range;
+use super::{Range, free_curves};
 
 /// A grid of geometries: every size, with every start point, with every end point, in every direction.
 #[derive(Clone, Debug)]
 pub struct Cells {
     /// The curve.
     pub drawn: Drawn,
-    /// Radius of circles, and height of helices; semi-axes or parameter of conics.
+    /// Radius of circles, and height of helices; semi-axes or parameter of conics; of free curves all that gives them, as
+    /// in a [`Description`].
     pub sizes: Vec<Range>,
     /// Start points; none where the size gives it: (R, 0), or the vertex, about the centre.
     pub from: Option<Vec<Range>>,
@@ -55,6 +56,9 @@ impl Cells {
         let mut numbers: Vec<i64> = ranges.iter().rev().map(|range| range.at(digit(range.count()))).collect();
         numbers.reverse();
         let (sizes, points) = numbers.split_at(self.sizes.len());
+        if self.drawn.is_spline() {
+            return Some(free_curves::site(self.drawn, sizes.to_vec()));
+        }
         let (from, to) = points.split_at(self.from.as_ref().map_or(0, Vec::len));
         let from = if self.from.is_some() { from.to_vec() } else { self.vertex(sizes) };
         let mut to = if self.to.is_some() { to.to_vec() } else { from.clone() };
@@ -147,14 +151,18 @@ impl Space {
         }
     }
 
-    /// The ranges of end points, or of start points where these are the ones that vary: what a map shows.
+    /// The ranges of end points, or of start points where these are the ones that vary, or of the first point of free
+    /// curves that does: what a map shows.
     #[must_use]
-    pub fn map(&self) -> Option<(&'static str, [Range; 2])> {
+    pub fn map(&self) -> Option<(String, [Range; 2])> {
         let (Space::Cells(cells) | Space::Samples { cells, .. }) = self else { return None };
+        if cells.drawn.is_spline() {
+            return free_curves::map(cells.drawn, &cells.sizes);
+        }
         let varies = |ranges: &&Vec<Range>| ranges.iter().take(2).any(|range| range.count() > 1);
         let plane = |ranges: &Vec<Range>| Some([*ranges.first()?, *ranges.get(1)?]);
-        let to = cells.to.as_ref().filter(varies).and_then(plane).map(|ranges| ("to", ranges));
-        to.or_else(|| cells.from.as_ref().filter(varies).and_then(plane).map(|ranges| ("from", ranges)))
+        let to = cells.to.as_ref().filter(varies).and_then(plane).map(|ranges| ("to".to_owned(), ranges));
+        to.or_else(|| cells.from.as_ref().filter(varies).and_then(plane).map(|ranges| ("from".to_owned(), ranges)))
     }
 
     /// The curves, and the axes of their points.
@@ -167,6 +175,20 @@ impl Space {
                 Some((cells.drawn, axes.max(least)))
             }
             Space::Points { points, .. } => points.first().map(|site| (site.drawn, site.to.len())),
+        }
+    }
+
+    /// Most points of a free curve.
+    pub(super) fn points(&self) -> usize {
+        match self {
+            Space::Cells(cells) | Space::Samples { cells, .. } => {
+                let first: Vec<i64> = cells.sizes.iter().map(|range| range.at(0)).collect();
+                free_curves::count(cells.drawn, &first)
+            }
+            Space::Points { points, .. } => {
+                let counts = points.iter().map(|site| free_curves::count(site.drawn, &site.sizes));
+                counts.max().unwrap_or(0)
+            }
         }
     }
 }

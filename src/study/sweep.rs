@@ -92,9 +92,10 @@ impl Sweep {
         self.part
     }
 
-    /// The points that a map of this sweep shows, `from` or `to`, and their ranges in x and y; none without a grid.
+    /// The points that a map of this sweep shows, `from`, `to`, or `p1` of a free curve, and their ranges in x and y; none
+    /// without a grid.
     #[must_use]
-    pub fn map(&self) -> Option<(&'static str, [super::Range; 2])> {
+    pub fn map(&self) -> Option<(String, [super::Range; 2])> {
         self.space.map()
     }
 

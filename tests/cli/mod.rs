@@ -33,6 +33,7 @@ mod stages;
 mod stepgen_bresenham;
 mod stops;
 mod sweep;
+mod sweep_curves;
 #[cfg(unix)]
 mod synth;
 mod tables;

@@ -69,7 +69,6 @@ fn what_is_not_a_nurbs_is_refused() {
         run_refused(&format!("sampled-spline --nurbs 0,0,1,4,4,1 {option}"), &[name]);
     }
     run_refused("spline-dda --nurbs 0,0,1,4,4,1", &["the curve is missing", "--bezier"]);
-    refused("sweep sampled-spline --to 1,1", &["free curves", "stepwave run"]);
     refused("widths sampled-spline --box 4", &["no boxes"]);
 }
 

@@ -11,10 +11,10 @@ use stepwave_models::{CurveKind, catalogue};
 use super::{Folder, good, refused};
 
 /// A row by its columns.
-type Row = BTreeMap<String, String>;
+pub(super) type Row = BTreeMap<String, String>;
 
 /// The fields of a line; quoted ones have no comma and no quote in these tests.
-fn rows(text: &str) -> Vec<Row> {
+pub(super) fn rows(text: &str) -> Vec<Row> {
     let mut lines = text.lines();
     let heading: Vec<&str> = lines.next().expect("a heading").split(',').collect();
     let row = |line: &str| {
@@ -33,6 +33,22 @@ fn rows(text: &str) -> Vec<Row> {
     lines.map(row).collect()
 }
 
+/// The words of `run` for the points of a free curve.
+fn free_curve(row: &Row) -> Option<String> {
+    let get = |name: String| row.get(&name).filter(|word| !word.is_empty()).cloned();
+    let point = |index: usize| ["x", "y", "w"].map(|axis| get(format!("p{index}_{axis}")));
+    let points = (0..).map(point).take_while(|point| point[0].is_some()).flatten().flatten().collect::<Vec<_>>();
+    let points = points.join(",");
+    Some(match row.get("curve")?.as_str() {
+        "bezier" => format!("--bezier {points}"),
+        "hermite" => format!("--hermite {points}"),
+        "catmull-rom" => format!("--points {points}"),
+        "b-spline" => format!("--points {points} --b-spline"),
+        "nurbs" => format!("--nurbs {points} --degree {} --knots {}", row["degree"], row["knots"]),
+        _ => return None,
+    })
+}
+
 /// The words of `run` for a row, from its columns.
 fn words(model: &str, row: &Row) -> String {
     let get = |name: &str| row.get(name).filter(|word| !word.is_empty()).cloned();
@@ -40,8 +56,11 @@ fn words(model: &str, row: &Row) -> String {
         let axes = ["x", "y", "z", "a", "b", "c"].iter().map_while(|axis| get(&format!("{name}_{axis}")));
         axes.collect::<Vec<_>>().join(",")
     };
-    let mut words = format!("run {model} --from {} --to {}", point("from"), point("to"));
-    if let Some(curve) = get("curve") {
+    let mut words = match free_curve(row) {
+        Some(options) => format!("run {model} {options}"),
+        None => format!("run {model} --from {} --to {}", point("from"), point("to")),
+    };
+    if let Some(curve) = get("curve").filter(|_| get("p0_x").is_none()) {
         let sizes = [get("size_a"), get("size_b")].into_iter().flatten().collect::<Vec<_>>().join(",");
         words += &format!(" --{curve} {sizes}");
     }
@@ -50,8 +69,20 @@ fn words(model: &str, row: &Row) -> String {
     if get("center_x").is_some() {
         words += &format!(" --center {}", point("center"));
     }
-    for option in ["width", "preset", "beats", "end_point", "weights", "form", "speed", "accel", "jerk", "on_overflow"]
-    {
+    for option in [
+        "width",
+        "preset",
+        "beats",
+        "end_point",
+        "weights",
+        "form",
+        "speed",
+        "accel",
+        "jerk",
+        "on_overflow",
+        "divisions",
+        "fraction",
+    ] {
         words += &get(option).map_or_else(String::new, |word| format!(" --{} {word}", option.replace('_', "-")));
     }
     if get("normalize").as_deref() == Some("yes") {
@@ -68,7 +99,7 @@ fn greatest(report: &str) -> f64 {
 }
 
 /// Wants a row to be what a single run reports.
-fn assert_as_run(model: &str, row: &Row) {
+pub(super) fn assert_as_run(model: &str, row: &Row) {
     let words = words(model, row);
     let ran = Folder::new().run(&format!("{words} --json -"));
     let what = format!("{words}: {row:?}\n{}", ran.err);
@@ -112,8 +143,8 @@ fn rows_of_every_model_are_what_single_runs_report() {
             }
             CurveKind::Conic => "--ellipse 3..9,2..9 --to-grid -9..9x-9..9 --cw --ccw --samples 12",
             CurveKind::Axis => "--from-grid -9..9 --to-grid -40..40 --samples 12",
-            // A sweep has none.
-            CurveKind::Spline | CurveKind::Nurbs => continue,
+            CurveKind::Spline => "--bezier 0,0,-9..9,-9..9,20,0..9,12,-7 --samples 12",
+            CurveKind::Nurbs => "--nurbs 0,0,1,-90..90,300,0.5..2/0.5,300,0..99,1 --samples 12",
             CurveKind::Helix => "--radius 3..9 --height -20..20/5 --cw --ccw --samples 12",
         };
         let all = rows(&good(&format!("sweep {name} {geometries} --csv -")));
@@ -137,6 +168,11 @@ fn rows_of_many_choices_overflows_stalls_and_refusals_are_what_single_runs_repor
         ("cim-conic", "--parabola 4..5 --to-grid 1..16x0..9 --weights mid,pre,post", "done"),
         ("ramp", "--to-grid -20..20/7 --speed vc=100..144/22 --accel 8..12/4 --accel 9,4", "done"),
         ("ppc-conic", "--hyperbola 3..4,2 --to-grid 3..9x-4..4 --opens +x", "done"),
+        ("spline-dda", "--bezier 0,0,-9..9/6,5..7,12,-4..4/4,3,8 --divisions 4,6 --width 14,30", "trapped"),
+        ("spline-dda", "--hermite 0,0,9,-9..9/3,8,-4..4/4,3,8 --fraction 9,20", "done"),
+        ("spline-dda", "--points 0,0,-9..9/6,5..7,12,-4..4/4,3,8,9,1 --b-spline", "done"),
+        ("sampled-spline", "--nurbs 0,0,1,60,-90..90/60,0.5..2/0.5,200,0,1 --degree 2", "done"),
+        ("sampled-spline", "--bezier 0,0,60,-90..90/90,200,0..3 --tolerance 2", "done"),
     ] {
         let all = rows(&good(&format!("sweep {model} {words} --csv -")));
         assert!(all.iter().any(|row| row["ending"] == seen), "{model} {words}");
@@ -407,7 +443,7 @@ fn the_examples_of_the_help_of_sweep_work_as_written() {
     let help = good("sweep --help");
     let examples = help.lines().filter_map(|line| line.trim().strip_prefix("stepwave sweep "));
     let examples: Vec<&str> = examples.filter(|example| !example.contains('<')).collect();
-    assert_eq!(examples.len(), 5, "{help}");
+    assert_eq!(examples.len(), 6, "{help}");
     for example in examples {
         assert_eq!(Folder::new().run(&format!("sweep {example}")).code, 0, "{example}");
     }

@@ -5,9 +5,7 @@ use crate::Error;
 use crate::cli::{GeometryArgs, Point, parse_decimals};
 use crate::models::CurveKind;
 use crate::nc::{ControlPoint, Curve, NURBS_UNIT, Nurbs};
-
-/// Degree of a curve of more points.
-const USUAL_DEGREE: usize = 3;
+use crate::study::usual_degree;
 
 /// The curve of `--nurbs`, or the one span that `--bezier` makes.
 pub(super) fn curve(who: &str, args: &GeometryArgs) -> Result<Curve, Error> {
@@ -33,8 +31,7 @@ pub(super) fn curve(who: &str, args: &GeometryArgs) -> Result<Curve, Error> {
         }
         points.push(ControlPoint { at: [x, y].map(|c| c / NURBS_UNIT), weight });
     }
-    let usual = USUAL_DEGREE.min(points.len().saturating_sub(1));
-    let degree = args.degree.map_or(usual, |degree| usize::try_from(degree).unwrap_or(usize::MAX));
+    let degree = args.degree.map_or(usual_degree(points.len()), |degree| usize::try_from(degree).unwrap_or(usize::MAX));
     let knots = args
         .knots
         .as_deref()
