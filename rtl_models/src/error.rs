@@ -37,7 +37,7 @@ pub enum ModelError {
     /// An event for which the hardware has no input.
     #[error(
         "{model} has no input for the event '{event}': hold, resume and override act on ramps, of `ramp` or of a \
-             program with --accel, and single and start on programs with --accel"
+             program with --accel or --ramp after, and single and start on such programs"
     )]
     NoEvents {
         /// The model.

@@ -140,6 +140,8 @@ pub struct AfterPorts {
     pub positions: Vec<Port>,
     /// What runs freely: the clock of the period, the divider of the fine lines, and their remainders.
     pub running: Vec<Net>,
+    /// 1: every pulse of the interpolator has come out.
+    pub empty: Net,
 }
 
 /// What an input is called for the register that it loads.
@@ -189,6 +191,7 @@ impl Machine {
                 pulses: of_axes(&|axis| format!("d{axis}_out"))?,
                 positions: of_axes(&|axis| format!("{axis}_out"))?,
                 running: running.map(|name| net(&name)).collect::<Result<_, _>>()?,
+                empty: net("empty")?,
             })
         };
         Ok(Machine {

@@ -114,7 +114,7 @@ fn a_machine_whose_memory_is_about_to_change_is_not_at_rest() {
                 ram.engine.set_input(ram.net(name), value);
             }
             ram.engine.run(1, &mut Rows::new(0, 0));
-            assert_eq!(at_rest(ram.engine.as_ref(), &ram.design), rests, "{}", kind.name());
+            assert_eq!(at_rest(ram.engine.as_ref(), &ram.design, &[]), rests, "{}", kind.name());
         }
     }
 }

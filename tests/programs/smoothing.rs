@@ -7,6 +7,7 @@ use stepwave::Simulation;
 use stepwave::report::Report;
 use stepwave::testbench::{Ending, Trace};
 use stepwave_engine::EngineKind;
+use stepwave_models::events::Timed;
 use stepwave_models::{AXES, Options, find};
 
 use super::command::FAMILIES;
@@ -28,12 +29,24 @@ fn filtered(
     (filter, period): (Filter, usize),
     engine: EngineKind,
 ) -> (Report, Trace) {
+    operated(folder, family, text, ((filter, period), engine), &[])
+}
+
+/// The same with an operator.
+fn operated(
+    folder: &tempfile::TempDir,
+    family: &str,
+    text: &str,
+    ((filter, period), engine): ((Filter, usize), EngineKind),
+    events: &[&str],
+) -> (Report, Trace) {
+    let events: Vec<Timed> = events.iter().map(|event| Timed::parse(event).unwrap()).collect();
     let filter = match filter {
         Filter::Sum(k) => format!("sum={k}"),
         Filter::Exponential(s) => format!("exp={s}"),
     };
     let options = ["--ramp", "after", "--smooth", &filter, "--period", &period.to_string()];
-    simulation(folder, family, text, &options).engine(engine).run_traced().unwrap()
+    simulation(folder, family, text, &options).engine(engine).events(events).run_traced().unwrap()
 }
 
 /// Bits of a fine line: it has more additions than an axis has pulses.
@@ -333,6 +346,100 @@ proptest! {
     }
 }
 
+/// Clocks of the pulses of a signal.
+fn clocks_of(trace: &Trace, name: &str) -> Vec<usize> {
+    let pulses = trace.i64(name).unwrap();
+    (0..pulses.len()).filter(|&clock| pulses[clock] != 0).collect()
+}
+
+/// In a hold the interpolator rests from the second edge after the event on and the filter runs empty; an override changes the
+/// distances of its pulses by its share.
+#[test]
+fn a_hold_and_an_override_act_in_front_of_the_filter() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = (Filter::Sum(4), 40);
+    // A pulse every 20 clocks.
+    let text = "G21 G91 G1 X1 F600\nM2\n";
+    for family in FAMILIES.iter().filter(|family| **family != "stepgen") {
+        let run = |events: &[&str]| {
+            let (report, trace) = operated(&folder, family, text, (of, EngineKind::Compiled), events);
+            check(&report, &trace, of, &format!("{family} {events:?}"));
+            (report.outcome.clocks, clocks_of(&trace, "dx"), clocks_of(&trace, "dx_out"))
+        };
+        let (clocks, plain, _) = run(&[]);
+        // 60 periods, so that what comes after them is what came without them.
+        let (held, pulses, out) = run(&["500:hold", "2900:resume"]);
+        let shifted: Vec<usize> = plain.iter().map(|&clock| if clock > 501 { clock + 2400 } else { clock }).collect();
+        assert_eq!((held, pulses), (clocks + 2400, shifted), "{family}");
+        let rests = out.windows(2).map(|pair| pair[1] - pair[0]).max().unwrap();
+        assert!((2400 - 6 * 40..=2400 + 40).contains(&rests), "{family}: {rests}");
+        for (event, apart) in [("0:override=50", 40.0), ("0:override=100", 20.0), ("0:override=200", 10.0)] {
+            let (_, pulses, _) = run(&[event]);
+            let steps = (pulses[pulses.len() - 1] - pulses[0]) as f64 / (pulses.len() - 1) as f64;
+            assert!((steps - apart).abs() < 0.6, "{family} {event}: {steps}");
+        }
+        let (_, pulses, _) = run(&["500:override=0", "2900:override=100"]);
+        assert_eq!(pulses.iter().filter(|clock| (502..=2901).contains(*clock)).count(), 0, "{family}");
+    }
+    let (report, _) = operated(&folder, "ppc", text, (of, EngineKind::Compiled), &["500:hold"]);
+    assert!(matches!(report.outcome.ending, Ending::Stalled { .. }), "{:?}", report.outcome.ending);
+}
+
+/// With `single` every block waits for `start`, and begins when all of the block before has come out.
+#[test]
+fn single_blocks_wait_for_the_start_and_for_the_filter() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = (Filter::Sum(4), 40);
+    let text = "G21 G91 G64 G1 X0.5 F600\nG1 Y0.5\nG1 X0.5\nM2\n";
+    for family in FAMILIES {
+        let run = |events: &[&str]| {
+            let (report, trace) = operated(&folder, family, text, (of, EngineKind::Compiled), events);
+            check(&report, &trace, of, &format!("{family} {events:?}"));
+            ["dx", "dy", "dx_out", "dy_out"].map(|name| clocks_of(&trace, name))
+        };
+        let [x, y, out_x, _] = run(&["0:single", "2000:start", "5000:start", "8000:continuous"]);
+        assert!(x[0] > 2000 && x[49] < 5000 && y[0] > 5000 && y[49] < 8000 && x[50] > 8000, "{family}");
+        assert!(out_x[49] < 5000, "{family}");
+        // A start before the filter is empty is not lost, and the block waits for the filter.
+        let early = format!("{}:start", x[49] + 40);
+        let [x, y, out_x, _] = run(&["0:single", "2000:start", &early, "8000:continuous"]);
+        assert!(x[0] > 2000 && out_x[49] > x[49] + 40 && out_x[49] < y[0] && y[0] < x[49] + 400, "{family}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(16) })]
+
+    /// Whatever the operator does at any clock, every pulse comes out.
+    #[test]
+    fn events_lose_no_pulse_of_a_filter(
+        legs in legs(),
+        of in prop_oneof![(1..=32i64).prop_map(Filter::Sum), (1..=4u32).prop_map(Filter::Exponential)],
+        events in prop::collection::vec((0..4000u64, 0..6u8, 0..=200u32), 0..8),
+        period in 20..90usize,
+        family in 0..FAMILIES.len(),
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        let family = FAMILIES[family];
+        let period = period + usize::from((period + 1).is_power_of_two());
+        let words = ["hold", "resume", "single", "start", "continuous"].map(str::to_owned);
+        let word = |kind: u8, percent: u32| words.get(usize::from(kind)).cloned().unwrap_or(format!("override={percent}"));
+        let events = events.into_iter().map(|(clock, kind, percent)| format!("{clock}:{}", word(kind, percent)));
+        let last = ["resume", "continuous", "override=100"].map(|word| format!("4001:{word}"));
+        let events: Vec<String> = events.chain(last).collect();
+        let events: Vec<&str> = events.iter().map(String::as_str).collect();
+        let mut before = None;
+        for engine in [EngineKind::Word, EngineKind::Compiled] {
+            let (report, trace) = operated(&folder, family, &text(&legs), ((of, period), engine), &events);
+            check(&report, &trace, (of, period), &format!("{family} {of:?} {period} {events:?}\n{}", text(&legs)));
+            let wanted: i64 = legs.iter().map(|leg| leg.by[0]).sum();
+            prop_assert_eq!(report.outcome.reached[0], wanted);
+            let clocks = report.outcome.clocks;
+            prop_assert_eq!(*before.get_or_insert(clocks), clocks);
+        }
+    }
+}
+
 #[test]
 fn options_that_would_do_nothing_are_refused() {
     let folder = crate::cli::Folder::new();
@@ -353,8 +460,6 @@ fn options_that_would_do_nothing_are_refused() {
         "64 pulses in as many clocks, whose fine line takes 128 additions: give 128 or 126",
     );
     refused("--ramp after --period 1", "2");
-    let ran = folder.run("program p.ngc --method ppc --ramp after --event 100:hold");
-    assert_eq!(ran.code, 2, "{ran:?}");
     let ran = folder.run("program p.ngc --method ppc --ramp after --jump 100");
     assert_eq!(ran.code, 2, "{ran:?}");
     let ran = folder.run("run ppc-line --to 8,6 --ramp after");

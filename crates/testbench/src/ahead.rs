@@ -168,7 +168,7 @@ fn skip(engine: &mut dyn Engine, bench: &Testbench, quiet: u64) -> bool {
     let inputs = values(engine, design.inputs());
     let memories = engine::contents(engine, design);
     engine.skip_ahead();
-    let rests = engine::at_rest(engine, design);
+    let rests = engine::at_rest(engine, design, &[]);
     if rests {
         engine.restore(clock, &before, &inputs, &memories);
     }

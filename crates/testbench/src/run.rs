@@ -306,7 +306,11 @@ impl<'a, 'o> Run<'a, 'o> {
     fn hangs(&mut self) -> Option<Ending> {
         let last_event = self.last_event()?;
         let quiet = self.engine.clock().saturating_sub(self.steps.last_pulse.max(last_event));
-        let at_rest = || engine::at_rest(self.engine.as_ref(), self.bench.design());
+        // The clock of a sampling period runs while all that is after the interpolator is empty.
+        let after = self.bench.machine().after.as_ref();
+        let emptied = after.is_none_or(|after| self.engine.value(after.empty) == 1);
+        let running = after.map_or(&[][..], |after| &after.running);
+        let at_rest = || emptied && engine::at_rest(self.engine.as_ref(), self.bench.design(), running);
         if !self.alone {
             return (quiet >= CHUNK as u64 && at_rest()).then_some(Ending::Stalled { clocks: quiet });
         }

@@ -150,7 +150,8 @@ impl<'m> Block<'m> {
 /// - `load` = 1 at an edge takes the words on the inputs into the buffer, which must be free: `full` rises.
 /// - `more`, an input: the host has a further block. `call`: it may write it. `at_end`: all is done.
 /// - A block begins, and the buffer is free again, at an edge at which it is full and nothing runs.
-/// - `single`, an input of a machine that accelerates: a block begins only after `start` = 1 while nothing runs.
+/// - `single`, an input of a machine that accelerates: a block begins only after `start` = 1 while nothing runs, and where it
+///   accelerates after its interpolator when the filters are empty.
 /// - `settle`, a word of a machine that accelerates [after its interpolator](Period): the block begins only after the filters
 ///   are empty. `at_end` waits for that too.
 #[derive(Clone, Copy, Debug)]
@@ -179,7 +180,7 @@ impl<'m> Buffer<'m> {
         let registers = ["busy", "done", "loaded", "stepped"].map(|name| m.reg(name, 1));
         let (full, more) = (m.reg("full", 1), m.input("more", 1));
         let operator = || (["single", "start"].map(|name| m.input(name, 1)), m.reg("started", 1));
-        let operator = hardware.get(&ACCEL).map(|_| operator());
+        let operator = (hardware.get(&ACCEL).is_some() || after.is_some()).then(operator);
         let after = after.map(|after| {
             let settle = m.reg(&format!("next_{}", SETTLE.name()), 1);
             settle.when(write, m.input(&input_name(SETTLE.name()), 1)).else_hold();
@@ -208,7 +209,8 @@ impl<'m> Buffer<'m> {
         let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
         let single = operator.map(|([single, _], _)| single);
         let unstarted = operator.map(|([single, _], started)| single & !started.q);
-        let unsettled = after.map(|(after, settle)| settle.q & !after.empty());
+        let settles = |settle: Signal<'m>| single.map_or(settle, |single| settle | single);
+        let unsettled = after.map(|(after, settle)| settles(settle.q) & !after.empty());
         let stopped = unstarted.into_iter().chain(unsettled).reduce(|a, b| a | b).map(|any| m.name("stopped", any));
         let wait = stopped.map_or(wait, |stopped| wait | stopped);
         let transfer = m.name("transfer", full.q & !wait & !busy);

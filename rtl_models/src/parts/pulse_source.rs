@@ -2,11 +2,12 @@
 
 use stepwave_netlist::dsl::{Scope, Signal};
 
+use super::ramp::Operator;
 use super::wide::Wide;
 use super::{Block, DownCounter, RESTART, Ramp, RampEdge, V};
 use crate::hardware::Hardware;
 use crate::options::Brake;
-use crate::program::Acceleration;
+use crate::program::{Acceleration, After};
 use crate::registers::{Reg, Rule};
 
 /// Bits of the phase of a pulse source: a pulse comes `rate` / 2^32 times a clock.
@@ -35,7 +36,8 @@ pub const RATIO: Reg =
 /// - `phase`, 32 bits: continues from block to block, so that pulses keep their distance across the blocks.
 ///
 /// It does not count while no block runs and none waits, so that a pulse never meets a machine without a block: the
-/// invariant `no_pulse_is_lost`. With `--accel` it is a [`Ramp`]. Returns the pulse, 1 bit.
+/// invariant `no_pulse_is_lost`. With `--accel` it is a [`Ramp`]; with `--ramp after` the inputs `hold` and `trim` of a ramp act on
+/// its rate. Returns the pulse, 1 bit.
 #[must_use]
 pub fn pulse_source<'m>(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>, waiting: Signal<'m>) -> Signal<'m> {
     source(m, hardware, block, || block.busy | waiting & !block.stopped(m))
@@ -51,16 +53,18 @@ pub fn pulse_source_while<'m>(m: Scope<'m>, hardware: &Hardware, block: &Block<'
 fn source<'m>(m: Scope<'m>, hardware: &Hardware, block: &Block<'m>, runs: impl FnOnce() -> Signal<'m>) -> Signal<'m> {
     let m = m.scope("pulse_source");
     let pulse = match Acceleration::of(hardware) {
-        None => constant(m, block, runs),
+        None => constant(m, block, After::of(hardware).is_some(), runs),
         Some(acceleration) => accelerating(m, &acceleration, block, runs()),
     };
     m.invariant("no_pulse_is_lost", !pulse | block.busy);
     pulse
 }
 
-/// At one rate for a whole block.
-fn constant<'m>(m: Scope<'m>, block: &Block<'m>, runs: impl FnOnce() -> Signal<'m>) -> Signal<'m> {
+/// At one rate for a whole block; where an operator acts at 0 in a hold, and at the override's share of it: what is after the
+/// interpolator brakes and accelerates.
+fn constant<'m>(m: Scope<'m>, block: &Block<'m>, by_hand: bool, runs: impl FnOnce() -> Signal<'m>) -> Signal<'m> {
     let rate = block.held(m, PULSE_RATE.name(), RATE_BITS + 1);
+    let rate = if by_hand { Operator::new(m.scope("operator")).target(m, rate, FASTEST_RATE) } else { rate };
     let phase = m.reg("phase", RATE_BITS);
     let runs = runs();
     let sum = m.name("sum", phase.q.extend(RATE_BITS + 1).wrapping_add(rate));

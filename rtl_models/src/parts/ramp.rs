@@ -88,9 +88,40 @@ pub struct Ramp<'m> {
     rest: [Signal<'m>; 2],
     /// 1 bit: the block ends for a stop.
     single: Option<Signal<'m>>,
-    /// 1 bit: the target is 0 whatever else is wanted.
+    by: Operator<'m>,
+}
+
+/// What an operator does to a speed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Operator<'m> {
+    /// 1 bit: it is 0 whatever else is wanted.
     hold: Signal<'m>,
+    /// Override beyond 100 %, in two's complement.
     trim: Signal<'m>,
+}
+
+impl<'m> Operator<'m> {
+    /// The inputs, in the scope `operator`.
+    pub(super) fn new(operator: Scope<'m>) -> Operator<'m> {
+        Operator { hold: operator.input("hold", 1), trim: operator.input_signed("trim", 9) }
+    }
+
+    /// 1 bit: something is in force.
+    fn acts(&self) -> Signal<'m> {
+        self.hold | self.trim.is_nonzero()
+    }
+
+    /// The speed to go to: this one times the override, at most `most`; 0 on hold.
+    pub(super) fn target(&self, m: Scope<'m>, speed: Signal<'m>, most: u64) -> Signal<'m> {
+        let bits = speed.bits();
+        let wide = bits + 10;
+        let whole = m.lit_signed(10, i64::from(WHOLE_OVERRIDE));
+        let share = whole.wrapping_add(self.trim.extend(10)).as_unsigned().slice(0, 9);
+        let product = speed.extend(wide).wrapping_mul(share.extend(wide));
+        let scaled = product.slice(WHOLE_OVERRIDE.trailing_zeros(), bits + 1);
+        let most = m.lit(bits + 1, most);
+        m.name("target", self.hold.mux(m.lit(bits, 0), least(scaled, most).slice(0, bits)))
+    }
 }
 
 impl<'m> Ramp<'m> {
@@ -113,8 +144,7 @@ impl<'m> Ramp<'m> {
             rest: [limits[0], limits[2]],
             single: None,
             gains: bits.gains.map(|(name, bits)| block.held(m, name, bits)),
-            hold: operator.input("hold", 1),
-            trim: operator.input_signed("trim", 9),
+            by: Operator::new(operator),
         }
     }
 
@@ -136,7 +166,7 @@ impl<'m> Ramp<'m> {
     /// 1 bit: a hold, an override or a stop after the block is in force.
     #[must_use]
     pub fn event(&self) -> Signal<'m> {
-        let event = self.hold | self.trim.is_nonzero();
+        let event = self.by.acts();
         self.single.map_or(event, |single| event | single)
     }
 
@@ -151,7 +181,7 @@ impl<'m> Ramp<'m> {
     pub fn close(self, by: RampEdge<'m>, brake: Brake, risen: Option<Register<'m>>) {
         let (m, block, RampEdge { preset, first, by_hand, runs, tick, left }) = (self.m, &self.block, by);
         let remaining = Remaining::new(&self, left);
-        let target = self.target();
+        let target = self.by.target(m, self.limits[1], self.bits.most);
         let wanted = m.name("wanted", self.towards(target));
         let braked = least(wanted, self.slower(self.limits[2]));
         let brake = match (brake, risen) {
@@ -174,18 +204,6 @@ impl<'m> Ramp<'m> {
             Some(preset) => self.phase.when(block.load, preset).when(runs, sum).else_hold(),
             None => self.phase.when(runs, sum).else_hold(),
         }
-    }
-
-    /// The speed to go to: vc times the override, at most what the register holds; 0 on hold.
-    fn target(&self) -> Signal<'m> {
-        let (m, bits) = (self.m, self.v.q.bits());
-        let wide = bits + 10;
-        let whole = m.lit_signed(10, i64::from(WHOLE_OVERRIDE));
-        let share = whole.wrapping_add(self.trim.extend(10)).as_unsigned().slice(0, 9);
-        let product = self.limits[1].extend(wide).wrapping_mul(share.extend(wide));
-        let scaled = product.slice(WHOLE_OVERRIDE.trailing_zeros(), bits + 1);
-        let most = m.lit(bits + 1, self.bits.most);
-        m.name("target", self.hold.mux(m.lit(bits, 0), least(scaled, most).slice(0, bits)))
     }
 
     /// The speed of the next tick without braking.
