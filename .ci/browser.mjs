@@ -145,7 +145,7 @@ async function compareDiagram(page, name, vcd, clocks) {
   const { meta } = unpacked(`${name}/page.html`);
   const netOf = new Map(meta.signals.map(({ scopes, name: leaf, nets }) => [[...scopes, leaf].join('.'), nets.length === 1 ? meta.nets[nets[0]]?.[0] : undefined]));
   const seen = new Set();
-  for (const at of clocks) {
+  const compareAt = async (at) => {
     await shownAt(page, at, 'call');
     const drawn = await page.evaluate(() => ({
       texts: [...document.querySelectorAll('#diagram-tab text[data-net]')].map(({ dataset, textContent }) => [Number(dataset.net), dataset.value, textContent]),
@@ -165,9 +165,68 @@ async function compareDiagram(page, name, vcd, clocks) {
     if (!vcd.names.some((variable) => BigInt(`0b${vcd.at(variable, at)}`) === 1n && meta.signals.some(({ role, scopes, name: leaf }) => role === 'flag' && [...scopes, leaf].join('.') === variable.path))) {
       assert.deepEqual(drawn.raised, [], `${name} at ${at}`);
     }
-  }
-  if (meta.diagram) assert.ok(seen.size > 2, `${name}: ${seen.size} values in the diagram`);
+  };
+  for (const at of clocks) await compareAt(at);
+  const whole = seen.size;
+  if (meta.diagrams) assert.ok(whole > 2, `${name}: ${whole} values in the diagram`);
+  // Every scope that is a box in one drawing has one of its own, which is opened and left by keys.
+  let drawings = 1;
+  const inside = async () => {
+    const boxes = await page.$$eval('.sheet .opens', (all) => all.map(({ dataset }) => dataset.scope));
+    assert.equal(boxes.length, await page.locator('.sheet .closed').count(), name);
+    for (const scope of boxes) {
+      await page.focus(`.sheet [data-scope="${scope}"]`);
+      await page.keyboard.press(drawings % 2 ? 'Enter' : 'Space');
+      assert.equal(await page.getAttribute('.sheet', 'aria-label'), `Block diagram: ${scope}`);
+      drawings += 1;
+      await compareAt(clocks[3]);
+      await inside();
+      await page.keyboard.press(drawings % 2 ? 'Escape' : 'Backspace');
+      assert.equal(await page.evaluate(() => document.activeElement.dataset.scope), scope);
+    }
+  };
+  await inside();
+  assert.equal(drawings, meta.diagrams?.length ?? 1, name);
+  if (drawings > 1) assert.ok(seen.size > whole, `${name}: ${seen.size} values in all drawings, ${whole} in the first`);
   return seen.size;
+}
+
+/** Boxes of a block diagram are opened by a click, but not by a drag, and left by the list of what is above them. */
+async function boxes({ page, open }) {
+  await open('nurbs/page.html', '#clock=900');
+  await page.click('#diagram-button');
+  const label = () => page.getAttribute('.sheet', 'aria-label');
+  const whole = await label();
+  const clock = await page.evaluate(() => stepwave.clock);
+  // A reader of the screen finds it as a button with the name of its scope and what is in it.
+  const box = page.locator('.sheet .opens').first();
+  const scope = await box.getAttribute('data-scope');
+  assert.equal(await page.getByRole('button', { name: new RegExp(`^Open ${scope.replaceAll('.', '[.]')}: .*register`) }).count(), 1);
+  assert.deepEqual(await page.$$eval('.crumbs li', (all) => all.map(({ textContent }) => textContent)), [whole.split(': ')[1]]);
+  // A title is in it, where no reader can point at anything else.
+  await page.evaluate(() => document.querySelector('.sheet .opens').scrollIntoView({ block: 'center', inline: 'center' }));
+  const { x, y, width, height } = await box.boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2 + 30, y + height / 2 + 20, { steps: 4 });
+  await page.mouse.up();
+  assert.equal(await label(), whole);
+  const title = await page.evaluate(() => document.querySelector('.sheet .opens').getBoundingClientRect().toJSON());
+  await page.mouse.click(title.x + title.width / 4, title.y + title.height / 8);
+  assert.equal(await label(), `Block diagram: ${scope}`);
+  assert.equal(await page.evaluate(() => document.activeElement.className), 'sheet');
+  await page.click('#language');
+  assert.equal(await label(), `框图: ${scope}`);
+  await page.click('#language');
+  await page.screenshot({ path: join(folder, 'box.png') });
+  assert.equal((await page.$$('.crumbs li')).length, 2);
+  await page.click('.crumbs button');
+  assert.equal(await label(), whole);
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.scope), scope);
+  await page.screenshot({ path: join(folder, 'boxes.png') });
+  // Neither opened nor left by keys that are for time elsewhere; those that open nothing are.
+  assert.equal(await page.evaluate(() => stepwave.clock), clock);
+  console.log('boxes of a block diagram open and close by keys and by clicks');
 }
 
 /** Keys move the cursor, from wherever the focus is. */
@@ -309,8 +368,9 @@ async function zoom({ context, page, open }) {
 async function diagram({ page, open }) {
   const { text, packed, all, length, meta } = unpacked('trap/page.html');
   const net = (name) => meta.nets[meta.signals.find((signal) => signal.name === name).nets[0]][0];
-  meta.diagram = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 60"><g data-component="ppc_line.f_add_overflow ppc_line.f_sub_overflow"><rect width="60" height="40"/></g>`
+  const svg = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 60"><g data-component="ppc_line.f_add_overflow ppc_line.f_sub_overflow"><rect width="60" height="40"/></g>`
     + `<text id="of-f" y="20" data-net="${net('f')}"/><path id="of-x" d="M0 0h9" data-net="${net('take_x')}"/></svg>`;
+  meta.diagrams = [{ scope: 'ppc_line', svg }];
   const json = Buffer.from(JSON.stringify(meta));
   const head = Buffer.alloc(4);
   head.writeUInt32LE(json.length);
@@ -391,6 +451,7 @@ async function check() {
   await keys(one);
   await zoom(one);
   await diagram(one);
+  await boxes(one);
   await travels(one);
   await looks(one);
   await one.context.close();

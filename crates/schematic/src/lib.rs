@@ -33,6 +33,8 @@ mod scene;
 mod svg;
 mod symbol;
 
+use std::collections::VecDeque;
+
 use stepwave_netlist::cells::ScopeId;
 use stepwave_netlist::{Net, Netlist, did_you_mean};
 
@@ -62,6 +64,8 @@ pub struct Part {
 pub struct Drawing {
     /// The file.
     pub svg: String,
+    /// Dotted path of the scope that is drawn, beginning with the name of the netlist.
+    pub scope: String,
     /// Levels of scopes whose inside is drawn.
     pub depth: usize,
     /// Levels of scopes that there are.
@@ -129,34 +133,68 @@ impl Drawing {
 /// # Errors
 /// No scope has the path given, or there are more symbols than [`MOST_DRAWN`].
 pub fn draw(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Drawing, DrawError> {
+    with_scene(netlist, outputs, |scene, outputs, readable| {
+        let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(scene.fold.netlist, path))?;
+        drawing(scene, outputs, root, readable, part)
+    })
+}
+
+/// Draws a part of a netlist, and alone every scope that is closed in one of these drawings: the whole comes first, a scope
+/// after the drawing in which it is closed. Scopes of more symbols than there may be are left out.
+///
+/// # Errors
+/// As those of [`draw`].
+pub fn draw_all(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Vec<Drawing>, DrawError> {
+    with_scene(netlist, outputs, |scene, outputs, readable| {
+        let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(scene.fold.netlist, path))?;
+        let whole = drawing(scene, outputs, root, readable, part)?;
+        let mut pending = VecDeque::from_iter(scene.closed(root, whole.depth));
+        let mut all = vec![whole];
+        let inner = Part { most: part.most, ..Part::default() };
+        while let Some(root) = pending.pop_front() {
+            if let Ok(drawn) = drawing(scene, outputs, root, readable, &inner) {
+                pending.extend(scene.closed(root, drawn.depth));
+                all.push(drawn);
+            }
+        }
+        Ok(all)
+    })
+}
+
+/// Puts the symbols of a netlist into scopes, for drawings of its parts; with all outputs, and how many symbols are readable.
+fn with_scene<R>(netlist: &Netlist, outputs: &[Net], go: impl FnOnce(&scene::Scene<'_>, &[Net], usize) -> R) -> R {
     let own = netlist.scopes.len();
-    let outputs = &with_declared(netlist, outputs)[..];
-    let flat = fold::Fold::new(netlist, outputs);
+    let outputs = with_declared(netlist, outputs);
+    let flat = fold::Fold::new(netlist, &outputs);
     let drafts = draft::Drafts::new(&flat);
     let mut scopes = places::Places::scopes(&flat, &drafts);
     let grouped = group::grouped(&flat, &drafts, &mut scopes);
-    let netlist = grouped.as_ref().unwrap_or(netlist);
-    let fold = flat.with_scopes(netlist);
-    let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(netlist, path))?;
-    let scene = scene::Scene { fold: &fold, drafts: &drafts, scopes, own };
-    let levels = scene.levels(root);
+    let fold = flat.with_scopes(grouped.as_ref().unwrap_or(netlist));
     let readable = if grouped.is_some() { MOST_GROUPED } else { MOST_SYMBOLS };
+    go(&scene::Scene { fold: &fold, drafts: &drafts, scopes, own }, &outputs, readable)
+}
+
+/// Draws a scope as deep as is asked for, or readable.
+fn drawing(
+    scene: &scene::Scene<'_>,
+    outputs: &[Net],
+    root: ScopeId,
+    readable: usize,
+    part: &Part,
+) -> Result<Drawing, DrawError> {
+    let path = scene.fold.netlist.scope_path(root);
+    let levels = scene.levels(root);
     let deepest = || (0..=levels).rev().find(|&depth| scene.count(root, depth) <= readable).unwrap_or(0);
     let depth = part.depth.map_or_else(deepest, |depth| depth.min(levels));
     let symbols = scene.count(root, depth);
     let most = part.most.unwrap_or(MOST_DRAWN).min(MOST_DRAWN);
     if symbols > most {
-        return Err(DrawError::TooMany {
-            scope: netlist.scope_path(root),
-            symbols,
-            most,
-            scopes: scene.inner(root, 0),
-        });
+        return Err(DrawError::TooMany { scope: path, symbols, most, scopes: scene.inner(root, 0) });
     }
     let scopes = scene.inner(root, depth);
-    let view = scene::View::new(&scene, root, depth, outputs);
-    let svg = svg::svg(&view.figure(), &netlist.scope_path(root));
-    Ok(Drawing { svg, depth, levels, symbols, scopes, unwired: view.unwired })
+    let view = scene::View::new(scene, root, depth, outputs);
+    let svg = svg::svg(&view.figure(), &path);
+    Ok(Drawing { svg, scope: path, depth, levels, symbols, scopes, unwired: view.unwired })
 }
 
 /// Some names, with commas.

@@ -99,12 +99,17 @@ impl Scene<'_> {
     /// Paths, without the name of the netlist, of the scopes with symbols that are this many levels below one and
     /// one more.
     pub(crate) fn inner(&self, root: ScopeId, depth: usize) -> Vec<String> {
+        let path = |scope| self.fold.netlist.scope_path(scope);
+        self.closed(root, depth).filter_map(|scope| Some(path(scope).split_once('.')?.1.to_owned())).collect()
+    }
+
+    /// The scopes with symbols that are this many levels below one and one more.
+    pub(crate) fn closed(&self, root: ScopeId, depth: usize) -> impl Iterator<Item = ScopeId> + use<> {
         let above = self.line(root).len();
         let drawn = (0..self.scopes.len()).filter(|&index| !self.drafts.all[index].is_gone());
         let lines = drawn.map(|index| self.line(self.scopes[index])).filter(|line| line.contains(&root));
         let closed: BTreeSet<ScopeId> = lines.filter_map(|line| line.get(above + depth).copied()).collect();
-        let path = |scope| self.fold.netlist.scope_path(scope);
-        closed.into_iter().filter_map(|scope| Some(path(scope).split_once('.')?.1.to_owned())).collect()
+        closed.into_iter()
     }
 
     /// Levels of scopes with symbols below a scope.

@@ -134,6 +134,7 @@ const KEYS = [
   [[null, 'e'], 'e', 'key_worst', () => worstOf(cursor.run) && cursor.seek(worstOf(cursor.run).clock)],
   [[null, 'r'], 'r', 'key_radix', () => otherRadix()],
   [[null, '?'], '?', 'key_help', () => showKeys()],
+  [[], '⏎ ⌫', 'key_open'],
 ];
 
 /** Other numbers for the selected signal. */

@@ -38,8 +38,8 @@ pub(crate) struct RunRecord {
     leading: &'static [&'static str],
     window: (u64, u64),
     limit: Limit,
-    /// The block diagram, or why there is none.
-    diagram: Result<Drawing, DrawError>,
+    /// The block diagram, then those of the scopes that are closed in another one; or why there is none.
+    diagrams: Result<Vec<Drawing>, DrawError>,
 }
 
 /// Bytes that a page may hold before they are packed, and what to do where it becomes larger.
@@ -124,8 +124,8 @@ impl RunRecord {
         let (writer, window) = (writer.with_speed(speed), (args.from, args.to.unwrap_or(u64::MAX)));
         let nets = nets.into_iter().map(|(net, width, _)| (net, width)).collect();
         let part = Part { most: Some(MOST_SYMBOLS), ..Part::default() };
-        let diagram = schematic::draw(design, outputs, &part);
-        Ok(RunRecord { writer, probes, nets, streams, interpolator: None, leading: &[], window, limit, diagram })
+        let diagrams = schematic::draw_all(design, outputs, &part);
+        Ok(RunRecord { writer, probes, nets, streams, interpolator: None, leading: &[], window, limit, diagrams })
     }
 
     /// The same with signals that come first: their paths without the design's name.
@@ -163,10 +163,9 @@ impl RunRecord {
         meta["first"] = json!(written.clocks.0);
         meta["last"] = json!(written.clocks.1);
         meta["nets"] = json!(nets);
-        match &self.diagram {
-            Ok(drawn) => {
-                meta["diagram"] = json!(drawn.svg);
-                meta["diagram_note"] = json!(drawn.closed());
+        match &self.diagrams {
+            Ok(all) => {
+                meta["diagrams"] = all.iter().map(|drawn| json!({ "scope": drawn.scope, "svg": drawn.svg })).collect();
             }
             Err(none) => meta["diagram_note"] = json!(none.to_string()),
         }

@@ -19,9 +19,11 @@ const WORDS = {
     key_change: 'change of the selected signal before, next change', key_ends: 'start, end', key_play: 'play, pause',
     key_zoom: 'zoom the wave in, out', key_fit: 'show the whole wave', key_overflow: 'next overflow',
     key_worst: 'greatest error', key_radix: 'other numbers for the selected signal', key_select: 'select a signal',
-    key_help: 'these keys', key_mouse: 'Mouse and touch',
+    key_help: 'these keys', key_open: 'open the box with the focus in the block diagram, close it again', key_mouse: 'Mouse and touch',
+    open: 'Open', scopes_of: 'Scopes around this drawing',
     mouse: 'Drag over the wave to move the cursor; Ctrl and wheel, or two fingers, zoom; Shift and wheel, or two fingers, pan. '
-      + 'Drag the path to pan, turn the wheel to zoom, click to set the cursor where the tool is next to that place.',
+      + 'Drag the path to pan, turn the wheel to zoom, click to set the cursor where the tool is next to that place. '
+      + 'Click a grey box of the block diagram to open it.',
   },
   zh: {
     'rapid ': '快速', 'line ': '直线', 'arc ': '圆弧', 'start-up ': '起刀', 'cancel ': '撤刀', 'inserted line ': '插入直线', 'inserted arc ': '插入圆弧',
@@ -39,8 +41,8 @@ const WORDS = {
     key_clock: '上一时钟、下一时钟', key_step: '上一步、下一步', key_block: '上一程序段、下一程序段',
     key_change: '所选信号的上一变化、下一变化', key_ends: '起点、终点', key_play: '播放、暂停', key_zoom: '波形放大、缩小',
     key_fit: '显示全部波形', key_overflow: '下一溢出', key_worst: '最大误差', key_radix: '所选信号换一种数制', key_select: '选择信号',
-    key_help: '这些按键', key_mouse: '鼠标与触摸',
-    mouse: '在波形上拖动以移动光标；按住 Ctrl 滚轮或双指缩放；按住 Shift 滚轮或双指平移。在轨迹上拖动以平移，滚轮缩放，点击则光标移到刀具最近该处之时。',
+    key_help: '这些按键', key_open: '打开框图中有焦点的方框、返回', key_mouse: '鼠标与触摸', open: '打开', scopes_of: '此图的上级',
+    mouse: '在波形上拖动以移动光标；按住 Ctrl 滚轮或双指缩放；按住 Shift 滚轮或双指平移。在轨迹上拖动以平移，滚轮缩放，点击则光标移到刀具最近该处之时。点击框图中的灰色方框以打开。',
   },
 };
 
@@ -60,6 +62,7 @@ function kindOf(move) {
 function setWords() {
   document.documentElement.lang = language === 'zh' ? 'zh-CN' : 'en';
   for (const element of document.querySelectorAll('[data-word]')) element.textContent = word(element.dataset.word);
+  for (const element of document.querySelectorAll('[data-label]')) element.setAttribute('aria-label', word(element.dataset.label));
   for (const element of document.querySelectorAll('[data-title]')) {
     element.title = word(element.dataset.title) + (element.dataset.key ? ` (${element.dataset.key})` : '');
     element.setAttribute('aria-label', element.title);
