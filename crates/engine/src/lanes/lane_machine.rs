@@ -43,9 +43,12 @@ impl<T: Lane> LaneMachine<T> {
     }
 
     /// Every register takes its next value.
-    #[inline(always)]
     pub(super) fn edge(&mut self, code: &Code) {
-        edge(&mut self.rows, code);
+        for register in &code.registers {
+            if let Some(next) = register.next {
+                self.rows.swap(register.row, next);
+            }
+        }
     }
 }
 
@@ -64,37 +67,27 @@ pub(super) trait Loops: Lane {
         stop: Slot,
         samples: u64,
         memories: &mut LaneMemories<Self>,
-    ) -> u64;
+    ) -> u64 {
+        let groups = lanes.div_ceil(GROUP);
+        let mut done = 0;
+        loop {
+            Self::settle(machine, &code.operations, groups, memories.all());
+            done += 1;
+            if done >= samples || any(&machine.rows[stop], lanes) {
+                return done;
+            }
+            memories.edge(code, &machine.rows, lanes, None);
+            machine.edge(code);
+        }
+    }
 }
 
+// Every operation once for a word and a kind of processor: a large part of what the crate takes to compile.
 macro_rules! loops {
     ($word:ty) => {
         impl Loops for $word {
             fn settle(on: &mut LaneMachine<Self>, operations: &[Operation], groups: usize, memories: View<'_, Self>) {
                 dispatch!(on.level, _simd => settle(&mut on.rows, &mut on.spare, operations, groups, memories));
-            }
-
-            fn run(
-                on: &mut LaneMachine<Self>,
-                code: &Code,
-                lanes: usize,
-                stop: Slot,
-                samples: u64,
-                memories: &mut LaneMemories<Self>,
-            ) -> u64 {
-                let groups = lanes.div_ceil(GROUP);
-                dispatch!(on.level, _simd => {
-                    let mut done = 0;
-                    loop {
-                        settle(&mut on.rows, &mut on.spare, &code.operations, groups, memories.all());
-                        done += 1;
-                        if done >= samples || any(&on.rows[stop], lanes) {
-                            break done;
-                        }
-                        memories.edge(code, &on.rows, lanes, None);
-                        edge(&mut on.rows, code);
-                    }
-                })
             }
         }
     };
@@ -103,17 +96,7 @@ macro_rules! loops {
 loops!(u32);
 loops!(u64);
 
-#[inline(always)]
-fn edge<T: Lane>(rows: &mut [Box<LaneRow<T>>], code: &Code) {
-    for register in &code.registers {
-        if let Some(next) = register.next {
-            rows.swap(register.row, next);
-        }
-    }
-}
-
 /// One of the first lanes is not 0.
-#[inline(always)]
 fn any<T: Lane>(row: &LaneRow<T>, lanes: usize) -> bool {
     let mut seen = [T::default(); GROUP];
     let whole = (lanes / GROUP).min(GROUPS);
