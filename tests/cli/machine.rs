@@ -148,7 +148,7 @@ fn ramp(start: f64, feed: f64, gain: f64, jerk: Option<f64>) -> [f64; 2] {
 
 #[test]
 fn ramps_are_those_of_programs_and_of_the_data_sheets() {
-    let size = "machine dda-line ppc-line cim-line bresenham mindev-line dda-arc ppc-arc vector-line --travel 4mm,3mm --blu 10um";
+    let size = "machine dda-line bresenham mindev-line ppc-arc vector-line --travel 4mm,3mm --blu 10um";
     for (jerk, name) in [(None, ""), (Some(20_000.0 * 100.0), " --jerk 20000mm/s3")] {
         let accel = if jerk.is_some() { "500mm/s2" } else { "500mm/s2,800mm/s2" };
         let all = json(&format!("{size} --feed 1200mm/min --accel {accel}{name} --clock-hz 2e5 --json"));

@@ -54,7 +54,7 @@ fn lines(model: &str) -> f64 {
 
 fn lines_with(model: &str, what: &str, choices: &Options) -> f64 {
     let worst = Worst::default();
-    every_line(|to| measure(&worst, model, &line(&[0, 0], &to), choices));
+    every_line(5, |to| measure(&worst, model, &line(&[0, 0], &to), choices));
     report(&format!("{model} {what}"), worst)
 }
 
@@ -247,7 +247,7 @@ fn a_line_with_unequal_presets_may_leave_by_more_than_one_blu_and_promises_nothi
     let presets = [("jrx".to_owned(), Preset::Full), ("jry".to_owned(), Preset::Zero)];
     let choices = Options::default().with_single(&PRESET, presets.into());
     let worst = Worst::default();
-    every_line(|to| measure(&worst, "dda-line", &line(&[0, 0], &to), &choices));
+    every_line(5, |to| measure(&worst, "dda-line", &line(&[0, 0], &to), &choices));
     assert!(report("dda-line jrx=full,jry=zero", worst) > 1.0);
     assert_eq!(bench("dda-line", &line(&[0, 0], &[5, 3]), &choices).hardware().error_bound, None);
 }

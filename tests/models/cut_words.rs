@@ -82,7 +82,7 @@ fn whatever_register_is_too_narrow_the_machine_runs_and_lanes_agree() {
                     };
                     ran += 1;
                     cut += u32::from(!bench.cut_words().is_empty());
-                    let limit = 30_000;
+                    let limit = 3000;
                     let alone = bench.measure(&curve, limit).unwrap();
                     assert_eq!(alone.cut, bench.cut_words(), "{what}");
                     let lanes = bench.measuring_lanes(limit).unwrap();

@@ -1,5 +1,7 @@
 //! Digital differential analyser in radix 10.
 
+use std::ops::RangeInclusive;
+
 use rayon::prelude::*;
 use stepwave::testbench::Ending;
 use stepwave_engine::EngineKind;
@@ -65,9 +67,19 @@ fn the_worked_line_in_one_digit_to_the_digit_from_every_engine() {
 }
 
 #[test]
+fn every_line_of_one_digit_of_a_quadrant_with_every_preset_scheme_and_adder() {
+    check_lines_of_one_digit(0..=9);
+}
+
+#[test]
+#[ignore = "exhaustive"]
 fn every_line_of_one_digit_with_every_preset_scheme_and_adder() {
-    (-9..=9i64).into_par_iter().for_each(|x| {
-        for y in (-9..=9).filter(|&y| [x, y] != [0, 0]) {
+    check_lines_of_one_digit(-9..=9);
+}
+
+fn check_lines_of_one_digit(places: RangeInclusive<i64>) {
+    places.clone().into_par_iter().for_each(|x| {
+        for y in places.clone().filter(|&y| [x, y] != [0, 0]) {
             for (ends, preset) in END_POINTS.into_iter().flat_map(|ends| PRESETS.map(|preset| (ends, preset))) {
                 for adder in [Adder::Parallel, Adder::Serial] {
                     check_decimal(1, [&[0, 0], &[x, y]], preset, ends, adder, EngineKind::Word);
@@ -78,8 +90,19 @@ fn every_line_of_one_digit_with_every_preset_scheme_and_adder() {
 }
 
 #[test]
+fn every_fifth_column_of_lines_of_two_digits() {
+    check_lines_of_two_digits(5);
+}
+
+#[test]
+#[ignore = "exhaustive"]
 fn every_line_of_two_digits() {
-    (-99..=99i64).into_par_iter().for_each(|x| {
+    check_lines_of_two_digits(1);
+}
+
+fn check_lines_of_two_digits(every: usize) {
+    let columns: Vec<i64> = (-99..=99).step_by(every).collect();
+    columns.into_par_iter().for_each(|x| {
         for y in (-99..=99).filter(|&y| [x, y] != [0, 0]) {
             // Each scheme and each preset with every fourth line.
             let which = |of: i64| usize::try_from(of.rem_euclid(4)).unwrap();

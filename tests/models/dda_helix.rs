@@ -42,8 +42,19 @@ fn check_helix(curve: &Curve, spare: u32, fraction: u32, preset: Preset, engine:
 }
 
 #[test]
+fn every_lattice_helix_up_to_radius_5_upwards_downwards_and_flat() {
+    check_helices(26);
+}
+
+#[test]
+#[ignore = "exhaustive"]
 fn every_lattice_helix_up_to_radius_8_upwards_downwards_and_flat() {
-    every_lattice_arc(&squares_below(65), |from, to, clockwise| {
+    check_helices(65);
+}
+
+/// Of radii whose square is below this.
+fn check_helices(limit: i64) {
+    every_lattice_arc(&squares_below(limit), |from, to, clockwise| {
         for (rise, preset) in [(0, Preset::Zero), (1, Preset::Half), (-2, Preset::Full), (7, Preset::Zero)] {
             let curve = helix([from[0], from[1], 3], [to[0], to[1], 3 + rise], [0, 0], clockwise);
             check_helix(&curve, 0, 8, preset, EngineKind::Word);

@@ -21,13 +21,23 @@ fn check_serial(n: u32, from: &[i64], to: &[i64], which: usize, engine: EngineKi
 }
 
 #[test]
+fn every_line_of_up_to_four_bits_in_every_scheme() {
+    check_lines_in_every_scheme(4);
+}
+
+#[test]
+#[ignore = "exhaustive"]
 fn every_line_of_up_to_five_bits_in_every_scheme() {
-    every_line(|[x, y]| {
+    check_lines_in_every_scheme(5);
+}
+
+fn check_lines_in_every_scheme(bits: u32) {
+    every_line(bits, |[x, y]| {
         // The eight pairs of preset and normalisation: all for lines of three bits, else one a line.
         let short = x.abs() < 8 && y.abs() < 8;
         let one = usize::try_from((5 * x + 3 * y).rem_euclid(8)).unwrap();
         for which in if short { 0..8 } else { one..one + 1 } {
-            check_serial(5, &[0, 0], &[x, y], which, EngineKind::Word);
+            check_serial(bits, &[0, 0], &[x, y], which, EngineKind::Word);
             if short {
                 check_serial(3, &[0, 0], &[x, y], which, EngineKind::Word);
             }

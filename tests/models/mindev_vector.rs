@@ -41,7 +41,7 @@ pub(super) fn check_arc(
 
 #[test]
 fn every_line_of_up_to_five_bits_in_every_quadrant() {
-    every_line(|to| check_line([0, 0], to, Beats::One, EngineKind::Word));
+    every_line(5, |to| check_line([0, 0], to, Beats::One, EngineKind::Word));
 }
 
 fn check_lattice_arcs(squares: &[i64]) {

@@ -81,9 +81,10 @@ pub(crate) fn widths(given: &[(&str, u32)]) -> Options {
 }
 
 /// Every line from the origin of up to five bits.
-fn every_line(check: impl Fn([i64; 2]) + Sync) {
-    (-31..=31i64).into_par_iter().for_each(|x| {
-        (-31..=31).filter(|&y| [x, y] != [0, 0]).for_each(|y| check([x, y]));
+fn every_line(bits: u32, check: impl Fn([i64; 2]) + Sync) {
+    let most = (1i64 << bits) - 1;
+    (-most..=most).into_par_iter().for_each(|x| {
+        (-most..=most).filter(|&y| [x, y] != [0, 0]).for_each(|y| check([x, y]));
     });
 }
 

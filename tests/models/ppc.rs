@@ -39,7 +39,7 @@ fn check_arc(from: [i64; 2], to: [i64; 2], center: [i64; 2], clockwise: bool, be
 
 #[test]
 fn every_line_of_up_to_five_bits_in_every_quadrant_form_and_scheme() {
-    every_line(|to| check_line([0, 0], to, Beats::One, EngineKind::Word));
+    every_line(5, |to| check_line([0, 0], to, Beats::One, EngineKind::Word));
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn check_counters(from: &[i64], to: &[i64], engine: EngineKind) {
 
 #[test]
 fn every_line_of_up_to_five_bits_by_counters_of_both_forms_and_tests() {
-    every_line(|to| check_counters(&[0, 0], &to, EngineKind::Word));
+    every_line(5, |to| check_counters(&[0, 0], &to, EngineKind::Word));
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn gcd(a: i64, b: i64) -> i64 {
 
 #[test]
 fn a_counter_traps_exactly_where_one_bit_less_cannot_hold_a_sum() {
-    every_line(|to| {
+    every_line(5, |to| {
         for (form, form_reference) in FORMS {
             let choices = Options::default().with(&FORM, form);
             let table = bresenham(&[0, 0], &to, form_reference, form == Form::Signed);
@@ -189,7 +189,7 @@ fn check_generator(n: u32, from: &[i64], to: &[i64], engine: EngineKind) {
 
 #[test]
 fn every_line_of_up_to_five_bits_by_accumulators_with_every_clock_of_their_outputs() {
-    every_line(|to| check_generator(5, &[0, 0], &to, EngineKind::Word));
+    every_line(5, |to| check_generator(5, &[0, 0], &to, EngineKind::Word));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The oracle: every net a slice of one bit vector, every adder a chain of full adders, every multiplexer a gate pair
 //! per bit. Slow on purpose; each function is the textbook drawing and nothing else. It shares no arithmetic with the
-//! other engines and evaluates the cells in creation order, not in the levelled order.
+//! other engines and evaluates the cells in creation order, not in the levelled order. As in any event-driven simulator
+//! a cell is evaluated where one of its operands has changed.
 
 use std::ops::Range;
 
@@ -107,6 +108,10 @@ pub(super) struct Gates {
     /// Index of each net's bits in `state`.
     place: Vec<Range<usize>>,
     state: BitVec<u64>,
+    /// Nets that have another value than in the sample before.
+    changed: BitVec<u64>,
+    /// Every cell is evaluated: nets have been set in another manner than by an edge.
+    afresh: bool,
     /// Words of each memory, one after another.
     memories: Vec<BitVec<u64>>,
     /// Inputs as the test bench wants them from after the next edge on; same index as the design's inputs.
@@ -128,6 +133,8 @@ impl Gates {
             clock: 0,
             place,
             state: BitVec::repeat(false, total),
+            changed: BitVec::repeat(false, design.netlist().cells.len()),
+            afresh: true,
             memories: Vec::new(),
             pending: vec![0; design.inputs().len()],
         };
@@ -141,7 +148,18 @@ impl Gates {
 
     fn put(&mut self, net: Net, bits: &Slice) {
         let place = self.place[net.index()].clone();
-        self.state[place].copy_from_bitslice(bits);
+        let held = &mut self.state[place];
+        if *held != *bits {
+            held.copy_from_bitslice(bits);
+            self.changed.set(net.index(), true);
+        }
+    }
+
+    /// An operand has changed since the cell was evaluated. Any write at the edge may be to the word that is read.
+    fn is_due(&self, op: Op) -> bool {
+        let mut due = self.afresh || matches!(op, Op::Read { .. });
+        op.visit_inputs(|operand| due |= self.changed[operand.index()]);
+        due
     }
 
     /// What a combinational cell gives; `None` for a cell that is not one.
@@ -206,14 +224,18 @@ impl Gates {
             self.put(input, &bits);
         }
         for (net, cell) in design.netlist().nets().zip(&design.netlist().cells) {
-            if let Some(bits) = self.evaluate(net, cell.op) {
+            if self.is_due(cell.op)
+                && let Some(bits) = self.evaluate(net, cell.op)
+            {
                 self.put(net, &bits);
             }
         }
+        self.afresh = false;
     }
 
     fn edge(&mut self) {
         self.write_memories();
+        self.changed.fill(false);
         let old = self.state.clone();
         let design = self.design.clone();
         for &register in design.registers() {
@@ -292,6 +314,7 @@ impl Engine for Gates {
             }
         }
         self.fill_memories(&[]);
+        self.afresh = true;
         self.settle();
         self.record(rows);
     }
@@ -306,6 +329,7 @@ impl Engine for Gates {
         self.fill_memories(memories);
         self.pending.copy_from_slice(inputs);
         self.clock = clock;
+        self.afresh = true;
         self.settle();
     }
 

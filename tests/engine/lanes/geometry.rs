@@ -130,14 +130,26 @@ fn every_line_of_the_methods_that_judge_both_axes_ends_as_alone() {
 }
 
 #[test]
+fn every_line_in_space_of_up_to_two_bits_ends_as_alone() {
+    check_lines_in_space(2);
+}
+
+#[test]
+#[ignore = "exhaustive"]
 fn every_line_in_space_of_up_to_three_bits_ends_as_alone() {
-    let sides = || -7..=7i64;
+    check_lines_in_space(3);
+}
+
+fn check_lines_in_space(bits: u64) {
+    let most = (1i64 << bits) - 1;
+    let sides = || -most..=most;
     let ends = sides().flat_map(|x| sides().flat_map(move |y| sides().map(move |z| vec![x, y, z])));
     let lines: Vec<_> = ends.filter_map(|to| Line::new(vec![0; 3], to).ok().map(Curve::Line)).collect();
     for model in ["ppc-line", "cim-line", "mindev-line"] {
         for beats in [Beats::One, Beats::Four] {
-            let positions = ["x", "y", "z"].map(|axis| (axis.to_owned(), width(5)));
-            let choices = Options::default().with_all(&WIDTH, width(3)).with_single(&WIDTH, BTreeMap::from(positions));
+            let positions = ["x", "y", "z"].map(|axis| (axis.to_owned(), width(bits + 2)));
+            let choices =
+                Options::default().with_all(&WIDTH, width(bits)).with_single(&WIDTH, BTreeMap::from(positions));
             let choices = choices.with(&BEATS, beats);
             assert!(all_done(&assert_each_as_alone(model, &lines, &choices)), "{model}");
         }

@@ -70,7 +70,7 @@ fn choices_of(model: &Model, seed: u8, bits: u64, position: u64) -> Options {
 }
 
 proptest! {
-    #![proptest_config(config(8))]
+    #![proptest_config(config(4))]
 
     #[test]
     fn random_lines_of_every_model_are_measured_as_alone(
