@@ -2,15 +2,15 @@
 //! machine always can stop in time.
 //!
 //! A block waits until what follows it is as long as the braking distance from its own speed, or a stop follows: then
-//! nothing further on can change the speed at its end. With a jerk, whose ramps every block has for itself, a chain of blocks
-//! shorter than that distance brakes over a longer one, and is planned slower than it could be run.
+//! nothing further on can change the speed at its end. With a jerk, blocks that follow each other in one direction at one speed have one
+//! ramp: else each had an S of its own, slower the shorter it is.
 
 use std::collections::VecDeque;
 
 use stepwave_models::program::Acceleration;
 use stepwave_nc::{Coordinates, FeedAxes, PathControl};
 
-/// Most blocks that wait. With more of them so short a stop is assumed after the last.
+/// Most blocks that wait, and most that have one ramp. With more of them as short a stop is assumed after the last.
 const MOST: usize = 4096;
 
 /// Halvings by which a speed is found that has no formula: to a part in 2^30.
@@ -25,6 +25,16 @@ pub(super) struct Stretch {
     pub(super) cap: f64,
     /// The greatest speed at which it may be entered from what was before.
     pub(super) joint: f64,
+    /// Pulses of the source.
+    pub(super) pulses: f64,
+}
+
+impl Stretch {
+    /// It can have one ramp with what was before: the path and the scale of its pulses go on, at the same speed.
+    fn continues(&self, before: &Stretch) -> bool {
+        let [scale, other] = [self, before].map(|of| of.pulses / of.length);
+        self.joint == f64::INFINITY && self.cap == before.cap && (scale - other).abs() <= 1e-9 * other
+    }
 }
 
 /// Parts that wait for what follows them.
@@ -32,7 +42,7 @@ pub(super) struct Stretch {
 pub(super) struct Lookahead<T> {
     by: Acceleration,
     jump: f64,
-    queue: VecDeque<(Stretch, T)>,
+    queue: VecDeque<(Stretch, Vec<T>)>,
     /// Speed at which the first of them begins.
     entry: f64,
     /// It begins there from a stop.
@@ -82,21 +92,65 @@ impl<T> Lookahead<T> {
 
     /// Takes the next part.
     pub(super) fn push(&mut self, stretch: Stretch, what: T) {
+        let before = self.queue.back().map(|(before, _)| *before);
+        let follows = before.is_some_and(|before| stretch.continues(&before));
         if !self.queue.is_empty() {
             self.beyond += stretch.length;
         }
-        self.queue.push_back((stretch, what));
+        let is_short = before.is_some_and(|before| before.length < 2.0 * self.braking_distance(before.cap));
+        self.queue.push_back((stretch, vec![what]));
+        if follows && is_short {
+            self.join();
+        } else if !follows && self.queue.len() > 1 {
+            let last = self.queue.pop_back();
+            self.join_rest();
+            self.queue.extend(last);
+        }
+    }
+
+    /// Gives the last ones a common ramp with those before them, if they can have one.
+    fn join(&mut self) {
+        let Some((stretch, parts)) = self.queue.pop_back() else { return };
+        let (one, most) = (self.queue.len() == 1, self.by.most_pulses());
+        match self.queue.back_mut() {
+            Some((before, all))
+                if self.by.jerk.is_some()
+                    && stretch.continues(before)
+                    && before.pulses + stretch.pulses <= most
+                    && all.len() + parts.len() <= MOST =>
+            {
+                before.length += stretch.length;
+                before.pulses += stretch.pulses;
+                all.extend(parts);
+                if one {
+                    // All of it is in the first now.
+                    self.beyond -= stretch.length;
+                }
+            }
+            _ => self.queue.push_back((stretch, parts)),
+        }
+    }
+
+    /// What is left at the end of a chain has no ramp of its own where it is shorter than one.
+    fn join_rest(&mut self) {
+        if self.queue.len() > 1
+            && self.queue.back().is_some_and(|(last, _)| last.length < self.braking_distance(last.cap))
+        {
+            self.join();
+        }
     }
 
     /// The machine stops after what has been taken so far, all of which is to be taken out before more is put in.
     pub(super) fn stop(&mut self) {
-        if !self.queue.is_empty() {
-            self.stop.get_or_insert(self.queue.len());
+        if !self.queue.is_empty() && self.stop.is_none() {
+            self.join_rest();
+            self.stop = Some(self.queue.len());
         }
     }
 
-    /// The first part, if nothing that follows can change it, with the speeds at its start, in it and at its end.
-    pub(super) fn pop(&mut self) -> Option<(T, [f64; 3])> {
+    /// The first part, or those that have one ramp, if nothing that follows can change it, with the speeds at its start, in it
+    /// and at its end.
+    pub(super) fn pop(&mut self) -> Option<(Vec<T>, [f64; 3])> {
         let Stretch { cap, length, .. } = self.queue.front()?.0;
         let settled = self.stop.is_some() || self.queue.len() > MOST || self.beyond >= self.braking_distance(cap);
         if !settled {

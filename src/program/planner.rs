@@ -43,6 +43,8 @@ pub(super) struct Planner<'a, T> {
 struct Ahead<T> {
     by: Acceleration,
     queue: Lookahead<(Paced, T)>,
+    /// Parts of one ramp that wait for those before them.
+    ready: VecDeque<Planned<T>>,
     /// How the move before ends, unless the machine stops there.
     end: Option<(PathControl, FeedAxes, Coordinates)>,
     /// Pulses of a BLU in the part before.
@@ -53,7 +55,7 @@ impl<'a, T> Planner<'a, T> {
     pub(super) fn new(moves: &'static dyn Moves, hardware: &'a Hardware, pace: Pace) -> Planner<'a, T> {
         let ahead = Acceleration::of(hardware).map(|by| {
             let jump = pace.jump.map_or_else(|| by.start(), |jump| jump / (60.0 * pace.blu_mm));
-            Ahead { by, queue: Lookahead::new(by, jump), end: None, scale: None }
+            Ahead { by, queue: Lookahead::new(by, jump), ready: VecDeque::new(), end: None, scale: None }
         });
         let corners = After::of(hardware).map(|after| Corners::new(after, pace));
         Planner { pacer: Pacer::new(moves, hardware, pace), ahead, corners, planned: VecDeque::new() }
@@ -147,25 +149,38 @@ impl<T> Ahead<T> {
         let cap = speed.unwrap_or(fastest).min(fastest).min(bend);
         // The way that the source counts, at the speed that it is given.
         let length = paced.block.steps / paced.pulses_per_blu;
-        self.queue.push(Stretch { length, cap, joint }, (paced, what));
+        self.queue.push(Stretch { length, cap, joint, pulses: paced.block.steps }, (paced, what));
     }
 
     fn pop(&mut self) -> Option<Planned<T>> {
-        let ((paced, of), speeds) = self.queue.pop()?;
-        let Paced { block, source, limited, pulses_per_blu } = paced;
-        let before = self.scale.replace(pulses_per_blu).unwrap_or(pulses_per_blu);
-        let jump = self.queue.jump().min(speeds[1]);
-        let profile = Profile { speeds, jump, pulses_per_blu, before, pulses: block.steps };
-        let (words, hz) = self.by.words(&profile);
-        let seconds = seconds(&self.by, block.steps / pulses_per_blu, speeds);
-        let block = HardwareBlock { words: block.words.clone().and(words), ..block };
-        Some(Planned {
-            block,
-            source: source.map(|(word, _)| (word, hz)),
-            limited,
-            seconds: Some(seconds),
-            settles: false,
-            of,
-        })
+        if self.ready.is_empty() {
+            let (parts, speeds) = self.queue.pop()?;
+            self.plan(parts, speeds);
+        }
+        self.ready.pop_front()
+    }
+
+    /// Plans parts of one ramp, with the speeds at its start, on the way and at its end.
+    fn plan(&mut self, parts: Vec<(Paced, T)>, speeds: [f64; 3]) {
+        let [_, cap, exit] = speeds;
+        let mut left: f64 = parts.iter().map(|(paced, _)| paced.block.steps).sum();
+        let Some(k) = parts.first().map(|(paced, _)| paced.pulses_per_blu) else { return };
+        let all = left;
+        let seconds = seconds(&self.by, all / k, speeds);
+        // The greatest speed from which the end can be met.
+        let from = |left: f64| (exit * exit + 2.0 * self.by.gains[1] * left.max(0.0) / k).sqrt();
+        for (Paced { block, source, limited, .. }, of) in parts {
+            let before = self.scale.replace(k).unwrap_or(k);
+            let (pulses, own) = (left, block.steps);
+            let is_first = pulses == all;
+            left -= own;
+            let speeds = if is_first { speeds } else { [from(pulses), cap, from(left)] };
+            let profile = Profile { speeds, jump: self.queue.jump().min(cap), pulses_per_blu: k, before, pulses, own };
+            let (words, hz) = if is_first { self.by.words(&profile) } else { self.by.carried(&profile) };
+            let block = HardwareBlock { words: block.words.clone().and(words), ..block };
+            let source = source.map(|(word, _)| (word, hz));
+            let seconds = Some(seconds * own / all);
+            self.ready.push_back(Planned { block, source, limited, seconds, settles: false, of });
+        }
     }
 }

@@ -284,6 +284,71 @@ fn the_speed_never_jumps() {
     }
 }
 
+/// A straight way in many blocks takes the time that it takes in one, also along an S, which no short block could have for
+/// itself; and the acceleration is carried from block to block.
+#[test]
+fn blocks_of_one_direction_have_one_ramp() {
+    let folder = tempfile::tempdir().unwrap();
+    let (drive, jump, jerk) = (40.0 / BLU, GAIN.sqrt(), 20_000.0 / BLU);
+    let ramp = (drive - jump) / GAIN + GAIN / jerk;
+    let wanted = 2.0 * ramp + (2000.0 - (drive + jump) * ramp) / drive;
+    for method in ["bresenham", "ppc", "mindev", "cim", "dda", "dpm"] {
+        for parts in [1, 20, 200] {
+            let one = Straight { by: [2000 / parts, 0], feed: 2400.0, corner: Corner::Continuous };
+            let moves = vec![one; usize::try_from(parts).unwrap()];
+            let (report, trace) = simulation(&folder, method, &text(&moves), "20000mm/s3").run_traced().unwrap();
+            assert!(report.failures().is_empty(), "{method} {parts}: {:?}", report.failures());
+            assert_eq!(report.outcome.reached[0], 2000, "{method} {parts}");
+            // Its phase rests while a block is taken over.
+            let rests = if method == "bresenham" { parts } else { 0 };
+            let got = (report.outcome.clocks as i64 - rests) as f64 / HZ;
+            assert!((got - wanted).abs() < 0.002 * wanted, "{method} in {parts} blocks: {got} s, not {wanted} s");
+            let av = trace.bits("pulse_source.s_curve.av").unwrap();
+            let loaded = trace.bits("block.loaded").unwrap();
+            let carried = (1..av.len()).filter(|&clock| loaded[clock] == 1 && av[clock] > 0).count();
+            assert_eq!(carried > 0, parts > 1, "{method} in {parts} blocks: {carried}");
+        }
+    }
+}
+
+/// What an operator does ends a ramp over several blocks; each block after it still is what it is alone.
+#[test]
+fn a_chain_of_blocks_stops_at_every_block_and_holds_in_every_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let moves = vec![Straight { by: [40, 0], feed: 2400.0, corner: Corner::Continuous }; 40];
+    let plain = simulation(&folder, "ppc", &text(&moves), "20000mm/s3").run().unwrap().outcome.clocks;
+    for clock in (10..plain).step_by(usize::try_from(plain / 12).unwrap()) {
+        for script in [
+            vec![format!("{clock}:hold"), format!("{}:resume", clock + 3000)],
+            vec![
+                format!("{clock}:override=200"),
+                format!("{}:override=30", clock + 400),
+                format!("{}:override=100", clock + 3000),
+            ],
+            vec![format!("{clock}:single"), format!("{}:start", clock + 4000), format!("{}:continuous", clock + 9000)],
+        ] {
+            let events: Vec<Timed> = script.iter().map(|event| Timed::parse(event).unwrap()).collect();
+            let simulation = simulation(&folder, "ppc", &text(&moves), "20000mm/s3").events(events);
+            let (report, trace) = simulation.run_traced().unwrap();
+            assert_eq!(report.outcome.ending, Ending::Done, "{script:?}");
+            assert!(report.failures().is_empty(), "{script:?} {:?}", report.failures());
+            assert_eq!((report.outcome.reached[0], report.outcome.pulses[0]), (1600, 1600), "{script:?}");
+            if script[0].ends_with("single") {
+                // A block that is shorter than its braking distance ends faster.
+                continue;
+            }
+            let v = trace.bits("pulse_source.v").unwrap();
+            let [drive, start] = [4000.0, GAIN.sqrt()].map(|speed| speed * 2f64.powi(29) / HZ);
+            let gain = drive * GAIN / HZ / 4000.0 * 1.05 + 1.0 + 0.005 * drive;
+            for (at, pair) in v.windows(2).enumerate() {
+                let [before, after] = [pair[0] as f64, pair[1] as f64];
+                let low = before.min(after) <= 2.0 * start && before.max(after) <= 2.0 * start + gain;
+                assert!((after - before).abs() <= gain || low, "{script:?}: {before} to {after} at clock {at}");
+            }
+        }
+    }
+}
+
 #[test]
 fn an_arc_is_no_faster_than_its_acceleration_towards_the_centre() {
     // Without a corner: from a line into half a circle of 100 BLU, and on.

@@ -108,6 +108,12 @@ impl<'m> Block<'m> {
         held.q
     }
 
+    /// The same for registers that are loaded at other edges (`load`, 1 bit).
+    #[must_use]
+    pub(super) fn loaded_at(self, load: Signal<'m>) -> Block<'m> {
+        Block { load, ..self }
+    }
+
     /// 1 bit: blocks are run one by one.
     #[must_use]
     pub fn single(&self, m: Scope<'m>) -> Signal<'m> {

@@ -71,7 +71,8 @@ pub use normalizer::{Normalized, Normalizer, shifted_left, shifted_right};
 pub use phase_accumulator::{ACC, PhaseAccumulator, RATE};
 pub use point_comparison::{judged_by_sign, step_of_circle};
 pub use pulse_source::{
-    FASTEST_RATE, PULSE_RATE, PULSES, RATE_BITS, RATIO, RATIO_BITS, RATIO_FRACTION, pulse_source, pulse_source_while,
+    CARRY, FASTEST_RATE, OWN_PULSES, PULSE_RATE, PULSES, RATE_BITS, RATIO, RATIO_BITS, RATIO_FRACTION, pulse_source,
+    pulse_source_while,
 };
 pub use quadrant::{ArcKind, CCW, QUAD, next_quadrant, quadrant_register, x_grows};
 pub use ramp::{GAINS, LIMITS, PATH_GAINS, PHASE, RESTART, RISEN, Ramp, RampBits, RampEdge, V, WHOLE_OVERRIDE};

@@ -22,6 +22,12 @@ pub const FASTEST_RATE: u64 = 1 << (RATE_BITS - 1);
 pub const PULSES: Reg =
     Reg::new("pulses", Rule::Planned("as the blocks need"), "pulses of the source left of the block");
 
+/// Pulses of the block itself, where its ramp may be that of several blocks.
+pub const OWN_PULSES: Reg =
+    Reg::new("own_pulses", Rule::Planned("as the blocks need"), "pulses of the block left, without those after it");
+/// The ramp of the block before goes over this one too.
+pub const CARRY: Reg = Reg::new("carry", Rule::Bits(1), "the ramp of the block before goes over this one too");
+
 /// Bits of a ratio of scales, and of its fraction.
 pub const RATIO_BITS: u32 = 32;
 /// Those of its fraction.
@@ -76,26 +82,79 @@ fn constant<'m>(m: Scope<'m>, block: &Block<'m>, by_hand: bool, runs: impl FnOnc
 ///
 /// After a block with a hold or an override the next one does not begin at the speed that was planned, but at the one that
 /// there is, in its own scale: the speed times `ratio`, in 2^-16.
+///
+/// Along S curves one ramp goes over several blocks of one direction: what follows the first of them has `carry` = 1, and loads
+/// nothing of the ramp. A hold, an override or a stop ends that (`broken`, 1 bit): from the next block on each is a trapezoid up to
+/// the end of the ramp.
 fn accelerating<'m>(m: Scope<'m>, by: &Acceleration, block: &Block<'m>, runs: Signal<'m>) -> Signal<'m> {
+    let chain = by.jerk.map(|_| Chain::new(m, by, block));
+    let whole = block;
+    let block = &chain.as_ref().map_or(*block, |chain| block.loaded_at(chain.load));
     let bits = by.bits();
-    let pulses = DownCounter::new(m, block, PULSES.name(), by.pulse_bits());
+    // Each block says anew what is left of the ramp: one of which the pulses are an estimate may have had fewer.
+    let pulses = DownCounter::new(m, whole, PULSES.name(), by.pulse_bits());
     let [planned, after_stop] = [V, RESTART].map(|register| block.word(register.name(), bits.v));
     let restart = m.reg(RESTART.name(), bits.v);
     restart.when(block.load, after_stop).else_hold();
     let single = block.single(m);
-    let ramp = Ramp::new(m, bits, block).between_blocks(restart.q, single);
+    let ramp = match &chain {
+        None => Ramp::new(m, bits, block),
+        Some(chain) => Ramp::operated(m, bits, block, Some(chain.operator)),
+    };
+    let ramp = ramp.between_blocks(restart.q, single);
 
-    let disturbed = m.reg("disturbed", 1);
-    disturbed.when(ramp.event(), m.lit(1, 1)).when(block.load, m.lit(1, 0)).else_hold();
-    let by_hand = disturbed.q | ramp.event();
+    let by_hand = match &chain {
+        Some(chain) => chain.by_hand,
+        None => {
+            let disturbed = m.reg("disturbed", 1);
+            disturbed.when(ramp.event(), m.lit(1, 1)).when(block.load, m.lit(1, 0)).else_hold();
+            disturbed.q | ramp.event()
+        }
+    };
     let present = scaled(m, ramp.speed(), block.word(RATIO.name(), RATIO_BITS), planned);
     let first = single.mux(after_stop, by_hand.mux(present, planned));
 
     let pulse = ramp.pulse(runs);
-    let tick = runs & block.busy & !block.load;
-    ramp.close(RampEdge { preset: None, first, by_hand, runs, tick, left: pulses.left() }, Brake::Square, None);
+    // Where a ramp goes over a block, it moves on at the edge that loads this.
+    let moves = if chain.is_some() { block.busy | whole.load } else { block.busy };
+    let tick = runs & moves & !block.load;
+    // For a stop, and where each block is a ramp again, it is the end of the block that counts.
+    let left =
+        chain.as_ref().map_or(pulses.left(), |chain| (single | chain.broken).mux(chain.own.left(), pulses.left()));
+    ramp.close(RampEdge { preset: None, first, by_hand, runs, tick, left }, Brake::Square, None);
     let _ = pulses.count_pulses(pulse);
+    if let Some(chain) = chain {
+        let _ = chain.own.count_pulses(pulse);
+    }
     pulse
+}
+
+/// Blocks over which one ramp goes.
+#[derive(Debug)]
+struct Chain<'m> {
+    operator: Operator<'m>,
+    own: DownCounter<'m>,
+    /// 1 bit: this edge loads the ramp.
+    load: Signal<'m>,
+    /// 1 bit: a block that begins at this edge is run by hand.
+    by_hand: Signal<'m>,
+    /// 1 bit: the present block is one over which a ramp would go.
+    broken: Signal<'m>,
+}
+
+impl<'m> Chain<'m> {
+    fn new(m: Scope<'m>, by: &Acceleration, block: &Block<'m>) -> Chain<'m> {
+        let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
+        let operator = Operator::new(m.scope("operator"));
+        let own = DownCounter::new(m, block, OWN_PULSES.name(), by.pulse_bits());
+        let carry = block.word(CARRY.name(), 1);
+        let event = operator.acts() | block.single(m);
+        let (disturbed, broken) = (m.reg("disturbed", 1), m.reg("broken", 1));
+        disturbed.when(event, yes).when(block.load, no).else_hold();
+        let by_hand = m.name("loaded_by_hand", disturbed.q | event | broken.q);
+        broken.when(block.load, carry & by_hand).else_hold();
+        Chain { operator, own, load: m.name("ramp_load", block.load & (!carry | by_hand)), by_hand, broken: broken.q }
+    }
 }
 
 /// A speed times a ratio in 2^-16, at most another speed.

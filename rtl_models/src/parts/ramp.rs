@@ -107,7 +107,7 @@ impl<'m> Operator<'m> {
     }
 
     /// 1 bit: something is in force.
-    fn acts(&self) -> Signal<'m> {
+    pub(super) fn acts(&self) -> Signal<'m> {
         self.hold | self.trim.is_nonzero()
     }
 
@@ -128,9 +128,13 @@ impl<'m> Ramp<'m> {
     /// The registers and inputs.
     #[must_use]
     pub fn new(m: Scope<'m>, bits: RampBits, block: &Block<'m>) -> Ramp<'m> {
+        Ramp::operated(m, bits, block, None)
+    }
+
+    /// The same with inputs that there are already.
+    pub(super) fn operated(m: Scope<'m>, bits: RampBits, block: &Block<'m>, by: Option<Operator<'m>>) -> Ramp<'m> {
         let n = bits.phase;
         let (phase, v) = (m.reg(PHASE.name(), n), m.reg(V.name(), bits.v).shown(Format::Level));
-        let operator = m.scope("operator");
         let sum = m.name("sum", phase.q.extend(n + 1).wrapping_add(v.q.extend(n + 1)));
         let limits = [0, 1, 2].map(|index| block.held(m, LIMITS.of(index).name(), bits.v));
         Ramp {
@@ -144,7 +148,7 @@ impl<'m> Ramp<'m> {
             rest: [limits[0], limits[2]],
             single: None,
             gains: bits.gains.map(|(name, bits)| block.held(m, name, bits)),
-            by: Operator::new(operator),
+            by: by.unwrap_or_else(|| Operator::new(m.scope("operator"))),
         }
     }
 

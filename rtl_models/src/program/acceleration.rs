@@ -5,8 +5,8 @@ use crate::hardware::Hardware;
 use crate::machine::Words;
 use crate::options::{ACCEL, JERK, Millionths, Options, Quantity};
 use crate::parts::{
-    GROWTH, LENGTH, LIMITS, PARTS, PATH_GAINS, PULSES, RATIO, RATIO_BITS, RATIO_FRACTION, RESTART, RampBits,
-    SCurveBits, TICKS, V,
+    CARRY, GROWTH, LENGTH, LIMITS, OWN_PULSES, PARTS, PATH_GAINS, PULSES, RATIO, RATIO_BITS, RATIO_FRACTION, RESTART,
+    RampBits, SCurveBits, TICKS, V,
 };
 use crate::plan::Plan;
 use crate::ramping::{MOST_BITS, SBlock, SRamp, Scale, bits, rounded};
@@ -19,6 +19,9 @@ const PULSE_BITS: &str = "ramp pulses";
 
 /// Bits of an acceleration.
 const GAIN_BITS: &str = "ramp gains";
+
+/// Most bits of the pulses of a ramp over several blocks.
+const MOST_CHAIN: u32 = 40;
 
 /// Most bits of a load word.
 const MOST_WORD: u32 = 63;
@@ -47,8 +50,10 @@ pub struct Profile {
     pub pulses_per_blu: f64,
     /// The same of the part before.
     pub before: f64,
-    /// Pulses of the source in all.
+    /// Pulses of the source up to the end of the ramp.
     pub pulses: f64,
+    /// Those of the part itself, where the ramp goes over more.
+    pub own: f64,
 }
 
 /// The scale of the path: pulses of one BLU each.
@@ -109,7 +114,10 @@ pub(super) fn plan(plan: &mut Plan, [most, per_blu]: [u64; 2]) -> Result<(), Mod
     plan.constants.push((BITS, n.into()));
     let greatest = gains.both().map(|gain| scale.word(gain, 2, n)).into_iter().max().unwrap_or(1);
     plan.constants.push((GAIN_BITS, bits(greatest.saturating_mul(per_blu)).clamp(1, n).into()));
-    plan.constants.push((PULSE_BITS, bits(most.saturating_add(1)).into()));
+    // Along S curves a ramp goes over several blocks: four times the way in which the greatest speed is braked.
+    let slowest = gains.both().into_iter().filter_map(Quantity::mm).fold(f64::INFINITY, f64::min);
+    let chain = jerk.map_or(0, |_| rounded(0.5 / scale.exact(slowest, 2, 0)).min(1 << MOST_CHAIN));
+    plan.constants.push((PULSE_BITS, bits(most.saturating_add(1).max(chain)).into()));
     // The slowest speed that is loaded may be 1.
     plan.stall_clocks = u64::MAX;
     Ok(())
@@ -157,6 +165,12 @@ impl Acceleration {
         self.pulse_bits
     }
 
+    /// The most pulses of a ramp that goes over several blocks.
+    #[must_use]
+    pub fn most_pulses(&self) -> f64 {
+        ((1_u64 << self.pulse_bits) - 1) as f64
+    }
+
     /// The greatest speed along the path in BLU/s: a pulse every second clock.
     #[must_use]
     pub fn fastest(&self, pulses_per_blu: f64) -> f64 {
@@ -181,6 +195,7 @@ impl Acceleration {
             pulses_per_blu,
             before: pulses_per_blu,
             pulses,
+            own: pulses,
         })
         .0
     }
@@ -188,7 +203,7 @@ impl Acceleration {
     /// The words of the ramp for a part of a block, and the frequency in Hz that its source has on the way.
     #[must_use]
     pub fn words(&self, profile: &Profile) -> (Words, f64) {
-        let Profile { speeds, jump, pulses_per_blu: k, before, pulses } = *profile;
+        let Profile { speeds, jump, pulses_per_blu: k, before, pulses, own } = *profile;
         let unit = 2f64.powi(self.n.cast_signed()) / self.hz;
         let most = (1_u64 << self.n) - 1;
         let drive = rounded(speeds[1] * k * unit).clamp(1, 1 << (self.n - 1));
@@ -196,7 +211,7 @@ impl Acceleration {
             [speeds[0], speeds[2], jump].map(|v| rounded(v * k * unit).clamp(1, drive));
         let greatest = (1 << self.gain_bits) - 1;
         let mut gains = self.gains.map(|gain| rounded(gain * k * unit / self.hz).clamp(1, greatest));
-        let left = rounded(pulses.ceil()).min((1 << self.pulse_bits) - 1);
+        let left = self.counted(pulses);
         let ratio = rounded(k / before * 2f64.powi(RATIO_FRACTION.cast_signed())).min((1 << RATIO_BITS) - 1);
         let mut words = Words::new().set(PULSES, left).set(RESTART, restart).set(RATIO, ratio);
         let mut first = start;
@@ -210,8 +225,32 @@ impl Acceleration {
             let length = i128::try_from(length).unwrap_or(i128::MAX).min((1 << MOST_WORD) - 1);
             words = words.set(TICKS, up.ticks()).set_each(GROWTH, [up.j, down.j]);
             words = words.set_each(PARTS, [up.m, up.h, down.m, down.h]).set(LENGTH, length);
+            words = words.set(CARRY, false).set(OWN_PULSES, self.counted(own));
         }
         let words = words.set(V, first).set_each(LIMITS, [start, drive, stop]).set_each(PATH_GAINS, gains);
         (words, drive as f64 / unit)
+    }
+
+    /// A number of pulses as its register holds it.
+    fn counted(&self, pulses: f64) -> u64 {
+        rounded(pulses.ceil()).min((1 << self.pulse_bits) - 1)
+    }
+
+    /// The words of the ramp for a part over which that of a part before goes: they count after a hold, an override or a stop,
+    /// and make it a trapezoid. Its speeds are the greatest at its start and end from which the end of the ramp can be met.
+    #[must_use]
+    pub fn carried(&self, profile: &Profile) -> (Words, f64) {
+        let Profile { speeds: [start, drive, stop], jump, pulses_per_blu: k, pulses, own, .. } = *profile;
+        let unit = 2f64.powi(self.n.cast_signed()) / self.hz;
+        let most = 1 << (self.n - 1);
+        let [drive, start, stop] = [drive, start, stop].map(|v| rounded(v * k * unit).clamp(1, most));
+        let restart = rounded(jump * k * unit).clamp(1, drive);
+        let greatest = (1 << self.gain_bits) - 1;
+        let gains = self.gains.map(|gain| rounded(gain * k * unit / self.hz).clamp(1, greatest));
+        let [pulses, own] = [pulses, own].map(|pulses| self.counted(pulses));
+        let words = Words::new().set(PULSES, pulses).set(OWN_PULSES, own).set(RESTART, restart).set(CARRY, true);
+        let words = words.set(RATIO, 1_u64 << RATIO_FRACTION).set(TICKS, 0).set_each(GROWTH, [0; 2]);
+        let words = words.set_each(PARTS, [0; 4]).set(LENGTH, 0).set(V, start);
+        (words.set_each(LIMITS, [restart, drive, stop]).set_each(PATH_GAINS, gains), drive as f64 / unit)
     }
 }
