@@ -74,7 +74,13 @@ impl Write for Count {
 }
 
 fn header(probes: &[Probe]) -> VcdHeader<'_> {
-    VcdHeader { comment: "speed", probes, time: ClockTime::from_hz(1e6).expect("a usual clock"), clk: true }
+    VcdHeader {
+        comment: "speed",
+        probes,
+        time: ClockTime::from_hz(1e6).expect("a usual clock"),
+        clk: true,
+        states: false,
+    }
 }
 
 /// What one round took and made.

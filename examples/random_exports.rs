@@ -127,7 +127,8 @@ fn wave(design: &Design, stimulus: &Stimulus, time: ClockTime, out: File) -> Res
     columns.sort_unstable();
     columns.dedup();
     let probes = Selection::default().probes(design, &columns)?;
-    let mut body = VcdHeader { comment: "random netlist", probes: &probes, time, clk: true }.write(out)?;
+    let mut body =
+        VcdHeader { comment: "random netlist", probes: &probes, time, clk: true, states: false }.write(out)?;
     let rows = run(design, stimulus, columns);
     body.rows(&rows, 0..rows.len())?;
     body.finish()?;

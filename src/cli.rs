@@ -25,7 +25,7 @@ mod values;
 mod widths;
 
 use crate::simulation::FileOptions;
-use crate::waves::WaveOptions;
+use crate::waves::{Viewer, WaveOptions};
 pub(crate) use endings::{Format, OutputArgs, ShownArgs, by_ending, file_of};
 pub(crate) use hardware::HardwareArgs;
 pub(crate) use machine::{MachineArgs, Travel};
@@ -179,6 +179,9 @@ pub(crate) struct GoldenArgs {
     /// Only this case, without naming the folder before it (may be repeated)
     #[arg(long, value_name = "NAME")]
     pub(crate) case: Vec<String>,
+    /// Refused: golden waves have the files of one viewer, which are compared too
+    #[arg(long, hide = true)]
+    pub(crate) viewer: Option<Viewer>,
 }
 
 #[derive(Debug, Args)]

@@ -243,7 +243,8 @@ impl<'a> Waves<'a> {
         }
         let vcd = match sinks.vcd {
             Some((path, sink)) => {
-                let header = VcdHeader { comment: &comment, probes: &probes, time, clk };
+                let states = output::is_stream(path);
+                let header = VcdHeader { comment: &comment, probes: &probes, time, clk, states };
                 Some(Wave {
                     path,
                     writer: WaveWriter::new(header.write(Background::new(Limited::new(sink, args.large)))?, window)

@@ -16,6 +16,13 @@ const SHOWN: &str = "What is shown";
 const FIRST: &str = "trace-from";
 const LAST: &str = "trace-to";
 
+/// A sentence of a usage error of `show` in the words of its user: the options have the names that its help says first.
+pub(super) fn as_given(sentence: &str) -> String {
+    let sentence = sentence.replace(&format!("'--{FIRST} <N>'"), &format!("'--from <N>' (or --{FIRST})"));
+    let sentence = sentence.replace(&format!("'--{LAST} <N>'"), &format!("'--to <N>' (or --{LAST})"));
+    sentence.replace("'--values <FORM>'", "'--values <FORM>' (or --radix)")
+}
+
 /// How vectors may be written.
 const RADICES: [(&str, Radix); 5] = [
     ("declared", Radix::Declared),
@@ -31,7 +38,7 @@ const RADICES: [(&str, Radix); 5] = [
 /// `run` takes and writes no wave. Of a model `--from` and `--to` with commas are points and a single number is a clock;
 /// where the model has one axis it is a point too, and --trace-from and --trace-to give clocks. Each signal has a line, each clock a cell: sample k is what
 /// the hardware has settled to after edge k. Values of one state have its name where the file F.SIGNAL.states lies next to the
-/// wave, as `run --vcd` writes it. In a terminal levels are green and unknown values red, unless NO_COLOR is set. The same
+/// wave, as `run --vcd` writes it, or comments of the wave have it, as `run --vcd -` writes them. In a terminal levels are green and unknown values red, unless NO_COLOR is set. The same
 /// lines go into a picture for documents, or as WaveJSON to WaveDrom.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:\n  \

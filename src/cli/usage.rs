@@ -4,6 +4,7 @@ use clap::CommandFactory;
 use clap::error::ErrorKind;
 
 use super::Cli;
+use super::show::as_given;
 use crate::Error;
 
 /// A usage error, in one line: what is wrong, and where to read on. Without a command, the help.
@@ -31,6 +32,9 @@ pub(crate) fn usage(error: &clap::Error) -> Error {
     let command = std::env::args_os().nth(1).and_then(|word| word.into_string().ok());
     let command = command.filter(|word| program.find_subcommand(word).is_some());
     let command = command.unwrap_or_default();
+    if command == "show" {
+        sentence = as_given(&sentence);
+    }
     let help = format!("stepwave {command}").trim_end().to_owned();
     Error::Invalid(format!("{sentence} (see `{help} --help`)"))
 }

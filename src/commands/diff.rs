@@ -11,6 +11,7 @@ use crate::trace::read::{Wave, WaveError};
 use crate::Error;
 use crate::cli::{Format, file_of};
 use crate::output::{self, Outputs};
+use crate::waves::Viewer;
 
 /// Compare two waves and show where they part
 ///
@@ -69,6 +70,10 @@ pub(crate) struct DiffArgs {
     /// report)
     #[arg(long, value_name = "F.vcd", value_parser = file_of(&[Format::Vcd]))]
     pub(super) merged: Option<PathBuf>,
+
+    /// Refused: a merged wave has no rows or formats of its own
+    #[arg(long, hide = true)]
+    viewer: Option<Viewer>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -88,6 +93,11 @@ fn parse_map(rule: &str) -> Result<(String, String), String> {
 /// Compares two waves and prints where they part.
 pub(crate) fn run(args: &DiffArgs) -> Result<(), Error> {
     let trouble = |sentence: &str| Err(Error::Invalid(sentence.to_owned()));
+    if args.viewer.is_some() {
+        return trouble(
+            "a merged wave has no files for a viewer next to it: leave --viewer out; any viewer opens the VCD",
+        );
+    }
     let by = match args.by {
         Axis::Clock => By::Clock { offset: args.offset },
         Axis::Time if args.offset != 0 => return trouble("--offset counts clocks, which --by time does without"),

@@ -13,6 +13,13 @@ pub(crate) fn run(command: &GoldenCommand) -> Result<(), Error> {
         GoldenCommand::Check(args) => (args, false),
         GoldenCommand::Record(args) => (args, true),
     };
+    if args.viewer.is_some() {
+        return Err(Error::Invalid(
+            "golden waves have the files of GTKWave, which are compared too: leave --viewer out; `stepwave run … --vcd F \
+             --viewer surfer` writes those of Surfer"
+                .to_owned(),
+        ));
+    }
     let names: Vec<&String> = args.cases.iter().chain(&args.case).collect();
     let mut progress = None;
     let all = cases::read(&args.dir)?;

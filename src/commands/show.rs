@@ -24,19 +24,21 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
     if let Some(to) = args.to.filter(|to| *to < args.from) {
         return Err(Error::Invalid(format!("--to {to} is before --from {}: exchange them", args.from)));
     }
-    let Source { mut wave, side, reads, failures } = source::open(args)?;
+    let columns = args.columns.map_or_else(columns, usize::from);
+    let Source { mut wave, side, reads, failures, beyond } = source::open(args, columns)?;
     if let Some(clock) = &args.clock {
         wave = wave.with_clock(clock).map_err(WaveError::from)?;
     }
     let signals = signals(&wave, args)?;
     let States { names, files } = States::next_to(&args.wave, side.as_ref(), &wave, &signals);
     let drawing = Drawing {
-        columns: args.columns.map_or_else(columns, usize::from),
+        columns,
         ascii: args.ascii,
         colour: coloured(),
         radix: args.values,
         from: args.from,
         to: args.to,
+        beyond,
         by_time: args.by_time,
         names,
         option: if one_axis(&args.wave) { "--trace-from" } else { "--from" },
@@ -138,7 +140,11 @@ impl States {
                 Some(kept) => kept.take(&file.with_file_name(source::RUN).with_extension(format!("{leaf}.states"))),
                 None => std::fs::read(&file).ok(),
             };
-            let Some(text) = text.and_then(|bytes| String::from_utf8(bytes).ok()) else { continue };
+            let Some(text) = text.and_then(|bytes| String::from_utf8(bytes).ok()) else {
+                // Or in the wave itself, where it came through a pipe.
+                all.names.extend(wave.states().get_key_value(leaf).map(|(leaf, names)| (leaf.clone(), names.clone())));
+                continue;
+            };
             let names = text.lines().filter_map(|line| line.split_once(' '));
             let printable = |name: &str| name.chars().filter(|c| !c.is_control()).collect();
             let names = names.map(|(bits, name)| (bits.to_owned(), printable(name))).collect();

@@ -252,3 +252,22 @@ fn a_case_stays_in_its_folder() {
     assert!(ran.code == 2 && ran.err.contains("two.csv, which this command reads"), "{ran:?}");
     assert_eq!(folder.read("w/two.csv"), "G01 X0.004 Y0.003 F600\n");
 }
+
+#[test]
+fn golden_waves_and_merged_ones_take_no_viewer() {
+    let folder = Folder::new();
+    for words in ["golden record waves --viewer surfer", "golden check waves --viewer both"] {
+        let ran = folder.run(words);
+        assert_eq!(ran.code, 2);
+        assert!(
+            ran.err.contains("golden waves have the files of GTKWave") && ran.err.contains("leave --viewer out"),
+            "{}",
+            ran.err
+        );
+    }
+    folder.good("run dda-line --to 8,6 --vcd a.vcd");
+    let ran = folder.run("diff a.vcd a.vcd --merged m.vcd --viewer surfer");
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("a merged wave has no files for a viewer next to it: leave --viewer out"), "{}", ran.err);
+    assert!(!folder.files().contains(&"m.vcd".to_owned()));
+}

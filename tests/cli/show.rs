@@ -142,6 +142,69 @@ fn a_model_is_run_and_shown_as_the_wave_that_run_writes() {
 }
 
 #[test]
+fn names_of_states_come_through_a_pipe_in_comments_of_the_wave() {
+    let folder = Folder::new();
+    let piped = folder.good("run ppc-arc --from 5,0 --to 0,5 --ccw --vcd -");
+    assert!(piped.contains("\n$comment state beat 0001 JUDGE $end\n$comment state beat 0010 FEED $end\n"), "{piped}");
+    folder.good("run ppc-arc --from 5,0 --to 0,5 --ccw --vcd file.vcd");
+    let file = folder.read("file.vcd");
+    // A file has its names next to it, and no comment more than it had.
+    assert_eq!(file.matches("$comment").count(), 1);
+    let without: String =
+        piped.lines().filter(|line| !line.starts_with("$comment state")).map(|line| format!("{line}\n")).collect();
+    assert_eq!(without, file);
+    // The wave alone, in another folder, is shown as the file with what lies next to it.
+    let other = Folder::new();
+    other.write("piped.vcd", &piped);
+    for shown in ["", "--by-time", "--values hex --from 3 --to 40"] {
+        assert_eq!(
+            other.good(&format!("show piped.vcd {shown}")),
+            folder.good(&format!("show file.vcd {shown}")),
+            "{shown}"
+        );
+    }
+    // Comments of others are prose, whatever they begin with.
+    let odd =
+        piped.replace("$comment state beat 0001 JUDGE $end", "$comment state of the art $end $comment state $end");
+    other.write("odd.vcd", &odd);
+    assert!(!other.good("show odd.vcd").contains("JUDGE"));
+}
+
+#[test]
+fn a_run_of_many_clocks_is_recorded_as_far_as_it_is_shown() {
+    let folder = Folder::new();
+    // All of it would be a wave of more than 1 GB. The clocks by hand: one that loads, 2^24 additions, and what is pending.
+    let long = folder.run("show dda-line --to 16777215,3 --width 24 --columns 60");
+    assert_eq!(long.code, 0, "{}", long.err);
+    let [.., last] = &long.out.lines().collect::<Vec<_>>()[..] else { panic!("{}", long.out) };
+    let count = |word: &str| last.split(word).nth(1).and_then(|rest| rest.split(|c: char| !c.is_ascii_digit()).next());
+    let [to, more] = ["clock 0 to ", "; "].map(|word| count(word).unwrap().parse::<u64>().unwrap());
+    assert_eq!(to + more, (1 << 24) + 1, "{last}");
+}
+
+#[test]
+fn an_option_given_twice_is_named_as_its_user_wrote_it() {
+    let folder = Folder::new();
+    for (words, says) in [
+        (
+            "show dda-line --to 8,6 --to 3 --to 4",
+            "the argument '--to <N>' (or --trace-to) cannot be used multiple times",
+        ),
+        (
+            "show dda-line --to 8,6 --from 3 --from 4",
+            "the argument '--from <N>' (or --trace-from) cannot be used multiple times",
+        ),
+        (
+            "show dda-line --to 8,6 --radix hex --radix hex",
+            "the argument '--values <FORM>' (or --radix) cannot be used multiple times",
+        ),
+    ] {
+        let said = refused_in(&folder, words);
+        assert!(said.contains(says), "{said}");
+    }
+}
+
+#[test]
 fn one_number_is_a_clock_and_numbers_with_commas_are_a_point() {
     let folder = Folder::new();
     let shown = folder.good("show dda-line --to 8,6 --to=7 --from 2,1 --from 4 --signals e --radix hex");

@@ -139,7 +139,13 @@ fn recording(
     run: impl FnOnce(&mut Keep, &mut dyn Observer),
 ) -> Recording {
     let probes = Selection::default().probes(design, columns).expect(GOOD);
-    let header = VcdHeader { comment: what, probes: &probes, time: ClockTime::from_hz(1e6).expect(GOOD), clk: true };
+    let header = VcdHeader {
+        comment: what,
+        probes: &probes,
+        time: ClockTime::from_hz(1e6).expect(GOOD),
+        clk: true,
+        states: false,
+    };
     let mut wave = WaveWriter::new(header.write(Vec::new()).expect(GOOD), Window::default());
     let mut keep = Keep::default();
     run(&mut keep, &mut wave);

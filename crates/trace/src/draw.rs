@@ -45,6 +45,8 @@ pub struct Drawing {
     pub from: u64,
     /// The last one; as many as fit in a line where it is not given.
     pub to: Option<u64>,
+    /// Clocks that there were after the last one of the wave, which the text counts among those that are left out.
+    pub beyond: u64,
     /// Cells are times at which something changes, in units of the wave, and not clocks.
     pub by_time: bool,
     /// Names of values by signal: those of states, by the bits of a value.
@@ -60,8 +62,8 @@ impl Default for Drawing {
     /// 80 columns from clock 0.
     fn default() -> Drawing {
         let (ascii, colour, by_time) = (false, false, false);
-        let (radix, from, to, names) = (Radix::default(), 0, None, BTreeMap::new());
-        Drawing { columns: 80, ascii, colour, radix, from, to, by_time, names, option: "--from" }
+        let (radix, from, to, beyond, names) = (Radix::default(), 0, None, 0, BTreeMap::new());
+        Drawing { columns: 80, ascii, colour, radix, from, to, beyond, by_time, names, option: "--from" }
     }
 }
 

@@ -42,6 +42,7 @@ pub use clock::{Clock, ClockError};
 pub(crate) use value::extension;
 pub use value::{Value, Vector};
 
+use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 use std::fs::{File, FileType};
 use std::io::{self, BufReader, Cursor, Read, Seek};
@@ -54,8 +55,12 @@ pub struct Wave {
     times: Vec<u64>,
     signals: Vec<Signal>,
     stored: Vec<store::Changes>,
+    states: States,
     clock: Result<Clock, ClockError>,
 }
+
+/// Names of states by the leaf name of a signal and the bits of a value.
+pub type States = BTreeMap<String, BTreeMap<String, String>>;
 
 /// What a reader makes of a file.
 struct Content {
@@ -63,6 +68,7 @@ struct Content {
     stored: Vec<store::Changes>,
     times: Vec<u64>,
     timescale: Option<Timescale>,
+    states: States,
 }
 
 /// A named signal of a wave. Two names of one signal are two of these that share their stored changes.
@@ -275,6 +281,12 @@ impl Wave {
     #[must_use]
     pub fn times(&self) -> &[u64] {
         &self.times
+    }
+
+    /// The names of states that comments of a VCD give, as [`VcdHeader`](crate::vcd::VcdHeader) writes them.
+    #[must_use]
+    pub fn states(&self) -> &States {
+        &self.states
     }
 
     /// Every signal, in the order of the file, scope by scope. No two have the same path.

@@ -22,6 +22,7 @@ use super::probe::{Probe, Role};
 use super::timescale::ClockTime;
 use super::wide::Wide;
 use stepwave_netlist::Rows;
+use stepwave_netlist::cells::Format;
 use text::{Line, Stamps, Tail, WINDOW};
 
 pub use background::Background;
@@ -41,6 +42,8 @@ pub struct VcdHeader<'a> {
     pub time: ClockTime,
     /// Dump the clock as `clk` in the top scope.
     pub clk: bool,
+    /// The names of states are in comments, for a wave that no files lie next to.
+    pub states: bool,
 }
 
 /// One dumped net.
@@ -95,6 +98,17 @@ pub(super) fn has_range(probe: &Probe) -> bool {
     probe.width > 1 && probe.role != Role::Constant && !probe.format.is_signed()
 }
 
+/// A comment for each state of a probe: the leaf name, the bits and the name.
+fn states(probe: &Probe, out: &mut impl Write) -> io::Result<()> {
+    let Format::States(names) = &probe.format else { return Ok(()) };
+    // A name that would end the comment, or that is blank, is left out.
+    let fits = |name: &str| !name.contains("$end") && !name.contains(char::is_control) && !name.trim().is_empty();
+    names.iter().filter(|(_, name)| fits(name)).try_for_each(|(value, name)| {
+        let bits = &format!("{value:064b}")[64usize.saturating_sub(probe.width as usize)..];
+        writeln!(out, "$comment state {} {bits} {name} $end", probe.name)
+    })
+}
+
 impl VcdHeader<'_> {
     /// Writes the header.
     ///
@@ -105,6 +119,9 @@ impl VcdHeader<'_> {
         // The crate spreads these two over three lines, which some readers do not take.
         writeln!(head.writer(), "$version stepwave {} $end", env!("CARGO_PKG_VERSION"))?;
         writeln!(head.writer(), "$comment schema 1; clock {} Hz; {} $end", self.time.hz(), self.comment)?;
+        if self.states {
+            self.probes.iter().try_for_each(|probe| states(probe, head.writer()))?;
+        }
         head.timescale(self.time.magnitude(), self.time.unit())?;
         let Declared { clk, changes, wide } = self.declarations(&mut head)?;
         head.enddefinitions()?;

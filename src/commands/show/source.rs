@@ -9,7 +9,7 @@ use crate::commands::run;
 use crate::models::find;
 use crate::output::{Kept, Outputs};
 use crate::own::is_netlist;
-use crate::trace::read::Wave;
+use crate::trace::read::{Wave, WaveError};
 use crate::waves::WaveOptions;
 use crate::waves::limited::REMEDIES;
 
@@ -25,13 +25,15 @@ pub(super) struct Source {
     pub(super) reads: Vec<PathBuf>,
     /// What the hardware of a run did wrong.
     pub(super) failures: Vec<String>,
+    /// Clocks of a run after the last one of the wave.
+    pub(super) beyond: u64,
 }
 
-/// Reads the wave, or simulates the model.
+/// Reads the wave, or simulates the model: of a run only those clocks are recorded that fit in this many columns.
 ///
 /// # Errors
 /// There is neither, the file holds something else, or what is given does not go with it.
-pub(super) fn open(args: &ShowArgs) -> Result<Source, Error> {
+pub(super) fn open(args: &ShowArgs, columns: usize) -> Result<Source, Error> {
     let word = args.wave.to_string_lossy();
     if !is_wave(&args.wave) {
         if !is_netlist(&word)
@@ -41,7 +43,7 @@ pub(super) fn open(args: &ShowArgs) -> Result<Source, Error> {
                 "{word} is neither the file of a wave nor a model: {error}; give the path of a VCD or FST, or the name of a model"
             )));
         }
-        return simulated(args, &word);
+        return simulated(args, &word, columns);
     }
     if let Some(option) = args.run.given.first() {
         let clocks = if ["--from", "--to"].contains(&&**option) { ": of a wave give a clock, one number" } else { "" };
@@ -50,7 +52,7 @@ pub(super) fn open(args: &ShowArgs) -> Result<Source, Error> {
         )));
     }
     let wave = Wave::open(&args.wave)?;
-    Ok(Source { wave, side: None, reads: vec![args.wave.clone()], failures: Vec::new() })
+    Ok(Source { wave, side: None, reads: vec![args.wave.clone()], failures: Vec::new(), beyond: 0 })
 }
 
 /// A file that exists, or a name that only a wave has. A netlist is to be run.
@@ -61,11 +63,18 @@ fn is_wave(path: &Path) -> bool {
     path == Path::new("-") || named(&["vcd", "fst"]) || (!named(&["net"]) && exists())
 }
 
-fn simulated(args: &ShowArgs, model: &str) -> Result<Source, Error> {
+fn simulated(args: &ShowArgs, model: &str, columns: usize) -> Result<Source, Error> {
     let of = &args.run.args;
     let reads = of.files(model);
     let (kept, mut outputs) = Outputs::in_memory();
-    let waves = WaveOptions { vcd: Some(RUN.into()), to: args.to.filter(|_| !args.by_time), ..WaveOptions::default() };
+    #[cfg(unix)]
+    let whole = args.by_time || args.follow;
+    #[cfg(not(unix))]
+    let whole = args.by_time;
+    // A clock has a character of a line at least.
+    let fits = args.from.saturating_add(columns as u64);
+    let to = args.to.or(Some(fits).filter(|_| !whole)).filter(|_| !args.by_time);
+    let waves = WaveOptions { vcd: Some(RUN.into()), to, ..WaveOptions::default() };
     let (simulation, curve) = run::simulation(model, of)?;
     let simulation = simulation.waves(waves);
     let bench = simulation.prepare().map_err(|error| of.hardware.explain(error))?.bench;
@@ -75,5 +84,10 @@ fn simulated(args: &ShowArgs, model: &str) -> Result<Source, Error> {
         other => other,
     })?;
     let wave = Wave::from_bytes(kept.take(Path::new(RUN)).unwrap_or_default())?;
-    Ok(Source { wave, side: Some(kept), reads, failures: ran.report.failures() })
+    let samples = ran.report.outcome.clocks.saturating_add(1);
+    let beyond = match args.to {
+        None if !whole => samples.saturating_sub(wave.cycles().map_err(WaveError::from)?),
+        _ => 0,
+    };
+    Ok(Source { wave, side: Some(kept), reads, failures: ran.report.failures(), beyond })
 }

@@ -17,7 +17,7 @@ pub struct Window {
     /// The clock or the time of each cell.
     pub(super) places: Vec<u64>,
     /// Clocks or times after the last cell that are left out.
-    pub(super) more: usize,
+    pub(super) more: u64,
     pub(super) by_time: bool,
     pub(super) unit: Option<Timescale>,
     /// Characters of the names.
@@ -92,7 +92,8 @@ impl Window {
             places.truncate(fit);
             rows.iter_mut().for_each(|row| row.truncate(fit));
         }
-        let (more, by_time, unit) = (all - places.len(), drawing.by_time, wave.timescale());
+        let (by_time, unit) = (drawing.by_time, wave.timescale());
+        let more = (all - places.len()) as u64 + drawing.beyond;
         Ok(Window { rows, places, more, by_time, unit, name, cell, fit, option: drawing.option })
     }
 

@@ -42,9 +42,9 @@ pub(super) fn piped(head: Vec<u8>, rest: impl Read, format: Format, name: String
 }
 
 fn finished(content: Content, name: String) -> Wave {
-    let Content { signals, stored, times, timescale } = content;
+    let Content { signals, stored, times, timescale, states } = content;
     let clock = Err(ClockError::None { name: name.clone(), candidates: Vec::new() });
-    let mut wave = Wave { name, timescale, times, signals, stored, clock };
+    let mut wave = Wave { name, timescale, times, signals, stored, states, clock };
     wave.clock = Clock::found(&wave);
     wave
 }

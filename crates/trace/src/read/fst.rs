@@ -2,7 +2,7 @@
 
 use super::names::{Names, Var};
 use super::store::{Changes, Misfit};
-use super::{Content, Timescale, ValueKind, WaveError, blocks, limits};
+use super::{Content, States, Timescale, ValueKind, WaveError, blocks, limits};
 use crate::guard::guarded;
 use fst_reader::{
     FstFilter, FstHierarchyEntry, FstReader, FstSignalHandle, FstSignalValue, FstVarType, FstVhdlDataType,
@@ -62,7 +62,7 @@ fn decode(input: impl BufRead + Seek, name: &str, length: u64) -> Result<Content
     })?;
     let Declarations { names, mut stored, .. } = declarations;
     let signals = names.signals(&mut stored).map_err(|reason| malformed(name, reason))?;
-    Ok(Content { signals, stored, times, timescale: Some(timescale) })
+    Ok(Content { signals, stored, times, timescale: Some(timescale), states: States::new() })
 }
 
 fn timescale(exponent: i8) -> Result<Timescale, String> {

@@ -5,7 +5,7 @@ mod ids;
 
 use super::names::Names;
 use super::store::{Changes, Misfit};
-use super::{Content, Timescale, ValueKind, WaveError, limits};
+use super::{Content, States, Timescale, ValueKind, WaveError, limits};
 use ids::Ids;
 use std::io::{BufRead, Read};
 
@@ -23,6 +23,7 @@ pub(super) fn read(input: &mut impl BufRead, name: &str, length: u64) -> Result<
         times: Vec::new(),
         value: Vec::new(),
         timescale: None,
+        states: States::new(),
         signed: false,
     };
     let mut line = Vec::with_capacity(256);
@@ -87,6 +88,7 @@ struct Vcd<'a> {
     /// The value whose id code is next.
     value: Vec<u8>,
     timescale: Option<(Timescale, u64)>,
+    states: States,
     /// An attribute says that the next variable is signed.
     signed: bool,
 }
@@ -216,13 +218,13 @@ impl Vcd<'_> {
             ParserState::Header | ParserState::Command => "the header",
             ParserState::Id => "a value",
             ParserState::Body | ParserState::Comment => {
-                let Self { name, names, mut stored, times, timescale, .. } = self;
+                let Self { name, names, mut stored, times, timescale, states, .. } = self;
                 let signals = names.signals(&mut stored).map_err(|reason| WaveError::Refused {
                     name: name.into(),
                     place: "header".into(),
                     reason,
                 })?;
-                return Ok(Content { signals, stored, times, timescale: timescale.map(|(scale, _)| scale) });
+                return Ok(Content { signals, stored, times, timescale: timescale.map(|(scale, _)| scale), states });
             }
         };
         Err(WaveError::CutOff { name: self.name.into(), place: format!("line {}", self.line), what })

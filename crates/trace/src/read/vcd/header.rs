@@ -35,7 +35,9 @@ impl Vcd<'_> {
             let reason = format!("`{}` where the ${keyword} of line {line} has no $end yet", quoted(word));
             return Err(self.refused(reason));
         }
-        if !prose && !word.is_empty() {
+        // Of comments those are read that name a state.
+        let names_state = keyword == "comment" && words.first().map_or(word, |first| first.as_bytes()) == b"state";
+        if (!prose || names_state) && !word.is_empty() {
             words.push(String::from_utf8_lossy(word).into_owned());
         }
         Ok(())
@@ -45,6 +47,10 @@ impl Vcd<'_> {
     fn command(&mut self) -> Result<(), WaveError> {
         let Command { keyword, words, .. } = std::mem::take(&mut self.command);
         match (keyword.as_str(), words.as_slice()) {
+            ("comment", [_, leaf, bits, name @ ..]) if bits.bytes().all(|bit| matches!(bit, b'0' | b'1')) => {
+                self.states.entry(leaf.clone()).or_default().insert(bits.clone(), name.join(" "));
+                Ok(())
+            }
             ("comment" | "date" | "version" | "attrend", _) => Ok(()),
             ("enddefinitions", _) => {
                 self.state = ParserState::Body;
