@@ -29,11 +29,14 @@ pub(crate) enum Family {
     --synth ice40 takes the Verilog of `stepwave export --no-flags` at these widths. LUTs and flip-flops are those that\n\
     `yosys synth_ice40` makes of it; load words are inputs, which nothing is counted for. The highest clock is that of\n\
     nextpnr-ice40 in an hx8k, package ct256, seed 1, with `export --harness` around it, as the package has fewer pins than\n\
-    the machine has ports. Other seeds are some per cent off; one is taken where the router comes to no end. Debian packages: yosys, nextpnr-ice40.\n\n\
+    the machine has ports. Other seeds are some per cent off; one is taken where the router comes to no end. Next to it the same of\n\
+    the machine that runs programs by the method, with block buffer, pulse source and at least three axes. With --accel its ramp\n\
+    too, counted in the smallest of these machines: it is the same in all. Its multipliers take Yosys a minute or more.\n\
+    Debian packages: yosys, nextpnr-ice40.\n\n\
     --accel runs one move as `stepwave program --accel` does at --clock-hz: a line from the origin to the end of the travel,\n\
     or of an arc a quarter of the greatest circle. Shown are the registers of the ramp, the greatest feed along the path,\n\
     time and length from the start to the end of the ramp up and from the ramp down to the last step, and the time of the\n\
-    move. Families that take F along an axis are slower along a path between the axes. Costs of --synth are without the ramp.\n\n\
+    move. Families that take F along an axis are slower along a path between the axes.\n\n\
     --pareto leaves out what another row of the same curve beats: nowhere worse and somewhere better in the clock for the\n\
     feed, the greatest error, and the bits of all registers; with --synth in the feed at the highest clock, the error,\n\
     and LUTs and flip-flops together.\n\n\

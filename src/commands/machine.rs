@@ -17,13 +17,18 @@ use crate::nc::COORDINATE_LIMIT;
 use crate::output;
 use crate::study::machine::{Dimensions, Size, dimensions, takes};
 use crate::study::proof::ProofError;
-use crate::study::ramp::{Ramped, ramped};
+use crate::study::ramp::{Ramped, machine_of, ramped, whole};
 use crate::study::synth::{Cost, Tools};
+
+/// Seeds that are tried for machines that run programs.
+const MOST_SEEDS: u64 = 2;
 
 /// A machine by one method, with what it costs where that is asked for.
 struct Row {
     found: Dimensions,
     cost: Option<Cost>,
+    /// Of methods that run programs: the machine with pulse source and buffer, for lines and arcs.
+    whole: Option<Whole>,
     /// Of methods that run programs.
     ramp: Option<Ramped>,
 }
@@ -37,6 +42,20 @@ impl Row {
     }
 }
 
+/// What the machine costs that runs programs by a method.
+#[derive(Clone, Copy)]
+struct Whole {
+    machine: &'static Model,
+    cost: Cost,
+}
+
+/// What the ramp costs, which is the same for all: a machine without it and with it.
+struct RampCost {
+    machine: &'static Model,
+    without: Cost,
+    with: Cost,
+}
+
 /// What there is to say of a machine.
 struct Answer {
     size: Size,
@@ -47,6 +66,8 @@ struct Answer {
     accelerates: Option<(String, f64)>,
     /// What costs come from.
     tools: Option<Tools>,
+    /// With costs and an acceleration.
+    ramp_cost: Option<RampCost>,
     /// Rows that others beat, where they are left out.
     beaten: Option<Vec<Beaten>>,
 }
@@ -58,15 +79,24 @@ pub(crate) fn run(args: &MachineArgs) -> Result<(), Error> {
     // Before the long work, for one of them may be missing.
     let tools = args.synth.map(|_| Tools::find()).transpose()?;
     let (found, left_out) = found(args, &size, models)?;
-    let ramps = ramp_options(args)?.map(|options| ramps(args, &size, &options, &found)).transpose()?;
-    let costs = tools.as_ref().map(|tools| costs(tools, &found)).transpose()?;
+    let options = ramp_options(args)?;
+    let ramps = options.as_ref().map(|options| ramps(args, &size, options, &found)).transpose()?;
+    let costs = tools.as_ref().map(|tools| costs(tools, args, &size, &found)).transpose()?;
     let (mut costs, mut ramps) = (costs.into_iter().flatten(), ramps.into_iter().flatten());
-    let rows = found.into_iter().map(|found| Row { cost: costs.next(), ramp: ramps.next().flatten(), found }).collect();
+    let row = |found| {
+        let (cost, whole) = costs.next().map_or((None, None), |(cost, whole)| (Some(cost), whole));
+        Row { cost, whole, ramp: ramps.next().flatten(), found }
+    };
+    let rows: Vec<Row> = found.into_iter().map(row).collect();
+    let ramp_cost = match (&tools, &options) {
+        (Some(tools), Some(options)) => ramp_cost(tools, args, &size, options, &rows)?,
+        _ => None,
+    };
     let accelerates = args.accel.as_ref().map(|accel| {
         let jerk = args.jerk.as_ref().map_or_else(String::new, |jerk| format!(" --jerk {jerk}"));
         (format!("--accel {accel}{jerk}"), args.clock_hz)
     });
-    let mut answer = Answer { size, rows, left_out, accelerates, tools, beaten: None };
+    let mut answer = Answer { size, rows, left_out, accelerates, tools, ramp_cost, beaten: None };
     if args.pareto {
         pareto::keep_unbeaten(&mut answer);
     }
@@ -126,16 +156,63 @@ fn ramps(
     found.par_iter().map(ramp).collect()
 }
 
-/// What each of them costs. Tools take one core each: two of them at a time.
-fn costs(tools: &Tools, found: &[Dimensions]) -> Result<Vec<Cost>, Error> {
-    let progress = Progress::of(found.len() as u64, "methods placed");
-    let cost = |found: &Dimensions| {
+/// What each of them costs, alone and in the machine that runs programs by it. Tools take one core each: two of them at a
+/// time.
+fn costs(
+    tools: &Tools,
+    args: &MachineArgs,
+    size: &Size,
+    found: &[Dimensions],
+) -> Result<Vec<(Cost, Option<Whole>)>, Error> {
+    let families = families(found);
+    let progress = Progress::of((found.len() + families.len()) as u64, "methods placed");
+    let alone = |found: &Dimensions| {
         let cost = tools.cost(found.model.name, &found.bench()?)?;
         progress.add(1);
         Ok(cost)
     };
+    let program = |found: &&Dimensions| {
+        let Some((machine, bench)) = whole(found, size, &Options::default(), args.clock_hz)? else { return Ok(None) };
+        let cost = tools.cost_within(machine.name, &bench, MOST_SEEDS)?;
+        progress.add(1);
+        Ok(Some(Whole { machine, cost }))
+    };
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
-    two.install(|| found.par_iter().map(cost).collect())
+    let (costs, wholes) = two.install(|| {
+        let costs: Result<Vec<Cost>, Error> = found.par_iter().map(alone).collect();
+        let wholes: Result<Vec<Option<Whole>>, Error> = families.par_iter().map(program).collect();
+        (costs, wholes)
+    });
+    let wholes: Vec<Whole> = wholes?.into_iter().flatten().collect();
+    let of = |found: &Dimensions| {
+        let machine = machine_of(found.model)?;
+        wholes.iter().find(|whole| whole.machine.name == machine.name).copied()
+    };
+    Ok(costs?.into_iter().zip(found).map(|(cost, found)| (cost, of(found))).collect())
+}
+
+/// The first method of each family that has a machine for programs: that of lines, which are as long as the travel.
+fn families(found: &[Dimensions]) -> Vec<&Dimensions> {
+    let mut seen = BTreeSet::new();
+    found.iter().filter(|found| machine_of(found.model).is_some_and(|machine| seen.insert(machine.name))).collect()
+}
+
+/// What a ramp costs, by the smallest machine that runs programs; its multipliers keep Yosys busy for a minute or more, and nothing is
+/// placed.
+fn ramp_cost(
+    tools: &Tools,
+    args: &MachineArgs,
+    size: &Size,
+    options: &Options,
+    rows: &[Row],
+) -> Result<Option<RampCost>, Error> {
+    let wholes = rows.iter().filter_map(|row| Some((&row.found, row.whole.as_ref()?)));
+    let Some((found, Whole { machine, cost })) = wholes.min_by_key(|(_, whole)| whole.cost.luts) else {
+        return Ok(None);
+    };
+    let Some((_, bench)) = whole(found, size, options, args.clock_hz)? else { return Ok(None) };
+    let with = tools.cost_within(machine.name, &bench, 0)?;
+    Ok(Some(RampCost { machine, without: *cost, with }))
 }
 
 /// The travel in whole BLU, rounded up, so that the machine is never too small.

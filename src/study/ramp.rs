@@ -49,7 +49,8 @@ pub struct Ramped {
 }
 
 /// The machine for whole programs of the family of a method.
-fn machine_of(model: &Model) -> Option<&'static Model> {
+#[must_use]
+pub fn machine_of(model: &Model) -> Option<&'static Model> {
     let family = model.name.split('-').next().unwrap_or_default();
     installed().machines().find(|machine| machine.is_buffered() && machine.method_name() == family)
 }
@@ -77,20 +78,51 @@ fn radius(size: &Size) -> i64 {
     size.travel[0].min(size.travel[1])
 }
 
-/// Runs the move by the machine of a method. `None` where the method has no machine for programs.
-///
-/// # Errors
-/// The acceleration cannot be had, or the move does not come to its end: in words.
-pub fn ramped(found: &Dimensions, size: &Size, options: &Options, hz: f64) -> Result<Option<Ramped>, Error> {
+/// The move across the travel, ready to be run as a program.
+struct Across {
+    machine: &'static Model,
+    text: String,
+    simulation: Simulation,
+    bench: Testbench,
+    /// Holds the text.
+    _folder: Folder,
+}
+
+/// The move by the machine of a method. `None` where the method has no machine for programs.
+fn across(found: &Dimensions, size: &Size, options: &Options, hz: f64) -> Result<Option<Across>, Error> {
     let Some(machine) = machine_of(found.model) else { return Ok(None) };
-    let kind = found.model.curve();
-    let text = program(kind, size);
+    let text = program(found.model.curve(), size);
     let folder = Folder::new()?;
     let file = folder.path().join("move.ngc");
     std::fs::write(&file, &text)?;
     let simulation = Simulation::program(machine, &file).options(options.clone()).clock_hz(hz).blu_mm(size.blu_mm);
     let simulation = simulation.max_clocks(LIMIT);
     let Prepared { bench, .. } = simulation.prepare()?;
+    Ok(Some(Across { machine, text, simulation, bench, _folder: folder }))
+}
+
+/// The machine that runs programs by a method, as wide as a move across the travel needs it, with pulse source, block buffer, and
+/// the ramp that the options ask for, if they do. `None` where there is none.
+///
+/// # Errors
+/// The acceleration cannot be had: in words.
+pub fn whole(
+    found: &Dimensions,
+    size: &Size,
+    options: &Options,
+    hz: f64,
+) -> Result<Option<(&'static Model, Testbench)>, Error> {
+    Ok(across(found, size, options, hz)?.map(|across| (across.machine, across.bench)))
+}
+
+/// Runs the move by the machine of a method. `None` where the method has no machine for programs.
+///
+/// # Errors
+/// The acceleration cannot be had, or the move does not come to its end: in words.
+pub fn ramped(found: &Dimensions, size: &Size, options: &Options, hz: f64) -> Result<Option<Ramped>, Error> {
+    let Some(across) = across(found, size, options, hz)? else { return Ok(None) };
+    let Across { machine, text, simulation, bench, _folder } = across;
+    let kind = found.model.curve();
     let netlist = bench.design().netlist();
     let bits = |name: &'static str| Some((name, netlist.width(register(netlist, name)?).get()));
     let registers = REGISTERS.into_iter().filter_map(bits).collect();

@@ -15,9 +15,11 @@ const SMALL: &str = "machine ppc-line mindev-line --travel 0.02mm,0.015mm --blu 
 /// As Yosys writes a netlist, cut down to what is counted: three LUTs and two flip-flops for a machine of this many inputs.
 const YOSYS: &str = r#"case "$1" in -V) echo "Yosys 0.23 (git sha1 7ce5011c24b)"; exit;; esac
 grep -q '^module .*_harness($' harness.v && ! grep -q _overflow harness.v || exit 7
+more=; grep -q pulse_source machine.v && more='"g": { "type": "SB_LUT4" },'
+grep -q decel machine.v && more="$more \"h\": { \"type\": \"SB_DFF\" },"
 for top in machine harness; do
-cat >$top.json <<'JSON'
-{ "creator": "Yosys 0.23", "modules": { "SB_LUT4": { "cells": {} }, "top": { "cells": {
+cat >$top.json <<JSON
+{ "creator": "Yosys 0.23", "modules": { "SB_LUT4": { "cells": {} }, "top": { "cells": { $more
 "a": { "type": "SB_LUT4" }, "b": { "type": "SB_LUT4" }, "c": { "type": "SB_LUT4" },
 "d": { "type": "SB_DFFESR" }, "e": { "type": "SB_DFF" }, "f": { "type": "SB_CARRY" } } } } }
 JSON
@@ -68,8 +70,19 @@ fn costs_are_counted_in_the_netlist_and_read_from_the_report() {
     let row = text.out.lines().find(|line| line.starts_with("ppc-line ")).unwrap();
     let cells: Vec<&str> = row.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect();
     assert_eq!(cells[6..9], ["3", "2", "102.500 MHz"], "{row}");
+    // With the pulse source there is a lookup table more, with a ramp a flip-flop too.
+    assert_eq!(cells[10..], ["4", "2", "102.500 MHz"], "{row}");
+    let ramp = ran(&folder, &format!("{SMALL} --synth ice40 --accel 500mm/s2"));
+    let wanted = "\nthe ramp takes 0 LUTs and 1 flip-flops more, in ppc-machine: 4 and 3 with it\n";
+    assert!(ramp.out.contains(wanted), "{ramp:?}");
+    let all = ran(&folder, &format!("{SMALL} --synth ice40 --accel 500mm/s2 --json")).out;
+    let all: Value = serde_json::from_str(&all).unwrap();
+    let count = |which: &str| all["ramp_cost"][which]["flip_flops"].as_u64();
+    assert_eq!([count("without"), count("with")], [Some(2), Some(3)]);
     let markdown = ran(&folder, &format!("{SMALL} --synth ice40 --markdown"));
-    assert!(markdown.out.contains(" | LUTs | flip-flops | highest clock | feed at the highest clock, mm/min |\n"));
+    assert!(markdown.out.contains(
+        " | LUTs | flip-flops | highest clock | feed at the highest clock, mm/min | LUTs with pulse source | "
+    ));
     assert!(markdown.out.contains(" | 3 | 2 | 102.500 MHz | "), "{markdown:?}");
     let all: Value = serde_json::from_str(&ran(&folder, &format!("{SMALL} --synth ice40 --json")).out).unwrap();
     assert_eq!(all["synth"]["device"], "iCE40 hx8k ct256, seed 1");
@@ -77,6 +90,9 @@ fn costs_are_counted_in_the_netlist_and_read_from_the_report() {
         let cost = &machine["cost"];
         let counts = ["luts", "flip_flops", "carries", "block_rams"].map(|field| cost[field].as_u64().unwrap());
         assert_eq!((counts, cost["clock_hz"].as_f64()), ([3, 2, 1, 0], Some(102.5e6)), "{machine}");
+        let whole = &machine["program_cost"];
+        let name = machine["model"].as_str().unwrap().replace("-line", "-machine");
+        assert_eq!((whole["machine"].as_str(), whole["luts"].as_u64()), (Some(&*name), Some(4)), "{machine}");
         // A feed goes with the clock.
         for end in ["least", "greatest"] {
             let wanted = machine["feed"][end].as_f64().unwrap() * 102.5e6 / machine["clock_hz"].as_f64().unwrap();
@@ -100,7 +116,7 @@ fn what_the_device_does_not_hold_has_no_clock() {
     let text = ran(&folder, "machine ppc-line --travel 0.02mm,0.015mm --feed 30 --synth ice40");
     assert_eq!(text.code, 0, "{text:?}");
     assert!(text.out.contains("\nppc-line does not fit into the device: its highest clock is not known\n"), "{text:?}");
-    assert!(text.out.replace(' ', "").contains("µm76810--\n"), "{text:?}");
+    assert!(text.out.replace(' ', "").contains("µm76810--76810-\n"), "{text:?}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Answer, Row};
+use super::{Answer, RampCost, Row, Whole};
 use crate::commands::widths::registers_json;
 use crate::report::{export_command, run_command};
 use crate::study::ramp::{Part, Ramped};
@@ -11,7 +11,7 @@ use crate::testbench::Ending;
 
 /// Everything that is printed.
 pub(super) fn all(answer: &Answer) -> String {
-    let Answer { size, rows, left_out, accelerates, tools, beaten } = answer;
+    let Answer { size, rows, left_out, accelerates, tools, ramp_cost, beaten } = answer;
     let mut all = json!({
         "travel": size.travel,
         "blu_mm": size.blu_mm,
@@ -24,6 +24,9 @@ pub(super) fn all(answer: &Answer) -> String {
     }
     if let Some(Tools { yosys, nextpnr }) = tools {
         all["synth"] = json!({ "device": Tools::device(), "yosys": yosys, "nextpnr": nextpnr });
+    }
+    if let Some(RampCost { machine, without, with }) = ramp_cost {
+        all["ramp_cost"] = json!({ "machine": machine.name, "without": cost(*without), "with": cost(*with) });
     }
     if let Some(beaten) = beaten {
         let row = |beaten: &super::Beaten| json!({ "model": beaten.model, "by": beaten.by });
@@ -85,18 +88,29 @@ fn machine(row: &Row, answer: &Answer) -> Value {
     if answer.accelerates.is_some() {
         all["ramp"] = json!(row.ramp.as_ref().map(|own| ramp(own, answer)));
     }
-    if let Some(Cost { luts, flip_flops, carries, rams, fits, seed, clock_hz }) = row.cost {
-        all["cost"] = json!({
-            "export": export_command(found.model, &found.largest().curve, &found.choices) + " --no-flags",
-            "luts": luts,
-            "flip_flops": flip_flops,
-            "carries": carries,
-            "block_rams": rams,
-            "fits": fits,
-            "seed": seed,
-            "clock_hz": clock_hz,
-            "feed": ends(clock_hz.and_then(|clock| row.feeds(size, clock))),
-        });
+    if let Some(own) = row.cost {
+        let mut own_cost = cost(own);
+        let export = export_command(found.model, &found.largest().curve, &found.choices) + " --no-flags";
+        own_cost["export"] = json!(export);
+        own_cost["feed"] = ends(own.clock_hz.and_then(|clock| row.feeds(size, clock)));
+        all["cost"] = own_cost;
+        all["program_cost"] = json!(row.whole.as_ref().map(|Whole { machine, cost: own }| {
+            let mut whole = cost(*own);
+            whole["machine"] = json!(machine.name);
+            whole
+        }));
     }
     all
+}
+
+fn cost(Cost { luts, flip_flops, carries, rams, fits, seed, clock_hz }: Cost) -> Value {
+    json!({
+        "luts": luts,
+        "flip_flops": flip_flops,
+        "carries": carries,
+        "block_rams": rams,
+        "fits": fits,
+        "seed": seed,
+        "clock_hz": clock_hz,
+    })
 }

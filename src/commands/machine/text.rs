@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Answer, Row};
+use super::{Answer, RampCost, Row, Whole};
 use crate::commands::columns::{aligned, markdown};
 use crate::commands::widths::{evidence, one_bit_below};
 use crate::study::machine::Dimensions;
@@ -14,6 +14,7 @@ use crate::testbench::Ending;
 /// Everything that is printed.
 pub(super) fn all(answer: &Answer, is_markdown: bool) -> String {
     let mut text = heading(answer) + "\n" + &table(answer, is_markdown);
+    text += &answer.ramp_cost.as_ref().map_or_else(String::new, ramp_cost);
     for row in &answer.rows {
         text += "\n";
         text += &registers(&row.found, is_markdown);
@@ -100,6 +101,9 @@ const HEADING: [&str; 6] = [
 /// With `--synth`.
 const COSTS: [&str; 4] = ["LUTs", "flip-flops", "highest clock", "feed at the highest clock, mm/min"];
 
+/// With `--synth`, of the machine that runs programs.
+const WHOLE: [&str; 3] = ["LUTs with pulse source", "flip-flops with it", "highest clock with it"];
+
 /// With `--accel`.
 const RAMPS: [&str; 5] = ["ramp, bits", "greatest feed, mm/min", "ramp up", "ramp down", "move"];
 
@@ -111,6 +115,12 @@ fn ramp(row: &Row) -> [String; 5] {
     let [up, down] = ramp.ramps.map(part);
     let short = if ramp.is_short { ", too short for more" } else { "" };
     [bits.join(", "), rounded(ramp.feed) + short, up, down, format!("{:.6} s", ramp.seconds)]
+}
+
+/// What the machine that runs programs costs.
+fn whole(Whole { cost, .. }: &Whole) -> [String; 3] {
+    let clock = cost.clock_hz.map_or_else(unknown, frequency);
+    [cost.luts.to_string(), cost.flip_flops.to_string(), clock]
 }
 
 fn table(answer: &Answer, is_markdown: bool) -> String {
@@ -135,20 +145,29 @@ fn table(answer: &Answer, is_markdown: bool) -> String {
             let clock = cost.clock_hz;
             cells.extend([cost.luts.to_string(), cost.flip_flops.to_string()]);
             cells.extend([clock.map_or_else(unknown, frequency), feeds(row, size, clock)]);
+            cells.extend(row.whole.as_ref().map_or_else(|| std::array::from_fn(|_| unknown()), whole));
         }
         cells
     };
-    let costs = if answer.tools.is_some() { &COSTS[..] } else { &[] };
+    let (costs, wholes) = if answer.tools.is_some() { (&COSTS[..], &WHOLE[..]) } else { (&[][..], &[][..]) };
     let ramps = if answer.accelerates.is_some() { &RAMPS[..] } else { &[] };
-    let heading: Vec<String> = HEADING.iter().chain(ramps).chain(costs).map(ToString::to_string).collect();
+    let heading: Vec<String> =
+        HEADING.iter().chain(ramps).chain(costs).chain(wholes).map(ToString::to_string).collect();
     let right: Vec<usize> = (2..heading.len()).filter(|&column| heading[column] != RAMPS[0]).collect();
     let all: Vec<Vec<String>> = std::iter::once(heading).chain(answer.rows.iter().map(row)).collect();
     let mut text = if is_markdown { markdown(&all, &right) } else { aligned(&all, &right) };
     if answer.rows.iter().any(|row| unfinished(&row.found) > 0) {
         text += "\n* not all runs at the corners came to their end: clock and feed are not known\n";
     }
-    for (name, Cost { fits, seed, .. }) in answer.rows.iter().filter_map(|row| Some((row.found.model.name, row.cost?)))
-    {
+    let alone = answer.rows.iter().filter_map(|row| Some((row.found.model.name, row.cost?)));
+    let whole = answer.rows.iter().filter_map(|row| row.whole.as_ref().map(|whole| (whole.machine.name, whole.cost)));
+    let mut named = Vec::new();
+    for (name, Cost { fits, seed, .. }) in alone.chain(whole) {
+        // Lines and arcs of a method have one machine.
+        if named.contains(&(name, seed)) {
+            continue;
+        }
+        named.push((name, seed));
         // Writing to a string cannot fail.
         let _ = match seed {
             Some(1) => Ok(()),
@@ -158,6 +177,20 @@ fn table(answer: &Answer, is_markdown: bool) -> String {
         };
     }
     text
+}
+
+/// What a ramp takes that is put in front of a machine.
+fn ramp_cost(RampCost { machine, without, with }: &RampCost) -> String {
+    let more = |with: u64, without: u64| with.saturating_sub(without);
+    let fits = if with.fits { "" } else { ", which the device does not hold" };
+    format!(
+        "\nthe ramp takes {} LUTs and {} flip-flops more, in {}: {} and {} with it{fits}\n",
+        more(with.luts, without.luts),
+        more(with.flip_flops, without.flip_flops),
+        machine.name,
+        with.luts,
+        with.flip_flops
+    )
 }
 
 /// Every register of a method, how its width is known, and what happens one bit below.
