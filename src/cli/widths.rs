@@ -34,7 +34,8 @@ pub(crate) struct WidthsArgs {
     pub(crate) bench: BenchArgs,
     /// Bits of the coordinates, or a range for each axis (0..255x0..255): every line from the origin to such a point, or
     /// every arc inside a quadrant with both ends on the circle; in bits also every helix over such an arc, and every
-    /// quarter of an ellipse with such semi-axes and every arc of a parabola or hyperbola from or to the vertex
+    /// quarter of an ellipse with such semi-axes and every arc of a parabola or hyperbola from or to the vertex, and
+    /// every cubic Bezier curve of such control points, an axis at a time
     #[arg(long = "box", value_name = "BITS|RANGExRANGE", allow_hyphen_values = true)]
     pub(crate) extent: Extent,
     #[command(flatten)]

@@ -62,7 +62,9 @@ fn what_is_not_a_free_curve_is_refused() {
     run_refused("spline-dda --bezier 0,0,4,0,8,4 --divisions 21", &["21", "1 to 20"]);
     run_refused("spline-dda --bezier 0,0,4,0,8,4 --fraction 0", &["--fraction 0", "1 to 60"]);
     run_refused("spline-dda --bezier 0,0,4000000,0,8,4", &["2^20 steps", "more segments"]);
-    refused("widths spline-dda --box 4", &["no boxes", "free curves"]);
+    refused("widths sampled-spline --box 4", &["no boxes", "NURBS"]);
+    refused("widths spline-dda --box 0..9x0..9", &["given in bits"]);
+    refused("widths spline-dda --box 20", &["16 bits"]);
 }
 
 #[test]
@@ -124,4 +126,49 @@ fn a_bezier_curve_is_compared_as_polynomials_and_as_a_nurbs() {
     let words =
         |text: &str| text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect::<Vec<_>>();
     assert_eq!(words(&table)[1..3], words(&alone)[1..3]);
+}
+
+/// Every Bézier curve of coordinates of 2 bits, an axis at a time: the ranges of p, q and r over all rows, by the curve itself.
+#[test]
+fn least_widths_of_a_box_hold_the_differences_of_every_curve_and_one_bit_less_does_not() {
+    let (k, s) = (2_u32, 5_u32);
+    let folder = Folder::new();
+    let json: serde_json::Value = serde_json::from_str(&folder.good("widths spline-dda --box 2 --json")).unwrap();
+    assert_eq!(json["all"], true);
+    let (most, steps) = ((1_i64 << k) - 1, 1_i64 << s);
+    // 3 times the longest way of 6 is 18, of which 32 is the least power of two.
+    assert!(3 * 2 * most <= steps && 3 * 2 * most > steps / 2);
+    let mut ranges = [[0_i64; 2]; 3];
+    let all = || -most..=most;
+    let fours = all().flat_map(|a| all().flat_map(move |b| all().flat_map(move |c| all().map(move |d| [a, b, c, d]))));
+    for [a, b, c, d] in fours {
+        let at = |i: i64| {
+            let (u, v) = (i, steps - i);
+            a * v * v * v + 3 * b * u * v * v + 3 * c * u * u * v + d * u * u * u
+        };
+        for i in 0..=steps {
+            let [v0, v1, v2, v3] = [0, 1, 2, 3].map(|ahead| at(i + ahead));
+            for (range, value) in ranges.iter_mut().zip([v1 - v0, v2 - 2 * v1 + v0, v3 - 3 * v2 + 3 * v1 - v0]) {
+                *range = [range[0].min(value), range[1].max(value)];
+            }
+        }
+    }
+    for register in json["registers"].as_array().unwrap() {
+        let name = register["name"].as_str().unwrap();
+        let Some(order) = ["p", "q", "r"].iter().position(|letter| name.len() == 2 && name.starts_with(letter)) else {
+            continue;
+        };
+        let seen = ["least", "greatest"].map(|end| register[end].as_i64().unwrap());
+        assert_eq!(seen, ranges[order], "{name}");
+        let bits = (1..)
+            .find(|bits| ranges[order].iter().all(|value| (*value >> (bits - 1)) == 0 || (*value >> (bits - 1)) == -1))
+            .unwrap();
+        assert_eq!(
+            (register["needed"].as_i64(), register["known"].as_str()),
+            (Some(bits), Some("exhaustive")),
+            "{name}"
+        );
+        let below = register["one_bit_below"].as_str().unwrap().trim_start_matches("stepwave ").to_owned();
+        assert_ne!(folder.run(&below).code, 0, "{name}: {below}");
+    }
 }

@@ -4,6 +4,7 @@
 mod conics;
 mod helices;
 mod plane;
+mod splines;
 
 use std::fmt;
 use std::str::FromStr;
@@ -28,6 +29,8 @@ const WHOLE_CONICS: u32 = 8;
 const WHOLE_INTEGRATED_CONICS: u32 = 6;
 /// Most bits of coordinates of which all helices are.
 const WHOLE_HELICES: u32 = 4;
+/// Most bits of coordinates of which all fours are, as one axis of a cubic Bézier curve has them.
+const WHOLE_SPLINES: u32 = 3;
 
 /// Which geometries a box holds.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -202,7 +205,7 @@ impl Geometries {
         Ok(Geometries { curves, all: false, k, hardware, choices: choices.clone() })
     }
 
-    /// Conics and helices.
+    /// Conics, helices and Bézier curves.
     fn in_space(
         model: &'static Model,
         choices: &Options,
@@ -222,12 +225,14 @@ impl Geometries {
             CurveKind::Helix => (WHOLE_HELICES, helices::helices),
             CurveKind::Conic if integrates => (WHOLE_INTEGRATED_CONICS, conics::conics),
             CurveKind::Conic => (WHOLE_CONICS, conics::conics),
+            CurveKind::Spline => (WHOLE_SPLINES, splines::curves),
             other => return Err(ProofError::Box(format!("there are no boxes of such curves: {}", other.describe()))),
         };
         let all = wanted && k <= whole;
         let curves = of(k, all);
-        let hardware = hardware_of(model, choices, &curves)?;
-        Ok(Geometries { curves, all, k, hardware, choices: choices.clone() })
+        let choices = if model.curve() == CurveKind::Spline { splines::divided(choices, k) } else { choices.clone() };
+        let hardware = hardware_of(model, &choices, &curves)?;
+        Ok(Geometries { curves, all, k, hardware, choices })
     }
 }
 
