@@ -108,6 +108,8 @@ pub(super) struct Gates {
     /// Index of each net's bits in `state`.
     place: Vec<Range<usize>>,
     state: BitVec<u64>,
+    /// What each cell reads.
+    operands: Vec<Vec<Net>>,
     /// Nets that have another value than in the sample before.
     changed: BitVec<u64>,
     /// Every cell is evaluated: nets have been set in another manner than by an edge.
@@ -120,12 +122,15 @@ pub(super) struct Gates {
 
 impl Gates {
     pub(super) fn new(design: &Design, watch: &Watch) -> Gates {
-        let mut place = Vec::new();
+        let (mut place, mut operands) = (Vec::new(), Vec::new());
         let mut total = 0;
         for cell in &design.netlist().cells {
             let width = cell.width.get() as usize;
             place.push(total..total + width);
             total += width;
+            let mut reads = Vec::new();
+            cell.op.visit_inputs(|operand| reads.push(operand));
+            operands.push(reads);
         }
         let mut gates = Gates {
             design: design.clone(),
@@ -133,6 +138,7 @@ impl Gates {
             clock: 0,
             place,
             state: BitVec::repeat(false, total),
+            operands,
             changed: BitVec::repeat(false, design.netlist().cells.len()),
             afresh: true,
             memories: Vec::new(),
@@ -156,10 +162,10 @@ impl Gates {
     }
 
     /// An operand has changed since the cell was evaluated. Any write at the edge may be to the word that is read.
-    fn is_due(&self, op: Op) -> bool {
-        let mut due = self.afresh || matches!(op, Op::Read { .. });
-        op.visit_inputs(|operand| due |= self.changed[operand.index()]);
-        due
+    fn is_due(&self, net: Net, op: Op) -> bool {
+        self.afresh
+            || matches!(op, Op::Read { .. })
+            || self.operands[net.index()].iter().any(|operand| self.changed[operand.index()])
     }
 
     /// What a combinational cell gives; `None` for a cell that is not one.
@@ -224,7 +230,7 @@ impl Gates {
             self.put(input, &bits);
         }
         for (net, cell) in design.netlist().nets().zip(&design.netlist().cells) {
-            if self.is_due(cell.op)
+            if self.is_due(net, cell.op)
                 && let Some(bits) = self.evaluate(net, cell.op)
             {
                 self.put(net, &bits);
