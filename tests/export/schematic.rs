@@ -154,10 +154,10 @@ fn a_netlist_is_always_drawn_alike() {
 
 /// A flat netlist as it is imported: output ports that logic reads too, that have one net with another port, or an input's,
 /// and a named net that nothing reads.
-const PORTS: &str = "netlist m\n%0:1 = input\n%1:4 = register reset 0x0 next %3\n%2:4 = const 0x1\n%3:4 = add %1 %2\n\
-    %4:1 = slice %1 3\n%5:1 = xor %0 %4\n%6:1 = const 0x0\nname %0 in 0 \"go\" unsigned\n\
+const PORTS: &str = "netlist m\n%0:1 = input\n%1:4 = register reset 0x0 next %8\n%2:4 = const 0x1\n%3:4 = add %1 %2\n\
+    %4:1 = slice %1 3\n%5:1 = xor %0 %4\n%6:1 = const 0x0\n%7:4 = const 0x9\n%8:4 = mux %0 %3 %7\nname %0 in 0 \"go\" unsigned\n\
     name %1 in 0 \"count\" output unsigned\nname %1 in 0 \"again\" output unsigned\nname %0 in 0 \"through\" output unsigned\n\
-    name %6 in 0 \"zero\" output unsigned\nname %5 in 0 \"dead\" unsigned\n";
+    name %6 in 0 \"zero\" output unsigned\nname %7 in 0 \"nine\" output unsigned\nname %5 in 0 \"dead\" unsigned\n";
 
 #[test]
 fn every_port_that_a_netlist_declares_is_drawn_as_one_and_nothing_else() {
@@ -170,7 +170,9 @@ fn every_port_that_a_netlist_declares_is_drawn_as_one_and_nothing_else() {
         let ports = figure.frames.iter().filter(|frame| frame.class == "port");
         let mut ports: Vec<&str> = ports.flat_map(|frame| figure.texts_in(frame)).collect();
         ports.sort_unstable();
-        assert_eq!(ports, ["again", "count", "go", "through", "zero"]);
+        assert_eq!(ports, ["again", "count", "go", "nine", "through", "zero"]);
+        // A constant is written where it is read, also where an output has it.
+        assert!(figure.texts.iter().any(|text| text.text == "else: 9"), "{:?}", figure.texts);
     }
     // Where none is declared, what nothing reads is one.
     let undeclared = text::parse(&PORTS.replace(" output ", " ")).unwrap();

@@ -119,9 +119,14 @@ impl<'n> Fold<'n> {
         self.constants[net.index()]
     }
 
+    /// It is drawn, and may be wired to what reads it: a constant is written there.
+    pub(crate) fn has_readers(&self, net: Net) -> bool {
+        self.drawn[net.index()] && self.constant(net).is_none()
+    }
+
     /// The net that is drawn for this one, if this is that net or bits of it.
     pub(crate) fn base(&self, net: Net) -> Option<Net> {
-        if self.drawn[net.index()] {
+        if self.has_readers(net) {
             return Some(net);
         }
         match self.netlist.cell(net).op {

@@ -94,9 +94,9 @@ pub(crate) fn number(value: u64) -> String {
 }
 
 impl Fold<'_> {
-    /// What a net is: its name where it is drawn, else what drives it.
+    /// What a net is: its name where it is drawn, else what drives it. A constant is written as it is, also where an output has it.
     pub(crate) fn formula(&self, net: Net) -> Formula {
-        if self.drawn[net.index()] { Formula::net(net) } else { self.inner(net) }
+        if self.has_readers(net) { Formula::net(net) } else { self.inner(net) }
     }
 
     /// What drives a net, whether it is drawn or not.

@@ -42,15 +42,26 @@ fn turn(columns: &mut [Vec<Slot>], nets: usize) {
             let next = if right { columns.get(at + 1) } else { at.checked_sub(1).map(|before| &columns[before]) };
             let there = next.map_or_else(|| vec![Vec::new(); nets], |next| ends(next, nets, !right));
             let here = ends(&columns[at], nets, right);
-            for slot in columns[at].iter_mut().filter(|slot| slot.free) {
+            // The place of the first pin of each box, as `ends` counts them.
+            let mut first = 0;
+            for slot in &mut columns[at] {
                 let all = if right { &mut slot.right } else { &mut slot.left };
-                let Some(first) = all.first().map(|pin| here[pin.net].clone()) else { continue };
-                let own = first.first().copied().unwrap_or(0);
-                // A net that turns round in this gap comes from above the box or from below it.
-                let key = |pin: &Pin| match there[pin.net].as_slice() {
-                    [] if here[pin.net].iter().any(|&end| end + all.len() < own) => (0, 0),
-                    [] => (2, 0),
-                    ends => (1, ends[(ends.len() - 1) / 2]),
+                let own = first;
+                first += all.len().max(1);
+                if !slot.free {
+                    continue;
+                }
+                // A net that turns round in this gap comes from above the box or from below it, the nearest lane to the pin
+                // that is nearest to it.
+                let key = |pin: &Pin| {
+                    let lanes = || here[pin.net].iter().copied();
+                    let above = lanes().filter(|&lane| lane < own).max();
+                    let below = lanes().filter(|&lane| lane >= own + all.len()).max();
+                    match (there[pin.net].as_slice(), above, below) {
+                        ([], Some(lane), _) => (0, usize::MAX - lane),
+                        ([], None, lane) => (2, usize::MAX - lane.unwrap_or(0)),
+                        (ends, ..) => (1, ends[(ends.len() - 1) / 2]),
+                    }
                 };
                 let mut order: Vec<_> = all.iter().map(|pin| (key(pin), pin.net)).collect();
                 order.sort_by_key(|of| of.0);
