@@ -240,7 +240,7 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "FILE", requires = "method", conflicts_with_all = ["model", "any_geometry"])]
     pub(crate) program: Option<PathBuf>,
     /// Family of the machine that runs the program, or a netlist of one's own: F.net
-    #[arg(long, requires = "program", value_parser = MethodParser)]
+    #[arg(long, requires = "program", conflicts_with = "model", value_parser = MethodParser)]
     pub(crate) method: Option<Method>,
     #[command(flatten)]
     pub(crate) text: TextArgs,

@@ -68,7 +68,13 @@ fn space(model: &Model, args: &SpaceArgs, radii: Millionths) -> Result<Space, Er
     let cells = if let Some(cells) = free_curves::cells(model, args)? { cells } else { cells(model, args, radii)? };
     Ok(match args.samples {
         Some(count) if cells.count() <= u128::from(u64::MAX) => Space::Samples { cells, count, seed: args.seed },
-        Some(_) => return invalid(format!("a grid of {} geometries is too large to draw from", cells.count())),
+        Some(_) => {
+            let (count, most) = (cells.count(), u64::MAX);
+            return invalid(format!(
+                "a grid of {count} geometries is too large to draw from, {most} is the most: give narrower ranges, or a step \
+                 such as 0..1000/10"
+            ));
+        }
         None => Space::Cells(cells),
     })
 }

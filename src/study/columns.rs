@@ -117,7 +117,7 @@ impl Layout {
                 row.extend([word_of(word(run.ending)), run.clocks.into(), run.steps.into()]);
                 row.extend(run.pulses.iter().map(|&count| Value::from(count)));
                 row.extend(run.reached.iter().map(|&place| Value::Whole(place)));
-                row.push(Value::Flag(is_ended(&site.from, &site.to, &run.reached, &run.pulses)));
+                row.push(Value::Flag(is_ended(site, &run.reached, &run.pulses)));
                 row.extend([
                     run.greatest.into(),
                     run.mean.into(),

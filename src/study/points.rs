@@ -21,7 +21,7 @@ use super::{StudyError, free_curves};
 pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Space, StudyError> {
     let text = std::fs::read_to_string(file).map_err(|error| StudyError::reading(file, error))?;
     let mistake = |line: usize, what: String| StudyError::Points { file: file.display().to_string(), line, what };
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let (_, first) = lines.next().ok_or_else(|| {
         mistake(1, "there is no heading: begin with to_x,to_y, or of free curves with p0_x,p0_y".to_owned())
     })?;

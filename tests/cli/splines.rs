@@ -171,4 +171,12 @@ fn least_widths_of_a_box_hold_the_differences_of_every_curve_and_one_bit_less_do
         let below = register["one_bit_below"].as_str().unwrap().trim_start_matches("stepwave ").to_owned();
         assert_ne!(folder.run(&below).code, 0, "{name}: {below}");
     }
+    // Hardware that is given one width has all others by default.
+    let given = |words: &str| -> Vec<i64> {
+        let ran = folder.run(&format!("widths spline-dda --box 2 --json {words}"));
+        let json: serde_json::Value = serde_json::from_str(&ran.out).unwrap();
+        json["registers"].as_array().unwrap().iter().map(|register| register["given"].as_i64().unwrap()).collect()
+    };
+    assert_eq!(folder.run("widths spline-dda --box 2 --width e=6").code, 0);
+    assert_eq!(given("--width e=6"), given(""));
 }

@@ -90,3 +90,33 @@ fn free_curves_of_a_file_are_those_of_the_grid_and_parts_join() {
         assert!(ran.code == 2 && hints.iter().all(|hint| ran.err.contains(hint)), "{text}: {ran:?}");
     }
 }
+
+/// A curve so small that every row is at its end has no pulse, in a sweep as in a run.
+#[test]
+fn a_free_curve_without_a_pulse_ends_where_it_should() {
+    let all = rows(&good("sweep spline-dda --bezier=-1,-1,-2,-2..0,-1,-1 --csv -"));
+    for row in &all {
+        assert_eq!([&row["pulses_x"], &row["reached_x"], &row["reached_y"], &row["exact"]], ["0", "-1", "-1", "true"]);
+    }
+    assert_eq!(all.len(), 3);
+}
+
+#[test]
+fn what_says_something_of_other_curves_is_never_ignored() {
+    let folder = Folder::new();
+    folder.write("c.csv", "\u{feff}curve,p0_x,p0_y,p1_x,p1_y,p2_x,p2_y\r\nbezier,0,0,3,0,8,4\r\n");
+    assert_eq!(rows(&folder.good("sweep spline-dda --file c.csv --csv -"))[0]["exact"], "true");
+    for of in ["spline-dda --bezier 0,0,1,4,8,8", "spline-dda --file c.csv", "ppc-conic --ellipse 5,4 --ccw"] {
+        for option in ["--b-spline", "--degree 2", "--knots 0,0,0,1,1,1"] {
+            for words in [format!("sweep {of} {option}"), format!("sweep {option} {of}")] {
+                let ran = folder.run(&words);
+                let named = ran.err.contains(option.split(' ').next().unwrap());
+                assert!(ran.code == 2 && named, "{words}: {ran:?}");
+            }
+        }
+    }
+    refused("sweep dda-helix --from 5,0,0 --height 3 --ccw", &["--height", "--from"]);
+    refused("sweep sampled-spline --nurbs 0,0,1,4,4,1..2/-0.5", &["'1..2/-0.5'", "more than 0", "0.5..2/0.25"]);
+    refused("sweep sampled-spline --nurbs 0,0,1,4,4,2..1/0.5", &["'2..1/0.5'", "goes up"]);
+    refused("export dda-line --to 5,3 --method ppc --netlist -", &["--method"]);
+}

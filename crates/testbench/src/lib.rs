@@ -187,15 +187,15 @@ impl Outcome {
     /// The machine is where the curve ends, and has run it.
     #[must_use]
     pub fn ends(&self, curve: &stepwave_nc::Curve) -> bool {
-        // A small free curve may need no pulse; the path error shows one that was not run.
-        let is_free = curve.description().drawn.is_spline() && self.reached == curve.to();
-        is_free || is_ended(curve.from(), curve.to(), &self.reached, &self.pulses)
+        is_ended(&curve.description(), &self.reached, &self.pulses)
     }
 }
 
-/// A run from a point to another one ended there. A closed curve without a pulse was not run at all.
-pub fn is_ended(from: &[i64], to: &[i64], reached: &[i64], pulses: &[u64]) -> bool {
-    reached == to && (from != to || pulses.iter().any(|&count| count > 0))
+/// A run along this curve ended where it does. A closed one without a pulse was not run at all, but for a small free curve, which
+/// may need none: the path error shows one that was not run.
+pub fn is_ended(curve: &stepwave_nc::Description, reached: &[i64], pulses: &[u64]) -> bool {
+    let may_rest = curve.drawn.is_spline() || curve.from != curve.to;
+    reached == curve.to && (may_rest || pulses.iter().any(|&count| count > 0))
 }
 
 /// A place in BLU: `(8, 6)`.

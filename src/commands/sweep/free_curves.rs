@@ -109,10 +109,13 @@ fn weights(text: &str) -> Result<Range, Error> {
         units(word).map_or_else(|| invalid(format!("invalid weight '{text}' of --nurbs: {sentence}")), Ok)
     };
     let (ends, step) = text.split_once('/').unwrap_or((text, "1"));
-    match ends.split_once("..") {
-        Some((first, last)) => Ok(Range::new(unit(first)?, unit(last)?, unit(step)?.unsigned_abs())?),
-        None => Ok(Range::one(unit(text)?)),
+    let Some((first, last)) = ends.split_once("..") else { return Ok(Range::one(unit(text)?)) };
+    let (first, last, step) = (unit(first)?, unit(last)?, unit(step)?);
+    if last < first || step <= 0 {
+        let sentence = "a range goes up in steps of more than 0: give one such as 0.5..2/0.25";
+        return invalid(format!("invalid weight '{text}' of --nurbs: {sentence}"));
     }
+    Ok(Range::new(first, last, step.unsigned_abs())?)
 }
 
 /// All numbers of a NURBS with these points, as a description has them.

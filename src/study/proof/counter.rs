@@ -164,7 +164,7 @@ fn fault(curve: &Curve, outcome: &LaneOutcome) -> Option<Fault> {
         Some(Ending::Trapped) => Some(Fault::Overflow),
         Some(Ending::Done) if outcome.overflows > 0 => Some(Fault::Overflow),
         Some(Ending::Done) => {
-            (!is_ended(curve.from(), curve.to(), &outcome.reached, &outcome.pulses)).then_some(Fault::Missed)
+            (!is_ended(&curve.description(), &outcome.reached, &outcome.pulses)).then_some(Fault::Missed)
         }
         Some(Ending::Stalled { .. } | Ending::Endless { .. }) => Some(Fault::Endless),
         Some(Ending::Limit) | None => None,

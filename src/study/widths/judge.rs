@@ -66,10 +66,12 @@ fn paces(model: &Model, least: &Geometries, given: &Hardware) -> BTreeMap<String
 
 /// The hardware with the widths that are given.
 fn given(model: &'static Model, choices: &Options, least: &Geometries) -> Result<Hardware, ProofError> {
-    let typed = choices
+    // What the box decides beyond widths, such as the steps of all its curves, holds for this hardware too.
+    let typed = least
+        .choices
         .clone()
         .with_all(&WIDTH, choices.of_all(&WIDTH).or(least.choices.of_all(&WIDTH)))
-        .with(&ON_OVERFLOW, None);
+        .with_single(&WIDTH, choices.of_single(&WIDTH));
     let mut widest: Option<Hardware> = None;
     for curve in &least.curves {
         let plan = model.plan(curve, &typed)?;
