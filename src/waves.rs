@@ -371,6 +371,9 @@ pub(crate) struct Written {
     taken: Vec<Taken>,
 }
 
+/// How the message of a wave without samples begins.
+pub(crate) const EMPTY: &str = "the wave would be empty: ";
+
 /// Ends a wave; returns what it holds.
 ///
 /// # Errors
@@ -378,9 +381,7 @@ pub(crate) struct Written {
 pub(crate) fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Error> {
     writer.end(clocks)?;
     let Some(written) = writer.written else {
-        return Err(Error::Invalid(format!(
-            "the wave would be empty: no clock from 0 to {clocks} of this run falls into its window"
-        )));
+        return Err(Error::Invalid(format!("{EMPTY}no clock from 0 to {clocks} of this run falls into its window")));
     };
     let taken = std::mem::take(&mut writer.taken);
     Ok((Written { clocks: written, taken }, writer.finish()?))

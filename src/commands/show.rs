@@ -14,7 +14,7 @@ use crate::cli::{ShowArgs, one_axis};
 use crate::output::{Kept, Outputs, Screen};
 use crate::trace::draw::{Drawing, LEAST_COLUMNS, Window};
 use crate::trace::pattern::{Glob, fits_an_end, glob};
-use crate::trace::read::{Wave, WaveError};
+use crate::trace::read::{ClockError, Wave};
 
 /// Most clocks or times of a picture: a page of paper shows a few dozen of them in a line.
 const MOST_PICTURED: usize = 10_000;
@@ -25,9 +25,12 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
         return Err(Error::Invalid(format!("--to {to} is before --from {}: exchange them", args.from)));
     }
     let columns = args.columns.map_or_else(columns, usize::from);
-    let Source { mut wave, side, reads, failures, beyond } = source::open(args, columns)?;
+    let Source { mut wave, side, reads, failures, first, beyond } = source::open(args, columns)?;
     if let Some(clock) = &args.clock {
-        wave = wave.with_clock(clock).map_err(WaveError::from)?;
+        wave = wave.with_clock(clock).map_err(clockless)?;
+    }
+    if !args.by_time {
+        wave.cycles().map_err(clockless)?;
     }
     let signals = signals(&wave, args)?;
     let States { names, files } = States::next_to(&args.wave, side.as_ref(), &wave, &signals);
@@ -36,6 +39,7 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
         ascii: args.ascii,
         colour: coloured(),
         radix: args.values,
+        first,
         from: args.from,
         to: args.to,
         beyond,
@@ -78,6 +82,14 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
     write!(screen, "{}", window.text(drawing.ascii, drawing.colour && !on_error))?;
     screen.flush()?;
     checked(failures)
+}
+
+/// Why a wave has no clocks; the option that needs none has another name than that of `diff`.
+fn clockless(error: ClockError) -> Error {
+    let sentence = error.to_string();
+    Error::Invalid(
+        sentence.replace("compare with --by time", "draw it with --by-time").replace("--by time", "--by-time"),
+    )
 }
 
 /// What is wrong with the hardware that was run for its wave.

@@ -180,6 +180,34 @@ fn a_run_of_many_clocks_is_recorded_as_far_as_it_is_shown() {
     let count = |word: &str| last.split(word).nth(1).and_then(|rest| rest.split(|c: char| !c.is_ascii_digit()).next());
     let [to, more] = ["clock 0 to ", "; "].map(|word| count(word).unwrap().parse::<u64>().unwrap());
     assert_eq!(to + more, (1 << 24) + 1, "{last}");
+    // And from where it is shown: the down-counter of steps is at 0 in the last sample, and at k in that k clocks before.
+    let late = folder.run("show dda-line --to 16777215,3 --width 24 --from 16777210 --signals e");
+    assert_eq!(late.code, 0, "{}", late.err);
+    let says = ["e │7│6│5│4│3│2│1│0", "clock 16777210 to 16777217"];
+    assert_eq!(late.out.lines().skip(1).collect::<Vec<_>>(), says);
+    let none = refused_in(&folder, "show dda-line --to 16777215,3 --width 24 --from 16777218");
+    assert!(none.contains("nothing is left from clock 16777218 on: no clock from 0 to 16777217 "), "{none}");
+}
+
+#[test]
+fn edges_of_another_signal_are_those_of_the_whole_run() {
+    let folder = Folder::new();
+    folder.good("run ppc-line --to 6,4 --vcd w.vcd");
+    for more in ["", " --to 5", " --from 2 --to 4"] {
+        let clock = format!("--clock ppc_line.block.stepped --signals e --signals x{more}");
+        let shown = folder.good(&format!("show ppc-line --to 6,4 {clock}"));
+        assert_eq!(shown, folder.good(&format!("show w.vcd {clock}")));
+    }
+    // A wave without a clock is drawn by time, as `show` calls it.
+    folder.good("run ppc-line --to 6,4 --no-clk --vcd still.vcd");
+    for clock in ["", " --clock nope"] {
+        let refused = refused_in(&folder, &format!("show still.vcd{clock}"));
+        assert!(refused.contains("--by-time") && !refused.contains("--by time"), "{refused}");
+        assert_eq!(refused.matches("still.vcd").count(), 1, "{refused}");
+    }
+    // A step is fewer clocks than its number counts: 10 of them, and the count of the first sample.
+    let shown = folder.good("show ppc-line --to 6,4 --clock ppc_line.block.stepped --signals e --to 9");
+    assert_eq!(shown.lines().last(), Some("clock 0 to 9"));
 }
 
 #[test]

@@ -287,6 +287,34 @@ fn a_netlist_without_scopes_is_drawn_in_groups_that_can_be_opened() {
 }
 
 #[test]
+fn groups_have_names_that_no_scope_has() {
+    let mut lines = String::from("netlist m\nscope 1 in 0 \"alu\"\nscope 2 in 0 \"aliases\"\n");
+    let (mut cells, mut names) = (String::new(), String::new());
+    for at in 0..160 {
+        let (begin, next) = (if at < 80 { "alu" } else { "mem" }, (at + 1) % 160);
+        cells += &format!("%{at}:4 = register reset 0x0 next %{next}\n");
+        names += &format!("name %{at} in 0 \"{begin}_{at}\" unsigned\n");
+    }
+    // The scope of that name, and one that has but another name of a net.
+    cells += "%160:4 = register reset 0x0 next %0\n";
+    names += "name %160 in 1 \"held\" unsigned\nname %7 in 2 \"seventh\" unsigned\n";
+    lines += &(cells + &names);
+    let netlist = text::parse(&lines).unwrap();
+    let drawn = draw(&netlist, &[], &Part { depth: Some(0), ..Part::default() }).unwrap();
+    assert!(["alu", "alu_2", "mem"].iter().all(|name| drawn.scopes.iter().any(|scope| scope == name)), "{drawn:?}");
+    let cells = |path: &str| {
+        let part = Part { scope: Some(path.to_owned()), depth: Some(9), most: None };
+        draw(&netlist, &[], &part).map(|drawn| Figure::read(&drawn.svg).cells.keys().copied().collect::<BTreeSet<_>>())
+    };
+    assert_eq!(cells("alu").unwrap(), BTreeSet::from([160]));
+    assert_eq!(cells("alu_2").unwrap(), (0..80).collect());
+    // Nothing is drawn of a scope without symbols, and no message proposes it.
+    assert_eq!(cells("aliases"), Err(DrawError::Empty { scope: "m.aliases".to_owned() }));
+    let error = cells("none at all").unwrap_err().to_string();
+    assert!(error.contains("there are alu, alu_2, ") && !error.contains("aliases"), "{error}");
+}
+
+#[test]
 fn ports_of_a_memory_say_what_they_are() {
     let (_, netlist, outputs) = machines().into_iter().find(|machine| machine.0 == "sampled-spline").unwrap();
     let figure = Figure::read(&all(&netlist, &outputs).svg);

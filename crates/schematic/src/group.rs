@@ -70,7 +70,9 @@ impl Groups<'_> {
         let several = |clusters: &[Cluster]| clusters.iter().filter(|cluster| cluster.len() > 1).count() > 1;
         let Some((parts, clusters)) = tried.find(|(_, clusters)| several(clusters)) else { return };
         drop(tried);
-        let mut taken = BTreeSet::new();
+        // The names of scopes that are there already are not for groups.
+        let mut taken: BTreeSet<String> =
+            self.all.iter().filter(|other| other.parent == Some(scope)).map(|other| other.name.clone()).collect();
         for cluster in clusters.into_iter().filter(|cluster| cluster.len() > 1) {
             let base = self.title(&cluster, parts);
             let names = (1..).map(|number| if number == 1 { base.clone() } else { format!("{base}_{number}") });

@@ -89,6 +89,12 @@ pub enum DrawError {
         /// What may have been meant, or which scopes there are.
         hint: String,
     },
+    /// There is nothing to draw: names alone, of nets that are drawn elsewhere.
+    #[error("{scope} has no symbol in its block diagram: what it names, if anything, is drawn in other scopes")]
+    Empty {
+        /// What would be drawn.
+        scope: String,
+    },
     /// There would be too many symbols.
     #[error(
         "{scope} has {symbols} symbols in its block diagram, and {most} are the most: {}",
@@ -131,10 +137,10 @@ impl Drawing {
 /// Draws a netlist, or a part of it, with outputs at its right.
 ///
 /// # Errors
-/// No scope has the path given, or there are more symbols than [`MOST_DRAWN`].
+/// No scope has the path given, or one without symbols, or there are more symbols than [`MOST_DRAWN`].
 pub fn draw(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Drawing, DrawError> {
     with_scene(netlist, outputs, |scene, outputs, readable| {
-        let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(scene.fold.netlist, path))?;
+        let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(scene, path))?;
         drawing(scene, outputs, root, readable, part)
     })
 }
@@ -146,7 +152,7 @@ pub fn draw(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Drawing, 
 /// As those of [`draw`].
 pub fn draw_all(netlist: &Netlist, outputs: &[Net], part: &Part) -> Result<Vec<Drawing>, DrawError> {
     with_scene(netlist, outputs, |scene, outputs, readable| {
-        let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(scene.fold.netlist, path))?;
+        let root = part.scope.as_deref().map_or(Ok(ScopeId::TOP), |path| scope(scene, path))?;
         let whole = drawing(scene, outputs, root, readable, part)?;
         let mut pending = VecDeque::from_iter(scene.closed(root, whole.depth));
         let mut all = vec![whole];
@@ -188,6 +194,9 @@ fn drawing(
     let depth = part.depth.map_or_else(deepest, |depth| depth.min(levels));
     let symbols = scene.count(root, depth);
     let most = part.most.unwrap_or(MOST_DRAWN).min(MOST_DRAWN);
+    if symbols == 0 {
+        return Err(DrawError::Empty { scope: path });
+    }
     if symbols > most {
         return Err(DrawError::TooMany { scope: path, symbols, most, scopes: scene.inner(root, 0) });
     }
@@ -224,13 +233,15 @@ pub fn outputs(netlist: &Netlist) -> Vec<Net> {
 }
 
 /// The scope of a path, with the name of the netlist or without.
-fn scope(netlist: &Netlist, path: &str) -> Result<ScopeId, DrawError> {
+fn scope(scene: &scene::Scene<'_>, path: &str) -> Result<ScopeId, DrawError> {
+    let netlist = scene.fold.netlist;
     let all: Vec<(ScopeId, String)> =
         (0..).map(ScopeId).take(netlist.scopes.len()).map(|scope| (scope, netlist.scope_path(scope))).collect();
     let inner = |full: &str| full.split_once('.').map(|(_, inner)| inner.to_owned());
     let found = all.iter().find(|(_, full)| full == path || inner(full).as_deref() == Some(path));
     found.map(|found| found.0).ok_or_else(|| {
-        let known: Vec<String> = all.iter().filter_map(|(_, full)| inner(full)).collect();
+        let known = all.iter().filter(|(scope, _)| scene.count(*scope, 0) > 0);
+        let known: Vec<String> = known.filter_map(|(_, full)| inner(full)).collect();
         let guess = did_you_mean(path, known.iter().map(String::as_str));
         let list =
             if known.is_empty() { ": it has none".to_owned() } else { format!("; there are {}", listed(&known)) };

@@ -41,6 +41,8 @@ pub struct Drawing {
     pub colour: bool,
     /// How vectors are written.
     pub radix: Radix,
+    /// The clock of the first sample of the wave: 0, but where clocks before it were left out.
+    pub first: u64,
     /// The first clock, or time of the wave, that is drawn.
     pub from: u64,
     /// The last one; as many as fit in a line where it is not given.
@@ -62,15 +64,15 @@ impl Default for Drawing {
     /// 80 columns from clock 0.
     fn default() -> Drawing {
         let (ascii, colour, by_time) = (false, false, false);
-        let (radix, from, to, beyond, names) = (Radix::default(), 0, None, 0, BTreeMap::new());
-        Drawing { columns: 80, ascii, colour, radix, from, to, beyond, by_time, names, option: "--from" }
+        let (radix, first, from, to, beyond, names) = (Radix::default(), 0, 0, None, 0, BTreeMap::new());
+        Drawing { columns: 80, ascii, colour, radix, first, from, to, beyond, by_time, names, option: "--from" }
     }
 }
 
 impl Drawing {
     /// What is shown of these signals of a wave, in this order.
     ///
-    /// Clocks count from 0, the first sample, where the wave has a clock.
+    /// Clocks count from that of the first sample, where the wave has a clock.
     ///
     /// # Errors
     /// There is nothing from the first clock or time on, or no clock.

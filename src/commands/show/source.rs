@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use crate::Error;
-use crate::cli::ShowArgs;
+use crate::cli::{ShowArgs, one_axis};
 use crate::commands::progress::RunProgress;
 use crate::commands::run;
 use crate::models::find;
 use crate::output::{Kept, Outputs};
 use crate::own::is_netlist;
 use crate::trace::read::{Wave, WaveError};
-use crate::waves::WaveOptions;
 use crate::waves::limited::REMEDIES;
+use crate::waves::{EMPTY, WaveOptions};
 
 /// The wave of a run among what it leaves in memory.
 pub(super) const RUN: &str = "run.vcd";
@@ -25,6 +25,8 @@ pub(super) struct Source {
     pub(super) reads: Vec<PathBuf>,
     /// What the hardware of a run did wrong.
     pub(super) failures: Vec<String>,
+    /// The clock of the first sample of the wave.
+    pub(super) first: u64,
     /// Clocks of a run after the last one of the wave.
     pub(super) beyond: u64,
 }
@@ -52,7 +54,7 @@ pub(super) fn open(args: &ShowArgs, columns: usize) -> Result<Source, Error> {
         )));
     }
     let wave = Wave::open(&args.wave)?;
-    Ok(Source { wave, side: None, reads: vec![args.wave.clone()], failures: Vec::new(), beyond: 0 })
+    Ok(Source { wave, side: None, reads: vec![args.wave.clone()], failures: Vec::new(), first: 0, beyond: 0 })
 }
 
 /// A file that exists, or a name that only a wave has. A netlist is to be run.
@@ -68,26 +70,40 @@ fn simulated(args: &ShowArgs, model: &str, columns: usize) -> Result<Source, Err
     let reads = of.files(model);
     let (kept, mut outputs) = Outputs::in_memory();
     #[cfg(unix)]
-    let whole = args.by_time || args.follow;
+    let follow = args.follow;
     #[cfg(not(unix))]
-    let whole = args.by_time;
+    let follow = false;
+    // Keys go to any clock, and times and edges of another signal are counted from the first clock on.
+    let counted = args.by_time || args.clock.is_some();
+    let whole = counted || follow;
     // A clock has a character of a line at least.
     let fits = args.from.saturating_add(columns as u64);
-    let to = args.to.or(Some(fits).filter(|_| !whole)).filter(|_| !args.by_time);
-    let waves = WaveOptions { vcd: Some(RUN.into()), to, ..WaveOptions::default() };
+    let to = args.to.or(Some(fits).filter(|_| !whole)).filter(|_| !counted);
+    let first = if whole { 0 } else { args.from };
+    let waves = WaveOptions { vcd: Some(RUN.into()), from: first, to, ..WaveOptions::default() };
     let (simulation, curve) = run::simulation(model, of)?;
     let simulation = simulation.waves(waves);
     let bench = simulation.prepare().map_err(|error| of.hardware.explain(error))?.bench;
     let ran = simulation.run_on(bench, &mut outputs, |bench, _| Ok(RunProgress::new(bench, &curve)));
     let ran = ran.map_err(|error| match error {
-        Error::Invalid(sentence) => Error::Invalid(sentence.replace(REMEDIES, "give the last clock, --trace-to N")),
+        Error::Invalid(sentence) => {
+            let nothing = format!("{model}: nothing is left from clock {first} on: ");
+            let sentence = sentence.replace(EMPTY, &nothing);
+            let last = if one_axis(&args.wave) { "--trace-to" } else { "--to" };
+            let remedy = match (args.by_time, counted) {
+                (true, _) => "leave --by-time out".to_owned(),
+                (_, true) => "leave --clock out".to_owned(),
+                _ => format!("give the last clock, {last} N"),
+            };
+            Error::Invalid(sentence.replace(REMEDIES, &remedy))
+        }
         other => other,
     })?;
     let wave = Wave::from_bytes(kept.take(Path::new(RUN)).unwrap_or_default())?;
     let samples = ran.report.outcome.clocks.saturating_add(1);
     let beyond = match args.to {
-        None if !whole => samples.saturating_sub(wave.cycles().map_err(WaveError::from)?),
+        None if !whole => samples.saturating_sub(first + wave.cycles().map_err(WaveError::from)?),
         _ => 0,
     };
-    Ok(Source { wave, side: Some(kept), reads, failures: ran.report.failures(), beyond })
+    Ok(Source { wave, side: Some(kept), reads, failures: ran.report.failures(), first, beyond })
 }

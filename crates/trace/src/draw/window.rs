@@ -213,7 +213,7 @@ pub(super) fn places(drawing: &Drawing, wave: &Wave) -> Result<Vec<u64>, String>
     let (what, all): (_, Vec<u64>) = if drawing.by_time {
         ("time", wave.times().to_vec())
     } else {
-        ("clock", (0..wave.cycles().map_err(|error| error.to_string())?).collect())
+        ("clock", (0..wave.cycles().map_err(|error| error.to_string())?).map(|cycle| drawing.first + cycle).collect())
     };
     let last = all.last().copied();
     let places: Vec<u64> = all.into_iter().filter(|place| (drawing.from..=to).contains(place)).collect();
@@ -230,7 +230,7 @@ fn stretches(drawing: &Drawing, wave: &Wave, index: usize, places: &[u64]) -> Ve
         if drawing.by_time {
             return wave.value_at_time(index, place);
         }
-        wave.value_at_cycle(index, place).ok().flatten()
+        wave.value_at_cycle(index, place - drawing.first).ok().flatten()
     };
     let mut stretches: Vec<Stretch> = Vec::new();
     let mut before: Option<Value<'_>> = None;
