@@ -122,7 +122,7 @@ fn cells(sizes: &Sizes, dir: &Path) -> Fallible<(String, Panel)> {
 fn verilated(unit: &Unit, dir: &Path) -> Fallible<(Option<Job>, String)> {
     let start = Instant::now();
     let blocks = unit.line(&synthetic::block(unit, CLOCKS));
-    let built = verilator::run_within(&unit.rtl(), dir, &blocks, BUILD_LIMIT);
+    let built = verilator::run_within(&unit.rtl(), unit.design.netlist().cells.len(), dir, &blocks, BUILD_LIMIT);
     let seconds = start.elapsed().as_secs();
     match built {
         Ok(job) => Ok((Some(job), number(start.elapsed().as_secs_f64()))),

@@ -14,9 +14,14 @@ const MAIN: &str = include_str!("verilator.cpp");
 const FAST: &str = "-O3 -march=native -flto";
 /// Built soonest.
 const SOON: &str = "-O0";
+/// Cells from which a model is cut into files and functions, as its manual advises where a C++ compiler takes too long, and
+/// linked without a look across them.
+const LARGE: usize = 50_000;
+const SPLIT: &str = "--output-split 5000 --output-split-cfuncs 500";
+const FAST_LARGE: &str = "-O2 -march=native";
 
-/// The commands that build `obj/Vmodel` from `model.v`.
-fn commands(rtl: &Rtl, wave: Wave, optimise: &str) -> String {
+/// The commands that build `obj/Vmodel` from `model.v`; `split` cuts it up.
+fn commands(rtl: &Rtl, wave: Wave, optimise: &str, split: &str) -> String {
     let (trace, define) = match wave {
         Wave::None => ("", ""),
         Wave::Vcd => ("--trace", "-CFLAGS -DWAVE_VCD"),
@@ -24,7 +29,7 @@ fn commands(rtl: &Rtl, wave: Wave, optimise: &str) -> String {
     };
     format!(
         "rm -rf obj && verilator --cc --exe -O3 --x-assign fast --x-initial fast --noassert -Wno-fatal \
-         --timescale 100ns/100ns --top-module {} --prefix Vmodel --Mdir obj {trace} {define} -CFLAGS -I.. \
+         --timescale 100ns/100ns --top-module {} --prefix Vmodel --Mdir obj {split} {trace} {define} -CFLAGS -I.. \
          -LDFLAGS '{optimise}' main.cpp model.v >verilator.log 2>&1 && \
          make -j -C obj -f Vmodel.mk OPT_FAST='{optimise}' OPT_SLOW='{optimise}' OPT_GLOBAL='{optimise}' \
          >>verilator.log 2>&1",
@@ -41,14 +46,15 @@ fn write(rtl: &Rtl, dir: &Path, blocks: &str) -> Fallible<()> {
 /// A job that runs blocks in a model that has been built.
 pub(crate) fn run(rtl: &Rtl, dir: &Path, wave: Wave, blocks: &str) -> Fallible<Job> {
     write(rtl, dir, blocks)?;
-    shell(dir, &commands(rtl, wave, FAST))?;
+    shell(dir, &commands(rtl, wave, FAST, ""))?;
     Ok(Job::new("Verilator", dir, &["obj/Vmodel", "blocks", "wave.vcd"]))
 }
 
 /// The same without a wave, or an error where it cannot be built within this time.
-pub(crate) fn run_within(rtl: &Rtl, dir: &Path, blocks: &str, seconds: u64) -> Fallible<Job> {
+pub(crate) fn run_within(rtl: &Rtl, cells: usize, dir: &Path, blocks: &str, seconds: u64) -> Fallible<Job> {
     write(rtl, dir, blocks)?;
-    fs::write(dir.join("build.sh"), commands(rtl, Wave::None, FAST))?;
+    let (optimise, split) = if cells < LARGE { (FAST, "") } else { (FAST_LARGE, SPLIT) };
+    fs::write(dir.join("build.sh"), commands(rtl, Wave::None, optimise, split))?;
     shell(dir, &format!("timeout {seconds} sh build.sh"))?;
     Ok(Job::new("Verilator", dir, &["obj/Vmodel", "blocks", "wave.vcd"]))
 }
@@ -56,6 +62,6 @@ pub(crate) fn run_within(rtl: &Rtl, dir: &Path, blocks: &str, seconds: u64) -> F
 /// A job from the source to the wave.
 pub(crate) fn first_wave(rtl: &Rtl, dir: &Path, blocks: &str) -> Fallible<Job> {
     write(rtl, dir, blocks)?;
-    let all = format!("{} && obj/Vmodel blocks wave.vcd", commands(rtl, Wave::Vcd, SOON));
+    let all = format!("{} && obj/Vmodel blocks wave.vcd", commands(rtl, Wave::Vcd, SOON, ""));
     Ok(Job::new("Verilator", dir, &["sh", "-c", &all]))
 }
