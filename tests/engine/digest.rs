@@ -235,7 +235,7 @@ fn machine(of: &Shape) -> (Design, Wanted, Vec<(Net, u64)>) {
 }
 
 proptest! {
-    #![proptest_config(config(20))]
+    #![proptest_config(config(10))]
 
     #[test]
     fn digests_of_interpolating_machines_are_those_of_their_samples(

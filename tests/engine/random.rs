@@ -172,7 +172,7 @@ proptest! {
 
 proptest! {
     // Each takes as long as a hundred of the others: `.ci/run` leaves them out where it asks for 10,000.
-    #![proptest_config(config(4))]
+    #![proptest_config(config(2))]
 
     #[test]
     fn netlists_of_a_thousand_cells_are_the_same_in_every_engine(

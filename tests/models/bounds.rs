@@ -217,10 +217,15 @@ fn ellipses(preset: Preset, normalize: bool) -> f64 {
 }
 
 #[test]
-fn ellipses_of_the_dda_may_leave_the_curve_by_more_than_one_blu_and_promise_nothing() {
+#[ignore = "exhaustive"]
+fn ellipses_of_the_dda_may_leave_the_curve_by_more_than_one_blu() {
     let [zero, half, full] = [Preset::Zero, Preset::Half, Preset::Full].map(|preset| ellipses(preset, false));
     assert!(zero > 2.0 && half > 1.0 && half < 1.2 && full > 1.0, "{zero} {half} {full}");
     assert_eq!(ellipses(Preset::Half, true), half);
+}
+
+#[test]
+fn ellipses_of_the_dda_promise_nothing() {
     let ellipse = Conic::ellipse([6, 4], [6, 0], [0, 4], [0, 0], Direction::CounterClockwise).unwrap();
     assert_eq!(find("dda-conic").unwrap().plan(&ellipse.into(), &Options::default()).unwrap().error_bound, None);
 }

@@ -57,6 +57,12 @@ fn every_lattice_arc_and_full_circle_of_a_radius_below_30_by_every_weight_rule()
 }
 
 #[test]
+fn every_quarter_ellipse_with_semi_axes_below_14() {
+    conics::every_quarter_ellipse(14, |case| check_conic(case, Beats::One, EngineKind::Word));
+}
+
+#[test]
+#[ignore = "exhaustive"]
 fn every_quarter_ellipse_with_semi_axes_below_30() {
     conics::every_quarter_ellipse(30, |case| check_conic(case, Beats::One, EngineKind::Word));
 }

@@ -124,9 +124,20 @@ fn lines_of_up_to_six_axes_on_every_engine() {
 }
 
 #[test]
+fn every_lattice_arc_up_to_radius_5_with_every_preset_and_normalisation() {
+    check_lattice_arcs(25);
+}
+
+#[test]
+#[ignore = "exhaustive"]
 fn every_lattice_arc_up_to_radius_8_with_every_preset_and_normalisation() {
+    check_lattice_arcs(64);
+}
+
+/// Arcs with R² up to this.
+fn check_lattice_arcs(most: i64) {
     let mut hangs = 0;
-    for r2 in 1..=64 {
+    for r2 in 1..=most {
         let points = lattice(r2);
         for &from in &points {
             for &to in &points {
