@@ -177,8 +177,8 @@ fn rows_of_many_choices_overflows_stalls_and_refusals_are_what_single_runs_repor
         let all = rows(&good(&format!("sweep {model} {words} --csv -")));
         assert!(all.iter().any(|row| row["ending"] == seen), "{model} {words}");
         assert!(all.len() > 8, "{model} {words}: {}", all.len());
-        // Every second, so that the test stays quick.
-        all.iter().step_by(2).for_each(|row| assert_as_run(model, row));
+        // Every fourth, so that the test stays quick.
+        all.iter().step_by(4).for_each(|row| assert_as_run(model, row));
     }
 }
 

@@ -245,7 +245,7 @@ fn choices(normalize: bool) -> Options {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(60) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(30) })]
 
     #[test]
     fn every_machine_steps_as_its_method_does(moves in moves(), normalize: bool) {
