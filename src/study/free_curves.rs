@@ -153,14 +153,15 @@ pub(super) fn of_words<'a>(
     if drawn != Drawn::Nurbs {
         return Ok(site(drawn, points.concat()).0);
     }
-    let decimal = |name: &str, text: &str| units(text).ok_or_else(|| format!("'{text}' in {name} is no number"));
+    let decimal =
+        |name: &str, text: &str| units(text).ok_or_else(|| format!("expected a number for {name}, not '{text}'"));
     let weight = |name: String| word(&name).map_or(Ok(NURBS_UNIT), |text| decimal(&name, text));
     let control =
         points.iter().enumerate().map(|(point, &at)| Ok(ControlPoint { at, weight: weight(format!("p{point}_w"))? }));
     let control: Vec<ControlPoint> = control.collect::<Result<_, String>>()?;
     let degree = match word("degree") {
         None => usual_degree(control.len()),
-        Some(text) => text.parse().map_err(|_| format!("'{text}' in degree is no whole number"))?,
+        Some(text) => text.parse().map_err(|_| format!("expected a whole number for degree, not '{text}'"))?,
     };
     let knots =
         word("knots").map(|text| text.split(',').map(|knot| decimal("knots", knot)).collect::<Result<Vec<_>, _>>());

@@ -23,7 +23,7 @@ pub fn read_points(file: &Path, model: &Model, radii: Millionths) -> Result<Spac
     let mistake = |line: usize, what: String| StudyError::Points { file: file.display().to_string(), line, what };
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let (_, first) = lines.next().ok_or_else(|| {
-        mistake(1, "there is no heading: begin with to_x,to_y, or of free curves with p0_x,p0_y".to_owned())
+        mistake(1, "a heading is missing: begin with to_x,to_y, or of free curves with p0_x,p0_y".to_owned())
     })?;
     let heading: Vec<String> = fields(first).iter().map(|name| name.trim().to_owned()).collect();
     let free = model.curve().drawn().iter().all(|drawn| drawn.is_spline());
@@ -80,7 +80,7 @@ fn known(model: &Model) -> Vec<String> {
 
 /// A coordinate in a column.
 pub(super) fn whole(name: &str, word: &str) -> Result<i64, String> {
-    word.parse().map_err(|_| format!("'{word}' in {name} is no whole number of BLU"))
+    word.parse().map_err(|_| format!("expected a whole number of BLU for {name}, not '{word}'"))
 }
 
 /// One line of the file.

@@ -344,9 +344,9 @@ fn geometries_come_from_a_file_as_well() {
     folder.write("r.csv", "to_x,to_y,centre_x\n5,0,1\n");
     folder.write("s.csv", "");
     for (file, hint) in [
-        ("q.csv", "q.csv: line 3: '4.5' in to_y is no whole number"),
+        ("q.csv", "q.csv: line 3: expected a whole number of BLU for to_y, not '4.5'"),
         ("r.csv", "there is no column 'centre_x'"),
-        ("s.csv", "there is no heading"),
+        ("s.csv", "a heading is missing"),
         ("t.csv", "cannot read t.csv"),
     ] {
         let ran = folder.run(&format!("sweep dda-line --file {file} --csv out.csv"));
