@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use clap::{CommandFactory, Parser};
+use clap::CommandFactory;
 
 use crate::Error;
 use crate::cli::{Cli, by_ending, by_value, help_of_model, usage};
@@ -66,7 +66,7 @@ fn run(models: Catalogue) -> Result<(), Error> {
     if let Some(help) = help_of_model(&words) {
         return output::print(&help);
     }
-    match Cli::try_parse_from(by_ending(by_value(words), Cli::command)) {
+    match Cli::of(&by_ending(by_value(words), Cli::command)) {
         Ok(cli) => commands::dispatch(&cli),
         Err(error) if error.use_stderr() => Err(usage(&error)),
         Err(help) => output::print(&help.render().to_string()),

@@ -1,15 +1,17 @@
 //! The command line: what may be written, and how it is explained. Manual pages and completions come from it too.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use crate::models::Millionths;
 use crate::nc::{Drawn, Opens, SplineForm};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::commands::diff::DiffArgs;
 
 mod endings;
 mod hardware;
+mod lone;
 mod machine;
 mod names;
 mod of_model;
@@ -52,6 +54,19 @@ pub(crate) use widths::WidthsArgs;
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+impl Cli {
+    /// What the words say.
+    ///
+    /// # Errors
+    /// They are not a command line, or ask for help.
+    pub(crate) fn of(words: &[OsString]) -> Result<Cli, clap::Error> {
+        let mut program = Cli::command();
+        let mut matches = program.try_get_matches_from_mut(words)?;
+        lone::check(&program, words)?;
+        Cli::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut program))
+    }
 }
 
 // The options of a command are built where it is on the line: all of them take longer than a short run.

@@ -118,9 +118,8 @@ pub(crate) struct SpaceArgs {
     #[arg(long, value_name = "RANGE", value_parser = range, conflicts_with_all = ["from", "from_grid"])]
     pub(crate) radius: Option<Range>,
     /// Ways in z of helices of one turn
-    // What is required counts no longer where that conflicts with something given, so this conflicts with it too; so below.
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true, value_parser = range, requires = "radius",
-        conflicts_with_all = ["from", "from_grid", "to", "to_grid", "file"])]
+        conflicts_with_all = ["to", "to_grid"])]
     pub(crate) height: Option<Range>,
     /// Centre of arcs or conics, vertex of parabolas [default: the origin]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = parse_point)]
@@ -170,18 +169,16 @@ pub(crate) struct FreeCurveArgs {
     #[arg(long, value_name = "RANGE,RANGE,…", allow_hyphen_values = true, value_parser = ranges, group = "sizes")]
     pub(crate) points: Option<Grid>,
     /// Uniform cubic B-splines along --points instead
-    #[arg(long, requires = "points", conflicts_with_all = ["ellipse", "parabola", "hyperbola", "bezier", "hermite", "nurbs", "file"])]
+    #[arg(long, requires = "points")]
     pub(crate) b_spline: bool,
     /// NURBS with control points and weights in these ranges; a weight may be 0.5..2/0.25
     #[arg(long, value_name = "RANGE,RANGE,W,…", allow_hyphen_values = true, group = "sizes")]
     pub(crate) nurbs: Option<String>,
     /// Degree of the NURBS [default: 3, or as many as the points allow]
-    #[arg(long, requires = "nurbs", value_name = "P",
-        conflicts_with_all = ["ellipse", "parabola", "hyperbola", "bezier", "hermite", "points", "file"])]
+    #[arg(long, requires = "nurbs", value_name = "P")]
     pub(crate) degree: Option<u32>,
     /// Knots of the NURBS [default: uniform, those at the ends degree + 1 times]
-    #[arg(long, requires = "nurbs", value_name = "U,U,…", allow_hyphen_values = true,
-        conflicts_with_all = ["ellipse", "parabola", "hyperbola", "bezier", "hermite", "points", "file"])]
+    #[arg(long, requires = "nurbs", value_name = "U,U,…", allow_hyphen_values = true)]
     pub(crate) knots: Option<String>,
 }
 

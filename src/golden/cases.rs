@@ -4,7 +4,7 @@ use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use clap::{CommandFactory, Parser};
+use clap::CommandFactory;
 use serde::Deserialize;
 
 use super::{Case, names_fit};
@@ -71,7 +71,7 @@ impl Listed {
         words.extend(self.args.iter().enumerate().map(path));
         let files = ["--vcd".into(), vcd.into_os_string(), "--steps".into(), steps.into_os_string()];
         words.extend(["--engine".into(), engine.name().into()].into_iter().chain(files));
-        let cli = Cli::try_parse_from(words).map_err(|error| usage(&error))?;
+        let cli = Cli::of(&words).map_err(|error| usage(&error))?;
         let mut outputs = Outputs::default();
         let finished = match &cli.command {
             Command::Program(args) => program::simulate(args, &mut outputs),

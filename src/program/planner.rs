@@ -169,10 +169,10 @@ impl<T> Ahead<T> {
         let seconds = seconds(&self.by, all / k, speeds);
         // The greatest speed from which the end can be met.
         let from = |left: f64| (exit * exit + 2.0 * self.by.gains[1] * left.max(0.0) / k).sqrt();
-        for (Paced { block, source, limited, .. }, of) in parts {
+        for (index, (Paced { block, source, limited, .. }, of)) in parts.into_iter().enumerate() {
             let before = self.scale.replace(k).unwrap_or(k);
             let (pulses, own) = (left, block.steps);
-            let is_first = pulses == all;
+            let is_first = index == 0;
             left -= own;
             let speeds = if is_first { speeds } else { [from(pulses), cap, from(left)] };
             let profile = Profile { speeds, jump: self.queue.jump().min(cap), pulses_per_blu: k, before, pulses, own };

@@ -115,8 +115,12 @@ fn what_says_something_of_other_curves_is_never_ignored() {
             }
         }
     }
-    refused("sweep dda-helix --from 5,0,0 --height 3 --ccw", &["--height", "--from"]);
+    refused("sweep dda-helix --from 5,0,0 --height 3 --ccw", &["--height", "--radius"]);
     refused("sweep sampled-spline --nurbs 0,0,1,4,4,1..2/-0.5", &["'1..2/-0.5'", "more than 0", "0.5..2/0.25"]);
     refused("sweep sampled-spline --nurbs 0,0,1,4,4,2..1/0.5", &["'2..1/0.5'", "goes up"]);
     refused("export dda-line --to 5,3 --method ppc --netlist -", &["--method"]);
+    for option in ["--tool 1=2mm", "--home 1,1,1", "--rapid 100", "--chords 0.3", "--corner circular"] {
+        let name = option.split(' ').next().unwrap();
+        refused(&format!("export dda-line --to 5,3 {option} --netlist -"), &[name, "--program"]);
+    }
 }

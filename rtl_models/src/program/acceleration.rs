@@ -204,13 +204,11 @@ impl Acceleration {
     #[must_use]
     pub fn words(&self, profile: &Profile) -> (Words, f64) {
         let Profile { speeds, jump, pulses_per_blu: k, before, pulses, own } = *profile;
-        let unit = 2f64.powi(self.n.cast_signed()) / self.hz;
-        let most = (1_u64 << self.n) - 1;
+        let (unit, most) = (self.unit(), (1_u64 << self.n) - 1);
         let drive = rounded(speeds[1] * k * unit).clamp(1, 1 << (self.n - 1));
         let [mut start, mut stop, restart] =
             [speeds[0], speeds[2], jump].map(|v| rounded(v * k * unit).clamp(1, drive));
-        let greatest = (1 << self.gain_bits) - 1;
-        let mut gains = self.gains.map(|gain| rounded(gain * k * unit / self.hz).clamp(1, greatest));
+        let mut gains = self.gains(k);
         let left = self.counted(pulses);
         let ratio = rounded(k / before * 2f64.powi(RATIO_FRACTION.cast_signed())).min((1 << RATIO_BITS) - 1);
         let mut words = Words::new().set(PULSES, left).set(RESTART, restart).set(RATIO, ratio);
@@ -231,6 +229,17 @@ impl Acceleration {
         (words, drive as f64 / unit)
     }
 
+    /// A speed of 1 Hz as a word.
+    fn unit(&self) -> f64 {
+        2f64.powi(self.n.cast_signed()) / self.hz
+    }
+
+    /// The gains along the path as words, where a BLU has this many pulses.
+    fn gains(&self, pulses_per_blu: f64) -> [u64; 2] {
+        let greatest = (1 << self.gain_bits) - 1;
+        self.gains.map(|gain| rounded(gain * pulses_per_blu * self.unit() / self.hz).clamp(1, greatest))
+    }
+
     /// A number of pulses as its register holds it.
     fn counted(&self, pulses: f64) -> u64 {
         rounded(pulses.ceil()).min((1 << self.pulse_bits) - 1)
@@ -241,16 +250,13 @@ impl Acceleration {
     #[must_use]
     pub fn carried(&self, profile: &Profile) -> (Words, f64) {
         let Profile { speeds: [start, drive, stop], jump, pulses_per_blu: k, pulses, own, .. } = *profile;
-        let unit = 2f64.powi(self.n.cast_signed()) / self.hz;
-        let most = 1 << (self.n - 1);
+        let (unit, most) = (self.unit(), 1 << (self.n - 1));
         let [drive, start, stop] = [drive, start, stop].map(|v| rounded(v * k * unit).clamp(1, most));
         let restart = rounded(jump * k * unit).clamp(1, drive);
-        let greatest = (1 << self.gain_bits) - 1;
-        let gains = self.gains.map(|gain| rounded(gain * k * unit / self.hz).clamp(1, greatest));
         let [pulses, own] = [pulses, own].map(|pulses| self.counted(pulses));
         let words = Words::new().set(PULSES, pulses).set(OWN_PULSES, own).set(RESTART, restart).set(CARRY, true);
         let words = words.set(RATIO, 1_u64 << RATIO_FRACTION).set(TICKS, 0).set_each(GROWTH, [0; 2]);
         let words = words.set_each(PARTS, [0; 4]).set(LENGTH, 0).set(V, start);
-        (words.set_each(LIMITS, [restart, drive, stop]).set_each(PATH_GAINS, gains), drive as f64 / unit)
+        (words.set_each(LIMITS, [restart, drive, stop]).set_each(PATH_GAINS, self.gains(k)), drive as f64 / unit)
     }
 }
