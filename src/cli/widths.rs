@@ -11,7 +11,8 @@ use super::{BenchArgs, HardwareArgs};
 #[command(after_help = "How a width is known to be enough:\n  \
     proved      for every k, by the method of `stepwave prove`, with all registers as narrow at once\n  \
     proved at k at this k alone\n  \
-    exhaustive  every geometry of the box was simulated\n  \
+    exhaustive  every geometry of the box was simulated, to its end\n  \
+    12 of 16    every one was, but only 12 of 16 ran to their end: nothing is known of the others, which overflow or never end\n  \
     sampled     the extreme ones were: corners, axes and next to them, greatest radii, largest and smallest weights\n  \
     enough      proved to be enough, but perhaps not least: the last column says how many bits a run needs\n\n\
     The command in the last column shows what happens one bit below.\n\n\

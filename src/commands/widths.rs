@@ -45,16 +45,18 @@ fn too_narrow(model: &Model, register: &RegisterWidth) -> String {
     }
 }
 
-/// How a width is known, in a word.
-pub(super) fn evidence(register: &RegisterWidth) -> &'static str {
-    match register.known {
+/// How a width is known, in a word, or by the share of the geometries that say so.
+pub(super) fn evidence(register: &RegisterWidth) -> String {
+    let word = match register.known {
         Known::Proved => "proved",
         Known::ProvedHere => "proved at k",
         Known::Exhaustive => "exhaustive",
+        Known::Part(ran, all) => return format!("{ran} of {all}"),
         Known::Sampled => "sampled",
         Known::Enough => "enough",
         Known::AtLeast => "at least",
-    }
+    };
+    word.to_owned()
 }
 
 fn command(model: &Model, witness: &Witness) -> String {
@@ -85,9 +87,24 @@ fn relative(model: &Model, register: &RegisterWidth, k: u32) -> String {
     }
 }
 
-fn table(model: &Model, found: &Widths) -> String {
+/// Which geometries speak for the widths.
+fn scope(model: &Model, found: &Widths) -> String {
+    let Widths { simulated, extent, .. } = found;
+    let (name, ran) = (model.name, found.ran());
     let many = if found.all { "all of the box" } else { "the extreme ones of the box" };
-    let mut text = format!("{}: {} geometries of {}, {many}\n\n", model.name, found.simulated, found.extent);
+    // What a proof says of all of them does not depend on runs that were followed in part.
+    let by_runs = |register: &RegisterWidth| {
+        [Known::Sampled, Known::AtLeast].contains(&register.known) || matches!(register.known, Known::Part(..))
+    };
+    if ran == *simulated || !found.registers.iter().any(by_runs) {
+        return format!("{name}: {simulated} geometries of {extent}, {many}\n\n");
+    }
+    let these = if found.all { "all that run" } else { "the extreme ones that run" };
+    format!("{name}: {ran} of {simulated} geometries of {extent}, {these} to their end\n\n")
+}
+
+fn table(model: &Model, found: &Widths) -> String {
+    let mut text = scope(model, found);
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
@@ -110,7 +127,7 @@ fn table(model: &Model, found: &Widths) -> String {
     if found.faults > 0 {
         let what = match model.is_described() {
             true => "cannot be loaded or do not end; what registers held until then counts",
-            false => "overflow or never end at the default widths and are left out",
+            false => "overflow or never end at the default widths and are left out: what they need is not known",
         };
         let _ = writeln!(text, "\n{} geometries {what}", found.faults);
     }
@@ -153,7 +170,8 @@ fn as_json(model: &Model, found: &Widths) -> String {
         "box": found.extent.to_string(),
         "bits": found.k,
         "geometries": found.simulated,
-        "all": found.all,
+        "ran": found.ran(),
+        "all": found.all && found.ran() == found.simulated,
         "faults": found.faults,
         "followed_in_part": found.cut,
         "registers": registers_json(model, &found.registers),

@@ -12,6 +12,8 @@ use super::table::{Column, Row, Value};
 #[derive(Debug, Default)]
 pub struct Summary {
     rows: u64,
+    /// Those with a mean speed.
+    timed: u64,
     endings: BTreeMap<String, u64>,
     missed: u64,
     clocks: u64,
@@ -73,6 +75,7 @@ impl Summary {
     }
 
     fn speed(&mut self, speed: f64, row: &Row) {
+        self.timed += 1;
         if self.slowest.as_ref().is_none_or(|(least, _)| speed < *least) {
             self.slowest = Some((speed, row.clone()));
         }
@@ -92,6 +95,11 @@ impl Summary {
         let (slowest, fastest) = (self.slowest.as_ref()?, self.fastest.as_ref()?);
         let [least, greatest] = self.lengths.filter(|_| !self.ends.is_empty())?;
         (greatest - least <= 1.0 && self.rows > 1).then(|| fastest.0 / slowest.0)
+    }
+
+    /// Which of the runs have a mean speed, where these are not all.
+    fn share(&self) -> String {
+        if self.timed == self.rows { String::new() } else { format!("{} of {} ", self.timed, self.rows) }
     }
 
     /// Rows so far.
@@ -116,7 +124,8 @@ impl Summary {
             let [slow, fast] = [slow, fast].map(|row| words(model, columns, row));
             let _ = writeln!(text, "mean speed over v_max: least {least:.4}: {slow}\n  greatest {greatest:.4}: {fast}");
             if let Some(k_v) = self.k_v() {
-                let _ = writeln!(text, "k_v {k_v:.4}, the greatest over the least, of lines of one length");
+                let _ =
+                    writeln!(text, "k_v {k_v:.4}, the greatest over the least, of {}lines of one length", self.share());
             }
         }
         if let Some(reason) = &self.refusal {

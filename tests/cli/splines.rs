@@ -180,3 +180,40 @@ fn least_widths_of_a_box_hold_the_differences_of_every_curve_and_one_bit_less_do
     assert_eq!(folder.run("widths spline-dda --box 2 --width e=6").code, 0);
     assert_eq!(given("--width e=6"), given(""));
 }
+
+/// Where 2^s steps are too few for some curves of a box, widths are known of the others alone, and the verdict says how many
+/// these are: those of which no axis goes farther than a BLU in a step, by the curve itself.
+#[test]
+fn widths_of_a_part_of_a_box_are_never_called_exhaustive() {
+    let folder = Folder::new();
+    for (s, share) in [(1_u32, "304 of 2394"), (3, "1240 of 2394"), (4, "2236 of 2394"), (5, "exhaustive")] {
+        let steps = 1_i64 << s;
+        let (mut drawn, mut all) = (0_usize, 0_usize);
+        for index in 0..7_i64.pow(4) {
+            let [a, b, c, d] = [1, 7, 49, 343].map(|place| index / place % 7 - 3);
+            if [b, c, d] == [a; 3] {
+                continue;
+            }
+            let at = |i: i64| {
+                let (u, v) = (i, steps - i);
+                a * v * v * v + 3 * b * u * v * v + 3 * c * u * u * v + d * u * u * u
+            };
+            all += 1;
+            drawn += usize::from((0..steps).all(|i| (at(i + 1) - at(i)).abs() <= steps.pow(3)));
+        }
+        assert_eq!(share, if drawn == all { "exhaustive".to_owned() } else { format!("{drawn} of {all}") });
+        let table = folder.good(&format!("widths spline-dda --box 2 --divisions {s}"));
+        let whole = drawn == all;
+        assert_eq!(table.contains("exhaustive"), whole, "{table}");
+        let known = table.lines().skip(3).filter(|line| line.contains("stepwave run"));
+        assert!(known.clone().count() == 9 && known.clone().all(|line| line.contains(share)), "{table}");
+        assert_eq!(
+            table.starts_with(&format!("spline-dda: {share} geometries of 2 bits, all that run to their end\n")),
+            !whole
+        );
+        let text = folder.good(&format!("widths spline-dda --box 2 --divisions {s} --json"));
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!((&json["all"], &json["ran"], &json["geometries"]), (&whole.into(), &drawn.into(), &all.into()));
+        assert!(json["registers"].as_array().unwrap().iter().all(|register| register["known"] == share), "{text}");
+    }
+}

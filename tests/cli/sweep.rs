@@ -464,6 +464,9 @@ fn k_v_is_the_ratio_of_mean_speeds_of_lines_of_one_length() {
         assert!(means.iter().zip(expected).all(|(mean, expected)| (mean - expected).abs() < 1e-12), "{means:?}");
         assert!(out.contains("\nk_v 1.4142, "), "{out}");
     }
+    // Runs that come to no end have no mean speed: those between the axes, of more than 4 * 140 clocks.
+    let out = folder.good("sweep ppc-line --file lines.csv --max-clocks 500");
+    assert!(out.contains("\nk_v 1.0000, the greatest over the least, of 2 of 4 lines of one length\n"), "{out}");
     // Lines of several lengths have none.
     let out = folder.good("sweep ppc-line --to-grid 1..9x1..9");
     assert!(out.contains("mean speed over v_max: least 0.7071: ") && !out.contains("k_v"), "{out}");

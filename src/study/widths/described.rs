@@ -9,7 +9,7 @@ use stepwave_models::{Model, Options};
 use stepwave_nc::Curve;
 
 use super::simulate::LIMIT;
-use super::{Known, RegisterWidth, Tick, Widths, Witness};
+use super::{Known, RegisterWidth, Tick, Widths, Witness, by_simulation};
 use crate::study::boxes::{Extent, Geometries};
 use crate::study::proof::ProofError;
 use crate::testbench::{Ending, OverflowWatch, RangeWatch, Testbench};
@@ -68,7 +68,7 @@ pub(super) fn widths(
             }
         }
     }
-    let known = if all && cut == 0 && faults == 0 { Known::Exhaustive } else { Known::Sampled };
+    let known = by_simulation(curves.len(), all, faults + cut);
     let registers = found.into_iter().map(|(name, (held, worst))| {
         let given = bench.hardware().bits_of(name);
         let witness = Witness { curve: curves[worst].clone(), choices: choices.clone(), ran: true };

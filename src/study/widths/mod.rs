@@ -30,8 +30,10 @@ pub enum Known {
     Proved,
     /// Proved at this k alone, and a run needs it.
     ProvedHere,
-    /// Every geometry of the box was simulated.
+    /// Every geometry of the box was simulated, to its end.
     Exhaustive,
+    /// Every one was, but only the first number of the second ran to their end: of the others nothing is known.
+    Part(usize, usize),
     /// The extreme ones were.
     Sampled,
     /// Proved to be enough, but no run is known that needs it.
@@ -82,7 +84,7 @@ pub struct Widths {
     pub k: u32,
     /// Geometries that were simulated.
     pub simulated: usize,
-    /// They are all of the box.
+    /// They are all of the box, whether or not each of them ran to its end.
     pub all: bool,
     /// Geometries that end in a fault at the default widths.
     pub faults: usize,
@@ -90,6 +92,14 @@ pub struct Widths {
     pub cut: usize,
     /// Every register with a width to choose, by name.
     pub registers: Vec<RegisterWidth>,
+}
+
+impl Widths {
+    /// Geometries that ran to their end.
+    #[must_use]
+    pub fn ran(&self) -> usize {
+        self.simulated - self.faults - self.cut
+    }
 }
 
 /// Is called with a number of runs that are done.
@@ -195,7 +205,7 @@ pub fn simulated(
     let Geometries { curves, all, k, hardware, choices: wide } = set;
     let bench = Testbench::of_hardware(model, hardware)?;
     let Runs { seen, faults, cut } = simulate(&bench, &curves, LIMIT, tick)?;
-    let known = if all && cut == 0 { Known::Exhaustive } else { Known::Sampled };
+    let known = by_simulation(curves.len(), all, faults + cut);
     let row = |(name, seen): (String, Seen)| {
         let (needed, worst) = seen.needs(is_signed(&bench, &name));
         let needed = loaded(model, &wide, &name, needed, &curves[worst]);
@@ -216,6 +226,15 @@ pub fn simulated(
         mark_proved(model, &claims, ample, k, &mut registers);
     }
     Ok(Widths { extent: extent.clone(), k, simulated: curves.len(), all, faults, cut, registers })
+}
+
+/// How widths are known of `simulated` geometries, `lost` of which did not run to their end.
+fn by_simulation(simulated: usize, all: bool, lost: usize) -> Known {
+    match (all, lost) {
+        (false, _) => Known::Sampled,
+        (true, 0) => Known::Exhaustive,
+        (true, lost) => Known::Part(simulated - lost, simulated),
+    }
 }
 
 fn is_signed(bench: &Testbench, register: &str) -> bool {
