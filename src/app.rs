@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use clap::CommandFactory;
 
 use crate::Error;
-use crate::cli::{Cli, by_ending, by_value, help_of_model, usage};
+use crate::cli::{Cli, by_ending, by_value, help_of_model, usage, with_signs};
 use crate::models::Catalogue;
 use crate::{commands, output, stop};
 
@@ -66,9 +66,9 @@ fn run(models: Catalogue) -> Result<(), Error> {
     if let Some(help) = help_of_model(&words) {
         return output::print(&help);
     }
-    match Cli::of(&by_ending(by_value(words), Cli::command)) {
+    match Cli::of(&with_signs(by_ending(by_value(words), Cli::command), Cli::command)) {
         Ok(cli) => commands::dispatch(&cli),
-        Err(error) if error.use_stderr() => Err(usage(&error)),
+        Err(error) if error.use_stderr() => Err(usage(error)),
         Err(help) => output::print(&help.render().to_string()),
     }
 }

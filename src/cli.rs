@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use crate::models::Millionths;
-use crate::nc::{Drawn, Opens, SplineForm};
+use crate::nc::{Drawn, NURBS_DEGREE, Opens, SplineForm};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::commands::diff::DiffArgs;
@@ -20,6 +20,7 @@ mod program;
 mod proof;
 mod run;
 mod show;
+mod signs;
 mod sweep;
 mod titled;
 mod usage;
@@ -40,10 +41,11 @@ pub(crate) use program::{Method, ProgramArgs, TextArgs, Tool};
 pub(crate) use proof::{ProveArgs, ProveCommand};
 pub(crate) use run::MachineRun;
 pub(crate) use show::{ShowArgs, by_value, one_axis};
+pub(crate) use signs::with_signs;
 pub(crate) use sweep::{SpaceArgs, SweepArgs, SweepCommand, TableArgs, VariantArgs};
 pub(crate) use titled::Titled;
 pub(crate) use usage::usage;
-pub(crate) use values::{ClockArgs, Point, SimulationArgs, one_of, parse_decimals, parse_point};
+pub(crate) use values::{ClockArgs, Point, SimulationArgs, one_of, parse_decimals, parse_point, whole};
 pub(crate) use widths::WidthsArgs;
 
 /// Cycle-accurate simulator of numerical-control interpolator hardware
@@ -146,10 +148,10 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "BLU", value_parser = values::parse_millionths)]
     pub(crate) tolerance: Option<Millionths>,
     /// A run that is not done after so many clocks is given up, and its row says so
-    #[arg(long, value_name = "CLOCKS", default_value = "1000000000", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "CLOCKS", default_value = "1000000000", value_parser = values::whole::<u64>(1..))]
     pub(crate) max_clocks: u64,
     /// A run that takes longer is given up, and its row says so
-    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = values::whole::<u64>(1..))]
     pub(crate) max_seconds: u64,
     /// As a Markdown table
     #[arg(long)]
@@ -298,7 +300,7 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "PATH", requires = "schematic", help_heading = "Block diagram")]
     pub(crate) scope: Option<String>,
     /// Draw the inside of scopes this many levels deep, those below as boxes [default: as deep as is readable]
-    #[arg(long, value_name = "LEVELS", requires = "schematic", help_heading = "Block diagram")]
+    #[arg(long, value_name = "LEVELS", value_parser = values::whole::<usize>(0..), requires = "schematic", help_heading = "Block diagram")]
     pub(crate) levels: Option<usize>,
     /// Leave these load words open, or all: any values, also such as no geometry gives, loaded in the first clock and never
     /// again. What is known of them is for you to add
@@ -307,7 +309,7 @@ pub(crate) struct ExportArgs {
     pub(crate) any_geometry: Vec<String>,
     /// Last clock of the question in --smt2 [default: that of the run, at most 1000]
     #[arg(long, requires = "smt2", value_name = "CLOCKS", help_heading = "Model checking")]
-    #[arg(value_parser = clap::value_parser!(u64).range(..=100_000))]
+    #[arg(value_parser = values::whole::<u64>(0..=100_000))]
     pub(crate) depth: Option<u64>,
 }
 
@@ -348,7 +350,7 @@ pub(crate) struct GeometryArgs {
     #[arg(long, value_name = "X,Y,W,…|FILE", allow_hyphen_values = true, group = "drawn")]
     pub(crate) nurbs: Option<String>,
     /// Degree of a NURBS [default: 3, or as many as the points allow]
-    #[arg(long, requires = "nurbs", value_name = "P")]
+    #[arg(long, requires = "nurbs", value_name = "P", value_parser = values::whole::<u32>(1..=NURBS_DEGREE as u64))]
     pub(crate) degree: Option<u32>,
     /// Knots of a NURBS [default: uniform, those at the ends degree + 1 times]
     #[arg(long, requires = "nurbs", value_name = "U,U,…", allow_hyphen_values = true)]

@@ -24,7 +24,7 @@ use crate::trace::vcd::{Background, VcdBody, VcdHeader};
 use self::limited::Limited;
 use crate::Error;
 #[cfg(feature = "cli")]
-use crate::cli::{Format as FileFormat, all_registers, file_of, listed};
+use crate::cli::{Format as FileFormat, all_registers, file_of, listed, whole};
 use crate::output::{self, Outputs, SeekableSink, Sink};
 
 /// Which waves a run writes, of which signals, over which clocks: on the command line, the options of a wave.
@@ -60,7 +60,7 @@ pub struct WaveOptions {
     pub excluded: Vec<String>,
     /// Dump at most this many levels of scopes; 1 is the top scope alone
     #[cfg_attr(feature = "cli", arg(id = "trace_depth", long = "trace-depth", requires = "wave", value_name = "N"))]
-    #[cfg_attr(feature = "cli", arg(value_parser = clap::value_parser!(u64).range(1..)))]
+    #[cfg_attr(feature = "cli", arg(value_parser = whole::<u64>(1..)))]
     pub depth: Option<u64>,
     /// First clock of the wave
     #[cfg_attr(
@@ -90,6 +90,24 @@ pub struct WaveOptions {
     /// Write a wave of more than 1 GB, or a page of more than 256 MB of changes
     #[cfg_attr(feature = "cli", arg(long, requires = "wave"))]
     pub large: bool,
+    /// What is said of a wave that cannot be had.
+    #[cfg_attr(feature = "cli", arg(skip))]
+    pub(crate) remarks: Remarks,
+}
+
+/// What is said of a wave that cannot be had.
+#[derive(Clone, Debug)]
+pub(crate) struct Remarks {
+    /// Of one without samples, before the reason.
+    pub(crate) empty: String,
+    /// Of one that is too large: what is to be done.
+    pub(crate) remedies: String,
+}
+
+impl Default for Remarks {
+    fn default() -> Remarks {
+        Remarks { empty: "the wave would be empty".to_owned(), remedies: limited::REMEDIES.to_owned() }
+    }
 }
 
 /// A program that shows waves, and is given a file of rows and formats next to each.
@@ -126,6 +144,7 @@ impl Default for WaveOptions {
             every_clock,
             speed,
             large,
+            remarks: Remarks::default(),
         }
     }
 }
@@ -200,6 +219,8 @@ pub(crate) struct Waves<'a> {
     leading: &'static [&'static str],
     without: Vec<String>,
     viewer: Viewer,
+    /// What is said of an empty one.
+    empty: String,
 }
 
 /// One of them.
@@ -247,9 +268,12 @@ impl<'a> Waves<'a> {
                 let header = VcdHeader { comment: &comment, probes: &probes, time, clk, states };
                 Some(Wave {
                     path,
-                    writer: WaveWriter::new(header.write(Background::new(Limited::new(sink, args.large)))?, window)
-                        .looking_at(curves.clone())
-                        .with_speed(speed.clone()),
+                    writer: WaveWriter::new(
+                        header.write(Background::new(Limited::new(sink, args.large, &args.remarks.remedies)))?,
+                        window,
+                    )
+                    .looking_at(curves.clone())
+                    .with_speed(speed.clone()),
                 })
             }
             None => None,
@@ -259,14 +283,18 @@ impl<'a> Waves<'a> {
                 let header = FstHeader { probes: &probes, time, clk };
                 Some(Wave {
                     path,
-                    writer: WaveWriter::new(header.write(Limited::new(sink, args.large))?, window)
-                        .looking_at(curves)
-                        .with_speed(speed),
+                    writer: WaveWriter::new(
+                        header.write(Limited::new(sink, args.large, &args.remarks.remedies))?,
+                        window,
+                    )
+                    .looking_at(curves)
+                    .with_speed(speed),
                 })
             }
             None => None,
         };
-        Ok(Waves { vcd, fst, probes, clk, time, leading: &[], without, viewer: sinks.viewer })
+        let empty = args.remarks.empty.clone();
+        Ok(Waves { vcd, fst, probes, clk, time, leading: &[], without, viewer: sinks.viewer, empty })
     }
 
     /// The same with rows that come first: their paths without the design's name.
@@ -293,12 +321,12 @@ impl<'a> Waves<'a> {
         let (vcd, fst) = (self.vcd.take(), self.fst.take());
         let stems = stems([vcd.as_ref().map(|wave| wave.path), fst.as_ref().map(|wave| wave.path)]);
         if let Some(Wave { path, writer }) = vcd {
-            let (written, background) = finish(writer, clocks)?;
+            let (written, background) = finish(writer, clocks, &self.empty)?;
             background.finish()?;
             self.viewer_files(path, stems[0], written, overflows, outputs)?;
         }
         if let Some(Wave { path, writer }) = fst {
-            let (written, _) = finish(writer, clocks)?;
+            let (written, _) = finish(writer, clocks, &self.empty)?;
             self.viewer_files(path, stems[1], written, overflows, outputs)?;
         }
         Ok(())
@@ -371,17 +399,18 @@ pub(crate) struct Written {
     taken: Vec<Taken>,
 }
 
-/// How the message of a wave without samples begins.
-pub(crate) const EMPTY: &str = "the wave would be empty: ";
-
-/// Ends a wave; returns what it holds.
+/// Ends a wave; returns what it holds. `empty` is said where that is nothing.
 ///
 /// # Errors
 /// It is empty, or its output cannot be written.
-pub(crate) fn finish<B: WaveBody>(mut writer: WaveWriter<B>, clocks: u64) -> Result<(Written, B::Output), Error> {
+pub(crate) fn finish<B: WaveBody>(
+    mut writer: WaveWriter<B>,
+    clocks: u64,
+    empty: &str,
+) -> Result<(Written, B::Output), Error> {
     writer.end(clocks)?;
     let Some(written) = writer.written else {
-        return Err(Error::Invalid(format!("{EMPTY}no clock from 0 to {clocks} of this run falls into its window")));
+        return Err(Error::Invalid(format!("{empty}: no clock from 0 to {clocks} of this run falls into its window")));
     };
     let taken = std::mem::take(&mut writer.taken);
     Ok((Written { clocks: written, taken }, writer.finish()?))

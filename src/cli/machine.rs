@@ -1,5 +1,6 @@
 //! The command line of `machine`.
 
+use crate::models::options::{ACCEL, AnyOption, JERK};
 use clap::{Args, ValueEnum};
 
 use super::names::model_name;
@@ -14,6 +15,11 @@ pub(crate) struct Travel(pub(crate) Vec<f64>);
 pub(crate) enum Family {
     /// Lattice iCE40, by Yosys and nextpnr
     Ice40,
+}
+
+/// The text of an option of ramps, if it has such values.
+fn of_ramp(option: &'static dyn AnyOption, text: &str) -> Result<String, String> {
+    option.parse(text).map(|_| text.to_owned())
 }
 
 #[derive(Debug, Args)]
@@ -64,10 +70,10 @@ pub(crate) struct MachineArgs {
     pub(crate) clock_hz: f64,
     /// Acceleration along the path, or A,D with a deceleration of its own: 500mm/s2; adds the ramp of every method that runs
     /// programs, and one move across the travel with it
-    #[arg(long, value_name = "A[,D]")]
+    #[arg(long, value_name = "A[,D]", value_parser = |text: &str| of_ramp(&ACCEL, text))]
     pub(crate) accel: Option<String>,
     /// Jerk, for ramps along an S: 20000mm/s3
-    #[arg(long, value_name = "J", requires = "accel")]
+    #[arg(long, value_name = "J", requires = "accel", value_parser = |text: &str| of_ramp(&JERK, text))]
     pub(crate) jerk: Option<String>,
     /// What the hardware costs: LUTs, flip-flops and the highest clock, by the tools of the Debian packages yosys and
     /// nextpnr-ice40

@@ -133,7 +133,7 @@ pub(crate) struct SimArgs {
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true, value_parser = values::parse_setting)]
     pub(crate) set: Vec<(String, String)>,
     /// Edges of the clock
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = values::whole::<u64>(0..))]
     pub(crate) clocks: u64,
     /// End the run at the first violation of a property with this name, or path (may be repeated)
     #[arg(long, value_name = "GLOB")]

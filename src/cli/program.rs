@@ -8,7 +8,7 @@ use crate::nc::{Corner, Integers, Scheme};
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Args, Command};
 
-use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu, parse_speed};
+use super::values::{ClockArgs, SimulationArgs, one_of, parse_blu, parse_feed, parse_speed};
 use super::{BenchArgs, HardwareArgs, ShownArgs};
 use crate::own::is_netlist;
 use crate::simulation::FileOptions;
@@ -63,12 +63,7 @@ fn parse_length(text: &str) -> Option<f64> {
 fn parse_angle(text: &str) -> Result<f64, String> {
     let number = text.trim_end_matches("deg").trim_end_matches('°').trim().parse();
     let angle = number.ok().filter(|angle: &f64| angle.is_finite() && *angle > 0.0);
-    angle.ok_or_else(|| format!("invalid angle '{text}': give degrees, such as 0.001deg"))
-}
-
-fn parse_feed(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|feed: &f64| feed.is_finite() && *feed > 0.0);
-    number.ok_or_else(|| format!("invalid feed '{text}': give mm/min, such as 3000"))
+    angle.ok_or_else(|| format!("invalid angle '{text}': give degrees above 0, such as 0.001deg"))
 }
 
 fn parse_chords(text: &str) -> Result<f64, String> {

@@ -11,7 +11,7 @@ use clap::{Args, Subcommand};
 
 use super::endings::{Format, file_of};
 use super::names::{all_widths, listed, model_name};
-use super::values::{self, Narrower, parse_narrower};
+use super::values::{self, Narrower, parse_narrower, whole};
 use super::{BenchArgs, HardwareArgs, ShownArgs};
 use crate::waves::{Viewer, WaveOptions};
 
@@ -68,10 +68,10 @@ pub(crate) struct ProveArgs {
     pub(crate) solver: Option<String>,
     /// Seconds after which the solver is stopped, for each question
     #[arg(long, value_name = "SECONDS", default_value_t = 60, requires = "solver")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    #[arg(value_parser = whole::<u64>(1..=86_400))]
     pub(crate) solver_seconds: u64,
     /// Bits of coordinates, for --solver and for models that are proved at one width at a time (default: 1 to 16)
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=20))]
+    #[arg(long, value_name = "K", value_parser = whole::<u32>(1..=20))]
     pub(crate) bits: Option<u32>,
     /// Let remainder registers start from any value, not only from --preset
     #[arg(long, conflicts_with = "preset")]
@@ -109,13 +109,13 @@ pub(crate) struct NetlistProofArgs {
     #[arg(long, value_name = "GLOB", requires = "stimulus")]
     pub(crate) hold: Vec<String>,
     /// The last clock in which a violation is looked for [default: none]
-    #[arg(long, value_name = "CLOCK")]
+    #[arg(long, value_name = "CLOCK", value_parser = whole::<u64>(0..))]
     pub(crate) bound: Option<u64>,
     /// Seconds after which the search ends [default: 60]
-    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..=864_000))]
+    #[arg(long, value_name = "SECONDS", value_parser = whole::<u64>(1..=864_000))]
     pub(crate) time: Option<u64>,
     /// Memory at which the search ends [default: 4096]
-    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(16..=65_536))]
+    #[arg(long, value_name = "MB", value_parser = whole::<u64>(16..=65_536))]
     pub(crate) memory: Option<u64>,
     /// Write the inputs of the first counterexample as a stimulus of `stepwave sim`
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Csv]))]

@@ -4,9 +4,11 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+use clap::error::{ContextKind, ContextValue};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
+use super::values::whole;
 use super::{Format, MachineRun, file_of, one_of};
 use crate::models::find;
 use crate::trace::draw::{LEAST_COLUMNS, Radix};
@@ -15,12 +17,27 @@ const OUTPUTS: &str = "Outputs (- is standard output)";
 const SHOWN: &str = "What is shown";
 const FIRST: &str = "trace-from";
 const LAST: &str = "trace-to";
+const VALUES: &str = "values";
 
-/// A sentence of a usage error of `show` in the words of its user: the options have the names that its help says first.
-pub(super) fn as_given(sentence: &str) -> String {
-    let sentence = sentence.replace(&format!("'--{FIRST} <N>'"), &format!("'--from <N>' (or --{FIRST})"));
-    let sentence = sentence.replace(&format!("'--{LAST} <N>'"), &format!("'--to <N>' (or --{LAST})"));
-    sentence.replace("'--values <FORM>'", "'--values <FORM>' (or --radix)")
+/// Options of `show` that may be written as options of `run`: these, their own names, and what stands for the value.
+const SHARED: [(&str, &str, &str); 3] = [("from", FIRST, "N"), ("to", LAST, "N"), ("radix", VALUES, "FORM")];
+
+/// A usage error of `show` in the words of its user: an option has both of its names.
+pub(super) fn as_given(error: &mut clap::Error) {
+    let own = |argument: &str| {
+        let (shared, name, value) =
+            SHARED.into_iter().find(|(_, name, value)| argument == format!("--{name} <{value}>"))?;
+        Some(format!("--{shared} <{value}> or --{name} <{value}>"))
+    };
+    for kind in [ContextKind::InvalidArg, ContextKind::PriorArg] {
+        let renamed = match error.get(kind) {
+            Some(ContextValue::String(argument)) => own(argument),
+            _ => None,
+        };
+        if let Some(renamed) = renamed {
+            error.insert(kind, ContextValue::String(renamed));
+        }
+    }
 }
 
 /// How vectors may be written.
@@ -58,11 +75,11 @@ pub(crate) struct ShowArgs {
     pub(crate) run: Given<MachineRun>,
 
     /// First clock, or time with --by-time; --from N says the same
-    #[arg(id = "first", long = FIRST, value_name = "N", default_value_t = 0, help_heading = SHOWN)]
+    #[arg(id = "first", long = FIRST, value_name = "N", default_value_t = 0, value_parser = whole::<u64>(0..), help_heading = SHOWN)]
     pub(crate) from: u64,
 
     /// Last clock, or time with --by-time; --to N says the same [default: as many as fit in a line]
-    #[arg(id = "last", long = LAST, value_name = "N", help_heading = SHOWN)]
+    #[arg(id = "last", long = LAST, value_name = "N", value_parser = whole::<u64>(0..), help_heading = SHOWN)]
     pub(crate) to: Option<u64>,
 
     /// Only signals whose name matches, or their path from some scope on; `*` matches dots too (repeatable)
@@ -74,7 +91,7 @@ pub(crate) struct ShowArgs {
     pub(crate) ignore: Vec<String>,
 
     /// How vectors are written; as declared is decimal, with a sign where the file says so
-    #[arg(long, value_name = "FORM", default_value = "declared", value_parser = one_of(&RADICES), help_heading = SHOWN)]
+    #[arg(long = VALUES, value_name = "FORM", default_value = "declared", value_parser = one_of(&RADICES), help_heading = SHOWN)]
     pub(crate) values: Radix,
 
     /// A cell for each time at which something changes, in units of the wave, in place of each clock
@@ -95,7 +112,7 @@ pub(crate) struct ShowArgs {
     pub(crate) ascii: bool,
 
     /// Characters of a line [default: those of the terminal, else 80]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(LEAST_COLUMNS as i64..=1000), help_heading = SHOWN)]
+    #[arg(long, value_name = "N", value_parser = whole::<u16>(LEAST_COLUMNS as u64..=1000), help_heading = SHOWN)]
     pub(crate) columns: Option<u16>,
 
     /// Write the same lines as SVG
@@ -153,13 +170,14 @@ pub(crate) fn by_value(mut words: Vec<OsString>) -> Vec<OsString> {
     }
     let model = words.iter().skip(2).find(|word| word.to_str().is_some_and(|word| find(word).is_ok()));
     let lone = model.is_some_and(|model| one_axis(Path::new(model)));
-    let clock = |value: &str| !lone && !value.is_empty() && value.bytes().all(|byte| byte.is_ascii_digit());
+    let clock = |value: &str| {
+        let digits = value.strip_prefix('-').unwrap_or(value);
+        !lone && !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+    };
     let form = |value: &str| RADICES.iter().any(|(name, _)| *name == value);
-    let other = |option: &str, value: &str| match option {
-        "--from" if clock(value) => Some(FIRST),
-        "--to" if clock(value) => Some(LAST),
-        "--radix" if form(value) => Some("values"),
-        _ => None,
+    let other = |option: &str, value: &str| {
+        let (_, name, _) = SHARED.into_iter().find(|(shared, ..)| option.strip_prefix("--") == Some(*shared))?;
+        (if name == VALUES { form(value) } else { clock(value) }).then_some(name)
     };
     for index in 2..words.len() {
         let (word, next) = (words[index].to_str(), words.get(index + 1).and_then(|next| next.to_str()));

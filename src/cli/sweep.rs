@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::models::options::{AnyOption, Shape, WIDTH, all};
-use crate::nc::{Drawn, Opens, SplineForm};
+use crate::nc::{Drawn, NURBS_DEGREE, Opens, SplineForm};
 use crate::study::{Grid, Range};
 use clap::builder::StringValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, Subcommand};
@@ -12,7 +12,7 @@ use super::BenchArgs;
 use super::endings::{Format, OutputArgs, file_of};
 use super::hardware::proposals;
 use super::names::{listed, model_name};
-use super::values::{Point, opens, parse_point};
+use super::values::{Point, opens, parse_point, whole};
 
 /// A grid on the command line.
 fn grid(text: &str) -> Result<Grid, String> {
@@ -145,10 +145,10 @@ pub(crate) struct SpaceArgs {
     #[arg(long)]
     pub(crate) ccw: bool,
     /// So many random ones of the geometries, instead of all
-    #[arg(long, value_name = "N", conflicts_with = "file", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", conflicts_with = "file", value_parser = whole::<u64>(1..))]
     pub(crate) samples: Option<u64>,
     /// Tells this draw of --samples from others
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u64>(0..))]
     pub(crate) seed: u64,
     /// Geometries from a CSV file: to_x,to_y and what else is not by default (from_x, center_x, direction, …); of free curves
     /// curve (bezier, hermite, catmull-rom, b-spline) and p0_x,p0_y,p1_x,…, of NURBS p0_w,…, degree and knots
@@ -175,7 +175,7 @@ pub(crate) struct FreeCurveArgs {
     #[arg(long, value_name = "RANGE,RANGE,W,…", allow_hyphen_values = true, group = "sizes")]
     pub(crate) nurbs: Option<String>,
     /// Degree of the NURBS [default: 3, or as many as the points allow]
-    #[arg(long, requires = "nurbs", value_name = "P")]
+    #[arg(long, requires = "nurbs", value_name = "P", value_parser = whole::<u32>(1..=NURBS_DEGREE as u64))]
     pub(crate) degree: Option<u32>,
     /// Knots of the NURBS [default: uniform, those at the ends degree + 1 times]
     #[arg(long, requires = "nurbs", value_name = "U,U,…", allow_hyphen_values = true)]
@@ -260,7 +260,7 @@ impl FromArgMatches for VariantArgs {
 pub(crate) struct TableArgs {
     /// A run that is not done after so many clocks is given up
     #[arg(long, value_name = "CLOCKS", default_value_t = (1 << 31) - 1,
-        value_parser = clap::value_parser!(u64).range(1..=(1 << 31) - 1))]
+        value_parser = whole::<u64>(1..=(1 << 31) - 1))]
     pub(crate) max_clocks: u64,
     /// Write the rows as CSV
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Csv]))]

@@ -8,7 +8,15 @@ use super::show::as_given;
 use crate::Error;
 
 /// A usage error, in one line: what is wrong, and where to read on. Without a command, the help.
-pub(crate) fn usage(error: &clap::Error) -> Error {
+pub(crate) fn usage(mut error: clap::Error) -> Error {
+    let program = Cli::command();
+    // Not `args`, which panics on what is not Unicode.
+    let command = std::env::args_os().nth(1).and_then(|word| word.into_string().ok());
+    let command = command.filter(|word| program.find_subcommand(word).is_some());
+    let command = command.unwrap_or_default();
+    if command == "show" {
+        as_given(&mut error);
+    }
     let text = error.render().to_string();
     if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         return Error::Help(text.trim_end().to_owned());
@@ -26,14 +34,6 @@ pub(crate) fn usage(error: &clap::Error) -> Error {
         && let Some(word) = std::env::args_os().find(|word| word.to_str().is_none())
     {
         sentence = format!("'{}' is not Unicode: only names of files may be any bytes", word.to_string_lossy());
-    }
-    let program = Cli::command();
-    // Not `args`, which panics on what is not Unicode.
-    let command = std::env::args_os().nth(1).and_then(|word| word.into_string().ok());
-    let command = command.filter(|word| program.find_subcommand(word).is_some());
-    let command = command.unwrap_or_default();
-    if command == "show" {
-        sentence = as_given(&sentence);
     }
     let help = format!("stepwave {command}").trim_end().to_owned();
     Error::Invalid(format!("{sentence} (see `{help} --help`)"))

@@ -1,5 +1,7 @@
 //! Values on the command line, each with the sentence that says what is wrong with a bad one.
 
+use std::ops::{Bound, RangeBounds};
+
 use super::Travel;
 use stepwave_import::Unknown;
 
@@ -10,6 +12,28 @@ use crate::nc::{NURBS_MOST, Opens};
 use crate::study::units;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+
+/// A whole number in this range.
+pub(crate) fn whole<T: TryFrom<u64>>(
+    range: impl RangeBounds<u64> + Clone,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let number = text.trim().parse().ok().filter(|number| range.contains(number));
+        number.and_then(|number| T::try_from(number).ok()).ok_or_else(|| {
+            let least = match range.start_bound() {
+                Bound::Included(least) => *least,
+                Bound::Excluded(below) => below.saturating_add(1),
+                Bound::Unbounded => 0,
+            };
+            let most = match range.end_bound() {
+                Bound::Included(most) => format!("to {most}"),
+                Bound::Excluded(above) => format!("to {}", above.saturating_sub(1)),
+                Bound::Unbounded => "on".to_owned(),
+            };
+            format!("give a whole number from {least} {most}")
+        })
+    }
+}
 
 /// Coordinates of a point in BLU.
 #[derive(Clone, Debug)]
@@ -51,13 +75,13 @@ pub(crate) fn opens() -> impl TypedValueParser<Value = Opens> {
 
 /// The clock frequency in Hz.
 pub(super) fn parse_clock(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| format!("invalid frequency '{text}': give Hz, such as 1000000 or 1e6"))
+    text.parse().map_err(|_| format!("invalid frequency '{text}': give Hz above 0, such as 1000000 or 1e6"))
 }
 
 /// One BLU in millimetres.
 pub(super) fn parse_blu(text: &str) -> Result<f64, String> {
     const UNITS: [(&str, f64); 4] = [("mm", 1.0), ("um", 1e-3), ("µm", 1e-3), ("in", 25.4)];
-    let remedy = || format!("invalid length '{text}': give one such as 0.001mm, 1um or 0.0001in");
+    let remedy = || format!("invalid length '{text}': give one above 0, such as 0.001mm, 1um or 0.0001in");
     let (unit, scale) = UNITS.iter().find(|(unit, _)| text.ends_with(unit)).ok_or_else(remedy)?;
     let number = text.strip_suffix(unit).unwrap_or_default().trim();
     let length: f64 = number.parse().map_err(|_| remedy())?;
@@ -105,7 +129,7 @@ pub(super) fn parse_millionths(text: &str) -> Result<Millionths, String> {
 /// A speed in mm/min.
 pub(super) fn parse_feed(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
-    number.ok_or_else(|| format!("invalid feed '{text}': give mm/min, such as 600"))
+    number.ok_or_else(|| format!("invalid feed '{text}': give mm/min above 0, such as 600"))
 }
 
 /// A speed in mm/min, with its unit or without one.
@@ -115,7 +139,7 @@ pub(super) fn parse_speed(text: &str) -> Result<f64, String> {
     let (number, scale) = unit.map_or((text, 1.0), |(unit, scale)| (text.trim_end_matches(unit).trim(), *scale));
     parse_feed(number)
         .map(|speed| speed * scale)
-        .map_err(|_| format!("invalid feed '{text}': give a speed such as 2400mm/min, 40mm/s or 95in/min"))
+        .map_err(|_| format!("invalid feed '{text}': give a speed above 0, such as 2400mm/min, 40mm/s or 95in/min"))
 }
 
 /// The travel of two or three axes in mm, with units or without.
@@ -124,7 +148,7 @@ pub(super) fn parse_travel(text: &str) -> Result<Travel, String> {
         let word = word.trim();
         let mm = word.parse().ok().filter(|mm: &f64| mm.is_finite() && *mm > 0.0);
         mm.map_or_else(|| parse_blu(word), Ok)
-            .map_err(|_| format!("invalid travel '{word}': give lengths in mm, um or in, such as 300mm,200mm"))
+            .map_err(|_| format!("invalid travel '{word}': give lengths above 0 in mm, um or in, such as 300mm,200mm"))
     };
     let axes: Vec<f64> = text.split(',').map(length).collect::<Result<_, _>>()?;
     match axes.len() {
@@ -153,7 +177,7 @@ pub(crate) struct SimulationArgs {
         ("gates", EngineKind::Gates)]))]
     pub(crate) engine: EngineKind,
     /// A run that is not done after so many clocks is given up; one that comes back to an earlier state always is
-    #[arg(long, value_name = "CLOCKS", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "CLOCKS", value_parser = whole::<u64>(1..))]
     pub(crate) max_clocks: Option<u64>,
     /// What the operator does right after a clock: CLOCK:hold, resume, override=PERCENT, single, start or continuous (may be
     /// repeated; of hardware with acceleration)

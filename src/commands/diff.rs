@@ -4,12 +4,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use crate::trace::diverge::{self, By, Options};
+use super::clockless::clockless;
+use crate::trace::diverge::{self, By, CompareError, Options};
 use crate::trace::merge::write_merged;
-use crate::trace::read::{Wave, WaveError};
+use crate::trace::read::{ClockError, Wave};
 
 use crate::Error;
-use crate::cli::{Format, file_of};
+use crate::cli::{Format, file_of, whole};
 use crate::output::{self, Outputs};
 use crate::waves::Viewer;
 
@@ -63,7 +64,7 @@ pub(crate) struct DiffArgs {
     map: Vec<(String, String)>,
 
     /// Lines of context before and after the first divergence
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole::<usize>(0..))]
     context: usize,
 
     /// Also write both sides and their exclusive-or as one VCD for the viewer (`-`: to standard output, instead of the
@@ -114,10 +115,11 @@ pub(crate) fn run(args: &DiffArgs) -> Result<(), Error> {
         map: args.map.clone(),
         context: args.context,
     };
-    let open = |path: &Path| -> Result<Wave, WaveError> {
+    let by_time = |error: &ClockError| clockless(error, "compare with --by time");
+    let open = |path: &Path| -> Result<Wave, Error> {
         let wave = Wave::open(path)?;
         match &args.clock {
-            Some(clock) => Ok(wave.with_clock(clock)?),
+            Some(clock) => wave.with_clock(clock).map_err(|error| by_time(&error)),
             None => Ok(wave),
         }
     };
@@ -129,7 +131,10 @@ pub(crate) fn run(args: &DiffArgs) -> Result<(), Error> {
     let Ok(a) = a else { return trouble("the first wave cannot be read: the reader stopped") };
     let (a, b) = (a?, b?);
 
-    let comparison = diverge::compare(&a, &b, &options)?;
+    let comparison = diverge::compare(&a, &b, &options).map_err(|error| match error {
+        CompareError::Clock(error) => by_time(&error),
+        other => other.into(),
+    })?;
     let mut outputs = Outputs::reading([&args.a, &args.b]);
     if let Some(path) = &args.merged {
         let mut sink = outputs.open(path)?;

@@ -71,10 +71,7 @@ fn sizes(args: &GeometryArgs) -> Vec<i64> {
 
 /// The free curve that the options give.
 fn spline(who: &str, kind: CurveKind, form: SplineForm, args: &GeometryArgs) -> Result<Curve, Error> {
-    let mut superfluous = superfluous(kind, args);
-    let along = args.b_spline && form != SplineForm::BSpline;
-    superfluous.push((along, "--b-spline"));
-    by_points_alone(who, args, superfluous)?;
+    by_points_alone(who, args, superfluous(kind, args))?;
     let option = Drawn::Spline(form).option();
     let read = |text: &String| points(text);
     let given = [&args.bezier, &args.hermite].into_iter().flatten().map(|Point(numbers)| Ok(numbers.clone()));
@@ -133,9 +130,6 @@ fn superfluous(kind: CurveKind, args: &GeometryArgs) -> Vec<(bool, &'static str)
         (args.center.is_some() && none(Drawn::is_centered), "--center"),
         ((args.cw || args.ccw) && none(Drawn::turns), "--cw or --ccw"),
         (args.opens.is_some() && none(Drawn::is_open), "--opens"),
-        (args.b_spline && none(Drawn::is_spline), "--b-spline"),
-        (args.degree.is_some() && args.nurbs.is_none(), "--degree"),
-        (args.knots.is_some() && args.nurbs.is_none(), "--knots"),
     ];
     if let Some(drawn) = args.drawn() {
         options.push((!kind.has(drawn), drawn.option()));

@@ -1,5 +1,6 @@
 //! One file per subcommand, thin: it joins the command line with the library.
 
+mod clockless;
 mod columns;
 mod compare;
 pub(crate) mod diff;

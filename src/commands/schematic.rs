@@ -51,5 +51,6 @@ pub(super) fn draw(
     let drawn = schematic::draw(design.netlist(), outputs, &part)?;
     files.write(path, &drawn.svg)?;
     let closed = drawn.closed().map_or_else(String::new, |closed| format!(", {closed}"));
-    Ok(format!("the block diagram has {} symbols{closed}\n", drawn.symbols))
+    let symbols = if drawn.symbols == 1 { "symbol" } else { "symbols" };
+    Ok(format!("the block diagram has {} {symbols}{closed}\n", drawn.symbols))
 }

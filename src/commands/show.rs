@@ -9,6 +9,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use self::source::Source;
+use super::clockless::clockless;
 use crate::Error;
 use crate::cli::{ShowArgs, one_axis};
 use crate::output::{Kept, Outputs, Screen};
@@ -26,11 +27,12 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
     }
     let columns = args.columns.map_or_else(columns, usize::from);
     let Source { mut wave, side, reads, failures, first, beyond } = source::open(args, columns)?;
+    let by_time = |error: ClockError| clockless(&error, "draw it with --by-time");
     if let Some(clock) = &args.clock {
-        wave = wave.with_clock(clock).map_err(clockless)?;
+        wave = wave.with_clock(clock).map_err(by_time)?;
     }
     if !args.by_time {
-        wave.cycles().map_err(clockless)?;
+        wave.cycles().map_err(by_time)?;
     }
     let signals = signals(&wave, args)?;
     let States { names, files } = States::next_to(&args.wave, side.as_ref(), &wave, &signals);
@@ -82,14 +84,6 @@ pub(crate) fn run(args: &ShowArgs) -> Result<(), Error> {
     write!(screen, "{}", window.text(drawing.ascii, drawing.colour && !on_error))?;
     screen.flush()?;
     checked(failures)
-}
-
-/// Why a wave has no clocks; the option that needs none has another name than that of `diff`.
-fn clockless(error: ClockError) -> Error {
-    let sentence = error.to_string();
-    Error::Invalid(
-        sentence.replace("compare with --by time", "draw it with --by-time").replace("--by time", "--by-time"),
-    )
 }
 
 /// What is wrong with the hardware that was run for its wave.

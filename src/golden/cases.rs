@@ -71,7 +71,7 @@ impl Listed {
         words.extend(self.args.iter().enumerate().map(path));
         let files = ["--vcd".into(), vcd.into_os_string(), "--steps".into(), steps.into_os_string()];
         words.extend(["--engine".into(), engine.name().into()].into_iter().chain(files));
-        let cli = Cli::of(&words).map_err(|error| usage(&error))?;
+        let cli = Cli::of(&words).map_err(usage)?;
         let mut outputs = Outputs::default();
         let finished = match &cli.command {
             Command::Program(args) => program::simulate(args, &mut outputs),

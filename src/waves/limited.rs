@@ -11,18 +11,21 @@ pub(crate) const REMEDIES: &str = "make it small by --trace-steps (one sample a 
 pub(crate) struct Limited<W> {
     out: W,
     left: u64,
+    remedies: String,
 }
 
 impl<W> Limited<W> {
-    pub(crate) fn new(out: W, large: bool) -> Limited<W> {
-        Limited { out, left: if large { u64::MAX } else { LARGE } }
+    /// `remedies` says what is to be done where it takes no more.
+    pub(crate) fn new(out: W, large: bool, remedies: &str) -> Limited<W> {
+        Limited { out, left: if large { u64::MAX } else { LARGE }, remedies: remedies.to_owned() }
     }
 }
 
 impl<W: Write> Write for Limited<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if bytes.len() as u64 > self.left {
-            return Err(io::Error::other(format!("the wave has come to 1 GB and was given up: {REMEDIES}")));
+            let remedies = &self.remedies;
+            return Err(io::Error::other(format!("the wave has come to 1 GB and was given up: {remedies}")));
         }
         let written = self.out.write(bytes)?;
         self.left -= written as u64;
@@ -46,7 +49,7 @@ mod tests {
 
     #[test]
     fn an_output_ends_at_its_limit_unless_more_is_wanted() {
-        let mut limited = Limited { left: 10, ..Limited::new(Vec::new(), false) };
+        let mut limited = Limited { left: 10, ..Limited::new(Vec::new(), false, REMEDIES) };
         limited.write_all(b"0123456").expect("room");
         let refused = limited.write_all(b"789ab").expect_err("no room").to_string();
         assert!(
@@ -54,6 +57,6 @@ mod tests {
             "{refused}"
         );
         assert_eq!(limited.out, b"0123456");
-        assert_eq!((Limited::new((), false).left, Limited::new((), true).left), (1_000_000_000, u64::MAX));
+        assert_eq!((Limited::new((), false, "").left, Limited::new((), true, "").left), (1_000_000_000, u64::MAX));
     }
 }

@@ -263,7 +263,10 @@ fn a_clock_that_no_wave_can_carry_is_refused() {
 fn a_blu_that_is_no_length_is_refused() {
     for blu in ["0", "0mm", "1", "mm", "-1mm", "nanmm", "infmm", "1e400mm", "1cm", "abc", "1 2mm", "0um", "1e-400in"] {
         let words = ["run", "dda-line", "--to", "8,6", &format!("--blu={blu}"), "--json", "r.json"];
-        refused_words(&words, &[&format!("invalid length '{blu}': give one such as 0.001mm, 1um or 0.0001in")]);
+        refused_words(
+            &words,
+            &[&format!("invalid length '{blu}': give one above 0, such as 0.001mm, 1um or 0.0001in")],
+        );
     }
     refused_words(&["run", "dda-line", "--to", "8,6", "--blu", ""], &["invalid length ''"]);
 }

@@ -27,6 +27,7 @@ mod ramps;
 mod ranges;
 mod sampled;
 mod show;
+mod signs;
 mod speed_row;
 mod splines;
 mod stages;

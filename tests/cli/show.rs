@@ -216,15 +216,15 @@ fn an_option_given_twice_is_named_as_its_user_wrote_it() {
     for (words, says) in [
         (
             "show dda-line --to 8,6 --to 3 --to 4",
-            "the argument '--to <N>' (or --trace-to) cannot be used multiple times",
+            "the argument '--to <N> or --trace-to <N>' cannot be used multiple times",
         ),
         (
             "show dda-line --to 8,6 --from 3 --from 4",
-            "the argument '--from <N>' (or --trace-from) cannot be used multiple times",
+            "the argument '--from <N> or --trace-from <N>' cannot be used multiple times",
         ),
         (
             "show dda-line --to 8,6 --radix hex --radix hex",
-            "the argument '--values <FORM>' (or --radix) cannot be used multiple times",
+            "the argument '--radix <FORM> or --values <FORM>' cannot be used multiple times",
         ),
     ] {
         let said = refused_in(&folder, words);

@@ -66,8 +66,8 @@ fn a_wave_without_a_clock_names_the_bits_that_could_be_one() {
         header("1ns", "$var wire 1 ! osc $end\n$var wire 1 # en $end") + "#0\n0!\n0#\n#1\n1!\n1#\n#2\n0!\n#3\n1!\n";
     let ran = folder(&[("a.vcd", &text)]).run("diff a.vcd a.vcd");
     assert_eq!(ran.code, 2);
-    let named =
-        "name the clock with --clock (top.osc, 2 rising edges; top.en, 1 rising edge) or compare with --by time";
+    let named = "those that rise most are top.osc (2 rising edges), top.en (1 rising edge): name the clock with --clock, or \
+        compare with --by time";
     assert!(ran.err.contains(named), "{}", ran.err);
 }
 

@@ -26,8 +26,9 @@ pub enum GeometryError {
     },
     /// The start point and the end point have different numbers of coordinates.
     #[error(
-        "the start point has {from} coordinates and the end point has {to}: \
-         give the same axes in both"
+        "the start point has {from} coordinate{} and the end point has {to}: \
+         give the same axes in both",
+        if *from == 1 { "" } else { "s" }
     )]
     AxisMismatch {
         /// The number of coordinates of the start point.

@@ -229,7 +229,7 @@ options! {
         help: "Way of a period of data sampling, in BLU",
         value_name: "BLU",
         values: Values::Parsed {
-            shape: Shape::Text { values: "ways in BLU such as 8,102.4", some: &[] },
+            shape: Shape::Text { values: "ways in BLU above 0 such as 8,102.4", some: &[] },
             parse: |text| Millionths::parse(text).map(Some),
             text: |step| text_or_none(step.as_ref()),
         },

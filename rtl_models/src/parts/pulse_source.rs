@@ -105,11 +105,7 @@ fn accelerating<'m>(m: Scope<'m>, by: &Acceleration, block: &Block<'m>, runs: Si
 
     let by_hand = match &chain {
         Some(chain) => chain.by_hand,
-        None => {
-            let disturbed = m.reg("disturbed", 1);
-            disturbed.when(ramp.event(), m.lit(1, 1)).when(block.load, m.lit(1, 0)).else_hold();
-            disturbed.q | ramp.event()
-        }
+        None => disturbed(m, ramp.event(), block.load),
     };
     let present = scaled(m, ramp.speed(), block.word(RATIO.name(), RATIO_BITS), planned);
     let first = single.mux(after_stop, by_hand.mux(present, planned));
@@ -144,17 +140,23 @@ struct Chain<'m> {
 
 impl<'m> Chain<'m> {
     fn new(m: Scope<'m>, by: &Acceleration, block: &Block<'m>) -> Chain<'m> {
-        let (yes, no) = (m.lit(1, 1), m.lit(1, 0));
         let operator = Operator::new(m.scope("operator"));
         let own = DownCounter::new(m, block, OWN_PULSES.name(), by.pulse_bits());
         let carry = block.word(CARRY.name(), 1);
         let event = operator.acts() | block.single(m);
-        let (disturbed, broken) = (m.reg("disturbed", 1), m.reg("broken", 1));
-        disturbed.when(event, yes).when(block.load, no).else_hold();
-        let by_hand = m.name("loaded_by_hand", disturbed.q | event | broken.q);
+        let disturbed = disturbed(m, event, block.load);
+        let broken = m.reg("broken", 1);
+        let by_hand = m.name("loaded_by_hand", disturbed | broken.q);
         broken.when(block.load, carry & by_hand).else_hold();
         Chain { operator, own, load: m.name("ramp_load", block.load & (!carry | by_hand)), by_hand, broken: broken.q }
     }
+}
+
+/// 1 bit: an operator has acted (`event`) in the present block, or does now.
+fn disturbed<'m>(m: Scope<'m>, event: Signal<'m>, load: Signal<'m>) -> Signal<'m> {
+    let disturbed = m.reg("disturbed", 1);
+    disturbed.when(event, m.lit(1, 1)).when(load, m.lit(1, 0)).else_hold();
+    disturbed.q | event
 }
 
 /// A speed times a ratio in 2^-16, at most another speed.

@@ -10,7 +10,7 @@ use crate::study::usual_degree;
 /// The curve of `--nurbs`, or the one span that `--bezier` makes.
 pub(super) fn curve(who: &str, args: &GeometryArgs) -> Result<Curve, Error> {
     let others = superfluous(CurveKind::Nurbs, args).into_iter().filter(|(_, option)| *option != "--bezier");
-    by_points_alone(who, args, others.chain([(args.b_spline, "--b-spline")]).collect())?;
+    by_points_alone(who, args, others.collect())?;
     if let Some(Point(numbers)) = &args.bezier {
         return match numbers.as_chunks() {
             (points @ [_, _, _] | points @ [_, _, _, _], []) => Ok(Nurbs::bezier(points)?.into()),

@@ -10,8 +10,7 @@ use crate::models::find;
 use crate::output::{Kept, Outputs};
 use crate::own::is_netlist;
 use crate::trace::read::{Wave, WaveError};
-use crate::waves::limited::REMEDIES;
-use crate::waves::{EMPTY, WaveOptions};
+use crate::waves::{Remarks, WaveOptions};
 
 /// The wave of a run among what it leaves in memory.
 pub(super) const RUN: &str = "run.vcd";
@@ -80,25 +79,18 @@ fn simulated(args: &ShowArgs, model: &str, columns: usize) -> Result<Source, Err
     let fits = args.from.saturating_add(columns as u64);
     let to = args.to.or(Some(fits).filter(|_| !whole)).filter(|_| !counted);
     let first = if whole { 0 } else { args.from };
-    let waves = WaveOptions { vcd: Some(RUN.into()), from: first, to, ..WaveOptions::default() };
+    let last = if one_axis(&args.wave) { "--trace-to" } else { "--to" };
+    let remedies = match (args.by_time, counted) {
+        (true, _) => "leave --by-time out".to_owned(),
+        (_, true) => "leave --clock out".to_owned(),
+        _ => format!("give the last clock, {last} N"),
+    };
+    let remarks = Remarks { empty: format!("{model}: nothing is left from clock {first} on"), remedies };
+    let waves = WaveOptions { vcd: Some(RUN.into()), from: first, to, remarks, ..WaveOptions::default() };
     let (simulation, curve) = run::simulation(model, of)?;
     let simulation = simulation.waves(waves);
     let bench = simulation.prepare().map_err(|error| of.hardware.explain(error))?.bench;
-    let ran = simulation.run_on(bench, &mut outputs, |bench, _| Ok(RunProgress::new(bench, &curve)));
-    let ran = ran.map_err(|error| match error {
-        Error::Invalid(sentence) => {
-            let nothing = format!("{model}: nothing is left from clock {first} on: ");
-            let sentence = sentence.replace(EMPTY, &nothing);
-            let last = if one_axis(&args.wave) { "--trace-to" } else { "--to" };
-            let remedy = match (args.by_time, counted) {
-                (true, _) => "leave --by-time out".to_owned(),
-                (_, true) => "leave --clock out".to_owned(),
-                _ => format!("give the last clock, {last} N"),
-            };
-            Error::Invalid(sentence.replace(REMEDIES, &remedy))
-        }
-        other => other,
-    })?;
+    let ran = simulation.run_on(bench, &mut outputs, |bench, _| Ok(RunProgress::new(bench, &curve)))?;
     let wave = Wave::from_bytes(kept.take(Path::new(RUN)).unwrap_or_default())?;
     let samples = ran.report.outcome.clocks.saturating_add(1);
     let beyond = match args.to {

@@ -20,7 +20,7 @@ use crate::report::program::{Units, move_json};
 use crate::report::workpiece;
 use crate::schematic::{self, DrawError, Drawing, Part};
 use crate::testbench::{BlockReport, Observer, ObserverError, SpeedRow, Step, Testbench, WaveWriter};
-use crate::waves::{self, Shown, WaveOptions};
+use crate::waves::{self, Remarks, Shown, WaveOptions};
 
 /// Symbols of a block diagram in a page, at most.
 const MOST_SYMBOLS: usize = 300;
@@ -152,7 +152,7 @@ impl RunRecord {
     /// # Errors
     /// No sample is in the window.
     pub(crate) fn finish(self, facts: &Facts) -> Result<Packed, Error> {
-        let (written, recorded) = waves::finish(self.writer, facts.clocks)?;
+        let (written, recorded) = waves::finish(self.writer, facts.clocks, &Remarks::default().empty)?;
         let mut run = Run::new(&facts.headline);
         let nets = self.nets.iter().zip(&recorded.nets);
         let nets = nets.map(|(&(net, width), of)| {

@@ -45,9 +45,9 @@ impl FromStr for Extent {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Extent, String> {
-        if let Ok(bits) = text.parse::<u32>() {
-            let fits = (1..=MOST_BITS).contains(&bits);
-            return if fits { Ok(Extent::Bits(bits)) } else { Err(format!("a box has 1 to {MOST_BITS} bits")) };
+        if let Ok(bits) = text.parse::<i64>() {
+            let fits = u32::try_from(bits).ok().filter(|bits| (1..=MOST_BITS).contains(bits));
+            return fits.map(Extent::Bits).ok_or_else(|| format!("a box has 1 to {MOST_BITS} bits, not {bits}"));
         }
         let no_box =
             || format!("invalid box '{text}': give bits, such as 8, or a range for each axis, such as 0..255x0..255");

@@ -21,23 +21,20 @@ pub struct Clock {
 #[expect(missing_docs, reason = "the message says what the fields are")]
 pub enum ClockError {
     /// It may have been written without.
-    #[error(
-        "{name}: no 1-bit signal named clk or clock; name the clock with --clock{} or compare with --by time",
-        shown(candidates)
-    )]
+    #[error("{name}: no 1-bit signal named clk or clock{}", shown(candidates))]
     None {
         name: String,
         /// The 1-bit signals with the most rising edges, best first, and how many.
         candidates: Vec<(String, usize)>,
     },
     /// A typing mistake.
-    #[error("{name}: no signal `{wanted}` to use as the clock; --by time needs none")]
+    #[error("{name}: no signal `{wanted}` to use as the clock")]
     Unknown { name: String, wanted: String },
     /// A vector, real or text.
     #[error("{name}: `{path}` cannot be the clock: it is not one bit")]
     NotOneBit { name: String, path: String },
     /// Values change, but there would be one single sample.
-    #[error("{name}: the clock `{path}` never rises; name another with --clock or compare with --by time")]
+    #[error("{name}: the clock `{path}` never rises")]
     Flat { name: String, path: String },
 }
 
@@ -47,9 +44,9 @@ const CANDIDATES: usize = 5;
 fn shown(candidates: &[(String, usize)]) -> String {
     let mut shown: Vec<String> = Vec::new();
     for (path, edges) in candidates {
-        shown.push(format!("{path}, {edges} rising edge{}", if *edges == 1 { "" } else { "s" }));
+        shown.push(format!("{path} ({edges} rising edge{})", if *edges == 1 { "" } else { "s" }));
     }
-    if shown.is_empty() { String::new() } else { format!(" ({})", shown.join("; ")) }
+    if shown.is_empty() { String::new() } else { format!("; those that rise most are {}", shown.join(", ")) }
 }
 
 impl Clock {
