@@ -60,7 +60,8 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     curves p0_x, p0_y, p1_x, … of each point, of NURBS p0_w, …, degree and knots too), choices,\n\
     ending (done, trapped, stalled, limit, refused), clocks, steps, pulses and end point of each axis,\n\
     whether that is exact, error_max and error_mean (BLU, after all steps), v_mean (mean speed over\n\
-    v_max, one BLU in each step that nothing delays), overflows and the first\n\
+    v_max, one BLU in each step that nothing delays), with --ripple v_least, v_greatest and ripple of\n\
+    windows of 32 steps as in the report of `stepwave run`, overflows and the first\n\
     overflow's component, spacing_min and spacing_max (clocks between two pulses of an axis), and the\n\
     reason of a refusal. Rows are the same, byte for byte, whatever the number of threads\n\
     (RAYON_NUM_THREADS). The summary has the least and the greatest v_mean, and of lines of one\n\
@@ -268,6 +269,10 @@ pub(crate) struct TableArgs {
     /// Write the rows as Parquet
     #[arg(long, value_name = "FILE", value_parser = file_of(&[Format::Parquet]))]
     pub(crate) parquet: Option<PathBuf>,
+    /// Columns v_least, v_greatest and ripple: the speed over v_max of the slowest and of the fastest 32 steps, and their
+    /// difference over the mean. Each run is then done alone, which takes longer than many at once
+    #[arg(long)]
+    pub(crate) ripple: bool,
     /// Column that --plot shows [default: error_max]
     #[arg(long, value_name = "COLUMN", requires = "plot")]
     pub(crate) heat: Option<String>,

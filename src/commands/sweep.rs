@@ -49,6 +49,7 @@ pub(crate) fn run(args: &SweepArgs) -> Result<(), Error> {
         }
     }
     let sweep = Sweep::new(model, space, variants, SweepPart { number, of }, args.outputs.max_clocks)?;
+    let sweep = if args.outputs.ripple { sweep.with_ripple() } else { sweep };
     let own = args.bench.files(&args.model);
     let inputs: Vec<&PathBuf> = args.space.file.iter().chain(&own).collect();
     let mut outputs = Outputs::reading(&inputs);
@@ -238,6 +239,9 @@ impl Heat {
         if !known.contains(&name) {
             let what = match sweep.column(name) {
                 Some(_) => format!("the column '{name}' is not a measure"),
+                None if study::RIPPLE.contains(&name) => {
+                    format!("the column '{name}' is one of three more: give --ripple")
+                }
                 None => format!("there is no column '{name}'{}", did_you_mean(name, known.iter().copied())),
             };
             return Err(StudyError::Column { what, known: known.join(", ") }.into());

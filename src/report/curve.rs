@@ -8,7 +8,7 @@ use stepwave_nc::Curve;
 
 use super::geometry;
 use super::json::cut_words;
-use super::speed::ripple;
+use super::speed;
 use super::{RelativeSpeed, Report};
 use crate::testbench::{CoarseError, Ending, PulseTrain, Speed, WorstError, missed, point};
 
@@ -101,7 +101,7 @@ impl OfCurve {
             let _ = writeln!(text, "greatest path error {:.3} BLU at {at} after step {}", worst.error, worst.step);
         }
         if let Some(speed) = self.relative_speed(report) {
-            let _ = writeln!(text, "speed over v_max: {}", speed.words());
+            let _ = writeln!(text, "speed over v_max: {}", speed::words(&speed));
         }
         text + &self.coarse_stage(report) + &self.pulse_trains(report)
     }
@@ -280,8 +280,8 @@ impl OfCurve {
             "step_clocks": report.hardware.clocks_of_step(),
             "mean_mm_per_min": self.mean_feed(report),
         });
-        RelativeSpeed::put(self.relative_speed(report), &mut feed);
-        feed["ripple"] = json!(ripple(self.speed.as_ref(), self.length_run(report)));
+        speed::put(self.relative_speed(report), &mut feed);
+        feed["ripple"] = json!(self.speed.and_then(|speed| speed.ripple(self.length_run(report))));
         feed
     }
 }

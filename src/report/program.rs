@@ -9,7 +9,7 @@ use stepwave_models::{AXES, Promise};
 use stepwave_nc::{FeedAxes, Side, ToolMove};
 
 use super::json::cut_words;
-use super::speed::ripple;
+use super::speed;
 use super::table::aligned;
 use super::{RelativeSpeed, Report};
 use crate::program::{Greatest, LeftOut, SpeedAt, Speeds, Totals};
@@ -255,13 +255,13 @@ pub(super) fn move_json(block: &BlockReport, units: Units) -> Value {
     for (what, speed) in [("commanded", block.commanded), ("reached", block.reached_feed(clock_hz))] {
         report["feed"][format!("{what}_{unit}")] = json!(speed.map(|speed| units.feed(&block.of, speed)));
     }
-    RelativeSpeed::put(relative_speed(block, clock_hz), &mut report["feed"]);
+    speed::put(relative_speed(block, clock_hz), &mut report["feed"]);
     report
 }
 
 /// How unevenly a move went.
 fn move_ripple(block: &BlockReport) -> Option<f64> {
-    ripple(block.speed().as_ref(), block.end_exact().then_some(block.length))
+    block.speed()?.ripple(block.end_exact().then_some(block.length))
 }
 
 /// Speed of a move over v_max: one BLU in each pulse of the pulse source; `None` where the hardware sets its own feed.

@@ -15,7 +15,12 @@ pub(super) struct Layout {
     axes: usize,
     /// Most points of a free curve.
     points: usize,
+    /// With the extremes of the speed and its ripple.
+    pub(super) ripple: bool,
 }
+
+/// The columns of the extremes of the speed and its ripple; they come after that of the mean.
+pub const RIPPLE: [&str; 3] = ["v_least", "v_greatest", "ripple"];
 
 /// What the end of a run is called in a row.
 fn word(ending: Option<Ending>) -> &'static str {
@@ -81,7 +86,15 @@ impl Layout {
             add(&format!("spacing_max_{axis}"), ColumnType::Whole);
         }
         add("reason", ColumnType::Word);
-        Ok(Layout { columns, drawn, axes, points })
+        Ok(Layout { columns, drawn, axes, points, ripple: false })
+    }
+
+    /// The same with columns for the extremes of the speed and its ripple.
+    pub(super) fn with_ripple(mut self) -> Layout {
+        let after = self.columns.iter().position(|column| column.name == "overflows").unwrap_or(self.columns.len());
+        let more = RIPPLE.map(|name| Column { name: name.to_owned(), kind: ColumnType::Real });
+        self.columns.splice(after..after, more);
+        Layout { ripple: true, ..self }
     }
 
     /// The row of a run, or of a refusal with its reason.
@@ -118,13 +131,12 @@ impl Layout {
                 row.extend(run.pulses.iter().map(|&count| Value::from(count)));
                 row.extend(run.reached.iter().map(|&place| Value::Whole(place)));
                 row.push(Value::Flag(is_ended(site, &run.reached, &run.pulses)));
-                row.extend([
-                    run.greatest.into(),
-                    run.mean.into(),
-                    run.speed.into(),
-                    run.overflows.into(),
-                    run.component.into(),
-                ]);
+                row.extend([run.greatest.into(), run.mean.into(), run.speed.into()]);
+                if self.ripple {
+                    let [least, greatest] = run.extremes.map_or([None; 2], |extremes| extremes.map(Some));
+                    row.extend([least.into(), greatest.into(), run.ripple.into()]);
+                }
+                row.extend([run.overflows.into(), run.component.into()]);
                 for axis in 0..self.axes {
                     let gaps = run.spacing.get(axis).copied().flatten();
                     row.extend([0, 1].map(|end| Value::from(gaps.map(|gaps| gaps[end]))));

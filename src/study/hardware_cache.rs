@@ -42,7 +42,7 @@ impl PlannedHardware {
         self.lanes.get_or_init(build).as_ref()
     }
 
-    /// Runs one geometry alone; inside, why the hardware refuses it.
+    /// Runs one geometry alone, with the `ripple` of its speed if that is wanted; inside, why the hardware refuses it.
     ///
     /// # Errors
     /// The run fails by itself.
@@ -51,15 +51,18 @@ impl PlannedHardware {
         model: &Model,
         curve: &Curve,
         limit: u64,
+        ripple: bool,
     ) -> Result<Result<Measured, String>, StudyError> {
         let bench = match self.bench(model) {
             Ok(bench) => bench.of(model, curve),
             Err(error) => return Ok(Err(error.to_string())),
         };
-        match bench {
-            Ok(bench) => bench.measure(curve, limit).map(Ok).map_err(|error| StudyError::Run(error.to_string())),
-            Err(error) => Ok(Err(error.to_string())),
-        }
+        let run = match bench {
+            Ok(bench) if ripple => bench.measure_ripple(curve, limit),
+            Ok(bench) => bench.measure(curve, limit),
+            Err(error) => return Ok(Err(error.to_string())),
+        };
+        run.map(Ok).map_err(|error| StudyError::Run(error.to_string()))
     }
 }
 

@@ -59,7 +59,7 @@ mod variants;
 pub mod widths;
 
 pub use boxes::{Extent, Geometries};
-pub use columns::words;
+pub use columns::{RIPPLE, words};
 pub use error::StudyError;
 pub(crate) use free_curves::{units, usual_degree};
 pub use kform::KForm;

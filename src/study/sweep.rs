@@ -67,6 +67,13 @@ impl Sweep {
         Ok(Sweep { model, space, variants, part, layout, machines, all, limit })
     }
 
+    /// The same with the least and the greatest speed over v_max and the ripple of each run. Runs are then done alone, not in
+    /// lanes, which keep no windows of steps.
+    #[must_use]
+    pub fn with_ripple(self) -> Sweep {
+        Sweep { layout: self.layout.with_ripple(), ..self }
+    }
+
     /// The model.
     #[must_use]
     pub fn model(&self) -> &'static Model {
@@ -181,14 +188,16 @@ impl Sweep {
         let curve = |task: &Task| geometries[task.geometry].2.as_ref().ok();
         let mut measured: Vec<Option<Result<Measured, String>>> =
             tasks.iter().map(|task| task.machine.as_ref().err().map(|reason| Err(reason.clone()))).collect();
-        self.in_lanes(&tasks, &curve, &mut measured);
+        if !self.layout.ripple {
+            self.in_lanes(&tasks, &curve, &mut measured);
+        }
         let alone: Vec<(usize, Result<Measured, String>)> = (0..tasks.len())
             .into_par_iter()
             .filter(|&index| measured[index].is_none())
             .map(|index| {
                 let (task, limit) = (&tasks[index], self.limit);
                 let run = match (&task.machine, curve(task)) {
-                    (Ok(machine), Some(curve)) => machine.alone(self.model, curve, limit)?,
+                    (Ok(machine), Some(curve)) => machine.alone(self.model, curve, limit, self.layout.ripple)?,
                     _ => Err(String::new()),
                 };
                 Ok((index, run))

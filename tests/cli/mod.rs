@@ -35,6 +35,7 @@ mod stepgen_bresenham;
 mod stops;
 mod sweep;
 mod sweep_curves;
+mod sweep_ripple;
 #[cfg(unix)]
 mod synth;
 mod tables;

@@ -129,6 +129,16 @@ pub(super) fn assert_as_run(model: &str, row: &Row) {
         assert_eq!(row[&name], value, "{name}: {what}");
     }
     assert_eq!(row["error_max"].parse(), Ok(greatest(&ran.out)), "{what}");
+    if row.contains_key("ripple") {
+        let feed = &report["feed"];
+        let speeds = [("v_least", &feed["least"]["value"]), ("v_greatest", &feed["greatest"]["value"])];
+        for (name, said) in speeds.into_iter().chain([("ripple", &feed["ripple"]), ("v_mean", &feed["mean"])]) {
+            let given = row[name].parse::<f64>().ok();
+            // The reader of JSON may be off by one in the last bit.
+            let same = |given: f64| said.as_f64().is_some_and(|said| (said - given).abs() <= given * 1e-15);
+            assert!(given.map_or(said.is_null(), same), "{name} is {given:?}, not {said}: {what}");
+        }
+    }
 }
 
 #[test]
@@ -174,7 +184,7 @@ fn rows_of_many_choices_overflows_stalls_and_refusals_are_what_single_runs_repor
         ("sampled-spline", "--nurbs 0,0,1,60,-90..90/60,0.5..2/0.5,200,0,1 --degree 2", "done"),
         ("sampled-spline", "--bezier 0,0,60,-90..90/90,200,0..3 --tolerance 2", "done"),
     ] {
-        let all = rows(&good(&format!("sweep {model} {words} --csv -")));
+        let all = rows(&good(&format!("sweep {model} {words} --ripple --csv -")));
         assert!(all.iter().any(|row| row["ending"] == seen), "{model} {words}");
         assert!(all.len() > 8, "{model} {words}: {}", all.len());
         // Every fourth, so that the test stays quick.

@@ -50,7 +50,7 @@ pub use recording::{Recording, Trace};
 use run::Run;
 pub use running::Running;
 pub use spacing::{PulseTrain, RateDeviation, SpacingWatch};
-pub use speed::{Speed, SpeedRow, SpeedTrack, SpeedWatch, Window as SpeedWindow};
+pub use speed::{RelativeSpeed, Speed, SpeedRow, SpeedTrack, SpeedWatch, Window as SpeedWindow};
 pub use steps::Step;
 use steps::StepColumns;
 pub use wave::{Taken, Trigger, WaveWriter, Window};

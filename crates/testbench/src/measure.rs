@@ -9,7 +9,10 @@ use stepwave_nc::Curve;
 
 use super::instruments::{cross, offset};
 use super::tool::Tool;
-use super::{Ending, LaneOutcome, Observer, ObserverError, Outcome, OverflowWatch, PathWatch, StepColumns, Testbench};
+use super::{
+    Ending, LaneOutcome, Observer, ObserverError, Outcome, OverflowWatch, PathWatch, RelativeSpeed, SpeedWatch,
+    StepColumns, Testbench,
+};
 
 /// What one geometry came to, and how well its path kept to the ideal curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +34,10 @@ pub struct Measured {
     /// Mean speed over v_max, as [`Speed`](super::Speed) defines it; `None` where the curve was not run to its end, or it is
     /// not known how many clocks a step of the hardware takes.
     pub speed: Option<f64>,
+    /// Least and greatest speed over v_max, if they were asked for; `None` without a step, or where v_max is not known.
+    pub extremes: Option<[f64; 2]>,
+    /// The greatest less the least speed over the mean, if it was asked for; `None` where the curve was not run to its end.
+    pub ripple: Option<f64>,
     /// Violations of properties, as [`OverflowWatch`] counts them.
     pub overflows: u64,
     /// Path of the component of the first.
@@ -55,6 +62,8 @@ impl Measured {
             greatest: None,
             mean: None,
             speed: None,
+            extremes: None,
+            ripple: None,
             overflows: 0,
             component: None,
             cut: Vec::new(),
@@ -82,12 +91,26 @@ impl Testbench {
     /// # Errors
     /// None that an observer here would give.
     pub fn measure(&self, curve: &Curve, limit: u64) -> Result<Measured, ObserverError> {
+        self.measured(curve, limit, None)
+    }
+
+    /// As [`measure`](Self::measure), with the extremes of the speed and its ripple.
+    ///
+    /// # Errors
+    /// None that an observer here would give.
+    pub fn measure_ripple(&self, curve: &Curve, limit: u64) -> Result<Measured, ObserverError> {
+        self.measured(curve, limit, Some(SpeedWatch::new(self)))
+    }
+
+    fn measured(&self, curve: &Curve, limit: u64, mut speed: Option<SpeedWatch>) -> Result<Measured, ObserverError> {
         let (mut overflow, mut path) = (OverflowWatch::new(self), PathWatch::new(self, curve));
         let (mut mean, mut spacing, mut end) = (Mean::new(self, curve), Spacing::new(self), Limit(limit));
         let mut motion = Motion::new(self);
-        let observers: &mut [&mut dyn Observer] =
-            &mut [&mut end, &mut overflow, &mut path, &mut mean, &mut spacing, &mut motion];
-        let run = self.run(EngineKind::Compiled, observers);
+        let mut observers: Vec<&mut dyn Observer> =
+            vec![&mut end, &mut overflow, &mut path, &mut mean, &mut spacing, &mut motion];
+        observers.extend(speed.iter_mut().map(|speed| speed as &mut dyn Observer));
+        let run = self.run(EngineKind::Compiled, &mut observers);
+        drop(observers);
         let outcome = match run {
             Err(error) if error.is::<Reached>() => None,
             Err(error) => return Err(error),
@@ -110,12 +133,21 @@ impl Testbench {
             greatest: path.worst.map(|worst| worst.error),
             mean: (steps > 0).then(|| mean.sum() / steps as f64),
             speed: None,
+            extremes: None,
+            ripple: None,
             overflows: overflow.count,
             component: overflow.events().first().map(|event| event.component().to_owned()),
             cut: self.cut.clone(),
             spacing: spacing.axes.iter().map(|axis| axis.seen).collect(),
         };
         measured.take_speed(self, curve, motion.clocks());
+        if let Some(speed) = speed.and_then(|speed| speed.finish()) {
+            let length = (measured.ending == Some(Ending::Done)).then(|| curve.length());
+            let over = |step| RelativeSpeed::new(&speed, step, length);
+            let of = self.hardware().clocks_of_step().map(over);
+            measured.extremes = of.map(|of| [of.least.0, of.greatest.0]);
+            measured.ripple = speed.ripple(length);
+        }
         Ok(measured)
     }
 }

@@ -6,6 +6,7 @@
 
 mod even;
 mod kernel;
+mod relative;
 mod row;
 mod stream;
 mod windows;
@@ -22,6 +23,7 @@ use super::ahead::{StepTrains, count};
 use super::checkpoint::{Memory, recalled};
 use super::tool::signed;
 use super::{Observer, ObserverError, StepColumns, Testbench};
+pub use relative::RelativeSpeed;
 pub use row::SpeedRow;
 use stream::{Many, Span, Stream};
 pub(crate) use windows::Windows;
