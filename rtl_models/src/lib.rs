@@ -84,6 +84,7 @@ static MODELS: &[&Model] = &[
 mod catalogue;
 mod claims;
 mod described;
+mod differences;
 mod docs;
 mod error;
 mod hardware;

@@ -43,19 +43,21 @@
 use std::f64::consts::SQRT_2;
 
 use stepwave_nc::{Spline, SplineSegment};
-use stepwave_netlist::Width;
-use stepwave_netlist::dsl::{Scope, Signal};
+use stepwave_netlist::dsl::Scope;
 
+use crate::differences::{Differences, MOST_DIVISIONS, bits, differences, exact_modulus, least_divisions};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::{Interpolates, Method};
 use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{DIVISIONS, FRACTION, ON_OVERFLOW, WIDTH};
-use crate::parts::{Block, E, JR, POSITION, axis_scope, magnitude};
+use crate::parts::{
+    Block, E, FIRST_DIFFERENCE, MODULUS, ONE_PULSE, POSITION, SECOND_DIFFERENCE, THIRD_DIFFERENCE, axis_scope, cascade,
+};
 use crate::per_axis;
 use crate::plan::Plan;
-use crate::registers::{N, PerAxis, Reg, Rule};
+use crate::registers::{PerAxis, Reg, Rule};
 
 const NAME: &str = "spline-dda";
 
@@ -67,24 +69,8 @@ const REMAINDER: PerAxis = Reg::each(
 )
 .follows(|_| true);
 const JR_NAMES: [&str; 9] = per_axis!("jr");
-/// First differences.
-const P: PerAxis = Reg::each(per_axis!("p"), N, "first difference of each axis in 1/M BLU").signed();
-/// Second differences.
-const Q: PerAxis =
-    Reg::each(per_axis!("q"), Rule::Planned("as the curve needs"), "second difference of each axis").signed();
-/// Third differences.
-const R: PerAxis =
-    Reg::each(per_axis!("r"), Rule::Planned("as the curve needs"), "third difference of each axis, constant").signed();
-
-/// M, of which a BLU is made.
-const MODULUS: &str = "m";
-/// The net that is M, from which abs(p) is taken.
-const ONE_PULSE: &str = "one_pulse";
-
 /// Most bits of p.
 const MOST_BITS: u32 = 62;
-/// Most steps of a segment, as a power of two: p has 3s+2 bits.
-const MOST_DIVISIONS: u32 = 20;
 
 /// Cascaded integrators, free curves.
 pub static MODEL: Model = Model {
@@ -92,7 +78,14 @@ pub static MODEL: Model = Model {
     title: "Cascaded integrators, Bézier curves and splines",
     method: "digital differential analyser",
     source: "forward differences of polynomials, as in computer graphics, in the integrators of 数字积分法",
-    registers: &[&REMAINDER, &P, &Q, &R, &E.width(Rule::Planned("s+1")).about("steps left of the segment"), &POSITION],
+    registers: &[
+        &REMAINDER,
+        &FIRST_DIFFERENCE,
+        &SECOND_DIFFERENCE,
+        &THIRD_DIFFERENCE,
+        &E.width(Rule::Planned("s+1")).about("steps left of the segment"),
+        &POSITION,
+    ],
     options: &[
         &WIDTH.about("N of p, or REGISTER=N,… (default: the least that holds the curve)"),
         &DIVISIONS,
@@ -103,80 +96,6 @@ pub static MODEL: Model = Model {
     interpolates: Interpolates::Splines(Method { plan, load }),
     hardware,
 };
-
-/// The differences of one axis at the start of a segment, in 1/M BLU.
-#[derive(Clone, Copy)]
-struct Differences {
-    /// M times the start point.
-    start: i128,
-    p: i128,
-    q: i128,
-    r: i128,
-}
-
-impl Differences {
-    /// Of an axis of a segment of 2^s steps, where M is D·2^(3s).
-    fn exact([c0, c1, c2, c3]: [i64; 4], s: u32) -> Differences {
-        let [c0, c1, c2, c3] = [c0, c1, c2, c3].map(i128::from);
-        Differences {
-            start: c0 << (3 * s),
-            p: (c1 << (2 * s)) + (c2 << s) + c3,
-            q: ((2 * c2) << s) + 6 * c3,
-            r: 6 * c3,
-        }
-    }
-
-    /// The same in units of another M, rounded half upwards.
-    fn rounded(self, of: i128, modulus: i128) -> Differences {
-        // Above 2^63 only where a register would not fit, which is found out below.
-        let round = |value: i128| (2 * value.saturating_mul(modulus) + of).div_euclid(2 * of);
-        Differences { start: round(self.start), p: round(self.p), q: round(self.q), r: round(self.r) }
-    }
-
-    /// p after i steps.
-    fn p_at(&self, i: i128) -> i128 {
-        self.p + i * self.q + i * (i - 1) / 2 * self.r
-    }
-
-    /// The greatest abs(p) from row 0 to this one, and the extremes of p themselves.
-    fn p_extremes(&self, last: i128) -> [i128; 2] {
-        // A parabola in i, with its vertex at 1/2 - q/r, less than a row from the quotient.
-        let vertex = if self.r == 0 { 0 } else { (self.r - 2 * self.q) / (2 * self.r) };
-        let rows = [0, vertex - 1, vertex, vertex + 1, last].map(|row| self.p_at(row.clamp(0, last)));
-        rows.into_iter().fold([rows[0]; 2], |[least, most], p| [least.min(p), most.max(p)])
-    }
-}
-
-/// Bits of the numbers between these two in two's complement.
-fn bits([least, most]: [i128; 2]) -> u32 {
-    Width::needed_signed(least).max(Width::needed_signed(most))
-}
-
-/// D·2^(3s): all segments of a curve have one D.
-fn exact_modulus(spline: &Spline, s: u32) -> i128 {
-    i128::from(spline.segments().first().map_or(1, |segment| segment.divisor)) << (3 * s)
-}
-
-/// The differences of every axis of every segment in 2^s steps, in units of 1/`modulus` BLU.
-fn differences(spline: &Spline, s: u32, modulus: i128) -> impl Iterator<Item = [Differences; 2]> {
-    let exact = exact_modulus(spline, s);
-    let of = move |segment: &SplineSegment| {
-        segment.coefficients.map(|c| {
-            let differences = Differences::exact(c, s);
-            if modulus == exact { differences } else { differences.rounded(exact, modulus) }
-        })
-    };
-    spline.segments().iter().map(of)
-}
-
-/// The least s from 1 on with one pulse of an axis a step at most.
-fn least_divisions(spline: &Spline) -> Option<u32> {
-    (1..=MOST_DIVISIONS).find(|&s| {
-        let modulus = exact_modulus(spline, s);
-        let fits = |axis: &Differences| axis.p_extremes((1 << s) - 1).into_iter().all(|p| p.abs() <= modulus);
-        differences(spline, s, modulus).all(|axes| axes.iter().all(fits))
-    })
-}
 
 fn plan(spline: &Spline, plan: &mut Plan) -> Result<(), ModelError> {
     let given = plan.get(&DIVISIONS).and_then(|s| u32::try_from(s).ok());
@@ -197,16 +116,13 @@ fn plan(spline: &Spline, plan: &mut Plan) -> Result<(), ModelError> {
     plan.remedies
         .push((ONE_PULSE, format!("an axis owes more than a pulse a step: give --divisions greater than {s}")));
 
-    // Of every row: the last one too, though no step uses it.
     let (mut p, mut q, mut r) = (1, 1, 1);
-    let steps = 1_i128 << s;
     for axis in differences(spline, s, modulus).flatten() {
-        p = p.max(bits(axis.p_extremes(steps)));
-        q = q.max(bits([axis.q, axis.q + steps * axis.r]));
-        r = r.max(bits([axis.r; 2]));
+        let [of_p, of_q, of_r] = axis.ranges(s).map(bits);
+        (p, q, r) = (p.max(of_p), q.max(of_q), r.max(of_r));
     }
     plan.n = plan.bits_or(p);
-    plan.set_each(Q, q).set_each(R, r).set(E, s + 1);
+    plan.set_each(SECOND_DIFFERENCE, q).set_each(THIRD_DIFFERENCE, r).set(E, s + 1);
     if plan.n > MOST_BITS {
         return Err(ModelError::Widths(format!(
             "{NAME}: p of {} bits is too wide, as a sum with the remainder takes 2 more: give --width {MOST_BITS} or less",
@@ -247,70 +163,17 @@ fn rounding(spline: &Spline, s: u32, bits: u32) -> f64 {
     off + (spline.segments().len() - 1) as f64 * (off + 1.0)
 }
 
-/// A constant of two's complement; M and the numbers below it have 63 bits at most.
-fn constant<'m>(m: Scope<'m>, bits: u32, value: i128) -> Signal<'m> {
-    m.lit_signed(bits, i64::try_from(value).unwrap_or(i64::MAX))
-}
-
 fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let block = Block::new(m);
     let e = hardware.counter(m, &block, E);
     for axis in 0..hardware.axes {
         let m = axis_scope(m, axis);
         let step = block.busy & !block.load;
-        let r = hardware.held(m, &block, R.of(axis));
-        let q = accumulator(m, &block, hardware, Q.of(axis), r, step);
-        let p = accumulator(m, &block, hardware, P.of(axis), q, step);
-        let (pulse, negative) = remainder(m, &block, hardware, axis, p, step);
+        let [pulse, negative] = cascade(m, &block, hardware, (axis, REMAINDER.of(axis)), step);
         hardware.axis(m, &block, axis, pulse, negative);
     }
     let last = e.count(block.busy);
     block.close(block.load, block.busy, last);
-}
-
-/// A difference, which the one after it in the cascade is added to in every step.
-fn accumulator<'m>(
-    m: Scope<'m>,
-    block: &Block<'m>,
-    hardware: &Hardware,
-    register: Reg,
-    next: Signal<'m>,
-    step: Signal<'m>,
-) -> Signal<'m> {
-    let accumulator = hardware.reg(m, register);
-    let sum = accumulator.q.strict_add(next, step);
-    accumulator.when(block.load, hardware.word(block, register)).when(step, sum).else_hold();
-    accumulator.q
-}
-
-/// The remainder: the first difference is added, modulo M. Returns the pulse, and whether it is negative, 1 bit each.
-fn remainder<'m>(
-    m: Scope<'m>,
-    block: &Block<'m>,
-    hardware: &Hardware,
-    axis: usize,
-    p: Signal<'m>,
-    step: Signal<'m>,
-) -> (Signal<'m>, Signal<'m>) {
-    let (name, modulus) = (JR.of(axis).name(), hardware.constant(MODULUS));
-    let bits = remainder_bits(modulus);
-    let jr = m.reg(name, bits);
-    // A step owes one pulse at most.
-    let one_pulse = m.name(ONE_PULSE, constant(m, bits + 2, modulus).slice(0, bits + 1));
-    let _ = one_pulse.strict_sub(magnitude(m, p), step);
-
-    let wide = bits.max(p.bits()) + 2;
-    let sum = m.name("sum", jr.q.extend(wide).as_signed().wrapping_add(p.extend(wide)));
-    let (below, over) = (sum.msb(), !sum.less_than(constant(m, wide, modulus)));
-    let taken = over.mux(constant(m, wide, -modulus), below.mux(constant(m, wide, modulus), constant(m, wide, 0)));
-    let rest = sum.wrapping_add(taken).slice(0, bits);
-    jr.when(block.load, block.word(name, bits)).when(step, rest).else_hold();
-    (m.name("pulse", step & (below | over)), below)
-}
-
-/// Bits of the numbers below M.
-fn remainder_bits(modulus: i128) -> u32 {
-    Width::needed_unsigned((modulus - 1).unsigned_abs())
 }
 
 fn load(spline: &Spline, hardware: &Hardware) -> Vec<Words> {
@@ -320,8 +183,8 @@ fn load(spline: &Spline, hardware: &Hardware) -> Vec<Words> {
         axes.into_iter().enumerate().fold(Words::new().set(E, 1_i128 << s), |words, (axis, at)| {
             // Half a BLU ahead, so that the floor of the sum is the nearest whole number.
             let ahead = at.start + modulus / 2;
-            let words = words.set(P.of(axis), at.p).set(Q.of(axis), at.q).set(R.of(axis), at.r);
-            words.set(JR.of(axis), ahead.rem_euclid(modulus)).set(POSITION.of(axis), ahead.div_euclid(modulus))
+            let words = at.words(words, axis);
+            words.set(REMAINDER.of(axis), ahead.rem_euclid(modulus)).set(POSITION.of(axis), ahead.div_euclid(modulus))
         })
     };
     differences(spline, s, modulus).map(block).collect()

@@ -135,10 +135,11 @@ pub(crate) struct TextArgs {
     /// which no pulse is waited for, the square root of the acceleration in BLU]
     #[arg(long, requires = "accel", value_name = "V", value_parser = parse_speed)]
     pub(crate) jump: Option<f64>,
-    /// How far a chord may be off its curve, in BLU: of free curves (G5), of arcs for machines that draw lines only, and of
-    /// helices whose third axis is too steep for others
-    #[arg(long, requires = "program", value_name = "BLU", default_value = "0.5", value_parser = parse_chords)]
-    pub(crate) chords: f64,
+    /// How far a chord may be off its curve, in BLU: of free curves, of arcs for machines that draw lines only, and of helices
+    /// whose third axis is too steep for others. With it, or with --accel, dda gets chords of G5 and G5.1 too, which it else
+    /// interpolates itself [default: 0.5]
+    #[arg(long, requires = "program", value_name = "BLU", value_parser = parse_chords)]
+    pub(crate) chords: Option<f64>,
 }
 
 #[derive(Debug, Args)]

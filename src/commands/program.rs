@@ -58,7 +58,8 @@ pub(super) fn simulation(
         degrees: text.blu_rotary,
         tools,
         home,
-        chords: text.chords,
+        chords: text.chords.unwrap_or(default.reading.chords),
+        whole: text.chords.is_none(),
         ..default.reading
     };
     let preparation = Preparation { reading, scheme: text.compensation, corner: text.corner };

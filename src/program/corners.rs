@@ -5,7 +5,7 @@
 
 use stepwave_models::options::Smooth;
 use stepwave_models::program::After;
-use stepwave_nc::{Cause, Coordinates, PathControl, ToolMove};
+use stepwave_nc::{Cause, Coordinates, Curve, PathControl, PulseBlock, ToolMove};
 
 use super::feed::{Pace, Paced};
 
@@ -33,12 +33,16 @@ impl Corners {
         (self.before, self.of) = (None, None);
     }
 
-    /// Whether the next part, of this move, begins only after the filters are empty.
-    pub(super) fn settles(&mut self, of: &ToolMove, part: &Paced) -> bool {
+    /// Whether the next part, of this block, begins only after the filters are empty.
+    pub(super) fn settles(&mut self, block: &PulseBlock, part: &Paced) -> bool {
+        let of = &block.of;
         let hz = part.source.map_or(0.0, |(_, hz)| hz);
         let speed = part.block.length * hz / part.block.steps;
         let [start, end] = of.directions().unwrap_or([[0.0; 9]; 2]);
-        let before = self.before.replace((of.path, end, speed));
+        // A free curve that is not cut is run evenly in its parameter.
+        let curve = of.segment.bezier().filter(|_| matches!(block.curve, Curve::Spline(_)));
+        let [entry, exit] = curve.map_or([1.0; 2], |curve| curve.ends_to_mean()).map(|part| part * speed);
+        let before = self.before.replace((of.path, end, exit));
         if self.of.replace(*of) == Some(*of) {
             return false;
         }
@@ -49,7 +53,7 @@ impl Corners {
             PathControl::Continuous => false,
             PathControl::Within(off) => {
                 let along = |direction: Coordinates, speed: f64| direction.map(|part| part * speed * self.period);
-                rounding(self.after.smooth, along(direction, was), along(start, speed)) > off
+                rounding(self.after.smooth, along(direction, was), along(start, entry)) > off
             }
         }
     }

@@ -78,7 +78,7 @@ impl<'a, T> Planner<'a, T> {
                 let what = with(&self.pacer, block, index == 0);
                 match &mut self.ahead {
                     None => {
-                        let settles = self.corners.as_mut().map(|corners| corners.settles(of, &paced));
+                        let settles = self.corners.as_mut().map(|corners| corners.settles(block, &paced));
                         self.planned.push_back(at_once(paced, what, settles));
                     }
                     Some(ahead) => {

@@ -22,11 +22,12 @@ pub struct Preparation {
 }
 
 /// mm by RS-274, scheme C, straight corners, and chords up to half a BLU off their curve, or off their arc where the machine
-/// draws lines only or cannot follow a steep helix.
+/// draws lines only or cannot follow a steep helix. Curves of G5 and G5.1 stay whole where the machine takes them.
 impl Default for Preparation {
     fn default() -> Preparation {
         let (integers, tools, home) = (Integers::Units, BTreeMap::new(), Some([0.0; 3]));
-        let reading = Reading { blu: 1e-3, degrees: 1e-3, integers, tools, tolerance: 0.0, chords: 0.5, home };
+        let reading =
+            Reading { blu: 1e-3, degrees: 1e-3, integers, tools, tolerance: 0.0, chords: 0.5, whole: true, home };
         Preparation { reading, scheme: Scheme::C, corner: Corner::Straight }
     }
 }
@@ -62,9 +63,10 @@ impl<R: BufRead> Stream<R> {
     /// # Errors
     /// The BLU or the radius of a tool is not a length.
     pub fn new(text: R, machine: &'static dyn Moves, preparation: &Preparation) -> Result<Stream<R>, ProgramFailure> {
-        let chords = preparation.reading.chords;
+        let (mut reading, chords) = (preparation.reading.clone(), preparation.reading.chords);
+        reading.whole &= machine.curves();
         Ok(Stream {
-            program: Program::new(text, preparation.reading.clone())?,
+            program: Program::new(text, reading)?,
             compensator: Compensator::new(preparation.scheme, preparation.corner),
             rounder: Rounder::new((!machine.arcs()).then_some(chords)),
             machine,
@@ -75,7 +77,7 @@ impl<R: BufRead> Stream<R> {
         })
     }
 
-    /// How far a chord may be off its arc, in BLU.
+    /// How far a chord may be off its curve, in BLU.
     pub(super) fn chord_limit(&self) -> f64 {
         self.chords
     }

@@ -174,6 +174,7 @@ mod tests {
             tools: BTreeMap::new(),
             tolerance: 0.0,
             chords: 0.5,
+            whole: true,
             home: None,
         };
         let preparation = Preparation { reading, scheme: Scheme::B, corner: Corner::Straight };

@@ -158,7 +158,12 @@ impl<W> Workpiece<W> {
 
 /// The programmed segment of a move, as points.
 pub(super) fn outline(of: &ToolMove) -> Vec<[f64; 3]> {
-    let segment = &of.programmed;
+    let (segment, points) = (&of.programmed, 90);
+    if let Some(curve) = segment.bezier() {
+        let [.., third] = segment.from;
+        let point = |index: i32| curve.at(f64::from(index) / f64::from(points));
+        return (0..=points).map(point).map(|[x, y]| [x, y, third]).collect();
+    }
     let SegmentShape::Arc { plane, center, direction } = segment.shape else {
         return vec![segment.from, segment.to];
     };
@@ -167,7 +172,6 @@ pub(super) fn outline(of: &ToolMove) -> Vec<[f64; 3]> {
     let [u, v, from] = plane.of(segment.from);
     let [_, _, to] = plane.of(segment.to);
     let (dx, dy) = (u - center[0], v - center[1]);
-    let points = 90;
     let point = |index: i32| {
         let part = f64::from(index) / f64::from(points);
         let (sin, cos) = (angle * part).sin_cos();

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::Simulation;
 use crate::models::Model;
-use crate::models::options::TOLERANCE;
+use crate::models::options::{ACCEL, TOLERANCE};
 use crate::models::program::Pacing;
 use crate::nc::Curve;
 use crate::program::{Control, CutWords, Estimate, Pace, Preparation, ProgramFailure, Stream, Survey};
@@ -95,6 +95,8 @@ impl NcProgram {
     fn prepared(&self, simulation: &Simulation) -> Preparation {
         let mut preparation = self.preparation.clone();
         preparation.reading.blu = simulation.blu_mm;
+        // A ramp in front of the interpolator is along a path that has as many pulses everywhere.
+        preparation.reading.whole &= simulation.options.value(&ACCEL).is_none();
         preparation.reading.tolerance = simulation.options.value(&TOLERANCE).map_or(0.0, |radii| radii.units());
         preparation
     }

@@ -77,6 +77,7 @@ fn a_machine_of_a_program_with_a_loader_runs_as_on_the_bench() {
         tools: BTreeMap::new(),
         tolerance: 0.0,
         chords: 0.5,
+        whole: true,
         home: None,
     };
     let preparation = Preparation { reading, scheme: Scheme::C, corner: Corner::Straight };

@@ -7,11 +7,12 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use stepwave::program::{Preparation, Survey};
 use stepwave::report::{run_command, title};
 use stepwave::study::{Dimension, Variants};
 use stepwave_models::options::AnyOption;
 use stepwave_models::program::Size;
-use stepwave_models::{CurveKind, Model, catalogue};
+use stepwave_models::{CurveKind, Model, Options, catalogue};
 use stepwave_nc::{
     AXES_MAX, Arc, Conic, ControlPoint, Curve, Direction, Helix, Line, NURBS_UNIT, Nurbs, Spline, SplineForm,
 };
@@ -158,22 +159,30 @@ fn all() -> String {
         let given = options.flat_map(|option| values(option).iter().map(move |text| (option, text)));
         let mut positions = [[0; 2]; AXES_MAX];
         positions[..3].copy_from_slice(&[[-20, 300], [0, 200], [-5, 0]]);
-        let size = Size { magnitude: 300, positions, axes: 3 };
+        let size = Size { magnitude: 300, positions, axes: 3, curves: None };
         for (option, value) in given {
             let variants = Variants(vec![Dimension::parse(option, value).unwrap()]);
-            let netlist = model.plan_program(&size, &variants.at(0).0).and_then(|hardware| {
-                Ok((format!("{:?}{:?}", hardware.widths, hardware.table), model.machine(&hardware)?))
-            });
-            let digest = match netlist {
-                Ok((plan, machine)) => {
-                    format!("{:08x} {:08x}", crc(&text::print(machine.design.netlist())), crc(&plan))
-                }
-                Err(error) => format!("refused {:08x}", crc(&error.to_string())),
-            };
-            writeln!(text, "  {value:24} {digest}").unwrap();
+            writeln!(text, "  {value:24} {}", digest_of_machine(model, &size, &variants.at(0).0)).unwrap();
+        }
+        let moves = model.moves().unwrap();
+        if moves.curves() {
+            let program = "G21 F1 G5.1 X0.3 Y0.1 J0.2\nG5 X0 Y0 I0.04 J-0.1 P0 Q1\n";
+            let size = Survey::of(program.as_bytes(), moves, &Preparation::default()).unwrap().size;
+            writeln!(text, "  {:24} {}", "curves", digest_of_machine(model, &size, &Options::default())).unwrap();
         }
     }
     text
+}
+
+/// Of the netlist of a machine for programs of this size, and of its widths.
+fn digest_of_machine(model: &Model, size: &Size, options: &Options) -> String {
+    let netlist = model
+        .plan_program(size, options)
+        .and_then(|hardware| Ok((format!("{:?}{:?}", hardware.widths, hardware.table), model.machine(&hardware)?)));
+    match netlist {
+        Ok((plan, machine)) => format!("{:08x} {:08x}", crc(&text::print(machine.design.netlist())), crc(&plan)),
+        Err(error) => format!("refused {:08x}", crc(&error.to_string())),
+    }
 }
 
 #[test]

@@ -1,10 +1,12 @@
-//! Free curves of programs: G5, G5.1 and a NURBS by every family.
+//! Free curves of programs: G5, G5.1 and a NURBS by every family, as chords and whole.
 
 use stepwave_nc::{ControlPoint, NURBS_UNIT, Nurbs};
 
 use super::command::{FAMILIES, number, report};
 use crate::cli::Folder;
 
+/// Lines and chords of the lines of that program, where no hardware takes its curves.
+const CHORDS: [usize; 5] = [1, 62, 32, 62, 32];
 const CURVES: &str = include_str!("../../examples/curves.ngc");
 const OPTIONS: &str = "--blu 0.01mm --clock-hz 2e4";
 
@@ -16,14 +18,39 @@ fn every_family_draws_the_chords_of_all_curves_and_ends_each_exactly() {
         let report = report(&folder, CURVES, &format!("--method {family} {OPTIONS} {normalized}"));
         assert_eq!((&report["missed_end_points"], &report["beyond_bound"]), (&0.into(), &0.into()), "{family}");
         assert_eq!(report["reached"], serde_json::json!([1000, 0, 0]), "{family}");
+        // The line to the start, and the chords of each curve; one of G5 or G5.1 is one block where the hardware takes it.
         let blocks = report["blocks"].as_array().unwrap();
-        assert!(blocks.iter().all(|block| block["kind"] == "line"), "{family}");
-        // The line to the start, and the chords of each curve.
-        let of = |line: u64| blocks.iter().filter(|block| block["line"] == line).count();
-        assert_eq!([3, 7, 8, 9, 10].map(of), [1, 62, 32, 62, 32], "{family}");
+        let of = |line: u64, kind: &str| {
+            blocks.iter().filter(|block| block["line"] == line && block["kind"] == kind).count()
+        };
+        let whole = family == "dda";
+        assert_eq!(
+            [3, 7, 8, 9, 10].map(|line| of(line, "line")),
+            if whole { [1, 62, 0, 0, 0] } else { CHORDS },
+            "{family}"
+        );
+        assert_eq!([8, 9, 10].map(|line| of(line, "curve")), [usize::from(whole); 3], "{family}");
         let off = number(&report["compensated_contour_error"]["blu"]);
         assert!(off < 2.0, "{family}: {off}");
     }
+}
+
+/// What is given for hardware of free curves where it is not to be used: an explicit distance of chords, or a ramp in front of the
+/// interpolator, whose path has to have as many pulses everywhere.
+#[test]
+fn chords_that_are_asked_for_and_ramps_have_chords_by_dda_too() {
+    let of = |options: &str| {
+        let report = report(&Folder::new(), CURVES, &format!("--method dda --normalize {OPTIONS} {options}"));
+        assert_eq!((&report["missed_end_points"], &report["beyond_bound"]), (&0.into(), &0.into()), "{options}");
+        assert_eq!(report["reached"], serde_json::json!([1000, 0, 0]), "{options}");
+        let blocks = report["blocks"].as_array().unwrap();
+        (blocks.iter().filter(|block| block["kind"] == "line").count(), blocks.len())
+    };
+    assert_eq!(of(""), (63, 66));
+    assert_eq!(of("--chords 0.5"), (189, 189));
+    assert_eq!(of("--accel 500mm/s2"), (189, 189));
+    assert_eq!(of("--accel 500mm/s2 --jerk 20000mm/s3"), (189, 189));
+    assert_eq!(of("--ramp after --smooth sum=4 --period 20"), (63, 66));
 }
 
 #[test]

@@ -297,7 +297,7 @@ proptest! {
                 let turned: Vec<ToolMove> = moves.iter().map(|of| {
                     let turn = |point: [f64; 3]| plane.point(point);
                     let shape = match of.segment.shape {
-                        SegmentShape::Line => SegmentShape::Line,
+                        other @ (SegmentShape::Line | SegmentShape::Bezier(_)) => other,
                         SegmentShape::Arc { center, direction, .. } => SegmentShape::Arc { plane, center, direction },
                     };
                     tool_move(turn(of.segment.from), turn(of.segment.to), shape)

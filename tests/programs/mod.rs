@@ -6,6 +6,7 @@ mod axes;
 mod command;
 mod curves;
 mod field;
+mod free_curves;
 mod like_any;
 mod machines;
 mod smoothing;

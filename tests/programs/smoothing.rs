@@ -33,7 +33,7 @@ fn filtered(
 }
 
 /// The same with an operator.
-fn operated(
+pub(super) fn operated(
     folder: &tempfile::TempDir,
     family: &str,
     text: &str,
@@ -55,7 +55,7 @@ fn bits(period: usize) -> u32 {
 }
 
 /// Every pulse that goes out is that of the recurrence, and all of them do.
-fn check(report: &Report, trace: &Trace, (filter, period): (Filter, usize), what: &str) {
+pub(super) fn check(report: &Report, trace: &Trace, (filter, period): (Filter, usize), what: &str) {
     assert_eq!(report.outcome.ending, Ending::Done, "{what}");
     assert!(report.failures().is_empty(), "{what}: {:?}", report.failures());
     for letter in &AXES[..report.hardware.axes] {
@@ -297,13 +297,15 @@ struct Leg {
     word: u8,
 }
 
-fn text(legs: &[Leg]) -> String {
+/// With `curves` some are free, which the machine has to take whole: chords may each wait for a filter.
+fn text(legs: &[Leg], curves: bool) -> String {
     let mut text = "G21 G91 G64\n".to_owned();
     for Leg { by, feed, word } in legs {
         let [x, y, a] = by.map(|travel| travel as f64 / 100.0);
         let before = ["", "G61\n", "G64\n", "G64 P0.03\n", "G4 P0.002\n", "M0\n"][usize::from(*word)];
         let curve = match word {
             2 if by[0] != 0 => format!("G2 X{x:.2} Y0 I{:.3} J0", x / 2.0),
+            3 if curves => format!("G5 X{x:.2} Y{y:.2} I{y:.2} J0.1 P{:.3} Q-0.05", -x / 2.0),
             _ => format!("G1 X{x:.2} Y{y:.2} A{:.3}", a / 10.0),
         };
         writeln!(text, "{before}{curve} F{feed}").unwrap();
@@ -339,15 +341,15 @@ proptest! {
             if engine == EngineKind::Gates && clocks > 1500 {
                 break;
             }
-            let (report, trace) = filtered(&folder, family, &text(&legs), (of, period), engine);
-            check(&report, &trace, (of, period), &format!("{family} {of:?} {period} {engine:?}\n{}", text(&legs)));
+            let (report, trace) = filtered(&folder, family, &text(&legs, family == "dda"), (of, period), engine);
+            check(&report, &trace, (of, period), &format!("{family} {of:?} {period} {engine:?}\n{}", text(&legs, family == "dda")));
             clocks = report.outcome.clocks;
         }
     }
 }
 
 /// Clocks of the pulses of a signal.
-fn clocks_of(trace: &Trace, name: &str) -> Vec<usize> {
+pub(super) fn clocks_of(trace: &Trace, name: &str) -> Vec<usize> {
     let pulses = trace.i64(name).unwrap();
     (0..pulses.len()).filter(|&clock| pulses[clock] != 0).collect()
 }
@@ -430,8 +432,8 @@ proptest! {
         let events: Vec<&str> = events.iter().map(String::as_str).collect();
         let mut before = None;
         for engine in [EngineKind::Word, EngineKind::Compiled] {
-            let (report, trace) = operated(&folder, family, &text(&legs), ((of, period), engine), &events);
-            check(&report, &trace, (of, period), &format!("{family} {of:?} {period} {events:?}\n{}", text(&legs)));
+            let (report, trace) = operated(&folder, family, &text(&legs, family == "dda"), ((of, period), engine), &events);
+            check(&report, &trace, (of, period), &format!("{family} {of:?} {period} {events:?}\n{}", text(&legs, family == "dda")));
             let wanted: i64 = legs.iter().map(|leg| leg.by[0]).sum();
             prop_assert_eq!(report.outcome.reached[0], wanted);
             let clocks = report.outcome.clocks;

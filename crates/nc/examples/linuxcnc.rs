@@ -51,7 +51,7 @@ impl Call {
 fn of_move(one: &Move) -> Call {
     let to = one.segment.to.map(|value| value * BLU);
     let (end, arc) = match one.segment.shape {
-        SegmentShape::Line => (to, None),
+        SegmentShape::Line | SegmentShape::Bezier(_) => (to, None),
         SegmentShape::Arc { plane, center: [x, y], direction } => {
             let turns = if direction == Direction::Clockwise { -1.0 } else { 1.0 };
             (plane.of(to), Some([x * BLU, y * BLU, turns]))
@@ -126,6 +126,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         tools: BTreeMap::new(),
         tolerance: 0.0,
         chords: 0.5,
+        whole: false,
         home: None,
     };
     let mut ours: Vec<(Place, Call)> = Vec::new();

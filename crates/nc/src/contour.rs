@@ -143,6 +143,17 @@ pub enum SegmentShape {
         /// The turn, seen from the positive third axis.
         direction: Direction,
     },
+    /// A free curve in x and y.
+    Bezier(Controls),
+}
+
+/// The control points of a Bézier curve between its ends, in x and y, in BLU.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Controls {
+    /// That of a quadratic one.
+    One([f64; 2]),
+    /// Those of a cubic one.
+    Two([[f64; 2]; 2]),
 }
 
 /// A piece of a contour.

@@ -21,6 +21,7 @@
 //! ```
 
 mod arc;
+mod bezier;
 mod compensation;
 mod conic;
 mod contour;
@@ -43,11 +44,12 @@ mod tangent;
 mod turn;
 
 pub use arc::Arc;
+pub use bezier::Bezier;
 pub use compensation::{CompensationError, CompensationErrorKind, Compensator, Corner, Scheme, WAITING_LIMIT};
 pub use conic::{Conic, ConicSector, Opens, Shape, Weight};
 pub use contour::{
-    Cause, Coordinates, Feed, FeedAxes, Move, OTHERS, Others, PathControl, Place, Plane, Point, Position, Segment,
-    SegmentShape, Side, ToolMove,
+    Cause, Controls, Coordinates, Feed, FeedAxes, Move, OTHERS, Others, PathControl, Place, Plane, Point, Position,
+    Segment, SegmentShape, Side, ToolMove,
 };
 pub use curve::{Curve, CurveType, Description, Drawn, OUTLINE_LIMIT};
 pub use error::{End, GeometryError};

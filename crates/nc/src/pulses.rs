@@ -7,8 +7,8 @@ use nearest::{Nearest, nearest};
 
 use crate::contour::coordinates;
 use crate::{
-    AXES_MAX, Arc, Cause, Coordinates, Curve, Direction, Feed, GeometryError, Helix, Line, OTHERS, Others, PathControl,
-    Place, Plane, Point, Position, Segment, SegmentShape, Side, ToolMove,
+    AXES_MAX, Arc, Bezier, Cause, Coordinates, Curve, Direction, Feed, GeometryError, Helix, Line, OTHERS, Others,
+    PathControl, Place, Plane, Point, Position, Segment, SegmentShape, Side, Spline, SplineForm, ToolMove,
 };
 
 /// The largest distance between the curve that a machine gets and the move in real numbers, in BLU, in both directions:
@@ -22,9 +22,10 @@ pub struct PulseBlock {
     /// The move that it comes from.
     pub of: ToolMove,
     /// The axes of the machine that the curve has, in its order: first the two that the machine interpolates, whose pulses all
-    /// others follow. Of an arc they are those of its [plane](Plane::axes), of a line the two that travel farthest.
+    /// others follow. Of an arc they are those of its [plane](Plane::axes), of a line the two that travel farthest, of a free curve
+    /// x and y.
     pub axes: Vec<usize>,
-    /// The curve: a line, a helix of three axes, or an arc of two.
+    /// The curve: a line, a helix of three axes, an arc of two, or a Bézier curve.
     pub curve: Curve,
     /// Where it starts, in BLU.
     pub from: Position,
@@ -129,7 +130,8 @@ impl PulseBlock {
         self.curve.deviation(&along[..self.axes.len()])
     }
 
-    /// The positions of each axis of the machine between which the block runs, in BLU: of an arc the whole circle.
+    /// The positions of each axis of the machine between which the block runs, in BLU: of an arc the whole circle, of a free curve
+    /// those of its control points.
     #[must_use]
     pub fn reach(&self) -> [[i64; 2]; AXES_MAX] {
         let ends = |axis: usize| [self.from[axis].min(self.to[axis]), self.from[axis].max(self.to[axis])];
@@ -140,6 +142,14 @@ impl PulseBlock {
             for (&axis, center) in self.axes.iter().zip(arc.center()) {
                 let [low, high] = reach[axis];
                 reach[axis] = [low.min(center - radius), high.max(center + radius)];
+            }
+        }
+        if let Curve::Spline(spline) = &self.curve {
+            for (&axis, of) in self.axes.iter().zip(0..) {
+                let [low, high] = reach[axis];
+                let along = |point: &[i64; 2]| point[of];
+                let points = || spline.points().iter().map(along);
+                reach[axis] = [points().fold(low, i64::min), points().fold(high, i64::max)];
             }
         }
         reach
@@ -167,6 +177,9 @@ impl Rounder {
     /// # Errors
     /// A coordinate is beyond [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT).
     pub fn blocks(&mut self, of: &ToolMove, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
+        if let Some(curve) = of.segment.bezier() {
+            return self.curve(of, &curve, out);
+        }
         let SegmentShape::Arc { plane, center, direction } = of.segment.shape else {
             return self.line(of, of.ends()[1], out);
         };
@@ -197,22 +210,49 @@ impl Rounder {
         Ok(apart)
     }
 
-    /// The blocks of a move whose arc becomes chords that are at most this many BLU off it, as
+    /// The blocks of a move whose arc or free curve becomes chords that are at most this many BLU off it, as
     /// [`blocks`](Self::blocks).
     ///
     /// # Errors
     /// As [`blocks`](Self::blocks).
     pub fn chords(&mut self, of: &ToolMove, tolerance: f64, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
+        let mut apart = 0.0_f64;
+        if let Some(curve) = of.segment.bezier() {
+            let [.., third] = of.segment.to;
+            for [x, y] in curve.chords(tolerance) {
+                apart = apart.max(self.line(of, coordinates([x, y, third], of.others.to), out)?);
+            }
+            return Ok(apart);
+        }
         let SegmentShape::Arc { plane, center, direction } = of.segment.shape else {
             return self.line(of, of.ends()[1], out);
         };
-        let mut apart = 0.0_f64;
         let points = chords(&of.segment, plane, center, direction, tolerance);
         let parts = points.len() as f64;
         for (part, point) in (1_u32..).zip(points) {
             apart = apart.max(self.line(of, coordinates(point, of.others.after(f64::from(part) / parts)), out)?);
         }
         Ok(apart)
+    }
+
+    /// A free curve, whose control points are rounded; also returns how far these are off the wanted ones at most, and so how far
+    /// the curve may be.
+    fn curve(&mut self, of: &ToolMove, curve: &Bezier, out: &mut Vec<PulseBlock>) -> Result<f64, GeometryError> {
+        let [.., third] = of.segment.to;
+        let place = |[x, y]: [f64; 2]| rounded(coordinates([x, y, third], of.others.to));
+        let points = curve.points().iter().map(|point| place(*point)).collect::<Result<Vec<_>, _>>()?;
+        // Its start is the end of the block before it.
+        let (from, to) = (self.at, points.last().copied().unwrap_or(self.at));
+        let rest = points.iter().skip(1).map(|point| [point[0], point[1]]);
+        let whole: Vec<[i64; 2]> = std::iter::once([from[0], from[1]]).chain(rest).collect();
+        let offsets = curve.points().iter().zip(&whole);
+        let off = offsets.map(|([x, y], to)| f64::hypot(x - to[0] as f64, y - to[1] as f64)).fold(0.0, f64::max);
+        // Of a single point nothing is left.
+        if let Ok(curve) = Spline::new(SplineForm::Bezier, &whole) {
+            out.push(PulseBlock { of: *of, axes: vec![0, 1], curve: Curve::Spline(curve), from, to });
+            self.at = to;
+        }
+        Ok(off)
     }
 
     /// A straight block; also returns how far its end is off the wanted one.

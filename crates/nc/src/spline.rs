@@ -4,6 +4,7 @@ use crate::GeometryError;
 use crate::limit::check_coordinates;
 
 mod distance;
+pub(crate) use distance::growth;
 
 /// What the points of a [`Spline`] mean.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

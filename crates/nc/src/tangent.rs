@@ -15,6 +15,10 @@ impl Segment {
     /// ```
     #[must_use]
     pub fn tangents(&self) -> Option<[Point; 2]> {
+        if let Some(curve) = self.bezier() {
+            let [start, end] = curve.along().map(|[x, y]| unit([x, y, 0.0]));
+            return Some([start?, end?]);
+        }
         let SegmentShape::Arc { plane, center, direction } = self.shape else {
             let unit = unit([0, 1, 2].map(|axis| self.to[axis] - self.from[axis]))?;
             return Some([unit; 2]);
@@ -34,6 +38,9 @@ impl Segment {
     /// The length, in BLU; of an arc whose radius changes evenly that of its mean radius.
     #[must_use]
     pub fn length(&self) -> f64 {
+        if let Some(curve) = self.bezier() {
+            return curve.length();
+        }
         let SegmentShape::Arc { plane, center, direction } = self.shape else {
             return [0, 1, 2].map(|axis| self.to[axis] - self.from[axis]).into_iter().fold(0.0, f64::hypot);
         };
@@ -45,7 +52,7 @@ impl Segment {
         f64::hypot(f64::midpoint(radii[0], radii[1]) * swept(self, plane, center, direction), climb)
     }
 
-    /// The radius of curvature, in BLU; `None` of a line.
+    /// The radius of curvature, in BLU; `None` of a line, and of a free curve, which has not one alone.
     #[must_use]
     pub fn bend(&self) -> Option<f64> {
         let SegmentShape::Arc { plane, center, direction } = self.shape else { return None };

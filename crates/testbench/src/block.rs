@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use stepwave_engine::Rows;
 use stepwave_models::Promise;
-use stepwave_nc::{Cause, Curve, Feed, Position, PulseBlock, ROUNDING_LIMIT, SegmentShape, ToolMove};
+use stepwave_nc::{Cause, Curve, Feed, Position, PulseBlock, ROUNDING_LIMIT, SegmentShape, Side, ToolMove};
 
 use super::contour;
 use super::speed::{Speed, Windows};
@@ -29,7 +29,7 @@ pub struct Part {
     pub limited: bool,
     /// What the method promises of it.
     pub promise: Option<Promise>,
-    /// How far a chord may be off its arc, in BLU.
+    /// How far a chord may be off its arc or free curve, in BLU.
     pub chords: f64,
 }
 
@@ -134,8 +134,13 @@ impl BlockReport {
         }
         // Within 2^52, as every position of a block is.
         let at = [0, 1, 2].map(|axis| position[axis] as f64);
-        self.off_compensated = self.off_compensated.max(contour::off_segment(&self.of.segment, at));
-        self.off_programmed = match (self.off_programmed, contour::off_programmed(&self.of, at)) {
+        let off = contour::off_segment(&self.of.segment, at);
+        self.off_compensated = self.off_compensated.max(off);
+        let off_programmed = match self.of.cause {
+            Cause::Programmed if self.of.side == Side::On && self.of.programmed == self.of.segment => Some(off),
+            _ => contour::off_programmed(&self.of, at),
+        };
+        self.off_programmed = match (self.off_programmed, off_programmed) {
             (Some(most), Some(off)) => Some(most.max(off)),
             (most, off) => off.or(most),
         };
@@ -172,7 +177,7 @@ impl BlockReport {
             return;
         };
         self.promise = Some(self.promise.map_or(promise, |before| promise.or_wider(before)));
-        let drawn = matches!((&part.block.curve, self.of.segment.shape), (Curve::Line(_), SegmentShape::Arc { .. }));
+        let drawn = matches!(part.block.curve, Curve::Line(_)) && self.of.segment.shape != SegmentShape::Line;
         let allowed = ROUNDING_LIMIT + contour::radii_apart(&self.of.segment) + if drawn { part.chords } else { 0.0 };
         let bound = promise.bound() + allowed;
         self.contour_bound = Some(self.contour_bound.map_or(bound, |before| before.max(bound)));
@@ -196,7 +201,7 @@ impl BlockReport {
         self.windows.speed()
     }
 
-    /// `line`, `arc`, and why where it was not programmed.
+    /// `line`, `arc`, `curve`, and why where it was not programmed.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match (self.of.cause, self.of.segment.shape, self.of.feed) {
@@ -207,6 +212,7 @@ impl BlockReport {
             (Cause::Programmed, _, Feed::Rapid) => "rapid",
             (Cause::Programmed, SegmentShape::Line, _) => "line",
             (Cause::Programmed, SegmentShape::Arc { .. }, _) => "arc",
+            (_, SegmentShape::Bezier(_), _) => "curve",
         }
     }
 }

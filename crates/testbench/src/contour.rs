@@ -2,11 +2,14 @@
 
 use stepwave_nc::{AXES_MAX, Cause, Coordinates, Point, Segment, SegmentShape, Side, ToolMove, swept};
 
-/// The distance of a place from the infinite line or the whole circle of a segment, in BLU: of an arc in its plane.
+/// The distance of a place from the infinite line, the whole circle or the free curve of a segment, in BLU: of an arc in its plane.
 #[must_use]
 pub(super) fn off_segment(segment: &Segment, at: Point) -> f64 {
+    if let Some(curve) = segment.bezier() {
+        return f64::hypot(curve.distance([at[0], at[1]]), at[2] - segment.from[2]);
+    }
     match segment.shape {
-        SegmentShape::Line => off_line(segment.from, segment.to, at),
+        SegmentShape::Line | SegmentShape::Bezier(_) => off_line(segment.from, segment.to, at),
         SegmentShape::Arc { plane, center, direction } => {
             let radius = |point: Point| {
                 let [u, v, _] = plane.of(point);
@@ -25,7 +28,7 @@ pub(super) fn off_segment(segment: &Segment, at: Point) -> f64 {
     }
 }
 
-/// How far the two radii of an arc are apart, in BLU; 0 of a line.
+/// How far the two radii of an arc are apart, in BLU; 0 of all else.
 #[must_use]
 pub(super) fn radii_apart(segment: &Segment) -> f64 {
     let SegmentShape::Arc { plane, center, .. } = segment.shape else { return 0.0 };
@@ -86,6 +89,11 @@ impl Outline {
                 (within[0][axis], within[1][axis]) = (center - radius, center + radius);
             }
         }
+        if let Some(curve) = of.segment.bezier() {
+            for (axis, [low, high]) in curve.bounds().into_iter().enumerate() {
+                (within[0][axis], within[1][axis]) = (low, high);
+            }
+        }
         Outline { of: *of, ends, within }
     }
 
@@ -110,6 +118,10 @@ impl Outline {
     /// at the same angle or from an end.
     pub(super) fn off(&self, at: &Coordinates) -> f64 {
         let [from, to] = &self.ends;
+        if let Some(curve) = self.of.segment.bezier() {
+            let aside = curve.distance([at[0], at[1]]);
+            return apart((2..AXES_MAX).map(|axis| at[axis] - from[axis]).chain([aside]));
+        }
         let SegmentShape::Arc { plane, center, direction } = self.of.segment.shape else {
             let square: f64 = from.iter().zip(to).map(|(from, to)| (to - from).powi(2)).sum();
             let along: f64 = from.iter().zip(to).zip(at).map(|((from, to), at)| (to - from) * (at - from)).sum();

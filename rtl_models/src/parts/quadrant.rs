@@ -50,17 +50,20 @@ impl<'m> ArcKind<'m> {
     }
 
     /// As [`decode`](ArcKind::decode), of a machine of arcs and lines: on an arc the first of `modes` (1 bit each) is 1,
-    /// on a line the second, before the first block none. The wave says which.
+    /// on a line the second, before the first block none, nor on a free curve, on which `curve` is 1. The wave says which.
     #[must_use]
     pub fn decode_in_modes(
         m: Scope<'m>,
         quadrant: Signal<'m>,
         counter_clockwise: Signal<'m>,
         [arc, line]: [Signal<'m>; 2],
+        curve: Option<Signal<'m>>,
     ) -> ArcKind<'m> {
         let of_arc = counter_clockwise.concat(quadrant).extend(4);
-        let kind = arc.mux(of_arc, line.mux(m.lit(4, 8), m.lit(4, 9)));
-        ArcKind::show(m, kind, &["LINE", "NONE"]);
+        let [of_line, none] = [8, 9].map(|value| m.lit(4, value));
+        let other = curve.map_or(none, |curve| curve.mux(m.lit(4, 10), none));
+        let kind = arc.mux(of_arc, line.mux(of_line, other));
+        ArcKind::show(m, kind, if curve.is_some() { &["LINE", "NONE", "CURVE"] } else { &["LINE", "NONE"] });
         ArcKind::of(m, quadrant, counter_clockwise)
     }
 

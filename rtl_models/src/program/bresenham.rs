@@ -34,6 +34,7 @@ pub static MODEL: Model = Model {
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
         arcs: None,
+        curves: false,
         direct: false,
         plan,
         most_steps: |size, _| [size.magnitude, 1],

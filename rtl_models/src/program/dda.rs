@@ -1,4 +1,5 @@
-//! The machine of the digital differential analyser (数字积分法): a pair of integrators for lines and arcs.
+//! The machine of the digital differential analyser (数字积分法): a pair of integrators for lines and arcs, and cascades of them for
+//! free curves.
 //!
 //! ```text
 //!   host ──► next block, normalised in the buffer ──► block
@@ -6,25 +7,31 @@
 //!             ▲ ±unit on a pulse of the other (arc)     │         ├──► end of the block
 //!            jvy ──► + ──► jry   carry ──► second axis ─┴──► ey ──┘      x, y, z
 //!   rate ──► phase ──► step
+//!
+//!   with G5 or G5.1 in the program:
+//!            rx ──► + ──► qx ──► + ──► px ──► + ──► jcx   pulse, signed ──► x     e ──► end of the curve
+//!            ry ──► + ──► qy ──► + ──► py ──► + ──► jcy   pulse, signed ──► y
 //! ```
 //!
 //! A line loads J_VX = abs(dx), J_VY = abs(dy), which stay; an arc J_VX = abs(y), J_VY = abs(x), which pulses of the
 //! other axis change. An exhausted axis stops adding. Where one axis is exhausted and the integrand of the other is 0, the
 //! other steps at once: next to an axis an arc would stall there otherwise. Normalised, the integrands of the
 //! *next* block shift left in the buffer while the present one runs, until one has its highest bit set, on an arc its
-//! second highest.
+//! second highest. The cascades are those of [`spline-dda`](crate::spline_dda), one step in each pulse of the source;
+//! meanwhile both axes of the pair are exhausted.
 
 use stepwave_nc::{Crossing, Curve, PulseBlock};
 use stepwave_netlist::Width;
 use stepwave_netlist::dsl::{Register, Scope, Signal};
 
 use super::frame::{Frame, MODE};
-use super::{HardwareBlock, Paced, Size, planar, power};
+use super::{HardwareBlock, Paced, Size, curve, planar, power};
 use crate::claims::{Claims, Region};
 use crate::dda_line;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::Interpolates;
+use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{NORMALIZE, PRESET, Preset};
 use crate::parts::{
@@ -48,19 +55,39 @@ pub static MODEL: Model = Model {
     title: "Digital differential analyser",
     method: dda_line::MODEL.method,
     source: dda_line::MODEL.source,
-    registers: &[&MODE, &PLANE, &QUAD, &(JV.pair(), JR.pair()), &UNIT, &END.pair(), &WHOLE, &POSITION],
+    registers: &[
+        &MODE.about("mode, LINE = 1, ARC = 2, CURVE = 3"),
+        &PLANE,
+        &QUAD,
+        &(JV.pair(), JR.pair()),
+        &UNIT,
+        &END.pair(),
+        &WHOLE,
+        &curve::CURVE_REMAINDER.pair(),
+        &curve::CURVE_P.pair(),
+        &curve::CURVE_Q.pair(),
+        &curve::CURVE_R.pair(),
+        &curve::CURVE_STEPS,
+        &POSITION,
+    ],
     options: machine_options![&PRESET.about("half (default) | zero | full | N"), &NORMALIZE],
     claims: Some(Claims::of(Region::LinesAndArcs)),
     interpolates: Interpolates::Moves(Paced {
         arcs: Some(CROSSING),
+        curves: true,
         direct: false,
         plan,
         most_steps: |_, plan| [2_u64.saturating_mul(power(plan.bits(JV.of(0)))); 2],
         load,
         error_bound: |hardware, block| {
-            // Each axis of a line is rounded to the nearest, or cut; an arc has no promise.
-            let off = if hardware.presets.iter().all(|preset| *preset == Preset::Half) { 0.5 } else { 1.0 };
-            matches!(block.curve, Curve::Line(_)).then(|| planar::bound(block, f64::hypot(off, off)))
+            // Each axis of a line is rounded to the nearest, or cut, and of a free curve to the nearest; an arc has no promise.
+            let half = hardware.presets.iter().all(|preset| *preset == Preset::Half);
+            let off = match block.curve {
+                Curve::Line(_) => Some(if half { 0.5 } else { 1.0 }),
+                Curve::Spline(_) => Some(0.5),
+                _ => None,
+            };
+            off.map(|off| planar::bound(block, f64::hypot(off, off)))
         },
     }),
     hardware,
@@ -75,6 +102,7 @@ fn plan(size: &Size, plan: &mut Plan) -> Result<(), ModelError> {
     // Normalised, a block takes no more steps than its integrands need.
     planar::one_scale(plan, &[JV.of(0), JV.of(1), JR.of(0), JR.of(1)], !normalized)?;
     plan.stall_clocks = planar::stall_clocks(plan.bits(JR.of(0)));
+    curve::plan(plan, size.curves);
     Ok(())
 }
 
@@ -144,12 +172,24 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     frame.close(hardware, pulses);
 }
 
+/// The words of the pair of integrators in a block in which it has nothing to do.
+fn at_rest(hardware: &Hardware, bits: u32) -> Words {
+    if !hardware.get(&NORMALIZE) {
+        return words::integrators(hardware, [0; 2]);
+    }
+    // Normalised already.
+    words::integrators(hardware, [1 << bits.saturating_sub(1); 2]).set(ARC, false)
+}
+
 fn load(block: &PulseBlock, hardware: &Hardware) -> Vec<HardwareBlock> {
     let bits = hardware.bits(JV.of(0));
+    if let Curve::Spline(_) = block.curve {
+        return curve::load(hardware, block, at_rest(hardware, bits));
+    }
     planar::blocks(CROSSING, hardware, block, |at| {
         let arc = !matches!(block.curve, Curve::Line(_));
         let [x, y] = if arc { [at.start[1], at.start[0]] } else { at.pulses };
-        let mut words = words::integrators(hardware, [x, y]);
+        let mut words = curve::at_rest(hardware, words::integrators(hardware, [x, y]));
         let mut shift = 0;
         if hardware.get(&NORMALIZE) {
             words = words.set(ARC, arc);

@@ -37,6 +37,7 @@ pub static MODEL: Model = Model {
     claims: Some(Claims::of(Region::Lines)),
     interpolates: Interpolates::Moves(Paced {
         arcs: None,
+        curves: false,
         direct: false,
         plan,
         most_steps: |_, plan| [power(plan.bits(Q)); 2],

@@ -1,4 +1,4 @@
-//! Machines that run whole NC programs: one netlist a method, for lines and arcs in three planes.
+//! Machines that run whole NC programs: one netlist a method, for lines and arcs in three planes, and by `dda` for free curves.
 //!
 //! The host loads the next block into a buffer while the present one runs ([`Buffer`](crate::parts::Buffer)); a rate
 //! generator on the clock paces the interpolator ([`pulse_source`](crate::parts::pulse_source)); line and arc share its
@@ -26,6 +26,7 @@ mod acceleration;
 mod after;
 pub mod bresenham;
 pub mod cim;
+mod curve;
 pub mod dda;
 pub mod dpm;
 mod frame;
@@ -36,6 +37,7 @@ pub mod stepgen;
 
 pub use acceleration::{Acceleration, Profile};
 pub use after::After;
+pub use curve::CurveSize;
 
 use std::fmt;
 
@@ -69,6 +71,8 @@ pub struct Size {
     pub positions: [[i64; 2]; AXES_MAX],
     /// Axes that the blocks need: x, y, z, and all up to the last that moves.
     pub axes: usize,
+    /// Of free curves, if there are any.
+    pub curves: Option<CurveSize>,
 }
 
 impl Size {
@@ -80,6 +84,10 @@ impl Size {
         }
         self.magnitude = self.magnitude.max(own.magnitude);
         self.axes = self.axes.max(own.axes);
+        self.curves = match (self.curves, own.curves) {
+            (Some(all), Some(own)) => Some(all.with(own)),
+            (all, own) => all.or(own),
+        };
     }
 
     /// Of one block alone.
@@ -88,9 +96,12 @@ impl Size {
         let travels = (0..AXES_MAX).map(|axis| block.travel(axis).unsigned_abs());
         let sectors = arc.map(|arc| arc.sectors(crossing)).unwrap_or_default();
         let radius = arc.map_or(0, crate::sizes::off_circle_radius);
-        let magnitude = crate::sizes::largest_coordinate(&sectors).max(radius).max(travels.max().unwrap_or(0));
+        let curves = if let Curve::Spline(spline) = &block.curve { CurveSize::of(spline) } else { None };
+        // A curve that is not cut has registers of its own.
+        let travel = if curves.is_some() { 0 } else { travels.max().unwrap_or(0) };
+        let magnitude = crate::sizes::largest_coordinate(&sectors).max(radius).max(travel);
         let axes = (3..AXES_MAX).filter(|axis| block.travel(*axis) != 0).max().map_or(3, |last| last + 1);
-        Size { magnitude, positions: block.reach(), axes }
+        Size { magnitude, positions: block.reach(), axes, curves }
     }
 }
 
@@ -131,6 +142,11 @@ pub const FASTEST_SPEED: u64 = (1 << 32) - 1;
 pub trait Moves: fmt::Debug + Sync {
     /// It interpolates arcs; else the control gives it chords.
     fn arcs(&self) -> bool;
+
+    /// It interpolates curves of G5 and G5.1, where they are not too long; else the control gives it chords.
+    fn curves(&self) -> bool {
+        false
+    }
 
     /// It interpolates this block; else the control gives it chords.
     fn takes(&self, block: &PulseBlock) -> bool;
@@ -177,6 +193,8 @@ pub trait Moves: fmt::Debug + Sync {
 pub struct Paced {
     /// Where it splits the arcs that it interpolates; `None`: the control gives it chords.
     pub arcs: Option<Crossing>,
+    /// It interpolates free curves.
+    pub curves: bool,
     /// A commanded feed sets the frequency of the pulse source, f_g = v / (60 δ), whatever the direction of the block;
     /// else it is a feed rate number: f_g makes the block take the time that the feed wants.
     pub direct: bool,
@@ -197,8 +215,15 @@ impl Moves for Paced {
         self.arcs.is_some()
     }
 
+    fn curves(&self) -> bool {
+        self.curves
+    }
+
     fn takes(&self, block: &PulseBlock) -> bool {
-        !self.too_steep(block)
+        match &block.curve {
+            Curve::Spline(spline) => self.curves && CurveSize::of(spline).is_some(),
+            _ => !self.too_steep(block),
+        }
     }
 
     fn crossing(&self) -> Crossing {

@@ -48,6 +48,7 @@ pub(super) const fn judging(
 ) -> Interpolates {
     Interpolates::Moves(Paced {
         arcs: Some(crossing),
+        curves: false,
         direct: true,
         plan: judged,
         // Those of both axes of a sector.
@@ -185,9 +186,16 @@ fn followers(block: &PulseBlock) -> impl Iterator<Item = usize> {
     (0..AXES_MAX).filter(move |axis| !plane.contains(axis))
 }
 
-/// Words that every machine in a plane has. `travels` are those of the [followers].
-fn common(hardware: &Hardware, block: &PulseBlock, mode: Words, [ex, ey]: [i128; 2], travels: &[i64]) -> Words {
-    let whole = ex + ey;
+/// Words that every machine in a plane has, with the pulses of both axes that its end counters count. `travels` are those of the [followers].
+pub(super) fn common(
+    hardware: &Hardware,
+    block: &PulseBlock,
+    mode: Words,
+    [ex, ey]: [i128; 2],
+    travels: &[i64],
+) -> Words {
+    // Of a free curve no axis is one of these, nor follows; with 0 one would have a pulse in every step.
+    let whole = (ex + ey).max(1);
     let plane = plane_index([block.axes[0], block.axes[1]]);
     let words = mode.set(PLANE, plane as i128).set_each(END.pair(), [ex, ey]).set(WHOLE, whole);
     let all = (0..followers_of(hardware.axes)).zip(travels);

@@ -86,7 +86,8 @@ impl Edge {
             [u, v]
         });
         let bend = match segment.shape {
-            SegmentShape::Line => Bend::Straight,
+            // A free curve is never compensated.
+            SegmentShape::Line | SegmentShape::Bezier(_) => Bend::Straight,
             SegmentShape::Arc { center, direction, .. } => Bend::Round {
                 center,
                 turn: if direction == Direction::Clockwise { -1.0 } else { 1.0 },

@@ -379,7 +379,8 @@ fn sided(side: Side) -> Result<Option<(f64, f64)>, Kind> {
 /// Every coordinate is a number within the limit.
 fn check(block: &Move) -> Result<(), Kind> {
     let center = match block.segment.shape {
-        SegmentShape::Line => [0.0; 2],
+        // Control points are looked at where they are rounded.
+        SegmentShape::Line | SegmentShape::Bezier(_) => [0.0; 2],
         SegmentShape::Arc { center, .. } => center,
     };
     let Segment { from, to, .. } = block.segment;

@@ -76,7 +76,7 @@ fn samples(segment: &Segment) -> Vec<Vector> {
     let (from, to) = (flat(segment.from), flat(segment.to));
     let part = |index: i32| f64::from(index) / 100.0;
     match segment.shape {
-        SegmentShape::Line => (0..=100)
+        SegmentShape::Line | SegmentShape::Bezier(_) => (0..=100)
             .map(|index| {
                 let part = part(index);
                 [from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])]
@@ -106,7 +106,7 @@ fn clearance(point: Vector, segment: &Segment) -> f64 {
     let (from, to) = (flat(segment.from), flat(segment.to));
     let at_ends = distance(point, from).min(distance(point, to));
     match segment.shape {
-        SegmentShape::Line => {
+        SegmentShape::Line | SegmentShape::Bezier(_) => {
             let chord = [to[0] - from[0], to[1] - from[1]];
             let square = chord[0] * chord[0] + chord[1] * chord[1];
             let part = ((point[0] - from[0]) * chord[0] + (point[1] - from[1]) * chord[1]) / square;

@@ -26,7 +26,7 @@ fn product(a: &[f64], b: &[f64]) -> [f64; COEFFICIENTS] {
 
 impl Piece<2> {
     /// The box of its Bézier points, in which it lies: no weight is negative.
-    fn bounds(&self) -> [[f64; 2]; 2] {
+    pub(crate) fn bounds(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|axis| {
             let points = (0..=self.degree).map(|index| self.control[index][axis] / self.weights[index]);
             points.fold([f64::MAX, f64::MIN], |[least, most], at| [least.min(at), most.max(at)])

@@ -11,12 +11,27 @@ pub(super) const MOST: usize = NURBS_DEGREE + 1;
 pub(crate) struct Piece<const N: usize> {
     pub(super) degree: usize,
     /// By axis; those beyond the degree do not count.
-    pub(super) control: [[f64; N]; MOST],
+    pub(crate) control: [[f64; N]; MOST],
     pub(super) weights: [f64; MOST],
 }
 
 /// Most halvings of a piece for its length: weights are up to 10^15 apart.
 const HALVINGS: u32 = 50;
+
+impl Piece<2> {
+    /// The Bézier curve of these points, at least two and at most [`MOST`], whose weights are 1.
+    pub(crate) fn polynomial(points: &[[f64; 2]]) -> Piece<2> {
+        let mut piece =
+            Piece { degree: points.len().saturating_sub(1), control: [[0.0; 2]; MOST], weights: [1.0; MOST] };
+        piece.control.iter_mut().zip(points).for_each(|(control, point)| *control = *point);
+        piece
+    }
+
+    /// The points of such a curve.
+    pub(crate) fn points(&self) -> &[[f64; 2]] {
+        &self.control[..=self.degree]
+    }
+}
 
 impl<const N: usize> Piece<N> {
     /// The numerators and the denominator at u, and their derivatives by u.

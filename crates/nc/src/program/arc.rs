@@ -61,11 +61,11 @@ pub(super) fn center(
 pub(super) const TURNS_OWNER: &str = "G02, G03, G04 or G64";
 
 /// The turns of an arc as segments, each with the parts of the whole path at which it starts and ends: full circles, and the
-/// arc itself after them. The third axis moves evenly over all. A line is one segment.
+/// arc itself after them. The third axis moves evenly over all. All but an arc is one segment.
 pub(super) fn turns(segment: Segment, turns: u64) -> impl Iterator<Item = (Segment, [f64; 2])> {
     let (angle, plane) = match segment.shape {
         SegmentShape::Arc { plane, center, direction } => (swept(&segment, plane, center, direction), plane),
-        SegmentShape::Line => (TAU, crate::Plane::Xy),
+        SegmentShape::Line | SegmentShape::Bezier(_) => (TAU, crate::Plane::Xy),
     };
     let [u, v, low] = plane.of(segment.from);
     let high = plane.of(segment.to)[2];

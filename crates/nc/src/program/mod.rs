@@ -61,8 +61,8 @@
 //! F of G94 is along the path of x, y and z where one of them moves, else along that of u, v and w, else, where only rotary axes
 //! move, in degrees per minute; all other axes arrive at the same time.
 //!
-//! A free curve becomes chords, no farther off it than [`Reading::chords`]; each is a move of the same block. G05 and G05.1 are
-//! in the plane XY, a NURBS is in the plane that is chosen. Under G91 a control point counts from where the tool is, as the
+//! A free curve becomes chords, no farther off it than [`Reading::chords`]; each is a move of the same block. With [`Reading::whole`] one of
+//! G05 or G05.1 is one move. These are in the plane XY, a NURBS is in the plane that is chosen. Under G91 a control point counts from where the tool is, as the
 //! end of every other curve does. No compensation is taken, and between G05.2 and G05.3 no other motion, plane or end. All this is
 //! as LinuxCNC documents it.
 //!
@@ -126,6 +126,8 @@ pub struct Reading {
     pub tolerance: f64,
     /// How far a chord may be off a free curve, in BLU, more than 0.
     pub chords: f64,
+    /// The curves of G05 and G05.1 stay whole.
+    pub whole: bool,
     /// Where the machine's zero is in the program, in mm, which G28 and G53 move by; `None` where they do not move.
     pub home: Option<[f64; 3]>,
 }
@@ -209,7 +211,7 @@ pub enum Event {
 /// use stepwave_nc::{Event, Integers, Program, Reading};
 ///
 /// let reading = Reading { blu: 0.001, degrees: 0.001, integers: Integers::Units, tools: Default::default(), tolerance: 0.0, home: None,
-/// chords: 0.5 }; let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?; let
+/// chords: 0.5, whole: false }; let mut program = Program::new("N10 G01 X1.5 F100\nN20 X[2]".as_bytes(), reading)?; let
 /// Some(Ok(Event::Move(first))) = program.next() else { panic!() }; assert_eq!(first.segment.to, [1500.0, 0.0, 0.0]);
 /// let Some(Err(error)) = program.next() else { panic!() }; assert_eq!(
 ///     error.to_string(),

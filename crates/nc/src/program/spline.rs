@@ -1,4 +1,4 @@
-//! Free curves of a program: G05, G05.1 and the NURBS between G05.2 and G05.3, as chords.
+//! Free curves of a program: G05 and G05.1, whole or as chords, and the NURBS between G05.2 and G05.3 as chords.
 
 use std::collections::VecDeque;
 
@@ -8,7 +8,7 @@ use super::modal::{AXES, Modal, within};
 use super::words::Word;
 use super::{Event, Reading};
 use crate::nurbs::{NURBS_DEGREE, NURBS_POINTS, Piece, pieces};
-use crate::{Feed, FeedAxes, Move, Others, Place, Plane, Point, Segment, SegmentShape, Side, nurbs};
+use crate::{Controls, Feed, FeedAxes, Move, Others, Place, Plane, Point, Segment, SegmentShape, Side, nurbs};
 
 /// The order of a NURBS without L, and the least one.
 const USUAL_ORDER: usize = 3;
@@ -94,10 +94,17 @@ impl Modal {
                 if let Some(((), word)) = block.machine {
                     self.by_machine(word)?;
                 }
-                match self.bezier(block, first, motion, reading)? {
-                    Some(piece) => vec![piece],
-                    None => return Ok(true),
+                let segment = self.bezier(block, first, motion, reading)?;
+                let Some(curve) = segment.bezier() else { return Ok(false) };
+                if reading.whole {
+                    let feed = self.feed_of_move(block, feed, FeedAxes::Linear)?;
+                    if !curve.is_point() {
+                        self.moves((segment, Others::at(self.others)), 1, feed, place, events);
+                        self.position = segment.to;
+                    }
+                    return Ok(true);
                 }
+                vec![curve.piece()]
             }
             _ => {
                 if block.motion.is_some() || block.home.is_some() {
@@ -117,14 +124,14 @@ impl Modal {
         Ok(true)
     }
 
-    /// The curve of G05 or G05.1; nothing of a word that only changes what is in force.
+    /// The curve of G05 or G05.1.
     fn bezier(
         &mut self,
         block: &BlockWords<'_>,
         first: Word<'_>,
         motion: Motion,
         reading: &Reading,
-    ) -> Result<Option<Piece<2>>, Fault> {
+    ) -> Result<Segment, Fault> {
         let name = if motion == Motion::Cubic { "G05" } else { "G05.1" };
         if self.plane != Plane::Xy {
             return Err(first.fault(|word| ProgramErrorKind::SplinePlane { word, name }));
@@ -144,17 +151,17 @@ impl Modal {
             return Err(first.fault(|word| ProgramErrorKind::SplineEnd { word, name }));
         }
         let offset = |letter: char| block.word(letter).map(|word| self.length(word, reading)).transpose();
-        let from = [self.position[0], self.position[1]];
-        let to = self.ends(block, reading)?;
-        let to = [to[0], to[1]];
+        let [[x, y, _], end] = [self.position, self.ends(block, reading)?];
+        let (from, to) = ([x, y], [end[0], end[1]]);
         let [i, j] = [offset('I')?, offset('J')?];
         let by = |at: [f64; 2], offset: [f64; 2]| [at[0] + offset[0], at[1] + offset[1]];
-        let control = if motion == Motion::Quadratic {
+        let controls = if motion == Motion::Quadratic {
             let handle = [i.unwrap_or(0.0), j.unwrap_or(0.0)];
             if handle == [0.0; 2] {
                 return Err(first.fault(|word| ProgramErrorKind::SplineHandle { word, name }));
             }
-            vec![from, by(from, handle), to]
+            self.curves.interrupted();
+            Controls::One(by(from, handle))
         } else {
             let start = match ([i, j], self.curves.handle) {
                 ([Some(i), Some(j)], _) => [i, j],
@@ -165,15 +172,9 @@ impl Modal {
                 return Err(first.fault(|word| ProgramErrorKind::SplineEndHandle { word }));
             };
             self.curves.handle = Some([p, q]);
-            vec![from, by(from, start), by(to, [p, q]), to]
+            Controls::Two([by(from, start), by(to, [p, q])])
         };
-        if motion == Motion::Quadratic {
-            self.curves.interrupted();
-        }
-        let degree = control.len() - 1;
-        let knots = [vec![0.0; degree + 1], vec![1.0; degree + 1]].concat();
-        let points: Vec<[f64; 3]> = control.iter().map(|[x, y]| [*x, *y, 1.0]).collect();
-        Ok(pieces(degree, &points, &knots).pop())
+        Ok(Segment { from: self.position, to: end, shape: SegmentShape::Bezier(controls) })
     }
 
     /// The place that the words X, Y and Z give.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Direction, Feed, Place, Plane, Point, SegmentShape, Side};
+use crate::{Controls, Direction, Feed, Place, Plane, Point, SegmentShape, Side};
 
 mod arcs;
 mod blocks;
@@ -18,6 +18,7 @@ fn reading() -> Reading {
         tools: BTreeMap::from([(1, 4.0), (2, 2.5)]),
         tolerance: 0.0,
         chords: 0.25,
+        whole: false,
         home: Some([0.0; 3]),
     }
 }

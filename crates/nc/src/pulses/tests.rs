@@ -1,6 +1,7 @@
 use super::*;
 use crate::{PathControl, Side};
 
+mod curves;
 mod tiny;
 
 fn moved(from: Point, to: Point, shape: SegmentShape) -> ToolMove {

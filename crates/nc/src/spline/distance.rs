@@ -39,27 +39,31 @@ impl SplineSegment {
         })
     }
 
-    /// How fast the square of the distance grows along the segment, halved: a polynomial of the fifth degree, by its
-    /// Bézier coefficients.
-    fn growth(&self, position: [f64; 2]) -> [f64; 6] {
-        const CHOICES: [[f64; 4]; 2] = [[1.0, 3.0, 3.0, 1.0], [1.0, 2.0, 1.0, 0.0]];
-        let mut growth = [0.0; 6];
-        for (axis, place) in position.into_iter().enumerate() {
-            let points = self.control(axis).map(|point| point - place);
-            for (i, point) in points.into_iter().enumerate() {
-                for (j, pair) in points.windows(2).enumerate() {
-                    growth[i + j] += CHOICES[0][i] * CHOICES[1][j] * point * (pair[1] - pair[0]);
-                }
-            }
-        }
-        let of_five = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
-        std::array::from_fn(|k| growth[k] / of_five[k])
-    }
-
     /// The place of the segment that is nearest.
     fn foot(&self, position: [f64; 2]) -> Foot {
-        Foot::of_piece(position, |u| [self.at(u), self.tangent(u)], (self.growth(position), 6))
+        Foot::of_piece(
+            position,
+            |u| [self.at(u), self.tangent(u)],
+            (growth([0, 1].map(|axis| self.control(axis)), position), 6),
+        )
     }
+}
+
+/// How fast the square of the distance grows along a cubic curve of these control points by axis, halved: a polynomial of the fifth
+/// degree, by its Bézier coefficients.
+pub(crate) fn growth(control: [[f64; 4]; 2], position: [f64; 2]) -> [f64; 6] {
+    const CHOICES: [[f64; 4]; 2] = [[1.0, 3.0, 3.0, 1.0], [1.0, 2.0, 1.0, 0.0]];
+    let mut growth = [0.0; 6];
+    for (control, place) in control.into_iter().zip(position) {
+        let points = control.map(|point| point - place);
+        for (i, point) in points.into_iter().enumerate() {
+            for (j, pair) in points.windows(2).enumerate() {
+                growth[i + j] += CHOICES[0][i] * CHOICES[1][j] * point * (pair[1] - pair[0]);
+            }
+        }
+    }
+    let of_five = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0];
+    std::array::from_fn(|k| growth[k] / of_five[k])
 }
 
 impl Spline {

@@ -40,7 +40,7 @@ impl Piece {
 
 fn reversed(shape: SegmentShape) -> SegmentShape {
     match shape {
-        SegmentShape::Line => SegmentShape::Line,
+        other @ (SegmentShape::Line | SegmentShape::Bezier(_)) => other,
         SegmentShape::Arc { plane, center, direction } => {
             SegmentShape::Arc { plane, center, direction: direction.reversed() }
         }
@@ -128,7 +128,7 @@ fn classes_show_in_what_is_inserted_and_how_far_it_goes() -> Outcome {
             let point = flat(tool_corner(&straight));
             for (block, tip) in moves[1..].iter().zip([0.0, turn.to_radians()]) {
                 let off = match block.segment.shape {
-                    SegmentShape::Line => (point[1] * tip.cos() - point[0] * tip.sin()).abs(),
+                    SegmentShape::Line | SegmentShape::Bezier(_) => (point[1] * tip.cos() - point[0] * tip.sin()).abs(),
                     SegmentShape::Arc { center, .. } => (distance(point, center) - 20.0).abs(),
                 };
                 assert!((off - RADIUS).abs() < 1e-9, "{case}: {off}");
@@ -170,7 +170,7 @@ fn a_mirrored_program_gives_the_mirrored_path() -> Outcome {
         from: [segment.from[0], -segment.from[1], 0.0],
         to: [segment.to[0], -segment.to[1], 0.0],
         shape: match segment.shape {
-            SegmentShape::Line => SegmentShape::Line,
+            other @ (SegmentShape::Line | SegmentShape::Bezier(_)) => other,
             SegmentShape::Arc { plane, center, direction } => {
                 SegmentShape::Arc { plane, center: [center[0], -center[1]], direction: direction.reversed() }
             }

@@ -6,7 +6,7 @@ use Direction::{Clockwise, CounterClockwise};
 /// The shapes of the moves of a program that is run at a feed, with centres rounded to a millionth of a BLU.
 fn shapes(text: &str) -> Vec<SegmentShape> {
     let shapes = moves(&format!("F100\n{text}")).into_iter().map(|one| match one.segment.shape {
-        SegmentShape::Line => SegmentShape::Line,
+        other @ (SegmentShape::Line | SegmentShape::Bezier(_)) => other,
         SegmentShape::Arc { plane, center, direction } => {
             SegmentShape::Arc { plane, center: center.map(rounded), direction }
         }

@@ -217,3 +217,27 @@ fn a_word_of_another_code_in_the_block_of_a_curve_keeps_its_own_meaning() {
     }
     assert!(run("F1 G5.1 X1 Y1 I0.5 J0 P3").unwrap_err().to_string().contains("P3 has nothing that uses it"));
 }
+
+#[test]
+fn a_curve_that_stays_whole_is_one_move_with_the_control_points_of_its_words() {
+    let text = "F100 G1 X1\nG5 X2 Y1 I0.5 J0.25 P-0.1 Q-1\nX3 P0 Q1\nG5.1 X0 Y0 J-2\nG5 X0 Y0 I0 J0 P0 Q0\nG93 G5.1 F7 X1 Y0 I1\n\
+                G94 F1 G5.2 X1 Y1\nX2 Y0\nG5.3\nM2";
+    let moves = moves_of(&run_with(text, Reading { whole: true, ..reading() }).unwrap());
+    let (curves, chords) = moves[1..].split_at(4);
+    let of = |one: &Move| (one.segment.from, one.segment.to, one.segment.shape);
+    let two = |points| SegmentShape::Bezier(Controls::Two(points));
+    let one = |point| SegmentShape::Bezier(Controls::One(point));
+    // The fourth G5 goes nowhere.
+    assert_eq!(of(&curves[0]), ([100.0, 0.0, 0.0], [200.0, 100.0, 0.0], two([[150.0, 25.0], [190.0, 0.0]])));
+    assert_eq!(of(&curves[1]), ([200.0, 100.0, 0.0], [300.0, 100.0, 0.0], two([[210.0, 200.0], [300.0, 200.0]])));
+    assert_eq!(of(&curves[2]), ([300.0, 100.0, 0.0], [0.0; 3], one([300.0, -100.0])));
+    assert_eq!(of(&curves[3]), ([0.0; 3], [100.0, 0.0, 0.0], one([100.0, 0.0])));
+    assert_eq!(
+        curves.iter().map(|one| one.feed).collect::<Vec<_>>()[2..],
+        [Feed::PerMinute(100.0), Feed::Inverse(7.0)]
+    );
+    assert!(chords.len() > 4 && chords.iter().all(|one| one.segment.shape == SegmentShape::Line), "{chords:?}");
+    // Its ends are those of the chords.
+    let ends = |moves: &[Move]| moves.last().map(|one| one.segment.to);
+    assert_eq!(ends(&moves), ends(&super::moves(text)));
+}
