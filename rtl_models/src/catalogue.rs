@@ -3,13 +3,15 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use stepwave_nc::Curve;
+use stepwave_nc::{Curve, PulseBlock, Spline, SplineForm};
 
 use crate::MODELS;
 use crate::described::known;
 use crate::error::ModelError;
+use crate::machine::Words;
 use crate::model::Model;
 use crate::options::{ALL, AnyOption, Options, Shape};
+use crate::program::{FASTEST_SPEED, Size};
 
 /// Models, in the order of `stepwave list`.
 #[derive(Clone, Debug)]
@@ -140,12 +142,35 @@ fn check(model: &'static Model) -> Result<(), ModelError> {
     for curve in &curves {
         missing = without_those_of(model, curve, missing)?;
     }
+    let missing = without_those_of_programs(model, missing)?;
     // Of many, such as the units of a cascade, a small curve has only the first.
     let first = model.rows().filter_map(|row| row.names.first());
     match first.into_iter().find(|name| missing.contains(*name)) {
         Some(name) => Err(ModelError::defect(model.name, format!("it has no register {name} with any option"))),
         None => Ok(()),
     }
+}
+
+/// Plans, wires and loads a program of a free curve, if the model takes them whole; gives the registers that are still missing.
+fn without_those_of_programs(
+    model: &'static Model,
+    mut missing: BTreeSet<&'static str>,
+) -> Result<BTreeSet<&'static str>, ModelError> {
+    let points = [[0, 0], [4, 0], [8, 4], [8, 8]];
+    let curve = Spline::new(SplineForm::Bezier, &points).ok().and_then(|curve| PulseBlock::alone(&curve.into()));
+    let (Some(moves), Some(block)) = (model.moves().ok().filter(|moves| moves.curves()), curve) else {
+        return Ok(missing);
+    };
+    let defect = |error: ModelError| ModelError::defect(model.name, format!("with a free curve: {error}"));
+    let mut size = Size::default();
+    size.add(moves.crossing(), &block);
+    let hardware = model.plan_program(&size, &Options::default()).map_err(defect)?;
+    let machine = model.machine(&hardware).map_err(defect)?;
+    missing.retain(|name| machine.design.netlist().find(name).is_none());
+    let blocks = moves.words(&hardware, &block, FASTEST_SPEED).map_err(defect)?;
+    let words: Vec<Words> = blocks.into_iter().map(|block| block.words).collect();
+    machine.load(&hardware, &words).map_err(defect)?;
+    Ok(missing)
 }
 
 /// Plans, wires and loads this curve with every word of every option; gives the registers that are still missing.

@@ -7,8 +7,8 @@ use nearest::{Nearest, nearest};
 
 use crate::contour::coordinates;
 use crate::{
-    AXES_MAX, Arc, Bezier, Cause, Coordinates, Curve, Direction, Feed, GeometryError, Helix, Line, OTHERS, Others,
-    PathControl, Place, Plane, Point, Position, Segment, SegmentShape, Side, Spline, SplineForm, ToolMove,
+    AXES_MAX, Arc, Bezier, Cause, Controls, Coordinates, Curve, Direction, Feed, GeometryError, Helix, Line, OTHERS,
+    Others, PathControl, Place, Plane, Point, Position, Segment, SegmentShape, Side, Spline, SplineForm, ToolMove,
 };
 
 /// The largest distance between the curve that a machine gets and the move in real numbers, in BLU, in both directions:
@@ -34,21 +34,27 @@ pub struct PulseBlock {
 }
 
 impl PulseBlock {
-    /// The block of a curve by itself, as fast as a machine can run it: a line, an arc or a helix; `None` for any other curve.
+    /// The block of a curve by itself, as fast as a machine can run it: a line, an arc, a helix or a Bézier curve; `None` for any
+    /// other curve.
     #[must_use]
     pub fn alone(curve: &Curve) -> Option<PulseBlock> {
         let place = |point: &[i64]| std::array::from_fn(|axis| point.get(axis).copied().unwrap_or(0));
         let [from, to]: [Position; 2] = [curve.from(), curve.to()].map(place);
         let (axes, curve) = match curve {
             Curve::Line(_) => straight(from, to).ok()?,
+            Curve::Spline(_) => (vec![0, 1], curve.clone()),
             _ => curve.arc().map(|_| (in_plane(Plane::Xy, curve), curve.clone()))?,
         };
         // Within 2^53, as every coordinate is.
-        let shape = curve.arc().map_or(SegmentShape::Line, |arc| SegmentShape::Arc {
+        let arc = curve.arc().map(|arc| SegmentShape::Arc {
             plane: Plane::Xy,
             center: arc.center().map(|c| c as f64),
             direction: arc.direction(),
         });
+        let shape = match &curve {
+            Curve::Spline(spline) => SegmentShape::Bezier(controls(spline)?),
+            _ => arc.unwrap_or(SegmentShape::Line),
+        };
         let [start, end] = [from, to].map(|point| point.map(|c| c as f64));
         let [(from_point, from_others), (to_point, to_others)] = [start, end].map(split);
         let segment = Segment { from: from_point, to: to_point, shape };
@@ -266,6 +272,16 @@ impl Rounder {
         out.push(PulseBlock { of: *of, axes, curve, from, to });
         self.at = to;
         Ok(off)
+    }
+}
+
+/// The control points of a Bézier curve between its ends; none of another free curve.
+fn controls(spline: &Spline) -> Option<Controls> {
+    let real = |point: [i64; 2]| point.map(|c| c as f64);
+    match (spline.form(), spline.points()) {
+        (SplineForm::Bezier, &[_, control, _]) => Some(Controls::One(real(control))),
+        (SplineForm::Bezier, &[_, first, second, _]) => Some(Controls::Two([first, second].map(real))),
+        _ => None,
     }
 }
 

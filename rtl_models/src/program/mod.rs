@@ -263,7 +263,10 @@ impl Paced {
 
     /// The block of a curve that the machine runs alone; `None` of one that it does not interpolate.
     pub(crate) fn block(&self, curve: &Curve) -> Option<PulseBlock> {
-        let takes = self.arcs.is_some() || matches!(curve, Curve::Line(_));
+        let takes = match curve {
+            Curve::Line(_) => true,
+            _ => self.arcs.is_some() && curve.arc().is_some(),
+        };
         takes.then(|| PulseBlock::alone(curve)).flatten()
     }
 

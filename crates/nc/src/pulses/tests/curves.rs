@@ -62,3 +62,17 @@ fn chords_of_a_curve_end_on_it_and_are_as_near_as_they_are_to_be() {
         }
     }
 }
+
+#[test]
+fn a_curve_alone_is_the_block_of_its_move() {
+    let curve: Curve = Spline::new(SplineForm::Bezier, &[[0, 0], [90, 5], [-7, 3], [20, 1]]).unwrap().into();
+    let block = PulseBlock::alone(&curve).unwrap();
+    let again = blocks(&[block.of], None);
+    assert_eq!(
+        (&again[0].curve, &again[0].axes, again[0].from, again[0].to),
+        (&curve, &block.axes, block.from, block.to)
+    );
+    assert!((block.length() - block.of.segment.length()).abs() < 1e-2);
+    let other: Curve = Spline::new(SplineForm::Hermite, &[[0, 0], [90, 5], [20, 1], [-7, 3]]).unwrap().into();
+    assert!(PulseBlock::alone(&other).is_none());
+}
