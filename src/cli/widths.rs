@@ -13,7 +13,7 @@ use super::{BenchArgs, HardwareArgs};
     proved at k at this k alone\n  \
     exhaustive  every geometry of the box was simulated, to its end\n  \
     12 of 16    every one was, but only 12 of 16 ran to their end: nothing is known of the others, which overflow or never end\n  \
-    sampled     the extreme ones were: corners, axes and next to them, greatest radii, largest and smallest weights\n  \
+    sampled     the extreme ones were, or their first clocks: corners, axes and next to them, greatest radii, largest and smallest weights\n  \
     enough      proved to be enough, but perhaps not least: the last column says how many bits a run needs\n\n\
     The command in the last column shows what happens one bit below.\n\n\
     --width N and --width REGISTER=N,… are the hardware that is judged: the column `given`. Where one is less than needed,\n\
@@ -36,7 +36,7 @@ pub(crate) struct WidthsArgs {
     /// Bits of the coordinates, or a range for each axis (0..255x0..255): every line from the origin to such a point, or
     /// every arc inside a quadrant with both ends on the circle; in bits also every helix over such an arc, and every
     /// quarter of an ellipse with such semi-axes and every arc of a parabola or hyperbola from or to the vertex, and
-    /// every cubic Bezier curve of such control points, an axis at a time
+    /// every cubic Bezier curve of such control points, an axis at a time; of sampled-spline extreme ones of these
     #[arg(long = "box", value_name = "BITS|RANGExRANGE", allow_hyphen_values = true)]
     pub(crate) extent: Extent,
     #[command(flatten)]

@@ -37,11 +37,12 @@ pub(crate) fn run(args: &WidthsArgs) -> Result<(), Error> {
 fn too_narrow(model: &Model, register: &RegisterWidth) -> String {
     let RegisterWidth { name, given, needed, .. } = register;
     let more = if register.known == Known::AtLeast { " or more" } else { "" };
-    let needs = format!("{name} of {given} bits is too narrow, it needs {needed}{more}");
+    let bits = if *given == 1 { "bit" } else { "bits" };
+    let needs = format!("{name} of {given} {bits} is too narrow, it needs {needed}{more}");
     match &register.fault {
         Some(fault) => format!("{needs}: {}", command(model, fault)),
         None if register.known != Known::Enough || *given < register.shown => needs,
-        None => format!("{name} of {given} bits is not proved to be enough, {needed} bits are"),
+        None => format!("{name} of {given} {bits} is not proved to be enough, {needed} bits are"),
     }
 }
 

@@ -69,7 +69,7 @@ fn what_is_not_a_nurbs_is_refused() {
         run_refused(&format!("sampled-spline --nurbs 0,0,1,4,4,1 {option}"), &[name]);
     }
     run_refused("spline-dda --nurbs 0,0,1,4,4,1", &["the curve is missing", "--bezier"]);
-    refused("widths sampled-spline --box 4", &["no boxes"]);
+    refused("widths sampled-spline --box 0..4x0..4", &["given in bits"]);
 }
 
 #[test]
@@ -148,4 +148,49 @@ fn the_picture_has_the_error_between_steps() {
     );
     folder.good("run ppc-line --to 100,62 --plot q.svg");
     assert!(!std::fs::read_to_string(folder.path("q.svg")).unwrap().contains("between steps"));
+}
+
+#[test]
+fn widths_of_a_box_are_sampled_hold_single_runs_and_name_a_run_that_needs_them() {
+    let folder = Folder::new();
+    let json = |words: &str| serde_json::from_str::<Value>(&folder.good(words)).unwrap();
+    let found = json("widths sampled-spline --box 2 --json");
+    assert_eq!((&found["all"], &found["ran"]), (&false.into(), &found["geometries"]));
+    let registers = found["registers"].as_array().unwrap();
+    let names: Vec<&str> = registers.iter().map(|register| register["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["jrx", "jry", "jvx", "jvy", "x", "y"]);
+    assert!(registers.iter().all(|register| register["known"] == "sampled"), "{found}");
+    let bound = |register: &Value, end: &str| register[end].as_i64().unwrap();
+    let own = |report: &Value, name: &str| {
+        let own = report["registers"].as_array().unwrap().iter().find(|register| register["name"] == name).unwrap();
+        ["least", "greatest"].map(|end| bound(own, end))
+    };
+    // Curves of the box, by their points.
+    for points in ["0,0,-3,0,3,0,3,0", "3,3,3,-3,-3,3,-3,-3", "0,-3,0,3,0,-3,0,3", "-3,0,3,0,-3,0,3,0"] {
+        let report = json(&format!("run sampled-spline --bezier {points} --fraction 10 --json -"));
+        for register in registers {
+            let [least, greatest] = own(&report, register["name"].as_str().unwrap());
+            let held = (bound(register, "least")..=bound(register, "greatest")).contains(&least)
+                && greatest <= bound(register, "greatest");
+            assert!(held, "{points}: {least} to {greatest} is beyond {register}");
+        }
+    }
+    for (register, name) in registers.iter().zip(names) {
+        let Some(below) = register["one_bit_below"].as_str() else { continue };
+        let below = below.trim_start_matches("stepwave ");
+        assert_ne!(folder.run(below).code, 0, "{below}");
+        let needed = bound(register, "needed");
+        let narrow = format!(" --width {name}={}", needed - 1);
+        assert!(below.contains(&narrow), "{below}");
+        let [least, greatest] = own(&json(&format!("{} --json -", below.replace(&narrow, ""))), name);
+        // Positions have a sign.
+        let magnitude = needed - i64::from(["x", "y"].contains(&name));
+        let fits = |bits: i64| greatest < 1 << bits && least >= if magnitude < needed { -(1 << bits) } else { 0 };
+        assert!(fits(magnitude) && !fits(magnitude - 1), "{name}: {least} to {greatest} in {needed} bits");
+    }
+    assert!(registers.iter().filter(|register| register["one_bit_below"].is_string()).count() >= 4, "{found}");
+    // What is given is judged, and no box of such curves is proved by running it.
+    let judged = folder.run("widths sampled-spline --box 1 --width x=1");
+    assert!(judged.code == 1 && judged.err.contains("x of 1 bit is too narrow, it needs 2"), "{judged:?}");
+    refused("prove sampled-spline --box 1", &["no box of sampled-spline is simulated whole", "`stepwave widths"]);
 }

@@ -62,7 +62,6 @@ fn what_is_not_a_free_curve_is_refused() {
     run_refused("spline-dda --bezier 0,0,4,0,8,4 --divisions 21", &["21", "1 to 20"]);
     run_refused("spline-dda --bezier 0,0,4,0,8,4 --fraction 0", &["--fraction 0", "1 to 60"]);
     run_refused("spline-dda --bezier 0,0,4000000,0,8,4", &["2^20 steps", "more segments"]);
-    refused("widths sampled-spline --box 4", &["no boxes", "NURBS"]);
     refused("widths spline-dda --box 0..9x0..9", &["given in bits"]);
     refused("widths spline-dda --box 20", &["16 bits"]);
 }

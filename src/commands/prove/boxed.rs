@@ -3,7 +3,7 @@
 
 use super::{Progress, open_wave, tell};
 use crate::cli::ProveArgs;
-use crate::models::{Model, Options};
+use crate::models::{CurveKind, Model, Options};
 use crate::nc::Curve;
 use crate::output::Outputs;
 use crate::own::is_netlist;
@@ -20,6 +20,11 @@ pub(super) fn prove(args: &ProveArgs, name: &str, extent: &Extent) -> Result<(),
         )));
     }
     let model = args.bench.model(name)?;
+    if model.curve() == CurveKind::Nurbs {
+        return Err(Error::Invalid(format!(
+            "no box of {name} is simulated whole, so that it proves nothing: `stepwave widths {name} --box 4` samples one"
+        )));
+    }
     let files = args.bench.files([&name.to_owned()]);
     if let Some(vcd) = &args.vcd {
         Outputs::reading(&files).claim(vcd)?;
@@ -33,7 +38,7 @@ pub(super) fn prove(args: &ProveArgs, name: &str, extent: &Extent) -> Result<(),
     // Of a netlist no option changes the hardware.
     let choices = if is_netlist(name) { Vec::new() } else { options.words() };
     let of = match extent {
-        Extent::Bits(bits) => format!("with coordinates of {bits} bits"),
+        Extent::Bits(_) => format!("with coordinates of {extent}"),
         Extent::Grid(grid) => format!("of the box {grid}"),
     };
     // The widths of a model follow from what it is planned for; those of a netlist do not.

@@ -9,6 +9,7 @@ mod splines;
 use std::fmt;
 use std::str::FromStr;
 
+use rayon::prelude::*;
 use stepwave_models::options::{CASCADE, NORMALIZE, RADIX, WIDTH};
 use stepwave_models::{CurveKind, Hardware, Model, ModelError, Options, Region};
 use stepwave_nc::{Curve, Line};
@@ -59,6 +60,7 @@ impl FromStr for Extent {
 impl fmt::Display for Extent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Extent::Bits(1) => f.write_str("1 bit"),
             Extent::Bits(bits) => write!(f, "{bits} bits"),
             // One number alone would be bits.
             Extent::Grid(Grid(ranges)) if ranges.len() == 1 && ranges[0].count() == 1 => {
@@ -226,11 +228,22 @@ impl Geometries {
             CurveKind::Conic if integrates => (WHOLE_INTEGRATED_CONICS, conics::conics),
             CurveKind::Conic => (WHOLE_CONICS, conics::conics),
             CurveKind::Spline => (WHOLE_SPLINES, splines::curves),
+            CurveKind::Nurbs => (0, splines::nurbs),
             other => return Err(ProofError::Box(format!("there are no boxes of such curves: {}", other.describe()))),
         };
         let all = wanted && k <= whole;
-        let curves = of(k, all);
-        let choices = if model.curve() == CurveKind::Spline { splines::divided(choices, k) } else { choices.clone() };
+        let mut curves = of(k, all);
+        let choices = match model.curve() {
+            CurveKind::Spline => splines::divided(choices, k),
+            CurveKind::Nurbs => splines::fractioned(choices, k),
+            _ => choices.clone(),
+        };
+        if model.curve() == CurveKind::Nurbs {
+            // One that rests somewhere is refused; where all are, the first says why.
+            let taken =
+                curves.par_iter().filter(|curve| model.plan(curve, &choices).is_ok()).cloned().collect::<Vec<_>>();
+            curves = if taken.is_empty() { curves } else { taken };
+        }
         let hardware = hardware_of(model, &choices, &curves)?;
         Ok(Geometries { curves, all, k, hardware, choices })
     }

@@ -117,7 +117,7 @@ const LEAST_PROVED: u32 = 3;
 
 /// The least widths of a model's registers over a box of geometries: every line from the origin, every arc inside a
 /// quadrant with both ends on the circle, every quarter of an ellipse and every arc of a parabola or hyperbola from or
-/// to its vertex, or every helix over such an arc. Widths among the choices are those of the hardware that is judged;
+/// to its vertex, every helix over such an arc, or cubic Bézier curves. Widths among the choices are those of the hardware that is judged;
 /// what is needed does not depend on them, but for the integrators of one scale, which are never taken narrower than
 /// the box needs. Nor does it depend on what is done on an overflow: the widths are those at which there is none.
 ///
