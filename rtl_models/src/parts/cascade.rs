@@ -73,9 +73,15 @@ fn remainder<'m>(
 
     let wide = bits.max(p.bits()) + 2;
     let sum = m.name("sum", rest.q.extend(wide).as_signed().wrapping_add(p.extend(wide)));
-    let (below, over) = (sum.msb(), !sum.less_than(constant(m, wide, modulus)));
-    let taken = over.mux(constant(m, wide, -modulus), below.mux(constant(m, wide, modulus), constant(m, wide, 0)));
-    let less = sum.wrapping_add(taken).slice(0, bits);
+    let below = sum.msb();
+    let (over, less) = if modulus.unsigned_abs().is_power_of_two() {
+        // The bits above those of the remainder are carry and borrow.
+        (!below & sum.slice(bits, wide - bits).is_nonzero(), sum.slice(0, bits))
+    } else {
+        let over = !sum.less_than(constant(m, wide, modulus));
+        let taken = over.mux(constant(m, wide, -modulus), below.mux(constant(m, wide, modulus), constant(m, wide, 0)));
+        (over, sum.wrapping_add(taken).slice(0, bits))
+    };
     rest.when(block.load, block.word(name, bits)).when(step, less).else_hold();
     [m.name("pulse", step & (below | over)), below]
 }

@@ -26,7 +26,7 @@ const WORDS = {
       + 'Click a grey box of the block diagram to open it.',
   },
   zh: {
-    'rapid ': '快速', 'line ': '直线', 'arc ': '圆弧', 'start-up ': '起刀', 'cancel ': '撤刀', 'inserted line ': '插入直线', 'inserted arc ': '插入圆弧',
+    'rapid ': '快速', 'line ': '直线', 'arc ': '圆弧', 'curve ': '曲线', 'start-up ': '起刀', 'cancel ': '撤刀', 'inserted line ': '插入直线', 'inserted arc ': '插入圆弧',
     method: '方法', numbers: '数制', as_declared: '按声明', unsigned: '无符号', signed: '有符号', binary: '二进制',
     hex: '十六进制', keys: '按键', path: '轨迹', wave: '波形', filter: '只显示名称中含有此文字的信号', filter_short: '筛选信号', signal: '信号', value: '值',
     steps: '插补计算过程', program: '程序', methods: '方法比较', diagram: '框图', report: '报告', step: '步', clock: '时钟',
