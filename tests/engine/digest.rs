@@ -315,6 +315,31 @@ fn a_flag_that_rises_in_the_last_sample_of_a_digest_is_seen() {
     }
 }
 
+/// A counter that goes down by itself and comes to a number with which it is compared after any number of clocks, in the first
+/// or in the last sample of a digest in some of these runs.
+#[test]
+fn a_comparison_that_ends_a_counter_is_seen_in_every_sample() {
+    for end in [0, 1, 15, 16, 1000] {
+        let module = Module::new("ending");
+        let m = module.top();
+        let (count, ended) = (m.reg("count", 20), m.reg("ended", 8));
+        let is_there = count.q.equals(m.lit(20, end));
+        count.set(count.q.wrapping_sub(m.lit(20, 1)));
+        ended.set(ended.q.wrapping_add(is_there.extend(8)));
+        let design = elaborate(module.finish().unwrap()).unwrap();
+        let ended = design.registers()[1];
+        let wanted = Wanted { ranges: vec![(ended, 0)], ..Wanted::default() };
+        let mut engine = digesting(&design, &wanted);
+        for clocks in (4000..6200).step_by(3) {
+            let first = [end + clocks, 0];
+            engine.restore(0, &first, &[], &[]);
+            let recorded = Recorded::from_state(&design, &first, 8000);
+            let taken = compare_on(engine.as_mut(), &recorded, &wanted, &[256]).unwrap();
+            assert!(taken > 0, "no digest, {end} after {clocks} clocks");
+        }
+    }
+}
+
 #[test]
 fn a_form_that_might_leave_62_bits_is_refused() {
     let module = Module::new("m");

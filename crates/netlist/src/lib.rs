@@ -43,4 +43,4 @@ pub use cells::{HasMemories, Net, Netlist, OnOverflow};
 pub use diag::{Code, Diagnostic, Diagnostics, Place};
 pub use elaborate::{Design, elaborate};
 pub use nearest::did_you_mean;
-pub use rows::{Extremes, Rows, packed};
+pub use rows::{Extremes, Rows};

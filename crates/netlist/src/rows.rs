@@ -5,7 +5,8 @@
 
 use std::ops::Range;
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, u64x8};
 
 /// What the values of a column came to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -155,7 +156,7 @@ impl Rows {
     #[must_use]
     pub fn nonzero(&self, column: usize, first: usize) -> u64 {
         let values = self.column(column).get(first..).unwrap_or_default();
-        dispatch!(self.level, _simd => nonzero(&values[..values.len().min(64)]))
+        dispatch!(self.level, simd => nonzero(simd, &values[..values.len().min(64)]))
     }
 
     /// The extremes of a column, those of skipped samples included, with the bits of `turned` inverted in every value;
@@ -326,23 +327,19 @@ fn extremes(values: &[u64], turned: u64, first: u64) -> (u64, u64, u64) {
     (least.cast_unsigned() ^ HIGHEST, greatest.cast_unsigned() ^ HIGHEST, toggled.cast_unsigned())
 }
 
+/// A bit for each of at most 64 values that is not 0, the first the lowest.
 #[inline(always)]
-fn nonzero(values: &[u64]) -> u64 {
-    let mut flags = [0; 64];
-    for (flag, value) in flags.iter_mut().zip(values) {
-        *flag = u8::from(*value != 0);
+fn nonzero<S: Simd>(simd: S, values: &[u64]) -> u64 {
+    let (octets, rest) = values.as_chunks::<8>();
+    let mut bits = 0;
+    for (index, octet) in octets.iter().enumerate() {
+        let zero = u64x8::from_slice(simd, octet).simd_eq(u64x8::splat(simd, 0)).to_bitmask();
+        bits |= (zero ^ 0xff) << (8 * index);
     }
-    packed(&flags)
-}
-
-/// Flags of a byte each, 0 or 1, as bits, the first the lowest.
-#[inline(always)]
-pub fn packed(flags: &[u8; 64]) -> u64 {
-    // Eight of them into eight bits: the product gathers them in its highest byte.
-    let octets = flags.as_chunks::<8>().0.iter().enumerate();
-    octets.fold(0, |bits, (index, octet)| {
-        bits | (u64::from_le_bytes(*octet).wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * index)
-    })
+    for (index, value) in (8 * octets.len()..).zip(rest) {
+        bits |= u64::from(*value != 0) << index;
+    }
+    bits
 }
 
 #[cfg(test)]

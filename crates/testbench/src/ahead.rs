@@ -4,6 +4,7 @@
 //! end anything: no stop net and no flag is 1, every observer says that the digest is enough, the pulses are close enough
 //! that the machine cannot have stalled, and it cannot have come back to the state of the anchor.
 
+use fearless_simd::{Level, dispatch};
 use stepwave_engine::{self as engine, Ahead, Digest, Engine, Wanted};
 use stepwave_netlist::Net;
 
@@ -32,8 +33,12 @@ impl StepTrains {
 }
 
 /// How many samples of a train have their bit.
-#[inline(always)]
 pub(super) fn count(train: &[u64]) -> u64 {
+    dispatch!(Level::new(), _simd => ones(train))
+}
+
+#[inline(always)]
+fn ones(train: &[u64]) -> u64 {
     train.iter().map(|word| u64::from(word.count_ones())).sum()
 }
 

@@ -5,7 +5,7 @@ use serde_json::json;
 use stepwave_engine::{Digest, Rows, Wanted};
 use stepwave_nc::Curve;
 
-use super::ahead::StepTrains;
+use super::ahead::{self, StepTrains};
 use super::checkpoint::{GREATEST, Memory, recalled};
 use super::{Observer, ObserverError, StepColumns, Testbench};
 use reach::Reach;
@@ -184,6 +184,68 @@ impl Train {
         [least, greatest]
     }
 
+    /// Takes words of samples, `span` to a word, from a clock on: a bit for each in which the axis pulses, or which completes a
+    /// step; `steps` are those before. `measured`: nobody knows yet that the axis is not farther off the uniform rate than
+    /// it was.
+    #[inline(always)]
+    fn take(&mut self, [pulses, stepped]: [&[u64]; 2], (clock, span): (u64, usize), steps: u64, measured: bool) {
+        if span == SPAN && self.is_as_before(pulses, clock) {
+            self.last = last(pulses, (clock, span)).or(self.last);
+        } else {
+            let words = pulses.iter().zip((clock..).step_by(span)).filter(|(word, _)| **word != 0);
+            words.for_each(|(word, clock)| self.space(*word, clock));
+        }
+        if measured && self.rate.is_some() && !self.is_no_farther([pulses, stepped], steps) {
+            let mut steps = steps;
+            for (&pulses, &stepped) in pulses.iter().zip(stepped) {
+                if pulses != 0 {
+                    self.measure(pulses, stepped, steps);
+                }
+                self.pulses += u64::from(pulses.count_ones());
+                steps += u64::from(stepped.count_ones());
+            }
+        } else {
+            self.pulses += ahead::count(pulses);
+        }
+    }
+
+    /// In these words, at most [`SPAN`] of them, each sample completes a step, and the axis is nowhere farther off the uniform
+    /// rate than it was; `steps` are those before. False where that is not known.
+    #[inline(always)]
+    fn is_no_farther(&self, [pulses, stepped]: [&[u64]; 2], steps: u64) -> bool {
+        let (Some((all, travel)), Some(octets)) = (self.rate, self.octets.first_chunk::<256>()) else { return false };
+        let begun = i64::try_from(self.off(self.pulses, steps)).ok().filter(|off| off.unsigned_abs() < 1 << 60);
+        let Some(mut off) = begun.filter(|_| pulses.len() <= SPAN) else { return false };
+        // No more than 2^60 is added to it.
+        let (mut least, mut greatest, mut every) = (i64::MAX, i64::MIN, u64::MAX);
+        for (word, stepped) in pulses.iter().zip(stepped) {
+            every &= stepped;
+            for octet in word.to_le_bytes() {
+                let octet = octets[usize::from(octet)];
+                least = least.min(off.wrapping_add(octet.least));
+                greatest = greatest.max(off.wrapping_add(octet.greatest));
+                off = off.wrapping_add(octet.all);
+            }
+        }
+        let after = greatest.wrapping_add(all - travel);
+        every == u64::MAX && u128::from(least.unsigned_abs().max(after.unsigned_abs())) <= self.greatest
+    }
+
+    /// No distance of pulses in these words, the first of which begins with this clock, is new.
+    #[inline(always)]
+    fn is_as_before(&self, words: &[u64], clock: u64) -> bool {
+        let Some((&first, _)) = words.split_first() else { return true };
+        let after =
+            self.last.and_then(|last| clock.checked_sub(last)).filter(|after| (1..=SPAN as u64).contains(after));
+        let Some(after) = after else { return false };
+        let odd = |before: u64, word: u64| word & (self.closer.after(before, word) | !self.usual.after(before, word));
+        let mut all = odd(1 << (SPAN as u64 - after), first);
+        for (&before, &word) in words.iter().zip(&words[1..]) {
+            all |= odd(before, word);
+        }
+        all == 0
+    }
+
     // Counts of clocks and pulses are far below 2^53.
     #[allow(clippy::cast_precision_loss)]
     fn finish(&self, steps: u64, clocks: u64) -> PulseTrain {
@@ -202,14 +264,40 @@ pub struct SpacingWatch {
     columns: StepColumns,
     /// Where a digest has them.
     digested: StepTrains,
+    seen: Seen,
+    /// Clock after which the first block was loaded.
+    loaded: Option<u64>,
+    totals: Option<Totals>,
+    level: Level,
+    /// Pulses of each axis in the samples that are looked at.
+    pulses: Vec<u64>,
+}
+
+/// What was seen of all axes.
+struct Seen {
     trains: Vec<Train>,
     /// Steps completed.
     steps: u64,
-    /// Clocks after which the first block was loaded and the last step completed.
-    loaded: Option<u64>,
+    /// Clock after which the last step was completed.
     stepped: u64,
-    totals: Option<Totals>,
-    level: Level,
+}
+
+impl Seen {
+    /// Takes words of samples, `span` to a word, from a clock on.
+    #[inline(always)]
+    fn take<'w>(
+        &mut self,
+        pulses: impl Fn(usize) -> &'w [u64],
+        stepped: &[u64],
+        (clock, span): (u64, usize),
+        measured: bool,
+    ) {
+        for (axis, train) in self.trains.iter_mut().enumerate() {
+            train.take([pulses(axis), stepped], (clock, span), self.steps, measured);
+        }
+        self.steps += ahead::count(stepped);
+        self.stepped = last(stepped, (clock, span)).unwrap_or(self.stepped);
+    }
 }
 
 impl SpacingWatch {
@@ -228,41 +316,29 @@ impl SpacingWatch {
         SpacingWatch {
             columns: StepColumns::of(bench),
             digested: StepTrains::default(),
-            trains: travels.iter().map(train).collect(),
-            steps: 0,
+            seen: Seen { trains: travels.iter().map(train).collect(), steps: 0, stepped: 0 },
             loaded: None,
-            stepped: 0,
             totals: Totals::of(bench, curve),
             level: Level::new(),
-        }
-    }
-
-    #[inline(always)]
-    fn take_in<const MEASURED: bool>(&mut self, digest: &Digest) {
-        let clocks = (digest.first_clock..).step_by(digest.span);
-        for ((word, &stepped), clock) in digest.trains[self.digested.stepped].iter().enumerate().zip(clocks) {
-            let pulses = |axis: usize| digest.trains[self.digested.pulses[axis]][word];
-            scan::<MEASURED>(&mut self.trains, pulses, clock, stepped, self.steps);
-            self.count(stepped, clock);
-        }
-    }
-
-    /// Counts steps, a bit each, in the samples from a clock on.
-    #[inline(always)]
-    fn count(&mut self, stepped: u64, clock: u64) {
-        self.steps += u64::from(stepped.count_ones());
-        if stepped != 0 {
-            self.stepped = clock + u64::from(stepped.ilog2());
+            pulses: vec![0; travels.len()],
         }
     }
 
     /// The pulses seen so far, axis by axis.
     #[must_use]
     pub fn finish(mut self) -> Vec<PulseTrain> {
-        let (steps, clocks) = (self.steps, self.stepped.saturating_sub(self.loaded.unwrap_or(0)));
-        self.trains.iter_mut().for_each(|train| train.compare_at(train.pulses, steps));
-        self.trains.iter().map(|train| train.finish(steps, clocks)).collect()
+        let Seen { trains, steps, stepped } = &mut self.seen;
+        let clocks = stepped.saturating_sub(self.loaded.unwrap_or(0));
+        trains.iter_mut().for_each(|train| train.compare_at(train.pulses, *steps));
+        trains.iter().map(|train| train.finish(*steps, clocks)).collect()
     }
+}
+
+/// The clock of the last bit in words of samples, `span` to a word, from a clock on.
+#[inline(always)]
+fn last(words: &[u64], (clock, span): (u64, usize)) -> Option<u64> {
+    let index = words.iter().rposition(|&word| word != 0)?;
+    Some(clock + (index * span) as u64 + u64::from(words[index].ilog2()))
 }
 
 /// The ends of octets one after another, from so far off on.
@@ -295,28 +371,6 @@ fn rounds(pulses: u64, stepped: u64) -> Option<(u16, bool)> {
     Some((u16::try_from(bits).ok()?, step < pulse))
 }
 
-/// Samples from `clock` on, at most [`SPAN`]: a bit for each in which an axis pulses, or which completes a step; `steps`
-/// are those before. `MEASURED`: nobody knows yet that no axis is farther off the uniform rate than it was.
-#[inline(always)]
-fn scan<const MEASURED: bool>(
-    trains: &mut [Train],
-    pulses: impl Fn(usize) -> u64,
-    clock: u64,
-    stepped: u64,
-    steps: u64,
-) {
-    for (axis, train) in trains.iter_mut().enumerate() {
-        let pulses = pulses(axis);
-        if pulses != 0 {
-            train.space(pulses, clock);
-            if MEASURED {
-                train.measure(pulses, stepped, steps);
-            }
-            train.pulses += u64::from(pulses.count_ones());
-        }
-    }
-}
-
 /// What a train writes down: pulses, clock of the last, spacing, and the worst pulses and steps.
 type Gathered = (u64, Option<u64>, [u64; 2], (u64, u64));
 
@@ -326,9 +380,10 @@ impl Observer for SpacingWatch {
     }
 
     fn remember(&self, memory: &mut Memory) {
-        let trains = self.trains.iter().map(|train| (train.pulses, train.last, train.spacing, train.worst));
+        let Seen { trains, steps, stepped } = &self.seen;
+        let trains = trains.iter().map(|train| (train.pulses, train.last, train.spacing, train.worst));
         let trains: Vec<Gathered> = trains.collect();
-        memory.insert("spacing".to_owned(), json!((self.steps, self.loaded, self.stepped, trains)));
+        memory.insert("spacing".to_owned(), json!((steps, self.loaded, stepped, trains)));
     }
 
     fn recall(&mut self, memory: &Memory) {
@@ -337,11 +392,11 @@ impl Observer for SpacingWatch {
         let fits = |&(pulses, last, _, (worst, step)): &Gathered| {
             [pulses, last.unwrap_or(0), worst, step].iter().all(|&count| count <= GREATEST)
         };
-        if trains.len() != self.trains.len() || steps.max(stepped) > GREATEST || !trains.iter().all(fits) {
+        if trains.len() != self.seen.trains.len() || steps.max(stepped) > GREATEST || !trains.iter().all(fits) {
             return;
         }
-        (self.steps, self.loaded, self.stepped) = (steps, loaded, stepped);
-        for (train, gathered) in self.trains.iter_mut().zip(trains) {
+        (self.seen.steps, self.loaded, self.seen.stepped) = (steps, loaded, stepped);
+        for (train, gathered) in self.seen.trains.iter_mut().zip(trains) {
             (train.pulses, train.last, _, train.worst) = gathered;
             train.set_spacing(gathered.2);
             train.greatest = train.off(train.worst.0, train.worst.1).unsigned_abs();
@@ -361,13 +416,14 @@ impl Observer for SpacingWatch {
     }
 
     fn digest(&mut self, digest: &Digest, last: &[u64]) {
-        let greatest = self.trains.iter().map(|train| train.greatest).min().unwrap_or(0);
-        let begun = [self.steps, self.trains[0].pulses, self.trains.get(1).map_or(0, |train| train.pulses)];
+        let Seen { trains, steps, .. } = &self.seen;
+        let greatest = trains.iter().map(|train| train.greatest).min().unwrap_or(0);
+        let begun = [*steps, trains[0].pulses, trains.get(1).map_or(0, |train| train.pulses)];
         let known = self.totals.as_ref().is_some_and(|totals| totals.are_no_farther(digest, last, begun, greatest));
-        dispatch!(self.level, _simd => match known {
-            true => self.take_in::<false>(digest),
-            false => self.take_in::<true>(digest),
-        });
+        let place = (digest.first_clock, digest.span);
+        let SpacingWatch { seen, digested, .. } = self;
+        let pulses = |axis: usize| &digest.trains[digested.pulses[axis]][..];
+        dispatch!(self.level, _simd => seen.take(pulses, &digest.trains[digested.stepped], place, !known));
     }
 
     fn samples(&mut self, rows: &Rows) -> Result<(), ObserverError> {
@@ -378,10 +434,13 @@ impl Observer for SpacingWatch {
                 self.loaded = (loaded != 0).then(|| clock(loaded.trailing_zeros()));
             }
             let stepped = rows.nonzero(self.columns.stepped, first);
-            let pulses = |axis: usize| rows.nonzero(self.columns.pulses[axis], first);
+            for (pulses, &column) in self.pulses.iter_mut().zip(&self.columns.pulses) {
+                *pulses = rows.nonzero(column, first);
+            }
             let clock = rows.first_clock() + first as u64;
-            dispatch!(self.level, _simd => scan::<true>(&mut self.trains, pulses, clock, stepped, self.steps));
-            self.count(stepped, clock);
+            let SpacingWatch { seen, pulses, .. } = self;
+            let pulses = |axis: usize| &pulses[axis..=axis];
+            dispatch!(self.level, _simd => seen.take(pulses, &[stepped], (clock, SPAN), true));
         }
         Ok(())
     }

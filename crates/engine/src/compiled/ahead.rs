@@ -7,7 +7,7 @@ use super::codegen::Plan;
 use super::layout::{FormFrom, RangeFrom, TrainFrom};
 use super::native::Digester;
 use super::scan::{self, Found, Operand};
-use super::specialise::Specialised;
+use super::specialise::{END, Specialised};
 use crate::digest::{Digest, Form, Term};
 use crate::{Ahead, Engine, Extremes};
 use stepwave_netlist::cells::{Net, Netlist};
@@ -18,6 +18,8 @@ const HIGHEST: u64 = 1 << 63;
 /// The loops of a variant that make digests.
 pub(super) struct Digests {
     specialised: Specialised,
+    /// Counters that are to be greater than [`END`] in all samples.
+    far: Vec<Net>,
     /// That which begins after each phase; `None` before it is compiled.
     loops: Vec<Option<DigestLoop>>,
     /// None can be compiled.
@@ -44,9 +46,9 @@ impl Digests {
         registers: &[(Net, Net)],
         never: &[Net],
     ) -> Digests {
-        specialised.settle(netlist, registers, never);
+        let far = specialised.settle(netlist, registers, never);
         let loops = specialised.phases.iter().map(|_| None).collect();
-        Digests { specialised, loops, unavailable: false }
+        Digests { specialised, far, loops, unavailable: false }
     }
 }
 
@@ -129,8 +131,8 @@ impl DigestLoop {
             match *from {
                 TrainFrom::Pattern(word) => train.resize(layout.words, word),
                 TrainFrom::Stored(index) => {
-                    let stored = words[index..].iter().step_by(layout.stored);
-                    train.extend(stored.map(|word| word.reverse_bits() >> (64 - layout.span)));
+                    train.resize(layout.words, 0);
+                    scan::turned_over(self.level, &words[index..], layout.stored, 64 - layout.span, train);
                 }
                 TrainFrom::Moved { counter, lane, .. } => {
                     // A counter of a narrow lane.
@@ -227,6 +229,7 @@ impl Compiled {
             return Ahead::NotNow;
         }
         let word = &mut self.word;
+        let is_near = digests.far.iter().any(|&counter| word.value(counter) <= length + END);
         let mut ranges = wanted.ranges.iter().zip(&native.digester.layout.ranges);
         let ends = ranges.any(|(&(net, turned), from)| match *from {
             RangeFrom::Counter { up } => {
@@ -236,7 +239,7 @@ impl Compiled {
             }
             _ => false,
         });
-        if ends || !native.digester.call(&mut self.state, word.memories().words_mut()) {
+        if is_near || ends || !native.digester.call(&mut self.state, word.memories().words_mut()) {
             return Ahead::Eventful;
         }
         (digest.first_clock, digest.clocks) = (word.clock() + 1, length);

@@ -123,6 +123,8 @@ pub(super) struct Generator<'a, 'c> {
     pub(super) exact: HashSet<Net>,
     /// Nets of 2 to 32 bits are words of 32 bits.
     pub(super) narrow: bool,
+    /// Words that bits were taken from, which are 0 or 1 too.
+    pub(super) words: HashMap<Value, Value>,
 }
 
 /// Type of the value of a net.
@@ -216,8 +218,8 @@ impl<'a, 'c> Generator<'a, 'c> {
         [state, memories]: [Value; 2],
     ) -> (Generator<'a, 'c>, RegisterValues) {
         let busy = (0..plan.columns.len()).filter(|column| !resting.contains(column)).collect();
-        let mut generator =
-            Generator { plan, f, state, memories, inputs: Vec::new(), busy, exact: HashSet::new(), narrow: false };
+        let mut generator = Generator { busy, ..Generator::narrow(plan, f, [state, memories]) };
+        generator.narrow = false;
         let nets = plan.registers.iter().map(|&(net, _)| net).chain(plan.inputs.iter().copied());
         let width = |net: Net| plan.entry.netlist.width(plan.entry.net(net));
         let mut words: RegisterValues =
@@ -233,7 +235,8 @@ impl<'a, 'c> Generator<'a, 'c> {
         [state, memories]: [Value; 2],
     ) -> Generator<'a, 'c> {
         let (inputs, busy) = (Vec::new(), Vec::new());
-        Generator { plan, f, state, memories, inputs, busy, exact: HashSet::new(), narrow: true }
+        let (exact, words) = (HashSet::new(), HashMap::new());
+        Generator { plan, f, state, memories, inputs, busy, exact, narrow: true, words }
     }
 
     /// A word of the state.

@@ -9,12 +9,14 @@
 //!          phase 0
 //! ```
 //!
+//! A short round is laid out several times, one after another, so that the counting of rounds is shared.
+//!
 //! Where anything happens that the caller would have to see (a stop net, a flag, a guard) the loop is abandoned, and
 //! nothing of it counts. What is put into lanes, a value a round, is only what extremes need: a register that counts in one
 //! direction has them at the ends, one that rests or goes through known values has none, and a value that a register
 //! has held since the phase before is there already.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, Value, types};
@@ -35,9 +37,25 @@ pub(super) struct Digesting<'a, 'c> {
     pub(super) layout: Layout,
     /// Where the loop goes when it is abandoned.
     pub(super) abandoned: Block,
-    /// The narrow lane of a net in a phase.
-    pub(super) narrow: HashMap<(Net, usize), usize>,
+    /// The lane of a value in a phase.
+    pub(super) lanes: HashMap<(Put, usize), usize>,
+    /// Those that have the value of this repetition.
+    put: HashSet<(Put, usize)>,
+    /// How often the round is laid out, and which of these it is.
+    repetitions: usize,
+    repetition: usize,
 }
+
+/// What is put into a lane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Put {
+    Net(Net),
+    /// The value of a form, by its index.
+    Form(usize),
+}
+
+/// Clocks up to which a round is laid out again.
+const REPEATED: usize = 4;
 
 /// Loop-carried values other than the registers.
 struct Carried {
@@ -78,7 +96,11 @@ pub(super) fn generate(plan: &Plan<'_>, wanted: &Wanted, f: &mut FunctionBuilder
     let fits = |words: &usize| words * rounds >= ROUNDS && (words * span).is_multiple_of(CLOCKS);
     let words = (1..=CLOCKS * ROUNDS).find(fits)?;
     let layout = Layout { span, rounds, words, ..Layout::default() };
-    let mut digesting = Digesting { generator, plan, wanted, layout, abandoned, narrow: HashMap::new() };
+    let repeats = |&times: &usize| rounds.is_multiple_of(times) && times * phases <= REPEATED;
+    let repetitions = (1..=REPEATED).rev().find(repeats).unwrap_or(1);
+    let (lanes, put) = (HashMap::new(), HashSet::new());
+    let mut digesting =
+        Digesting { generator, plan, wanted, layout, abandoned, lanes, put, repetitions, repetition: 0 };
     digesting.place();
     digesting.body(start, [narrow, wide, out])?;
     digesting.moved_lanes();
@@ -138,14 +160,20 @@ impl Digesting<'_, '_> {
         Some(())
     }
 
-    /// All phases; gives the registers after the edge of the last one, and leaves in `sample` those before it.
+    /// All phases, and that as often as it is laid out; gives the registers after the edge of the last one, and leaves in
+    /// `sample` those before it.
     fn round(&mut self, sample: &mut RegisterValues, now: &mut Carried, widths: &[Width]) -> Option<RegisterValues> {
         let plan = self.plan;
         let mut pending = vec![0; self.layout.stored];
         let mut after = None;
-        for (number, phase) in plan.phases.iter().enumerate() {
+        for (clock, phase) in plan.phases.iter().cycle().take(self.repetitions * plan.phases.len()).enumerate() {
+            let number = clock % plan.phases.len();
             if let Some(next) = after.take() {
                 *sample = next;
+            }
+            if number == 0 {
+                self.repetition = clock / plan.phases.len();
+                self.put.clear();
             }
             self.generator.pin(sample, phase, widths);
             self.generator.exact = self.exact(&phase.logic);
@@ -228,19 +256,20 @@ impl Digesting<'_, '_> {
 
     /// Puts the values of registers and forms that may be new in this phase into lanes.
     fn record(&mut self, number: usize, phase: &Phase, values: &HashMap<Net, Value>, [narrow, wide]: [Value; 2]) {
+        let Phase { logic, .. } = phase;
         for (index, &(net, _)) in self.wanted.ranges.iter().enumerate() {
-            let recorded = matches!(self.layout.ranges[index], RangeFrom::Narrow(_) | RangeFrom::Wide(_));
-            if !recorded || self.kept(net, number) {
+            if self.kept(net, number) {
                 continue;
             }
-            let is_narrow = matches!(self.layout.ranges[index], RangeFrom::Narrow(_));
-            let lane = if is_narrow {
-                self.narrow_lane(narrow, net, number, &phase.logic, values)
-            } else {
-                let value = self.generator.wide(values[&phase.logic.net(net)]);
-                self.wide_lane(wide, value)
-            };
-            if let RangeFrom::Narrow(lanes) | RangeFrom::Wide(lanes) = &mut self.layout.ranges[index] {
+            match self.layout.ranges[index] {
+                RangeFrom::Narrow(_) => self.narrow_lane(narrow, net, number, values[&logic.net(net)]),
+                RangeFrom::Wide(_) => self.wide_lane(wide, Put::Net(net), number, values[&logic.net(net)]),
+                _ => continue,
+            }
+            let lane = self.lanes[&(Put::Net(net), number)];
+            if let (RangeFrom::Narrow(lanes) | RangeFrom::Wide(lanes), 0) =
+                (&mut self.layout.ranges[index], self.repetition)
+            {
                 lanes.push(lane);
             }
         }
@@ -249,48 +278,45 @@ impl Digesting<'_, '_> {
                 continue;
             }
             if let ([a, b], FormFrom::Pairs(_)) = (form.terms(), &self.layout.forms[index]) {
-                let lanes = [a, b].map(|term| self.narrow_lane(narrow, term.net, number, &phase.logic, values));
-                if let FormFrom::Pairs(pairs) = &mut self.layout.forms[index] {
+                for net in [a.net, b.net] {
+                    self.narrow_lane(narrow, net, number, values[&logic.net(net)]);
+                }
+                let lanes = [a, b].map(|term| self.lanes[&(Put::Net(term.net), number)]);
+                if let (FormFrom::Pairs(pairs), 0) = (&mut self.layout.forms[index], self.repetition) {
                     pairs.push(lanes);
                 }
                 continue;
             }
-            let value = self.form(form, &phase.logic, values);
-            let lane = self.wide_lane(wide, value);
-            if let FormFrom::Wide(lanes) = &mut self.layout.forms[index] {
+            let value = self.form(form, logic, values);
+            self.wide_lane(wide, Put::Form(index), number, value);
+            let lane = self.lanes[&(Put::Form(index), number)];
+            if let (FormFrom::Wide(lanes), 0) = (&mut self.layout.forms[index], self.repetition) {
                 lanes.push(lane);
             }
         }
     }
 
-    /// The lane that the value of a net in a phase is put into.
-    fn narrow_lane(
-        &mut self,
-        place: Value,
-        net: Net,
-        phase: usize,
-        logic: &Simplified,
-        values: &HashMap<Net, Value>,
-    ) -> usize {
-        if let Some(&lane) = self.narrow.get(&(net, phase)) {
-            return lane;
+    /// Puts the value of a net in a phase into its narrow lane.
+    fn narrow_lane(&mut self, place: Value, net: Net, phase: usize, value: Value) {
+        let what = (Put::Net(net), phase);
+        let lane = *self.lanes.entry(what).or_insert(self.layout.narrow);
+        self.layout.narrow = self.layout.narrow.max(lane + 1);
+        if self.put.insert(what) {
+            let offset = i32::try_from(4 * (lane * self.layout.region() + self.repetition)).unwrap_or(i32::MAX);
+            let value = self.generator.wide(value);
+            self.generator.f.ins().istore32(trusted(), value, place, offset);
         }
-        let lane = self.layout.narrow;
-        self.layout.narrow += 1;
-        self.narrow.insert((net, phase), lane);
-        let value = self.generator.wide(values[&logic.net(net)]);
-        let value = self.generator.f.ins().ireduce(types::I32, value);
-        let offset = i32::try_from(4 * lane * self.layout.region()).unwrap_or(i32::MAX);
-        self.generator.f.ins().store(trusted(), value, place, offset);
-        lane
     }
 
-    fn wide_lane(&mut self, place: Value, value: Value) -> usize {
-        let lane = self.layout.wide;
-        self.layout.wide += 1;
-        let offset = i32::try_from(8 * lane * self.layout.region()).unwrap_or(i32::MAX);
-        self.generator.f.ins().store(trusted(), value, place, offset);
-        lane
+    /// Puts a value of a phase into its wide lane.
+    fn wide_lane(&mut self, place: Value, what: Put, phase: usize, value: Value) {
+        let lane = *self.lanes.entry((what, phase)).or_insert(self.layout.wide);
+        self.layout.wide = self.layout.wide.max(lane + 1);
+        if self.put.insert((what, phase)) {
+            let offset = i32::try_from(8 * (lane * self.layout.region() + self.repetition)).unwrap_or(i32::MAX);
+            let value = self.generator.wide(value);
+            self.generator.f.ins().store(trusted(), value, place, offset);
+        }
     }
 
     /// The value of a form.
@@ -314,20 +340,21 @@ impl Digesting<'_, '_> {
         sum
     }
 
-    /// Counts the round; after the last of a word stores the words, and after the last word leaves.
+    /// Counts the rounds; after the last of a word stores the words, and after the last word leaves.
     fn end_of_round(&mut self, sample: &RegisterValues, now: Carried, [word, round]: [Block; 2], next: Vec<Value>) {
         let (full, finished, further) = {
             let f = &mut *self.generator.f;
             (f.create_block(), f.create_block(), f.create_block())
         };
         let word_bytes = 8 * self.layout.stored as i64;
-        let [narrow_bytes, wide_bytes] =
-            [(self.layout.narrow, 4), (self.layout.wide, 8)].map(|(lanes, bytes)| if lanes > 0 { bytes } else { 0 });
+        let rounds = i64::try_from(self.repetitions).unwrap_or(1);
+        let [narrow_bytes, wide_bytes] = [(self.layout.narrow, 4), (self.layout.wide, 8)]
+            .map(|(lanes, bytes)| if lanes > 0 { bytes * rounds } else { 0 });
         let f = &mut *self.generator.f;
         let mut advance = |place: Value, bytes: i64| if bytes > 0 { f.ins().iadd_imm(place, bytes) } else { place };
         let (narrow, wide) = (advance(now.narrow, narrow_bytes), advance(now.wide, wide_bytes));
         let f = &mut *self.generator.f;
-        let rounds = f.ins().iadd_imm(now.rounds, -1);
+        let rounds = f.ins().iadd_imm(now.rounds, -rounds);
         let after = Carried { narrow, wide, rounds, ..now };
         let again: Vec<BlockArg> = next.iter().map(|&value| value.into()).chain(after.arguments()).collect();
         f.ins().brif(rounds, round, &again, full, &[]);

@@ -97,6 +97,9 @@ impl Generator<'_, '_> {
     /// The low bits of a value, or zeros above it.
     pub(super) fn converted(&mut self, value: Value, kind: Type) -> Value {
         let from = self.f.func.dfg.value_type(value);
+        if let Some(&word) = self.words.get(&value).filter(|word| self.f.func.dfg.value_type(**word) == kind) {
+            return word;
+        }
         match from.bits().cmp(&kind.bits()) {
             Ordering::Less => self.f.ins().uextend(kind, value),
             Ordering::Equal => value,
@@ -165,7 +168,9 @@ impl Generator<'_, '_> {
             return self.f.ins().icmp(IntCC::UnsignedLessThan, sum, a);
         }
         let carry = self.f.ins().ushr_imm(sum, i64::from(width.get()));
-        self.f.ins().ireduce(types::I8, carry)
+        let bit = self.f.ins().ireduce(types::I8, carry);
+        self.words.insert(bit, carry);
+        bit
     }
 
     /// The sign bit of `x & y`, as a byte.

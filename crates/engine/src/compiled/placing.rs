@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashSet};
 
 use super::codegen::Phase;
-use super::digesting::Digesting;
+use super::digesting::{Digesting, Put};
 use super::layout::{
     FormFrom, NARROW, RangeFrom, SMALL_COUNTER, TrainFrom, bit_of, counting, is_one, moves, moves_with, only_value,
 };
@@ -75,7 +75,7 @@ impl Digesting<'_, '_> {
     pub(super) fn moved_lanes(&mut self) {
         for from in &mut self.layout.trains {
             if let TrainFrom::Moved { counter, lane, .. } = from {
-                *lane = self.narrow.get(&(*counter, 0)).copied().unwrap_or(0);
+                *lane = self.lanes.get(&(Put::Net(*counter), 0)).copied().unwrap_or(0);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! What lanes of values come to: extremes, the extremes of a form, the samples in which one changes. Loops that compilers
 //! make vectors of.
 
-use fearless_simd::{Level, dispatch};
-use stepwave_netlist::packed;
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, u32x16};
 
 /// Least, greatest, the bits that were 1 in any and in all values of a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,20 +101,34 @@ fn sums<const LINEAR: bool, const SQUARE: bool>([a, b]: [Operand<'_>; 2]) -> [i6
     [least, greatest]
 }
 
+/// Every `step`th word with its highest bit the lowest, moved down by `unused` bits.
+pub(super) fn turned_over(level: Level, words: &[u64], step: usize, unused: usize, out: &mut [u64]) {
+    dispatch!(level, _simd => {
+        for (out, word) in out.iter_mut().zip(words.iter().step_by(step)) {
+            *out = word.reverse_bits() >> unused;
+        }
+    });
+}
+
 /// A bit for each of 64 values, the first the lowest: 1 where it is another than the one before, the first of which follows
 /// `before`.
 pub(super) fn changes(level: Level, values: &[u32; 64], before: u32) -> u64 {
-    dispatch!(level, _simd => changed(values, before))
+    dispatch!(level, simd => changed(simd, values, before))
 }
 
 #[inline(always)]
-fn changed(values: &[u32; 64], before: u32) -> u64 {
-    let mut flags = [0; 64];
-    for index in 1..64 {
-        flags[index] = u8::from(values[index] != values[index - 1]);
+fn changed<S: Simd>(simd: S, values: &[u32; 64], before: u32) -> u64 {
+    let rests = |now: &[u32], earlier: &[u32]| {
+        u32x16::from_slice(simd, now).simd_eq(u32x16::from_slice(simd, earlier)).to_bitmask()
+    };
+    let mut earlier = [before; 16];
+    earlier[1..].copy_from_slice(&values[..15]);
+    let mut resting = rests(&values[..16], &earlier);
+    // Functions of the standard library that take closures would be compiled without vector instructions.
+    for first in [16, 32, 48] {
+        resting |= rests(&values[first..first + 16], &values[first - 1..first + 15]) << first;
     }
-    flags[0] = u8::from(values[0] != before);
-    packed(&flags)
+    !resting
 }
 
 #[cfg(test)]

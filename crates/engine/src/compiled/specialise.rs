@@ -1,8 +1,9 @@
 //! What a loop takes for granted: which inputs and registers are folded in, and with which values.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::codegen::Phase;
+use super::layout::{SMALL_COUNTER, moves};
 use stepwave_netlist::cells::{Net, Netlist, Op};
 use stepwave_netlist::passes::{Simplified, simplify};
 
@@ -10,6 +11,8 @@ use stepwave_netlist::passes::{Simplified, simplify};
 const FEW_BITS: u32 = 4;
 /// Longest period considered.
 const LONGEST_PERIOD: usize = 8;
+/// Numbers up to this one are the end of a counter that goes down.
+pub(super) const END: u64 = 15;
 /// Inputs that are folded in at most: each takes a pass over the netlist, and its other value another loop.
 const MOST_INPUTS: usize = 16;
 
@@ -150,17 +153,21 @@ impl Specialised {
 
 impl Specialised {
     /// Fixes further registers in the phases: those that would end a digest, at 0, and those that take a constant in the
-    /// phase before.
-    pub(super) fn settle(&mut self, netlist: &Netlist, registers: &[(Net, Net)], never: &[Net]) {
-        let ends = registers.iter().map(|&(net, _)| net).filter(|net| never.contains(net));
-        let mut found: Vec<Vec<(Net, u64)>> = vec![ends.map(|net| (net, 0)).collect(); self.phases.len()];
-        while found.iter().any(|nets| !nets.is_empty()) {
+    /// phase before. Counters that go down are never compared with what they come to at their end: gives those, which have
+    /// to be greater than [`END`] in all samples.
+    pub(super) fn settle(&mut self, netlist: &Netlist, registers: &[(Net, Net)], never: &[Net]) -> Vec<Net> {
+        let ends = self.ends(netlist, registers);
+        let none = registers.iter().map(|&(net, _)| net).filter(|net| never.contains(net));
+        let mut found: Vec<Vec<(Net, u64)>> = vec![none.map(|net| (net, 0)).collect(); self.phases.len()];
+        let mut is_new = !ends.is_empty();
+        while std::mem::take(&mut is_new) || found.iter().any(|nets| !nets.is_empty()) {
             for (phase, nets) in self.phases.iter_mut().zip(found) {
                 nets.into_iter().for_each(|(net, value)| {
                     phase.fixed.entry(net).or_insert(value);
                 });
                 let mut all = self.inputs.clone();
                 all.extend(&phase.fixed);
+                all.extend(ends.iter().map(|&(_, comparison)| (comparison, 0)));
                 phase.logic = simplify(netlist, &all);
             }
             let after = |(number, phase): (usize, &Phase)| {
@@ -170,6 +177,26 @@ impl Specialised {
             };
             found = self.phases.iter().enumerate().map(after).collect();
         }
+        ends.into_iter().map(|(counter, _)| counter).collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
+    /// Counters that go down by at most one at a time, with each comparison for a number up to [`END`].
+    fn ends(&self, netlist: &Netlist, registers: &[(Net, Net)]) -> Vec<(Net, Net)> {
+        let counts_down = |&(net, next): &(Net, Net)| {
+            let within = |Phase { logic, fixed }: &Phase| {
+                let directions = moves(&logic.netlist, logic.net(net), logic.net(next));
+                !fixed.contains_key(&net) && directions.is_some_and(|[_, up]| !up)
+            };
+            netlist.width(net).get() > SMALL_COUNTER && self.phases.iter().all(within)
+        };
+        let counters: HashSet<Net> = registers.iter().filter(|register| counts_down(register)).map(|of| of.0).collect();
+        let end = |net: Net| matches!(netlist.cell(net).op, Op::Const(number) if number <= END);
+        let compared = |net: Net| match netlist.cell(net).op {
+            Op::Equal(a, b) if counters.contains(&a) && end(b) => Some((a, net)),
+            Op::Equal(a, b) if counters.contains(&b) && end(a) => Some((b, net)),
+            _ => None,
+        };
+        netlist.nets().filter_map(compared).collect()
     }
 }
 

@@ -40,7 +40,7 @@ impl Simplified {
     }
 }
 
-/// Simplifies an elaborated netlist. Inputs and registers in `fixed` are taken to have the given values: the result
+/// Simplifies an elaborated netlist. Nets in `fixed` are taken to have the given values: the result
 /// behaves as the original only while they do.
 #[must_use]
 pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {

@@ -26,7 +26,19 @@ impl Reach {
     /// The bits that lie so far above one that is set, but not those themselves unless another reaches them.
     #[inline(always)]
     pub(super) fn of(&self, bits: u64) -> u64 {
-        self.shifts.iter().fold((bits << 1) & self.any, |reached, &shift| reached | reached << (shift & 63))
+        self.after(0, bits)
+    }
+
+    /// The same, where the bits of another word lie right below those of this one.
+    #[inline(always)]
+    pub(super) fn after(&self, before: u64, bits: u64) -> u64 {
+        let (mut low, mut high) = (before << 1 & self.any, (bits << 1 | before >> 63) & self.any);
+        for shift in self.shifts {
+            let shift = shift & 63;
+            // What reached the other word from below it is too far away to reach this one.
+            (low, high) = (low | low << shift, high | high << shift | low >> 1 >> (63 - shift));
+        }
+        high
     }
 }
 
@@ -36,10 +48,14 @@ mod tests {
 
     #[test]
     fn every_distance_is_that_of_single_shifts() {
+        const WORDS: [u64; 6] = [0, 1, 1 << 63, 0x8000_0100_0020_0001, 0x1111_1111_1111_1111, u64::MAX];
         for distance in (0..70).chain([u64::MAX]) {
-            for bits in [0, 1, 1 << 63, 0x8000_0100_0020_0001, 0x1111_1111_1111_1111, u64::MAX] {
-                let expected = (1..=distance.min(63)).fold(0, |reached, gap| reached | bits << gap);
-                assert_eq!(Reach::up_to(distance).of(bits), expected, "{distance} {bits:x}");
+            for (before, bits) in WORDS.into_iter().flat_map(|before| WORDS.map(|bits| (before, bits))) {
+                let both = u128::from(bits) << 64 | u128::from(before);
+                let expected = (1..=distance.min(63)).fold(0, |reached, gap| reached | both << gap) >> 64;
+                let reach = Reach::up_to(distance);
+                assert_eq!(u128::from(reach.after(before, bits)), expected, "{distance} {before:x} {bits:x}");
+                assert!(before != 0 || u128::from(reach.of(bits)) == expected, "{distance} {bits:x}");
             }
         }
     }

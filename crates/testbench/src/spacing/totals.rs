@@ -1,6 +1,7 @@
 //! Lines on which a step is a pulse of one of two axes: how far each axis is off a uniform rate is the cross product of line
 //! and position, x·(X + Y) - X·(x + y) = x·Y - X·y, whose extremes a digest has.
 
+use fearless_simd::{Level, dispatch};
 use stepwave_engine::{Digest, Wanted};
 use stepwave_models::Pace;
 use stepwave_nc::{BatchGauge, Curve};
@@ -64,8 +65,13 @@ impl Totals {
         if steps + open != x + y {
             return false;
         }
-        let samples = xs.iter().zip(ys).zip(stepped);
-        let odd = samples.fold(0, |odd, ((x, y), stepped)| odd | (x & y) | ((x | y) ^ first) | (stepped ^ step));
+        let odd = dispatch!(Level::new(), _simd => {
+            let mut odd = 0;
+            for ((x, y), stepped) in xs.iter().zip(ys).zip(stepped) {
+                odd |= (x & y) | ((x | y) ^ first) | (stepped ^ step);
+            }
+            odd
+        });
         let reached = self.tool.counted(last).zip(&self.tool.place).map(|(now, start)| now.abs_diff(*start));
         let pulses = [(x, xs), (y, ys)].map(|(before, train)| before + crate::ahead::count(train));
         odd == 0 && reached.eq(pulses)

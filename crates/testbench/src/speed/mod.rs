@@ -328,7 +328,7 @@ impl SpeedWatch {
     fn direction(&self, digest: &Digest, axis: usize) -> Option<i64> {
         let Counter { port, range, shown, .. } = self.counters[axis];
         let train = &digest.trains[self.digested.pulses[axis]];
-        let pulses = dispatch!(self.level, _simd => count(train));
+        let pulses = count(train);
         let number = |bits: u64| to_signed(port.width, bits ^ port.width.sign_bit());
         let [least, greatest] = [digest.ranges[range].least, digest.ranges[range].greatest].map(number);
         match (greatest.abs_diff(shown), least.abs_diff(shown)) {

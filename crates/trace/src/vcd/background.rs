@@ -18,7 +18,8 @@ enum Destination<W> {
     /// The first bytes are written directly: short outputs start no thread.
     Direct {
         out: W,
-        written: usize,
+        /// Bytes after which a thread is started; never where there is one core.
+        left: Option<usize>,
     },
     Thread(Worker<W>),
     /// An error was reported, or nothing is left.
@@ -36,7 +37,7 @@ impl<W: Write + Send + 'static> Background<W> {
     /// Writes to `out`; a thread starts as soon as the output is large, and only where there is a second core.
     #[must_use]
     pub fn new(out: W) -> Background<W> {
-        Background { state: Destination::Direct { out, written: 0 } }
+        Background { state: Destination::Direct { out, left: Some(SMALL) } }
     }
 
     /// Waits until everything is written, and gives the output back.
@@ -53,10 +54,11 @@ impl<W: Write + Send + 'static> Background<W> {
 
     fn part(&mut self, part: &[u8]) -> io::Result<()> {
         match &mut self.state {
-            Destination::Direct { out, written } => {
+            Destination::Direct { out, left } => {
                 out.write_all(part)?;
-                *written += part.len();
-                if *written < SMALL {
+                let Some(before) = *left else { return Ok(()) };
+                *left = before.checked_sub(part.len());
+                if left.is_some() {
                     return Ok(());
                 }
                 let Destination::Direct { out, .. } = std::mem::replace(&mut self.state, Destination::Closed) else {
@@ -65,7 +67,7 @@ impl<W: Write + Send + 'static> Background<W> {
                 self.state = if thread::available_parallelism().is_ok_and(|cores| cores.get() > 1) {
                     Destination::Thread(Worker::start(out)?)
                 } else {
-                    Destination::Direct { out, written: 0 }
+                    Destination::Direct { out, left: None }
                 };
                 Ok(())
             }
