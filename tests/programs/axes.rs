@@ -293,7 +293,7 @@ fn what_has_no_such_axis_says_so() {
     let said = bad("G1 F100 X1 V1", "--method ppc --accel 500mm/s2");
     assert!(said.contains("leave --accel or these axes out"), "{said}");
     let said = bad("G1 F100 X1 A1", "--method ppc --blu-rotary 0deg");
-    assert!(said.contains("invalid angle '0deg': give degrees, such as 0.001deg"), "{said}");
+    assert!(said.contains("invalid angle '0deg': give degrees above 0, such as 0.001deg"), "{said}");
 }
 
 #[test]
