@@ -49,6 +49,8 @@ pub struct Claims {
     /// What may hold between two steps of the geometry, the place and `steps`, the number of steps that the block has
     /// taken; left out where a step does not keep it.
     pub guesses: fn(&Hardware) -> Vec<Clause>,
+    /// The same, where only the rank wants it.
+    pub ends: fn(&Hardware) -> Vec<Clause>,
     /// Registers that change what the others mean.
     pub modes: &'static [Reg],
     /// Whether a register of this name may be loaded with any word: what is proved holds whatever the loader gives it.
@@ -71,6 +73,7 @@ impl Claims {
             refined: |_| None,
             rank: steps_left,
             guesses: |_| Vec::new(),
+            ends: |_| Vec::new(),
             modes: &[],
             loaded_any: |_, _| false,
             free: &[],

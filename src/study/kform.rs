@@ -90,7 +90,7 @@ impl KForm {
 
 /// The k for which with registers as narrow as this nothing overflows and every end is reached; `None` of none.
 fn proved_ks(model: &'static Model, choices: &Options, narrower: &Narrower) -> Option<RangeInclusive<u32>> {
-    let subject = Subject::new(model, choices, narrower).ok()?;
+    let subject = Subject::new(model, choices, narrower).ok()?.of_widths();
     let safe = |kind| subject.prove(&kind).is_ok_and(|(proof, _)| proof.is_safe());
     let (least, greatest) = subject.ks();
     subject.kinds().into_par_iter().all(safe).then_some(if subject.is_whole() {

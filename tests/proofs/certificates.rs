@@ -3,16 +3,17 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-use stepwave::models::find;
+use stepwave::models::{Options, find};
 use stepwave::proof::{CheckError, Effort, Proposition, check};
 use stepwave::study::Extent;
+use stepwave::study::proof::{Narrower, search};
 
 use crate::cli::{Folder, Ran};
 
 #[test]
 fn what_is_not_claimed_is_no_failure_and_what_is_proved_has_its_certificate() {
     let folder = Folder::new();
-    let printed = folder.good("prove dda-arc --certificate arc.cert");
+    let printed = folder.good("prove dda-arc --preset full --certificate arc.cert");
     assert!(printed.contains("PROVED for all k: no register overflows\n"), "{printed}");
     // Of blocks that never end nothing is proved.
     assert!(
@@ -22,6 +23,29 @@ fn what_is_not_claimed_is_no_failure_and_what_is_proved_has_its_certificate() {
     assert!(printed.contains("not claimed: every block ends\n"), "{printed}");
     let checked = folder.good("prove check arc.cert");
     assert!(checked.contains("not claimed: every block ends\n"), "{checked}");
+    // With other remainders at first it may stall.
+    for preset in ["--any-preset", "--preset jrx=half,jry=zero", "--preset 3"] {
+        let printed = folder.good(&format!("prove dda-arc {preset}"));
+        assert!(printed.contains("not claimed: every block ends\n"), "{printed}");
+    }
+}
+
+/// What is proved of every k is also looked at: every arc of 5 bits inside a quadrant with both ends on the circle ends there.
+#[test]
+fn arcs_of_integrators_are_proved_to_end_and_do() {
+    let folder = Folder::new();
+    for preset in ["half", "zero"] {
+        let printed = folder.good(&format!("prove dda-arc --preset {preset} --certificate arc.cert"));
+        let checked = folder.good("prove check arc.cert");
+        for said in [printed, checked] {
+            assert!(said.contains("PROVED for all k: every block ends\n"), "{said}");
+        }
+        let model = find("dda-arc").unwrap();
+        let choices = Options::parse(["--preset", preset]).unwrap();
+        let survey = search(model, &model.claims.unwrap(), &choices, &Narrower::new(), 3..=5, |_| true);
+        assert_eq!(survey.found, None);
+        assert!(survey.tried.iter().all(|tried| tried.is_whole()), "{:?}", survey.tried);
+    }
 }
 
 #[test]

@@ -38,7 +38,8 @@ impl Subject {
         }
         let mut words = self.words(kind, &curves)?;
         words.extend(any.iter().map(|(register, symbol)| (format!("{register}_in"), formula::name(&symbol.name))));
-        let guesses = (self.claims.guesses)(&self.members[0].1);
+        let hardware = &self.claimed();
+        let guesses = [(self.claims.guesses)(hardware), (self.claims.ends)(hardware)].concat();
         let case = Case {
             name: kind.name.clone(),
             symbols: kind.symbols.iter().cloned().chain(any.into_iter().map(|(_, symbol)| symbol)).collect(),
@@ -47,7 +48,7 @@ impl Subject {
             words,
             free: self.claims.free.iter().map(|input| (*input).to_owned()).collect(),
             goals: kind.goals.clone(),
-            rank: (self.claims.rank)(&self.members[0].1),
+            rank: (self.claims.rank)(hardware),
             modes: self.claims.modes.iter().map(|mode| mode.name().to_owned()).collect(),
             bitwise: self.claims.bitwise.iter().map(|register| register.name().to_owned()).collect(),
             steps: (!guesses.is_empty()).then(|| "steps".to_owned()),

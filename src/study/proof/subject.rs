@@ -101,6 +101,19 @@ impl Subject {
         Subject { any_preset: true, ..self }
     }
 
+    /// The hardware that claims are about: without presets where remainders start from any value.
+    pub(super) fn claimed(&self) -> Hardware {
+        let hardware = self.members[0].1.clone();
+        let presets = if self.any_preset { Vec::new() } else { hardware.presets };
+        Hardware { presets, ..hardware }
+    }
+
+    /// The same without what says only why a block ends, which widths do not depend on.
+    #[must_use]
+    pub fn of_widths(self) -> Subject {
+        Subject { claims: Claims { rank: |_| None, ends: |_| Vec::new(), ..self.claims }, ..self }
+    }
+
     /// Remainder registers that start from any value; their load words are numbers of the geometry themselves.
     #[must_use]
     pub fn presets(&self) -> Vec<String> {

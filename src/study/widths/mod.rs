@@ -327,7 +327,7 @@ fn mark_proved(model: &'static Model, claims: &Claims, choices: &Options, k: u32
         }
         return;
     }
-    let Ok(subject) = Subject::new(model, choices, &narrower) else { return };
+    let Ok(subject) = Subject::new(model, choices, &narrower).map(Subject::of_widths) else { return };
     let safe = |kind| subject.prove(&kind).is_ok_and(|(proof, _)| proof.is_safe());
     if subject.kinds().into_par_iter().all(safe) {
         registers.iter_mut().for_each(|register| register.known = Known::Proved);
