@@ -16,7 +16,7 @@ use stepwave::testbench::{Observer, ObserverError, OverflowWatch, RangeWatch, Te
 use stepwave::trace::fst::FstHeader;
 use stepwave::trace::probe::{Probe, Selection};
 use stepwave::trace::timescale::ClockTime;
-use stepwave::trace::vcd::{Background, VcdHeader};
+use stepwave::trace::vcd::VcdHeader;
 
 #[path = "shared/time.rs"]
 mod time;
@@ -156,14 +156,6 @@ fn measure(model: &str, curve: Curve) -> Outcome<()> {
         size()
     };
     report(model, "VCD to a file", clocks, best(plain)?)?;
-    let threaded = || {
-        let out = Background::new(File::create(&path)?);
-        let mut wave = WaveWriter::new(header(&probes).write(out)?, Window::default());
-        observe(&mut wave, &blocks)?;
-        wave.finish()?.finish()?;
-        size()
-    };
-    report(model, "VCD to a file, thread", clocks, best(threaded)?)?;
 
     // The crate refuses times that go back, so each block is a wave of its own.
     let time = header(&probes).time;

@@ -19,7 +19,7 @@ use crate::trace::gtkw::{View, side_files};
 use crate::trace::probe::{Probe, Selection};
 use crate::trace::surfer;
 use crate::trace::timescale::ClockTime;
-use crate::trace::vcd::{Background, VcdBody, VcdHeader};
+use crate::trace::vcd::{VcdBody, VcdHeader};
 
 use self::limited::Limited;
 use crate::Error;
@@ -211,7 +211,7 @@ impl<'b> From<&'b Testbench> for Shown<'b> {
 
 /// Waves that are being written: the same samples of the same signals.
 pub(crate) struct Waves<'a> {
-    vcd: Option<Wave<'a, VcdBody<Background<Limited<Sink>>>>>,
+    vcd: Option<Wave<'a, VcdBody<Limited<Sink>>>>,
     fst: Option<Wave<'a, FstBody<Limited<SeekableSink>>>>,
     probes: Vec<Probe>,
     clk: bool,
@@ -269,7 +269,7 @@ impl<'a> Waves<'a> {
                 Some(Wave {
                     path,
                     writer: WaveWriter::new(
-                        header.write(Background::new(Limited::new(sink, args.large, &args.remarks.remedies)))?,
+                        header.write(Limited::new(sink, args.large, &args.remarks.remedies))?,
                         window,
                     )
                     .looking_at(curves.clone())
@@ -321,8 +321,7 @@ impl<'a> Waves<'a> {
         let (vcd, fst) = (self.vcd.take(), self.fst.take());
         let stems = stems([vcd.as_ref().map(|wave| wave.path), fst.as_ref().map(|wave| wave.path)]);
         if let Some(Wave { path, writer }) = vcd {
-            let (written, background) = finish(writer, clocks, &self.empty)?;
-            background.finish()?;
+            let (written, _) = finish(writer, clocks, &self.empty)?;
             self.viewer_files(path, stems[0], written, overflows, outputs)?;
         }
         if let Some(Wave { path, writer }) = fst {

@@ -21,11 +21,11 @@ use super::moves::{Moves, SPAN};
 use super::probe::{Probe, Role};
 use super::timescale::ClockTime;
 use super::wide::Wide;
+use background::{Background, Parts};
 use stepwave_netlist::Rows;
 use stepwave_netlist::cells::Format;
 use text::{Line, Stamps, Tail, WINDOW};
 
-pub use background::Background;
 pub(super) use text::digits;
 
 /// Bytes gathered before they go to the output.
@@ -59,9 +59,9 @@ struct Declared {
     wide: Wide<Tail>,
 }
 
-/// Takes samples, one after another.
-pub struct VcdBody<W: Write> {
-    out: W,
+/// Takes samples, one after another. Where there is a second core a long text is written by a thread.
+pub struct VcdBody<W: Write + Send + 'static> {
+    out: Background<W>,
     text: Text,
 }
 
@@ -114,7 +114,7 @@ impl VcdHeader<'_> {
     ///
     /// # Errors
     /// The output cannot be written.
-    pub fn write<W: Write>(&self, mut out: W) -> io::Result<VcdBody<W>> {
+    pub fn write<W: Write + Send + 'static>(&self, mut out: W) -> io::Result<VcdBody<W>> {
         let mut head = Writer::new(Vec::new());
         // The crate spreads these two over three lines, which some readers do not take.
         writeln!(head.writer(), "$version stepwave {} $end", env!("CARGO_PKG_VERSION"))?;
@@ -144,7 +144,7 @@ impl VcdHeader<'_> {
             ticks,
             last_clock: None,
         };
-        Ok(VcdBody { out, text })
+        Ok(VcdBody { out: Background::new(out), text })
     }
 
     /// Declares the clock and every probe in its scope.
@@ -196,7 +196,7 @@ impl VcdHeader<'_> {
     }
 }
 
-impl<W: Write> WaveBody for VcdBody<W> {
+impl<W: Write + Send + 'static> WaveBody for VcdBody<W> {
     /// The output.
     type Output = W;
 
@@ -211,14 +211,14 @@ impl<W: Write> WaveBody for VcdBody<W> {
 
     /// Ends the wave with a time that makes the last cycle visible, and gives the output back.
     fn finish(mut self) -> io::Result<W> {
-        self.out.write_all(self.text.end())?;
-        self.out.flush()?;
-        Ok(self.out)
+        self.text.end();
+        self.out.part(&mut self.text.buffer, self.text.filled)?;
+        self.out.finish()
     }
 }
 
 impl Text {
-    fn rows(&mut self, rows: &Rows, mut range: Range<usize>, out: &mut dyn Write) -> io::Result<()> {
+    fn rows(&mut self, rows: &Rows, mut range: Range<usize>, out: &mut dyn Parts) -> io::Result<()> {
         if range.is_empty() {
             return Ok(());
         }
@@ -239,7 +239,7 @@ impl Text {
 
     /// Writes the rows scanned last.
     #[inline(always)]
-    fn scanned<S: Simd>(&mut self, simd: S, rows: &Rows, range: Range<usize>, out: &mut dyn Write) -> io::Result<()> {
+    fn scanned<S: Simd>(&mut self, simd: S, rows: &Rows, range: Range<usize>, out: &mut dyn Parts) -> io::Result<()> {
         for row in range.clone() {
             if rows.is_sparse() {
                 let clock = rows.clock(row);
@@ -332,20 +332,19 @@ impl Text {
 
     /// Writes the buffer if it is full.
     #[inline]
-    fn spill(&mut self, out: &mut dyn Write) -> io::Result<()> {
+    fn spill(&mut self, out: &mut dyn Parts) -> io::Result<()> {
         if self.filled >= BUFFER {
-            out.write_all(&self.buffer[..self.filled])?;
+            out.part(&mut self.buffer, self.filled)?;
             self.filled = 0;
         }
         Ok(())
     }
 
-    /// What waits to be written, with a time at the end that makes the last cycle visible.
-    fn end(&mut self) -> &[u8] {
+    /// Appends a time that makes the last cycle visible.
+    fn end(&mut self) {
         let end = self.last_clock.map_or(0, |clock| clock + 1);
         self.rise.set(end * self.ticks);
         self.filled += self.rise.put(Tail::new("\n"), &mut self.buffer[self.filled..]);
-        &self.buffer[..self.filled]
     }
 }
 

@@ -1,7 +1,8 @@
-//! An output that is written by a thread of its own, so that the system copies one part while the next is made.
+//! An output that is written by a thread of its own, so that the system copies one part while the next is made. Parts are
+//! handed over, not copied.
 
 use std::io::{self, Write};
-use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
 use std::thread::{self, JoinHandle};
 
 /// Parts in flight: one that is written, and one that waits.
@@ -9,8 +10,17 @@ const PARTS: usize = 2;
 /// An output smaller than this, in bytes, never needs a thread.
 const SMALL: usize = 1 << 20;
 
-/// Writes to `W` in a thread, in order, byte by byte the same. An error of the thread comes out of the next call.
-pub struct Background<W: Write + Send + 'static> {
+/// Takes the parts of an output, one after another.
+pub(super) trait Parts {
+    /// Writes the first `filled` bytes of a buffer, in the place of which may then be another one of its length.
+    ///
+    /// # Errors
+    /// The output cannot be written; an error of a thread comes out of the next call.
+    fn part(&mut self, buffer: &mut Vec<u8>, filled: usize) -> io::Result<()>;
+}
+
+/// Writes to `W` in a thread, in order, byte by byte the same.
+pub(super) struct Background<W: Write + Send + 'static> {
     state: Destination<W>,
 }
 
@@ -27,7 +37,8 @@ enum Destination<W> {
 }
 
 struct Worker<W> {
-    parts: SyncSender<Vec<u8>>,
+    /// Buffers, and how many bytes of each are to be written.
+    parts: SyncSender<(Vec<u8>, usize)>,
     /// Buffers that were written and can be used again.
     empty: Receiver<Vec<u8>>,
     thread: JoinHandle<io::Result<W>>,
@@ -35,8 +46,7 @@ struct Worker<W> {
 
 impl<W: Write + Send + 'static> Background<W> {
     /// Writes to `out`; a thread starts as soon as the output is large, and only where there is a second core.
-    #[must_use]
-    pub fn new(out: W) -> Background<W> {
+    pub(super) fn new(out: W) -> Background<W> {
         Background { state: Destination::Direct { out, left: Some(SMALL) } }
     }
 
@@ -44,20 +54,22 @@ impl<W: Write + Send + 'static> Background<W> {
     ///
     /// # Errors
     /// The output cannot be written.
-    pub fn finish(mut self) -> io::Result<W> {
+    pub(super) fn finish(mut self) -> io::Result<W> {
         match std::mem::replace(&mut self.state, Destination::Closed) {
             Destination::Direct { mut out, .. } => out.flush().map(|()| out),
             Destination::Thread(worker) => worker.join(),
             Destination::Closed => Err(closed()),
         }
     }
+}
 
-    fn part(&mut self, part: &[u8]) -> io::Result<()> {
+impl<W: Write + Send + 'static> Parts for Background<W> {
+    fn part(&mut self, buffer: &mut Vec<u8>, filled: usize) -> io::Result<()> {
         match &mut self.state {
             Destination::Direct { out, left } => {
-                out.write_all(part)?;
+                out.write_all(&buffer[..filled])?;
                 let Some(before) = *left else { return Ok(()) };
-                *left = before.checked_sub(part.len());
+                *left = before.checked_sub(filled);
                 if left.is_some() {
                     return Ok(());
                 }
@@ -72,7 +84,7 @@ impl<W: Write + Send + 'static> Background<W> {
                 Ok(())
             }
             Destination::Thread(worker) => {
-                if worker.send(part) {
+                if worker.send(buffer, filled) {
                     return Ok(());
                 }
                 // The thread has ended, which it does only with an error.
@@ -92,13 +104,13 @@ fn closed() -> io::Error {
 
 impl<W: Write + Send + 'static> Worker<W> {
     fn start(mut out: W) -> io::Result<Worker<W>> {
-        let (parts, incoming) = sync_channel::<Vec<u8>>(PARTS);
+        let (parts, incoming) = sync_channel::<(Vec<u8>, usize)>(PARTS);
         let (done, empty) = channel();
         let thread = thread::Builder::new().name("wave writer".to_owned()).spawn(move || {
-            for part in incoming {
-                out.write_all(&part)?;
+            for (buffer, filled) in incoming {
+                out.write_all(&buffer[..filled])?;
                 // Nobody takes it back any more when the sender has ended.
-                let _ = done.send(part);
+                let _ = done.send(buffer);
             }
             out.flush()?;
             Ok(out)
@@ -107,33 +119,14 @@ impl<W: Write + Send + 'static> Worker<W> {
     }
 
     /// False if the thread has ended.
-    fn send(&self, part: &[u8]) -> bool {
-        let mut buffer = match self.empty.try_recv() {
-            Ok(buffer) => buffer,
-            Err(TryRecvError::Empty | TryRecvError::Disconnected) => Vec::with_capacity(part.len()),
-        };
-        buffer.clear();
-        buffer.extend_from_slice(part);
-        self.parts.send(buffer).is_ok()
+    fn send(&self, buffer: &mut Vec<u8>, filled: usize) -> bool {
+        let next = self.empty.try_recv().unwrap_or_else(|_| vec![0; buffer.len()]);
+        self.parts.send((std::mem::replace(buffer, next), filled)).is_ok()
     }
 
     fn join(self) -> io::Result<W> {
         drop(self.parts);
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the thread that writes the wave has panicked")))
-    }
-}
-
-impl<W: Write + Send + 'static> Write for Background<W> {
-    fn write(&mut self, part: &[u8]) -> io::Result<usize> {
-        self.part(part).map(|()| part.len())
-    }
-
-    /// What was handed over is written in order; [`Background::finish`] waits for it.
-    fn flush(&mut self) -> io::Result<()> {
-        match &mut self.state {
-            Destination::Direct { out, .. } => out.flush(),
-            Destination::Thread(_) | Destination::Closed => Ok(()),
-        }
     }
 }
 
@@ -171,11 +164,20 @@ mod tests {
         (0..400).map(|index: u32| index.to_string().repeat(4000).into_bytes())
     }
 
+    /// Writes a part from a buffer that is longer.
+    fn write<W: Write + Send>(background: &mut Background<W>, part: &[u8]) -> io::Result<()> {
+        let mut buffer = [part, b"more"].concat();
+        let length = buffer.len();
+        let written = background.part(&mut buffer, part.len());
+        assert_eq!(buffer.len(), length);
+        written
+    }
+
     #[test]
     fn a_large_output_arrives_whole_and_in_order() {
         let mut background = Background::new(Vec::new());
         for part in parts() {
-            background.write_all(&part).unwrap();
+            write(&mut background, &part).unwrap();
         }
         assert!(background.finish().unwrap() == parts().flatten().collect::<Vec<u8>>());
     }
@@ -184,7 +186,7 @@ mod tests {
     fn a_full_disk_is_reported_in_its_own_words_wherever_it_happens() {
         for room in [0, 100_000, SMALL + 50_000, 3_000_000] {
             let mut background = Background::new(Disk(Vec::new(), room));
-            let written = parts().try_for_each(|part| background.write_all(&part));
+            let written = parts().try_for_each(|part| write(&mut background, &part));
             let error = written.and_then(|()| background.finish().map(drop)).unwrap_err();
             assert_eq!(error.to_string(), "cannot write w.vcd: no space", "{room}");
         }
@@ -194,7 +196,7 @@ mod tests {
     fn an_error_at_the_very_end_is_reported_by_finish() {
         let all = parts().map(|part| part.len()).sum::<usize>();
         let mut background = Background::new(Disk(Vec::new(), all - 1));
-        let written = parts().try_for_each(|part| background.write_all(&part));
+        let written = parts().try_for_each(|part| write(&mut background, &part));
         let error = written.and_then(|()| background.finish().map(drop)).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::StorageFull);
     }
@@ -202,7 +204,7 @@ mod tests {
     #[test]
     fn what_is_dropped_unfinished_neither_waits_for_ever_nor_panics() {
         let mut background = Background::new(Disk(Vec::new(), 3_000_000));
-        let _ = parts().try_for_each(|part| background.write_all(&part));
+        let _ = parts().try_for_each(|part| write(&mut background, &part));
         drop(background);
     }
 }
