@@ -317,9 +317,11 @@ impl Report {
                 )];
             }
             Ending::Stalled { clocks } => {
-                let by_curve = matches!(self.model.name, "dda-arc" | "dda-conic" | "dda-helix");
-                let remedy = if by_curve && self.hardware.presets.iter().any(|preset| *preset != Preset::Half) {
-                    "; give --preset half, with which curves whose ends lie on them exactly were never seen to"
+                let is_other = self.hardware.presets.iter().any(|preset| *preset != Preset::Half);
+                let remedy = if is_other && self.model.name == "dda-arc" {
+                    "; give --preset half, with which no arc inside a quadrant stalls whose ends lie on its circle"
+                } else if is_other && matches!(self.model.name, "dda-conic" | "dda-helix") {
+                    "; give --preset half, with which curves whose ends lie on them exactly were never seen to stall"
                 } else if !self.events.is_empty() {
                     "; the operator has held it, or not started the next block: give --event CLOCK:resume or CLOCK:start"
                 } else {
