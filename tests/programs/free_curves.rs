@@ -272,3 +272,17 @@ fn a_curve_beyond_the_registers_has_chords() {
         blocks[1]
     );
 }
+
+/// The second and the fourth curve end where they begin, and every place of them is rounded to there.
+#[test]
+fn a_closed_curve_without_a_pulse_is_left_out_and_no_failure() {
+    let folder = Folder::new();
+    let text = "G91 G21 F600\nG5 X4 Y2 I2 J0 P0 Q-2\nG5.1 X0 Y0 I0 J-1\nG5.1 X0 Y0 I0 J1\nG5 X0 Y0 I1 J0 P0 Q1\nM2\n";
+    let report = report(&folder, text, "--method dda --integers pulses");
+    assert_eq!(report["left_out"]["moves"], 2);
+    // The middle of the fourth, three eighths along both axes.
+    assert!((number(&report["left_out"]["blu"]) - 0.375 * 2_f64.sqrt()).abs() < 1e-9, "{report}");
+    let blocks = report["blocks"].as_array().unwrap();
+    assert_eq!(blocks.iter().map(|block| block["line"].as_u64().unwrap()).collect::<Vec<_>>(), [2, 4]);
+    assert_eq!(blocks[1]["pulses"]["y"], 2);
+}

@@ -39,6 +39,32 @@ fn a_curve_smaller_than_a_pulse_is_left_out_and_a_closed_one_is_not() {
     assert_eq!(closed.iter().map(points).collect::<Vec<_>>(), [[[0, 0], [90, 0], [0, 90], [0, 0]]]);
 }
 
+/// Closed curves with control points next to their start: a half rounds upwards, so a bow of half a BLU takes pulses on one side only.
+#[test]
+fn a_closed_curve_that_never_rounds_to_another_place_is_left_out() {
+    let start = [3.2, -5.1];
+    let place = |[x, y]: [f64; 2]| [start[0] + x, start[1] + y];
+    let of = |controls: &[[f64; 2]]| match *controls {
+        [only] => Controls::One(place(only)),
+        [first, second] => Controls::Two([first, second].map(place)),
+        _ => unreachable!(),
+    };
+    let left_out = |controls: &[[f64; 2]]| {
+        let (mut rounder, mut out) = (Rounder::new(None), Vec::new());
+        let at = [start[0], start[1], 0.0];
+        rounder.blocks(&moved([0.0; 3], at, SegmentShape::Line), &mut out).unwrap();
+        let apart = rounder.blocks(&moved(at, at, SegmentShape::Bezier(of(controls))), &mut out).unwrap();
+        (out.len() == 1).then_some(apart)
+    };
+    // From (3, -5) to the farthest place of the bow of (0.2, -0.1): its middle, half as far as the control point.
+    let goes = left_out(&[[0.0, -1.0]]).unwrap();
+    assert!((goes - f64::hypot(0.2, 0.6)).abs() < 1e-9, "{goes}");
+    assert!(left_out(&[[-1.0, -1.0]]).is_some() && left_out(&[[0.0, 1.0], [0.0, -1.0]]).is_some());
+    assert!(left_out(&[[1.0, 0.0], [0.0, 1.0]]).is_some());
+    assert!(left_out(&[[0.0, 1.0]]).is_none() && left_out(&[[-2.0, 0.0]]).is_none());
+    assert!(left_out(&[[1.0, 0.0], [1.0, 0.0]]).is_none() && left_out(&[[0.0, 2.0], [0.0, -2.0]]).is_none());
+}
+
 #[test]
 fn chords_of_a_curve_end_on_it_and_are_as_near_as_they_are_to_be() {
     let of = cubic([0.0; 3], [500.0, 100.0, 0.0], [[700.0, 900.0], [-200.0, -300.0]]);
