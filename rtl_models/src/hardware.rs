@@ -193,11 +193,14 @@ impl Hardware {
     }
 
     /// What to give as `--width` for a register to have `bits`. Registers of one scale are widened together, to the
-    /// `all` bits that the widest of them needs, where one alone would no longer fit the others.
+    /// `all` bits that the widest of them needs, where one alone would no longer fit the others; and the buffer of a register,
+    /// `…_next`, with it.
     #[must_use]
     pub fn widening(&self, register: &str, bits: u32, all: u32) -> String {
         let leader = self.leaders.iter().find(|(follower, _)| *follower == register);
         let register = leader.map_or(register, |(_, leader)| leader);
+        let buffered = register.strip_suffix("_next").filter(|own| self.widths.contains_key(own));
+        let register = buffered.unwrap_or(register);
         let axis = (0..AXES.len()).find(|&axis| JV.of(axis).name() == register);
         let room = axis.map(|axis| self.bits(JR.of(axis)));
         let fits =

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{good, report, run_refused};
+use super::{Folder, good, report, run_refused};
 
 #[test]
 fn a_feed_gives_the_travel_of_a_period_by_the_system_and_the_blu() {
@@ -88,5 +88,21 @@ fn refusals_of_a_feed_or_a_clock_name_what_was_given() {
     run_refused("sampled-line --to 9,5 --feed 1e9", &["make 37 bits", "give a smaller --step, or a lower --feed"]);
     for clock in ["nan", "inf", "1e300", "0", "1e15"] {
         run_refused(&format!("sampled-line --to 9,5 --clock-hz {clock}"), &["is not possible", "from 1e-3 to 1e14 Hz"]);
+    }
+}
+
+/// The buffer in front of an integrand overflows first, and is as wide as it.
+#[test]
+fn an_integrand_that_overflows_in_its_buffer_is_widened_by_its_own_name() {
+    for (curve, first, enough) in [
+        ("sampled-arc --from 0,31 --to 31,0 --cw", "--width jvx=3", "--width jvx=4"),
+        ("sampled-line --to 100,50", "--width 3", "--width 4"),
+        ("sampled-spline --nurbs 0,0,1,100,0,1,0,100,1,100,100,1", "--width jvx=2", "--width jvx=4"),
+    ] {
+        let ran = Folder::new().run(&format!("run {curve} {first}"));
+        let said = ran.err;
+        assert_eq!(ran.code, 1, "{said}");
+        assert!(said.contains("jvx_next") && said.contains(&format!("give {enough}, or go on")), "{said}");
+        good(&format!("run {curve} {enough}"));
     }
 }
