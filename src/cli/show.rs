@@ -19,7 +19,7 @@ const FIRST: &str = "trace-from";
 const LAST: &str = "trace-to";
 const VALUES: &str = "values";
 
-/// Options of `show` that may be written as options of `run`: these, their own names, and what stands for the value.
+/// Options of `show` that may be written as options of `run`: these, their own names, and the placeholders of their values.
 const SHARED: [(&str, &str, &str); 3] = [("from", FIRST, "N"), ("to", LAST, "N"), ("radix", VALUES, "FORM")];
 
 /// A usage error of `show` in the words of its user: an option has both of its names.

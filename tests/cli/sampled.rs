@@ -106,3 +106,18 @@ fn an_integrand_that_overflows_in_its_buffer_is_widened_by_its_own_name() {
         good(&format!("run {curve} {enough}"));
     }
 }
+
+/// Alone a short arc has a shorter step than in the hardware of a box: one of the others shows what one bit less does.
+#[test]
+fn each_width_of_a_box_has_a_run_that_one_bit_less_stops() {
+    for model in ["sampled-arc", "sampled-line"] {
+        let folder = Folder::new();
+        let printed = folder.good(&format!("widths {model} --box 5"));
+        let runs: Vec<&str> =
+            printed.lines().filter_map(|line| line.split_once("  stepwave ").map(|of| of.1)).collect();
+        assert_eq!(runs.len(), 6, "{printed}");
+        for run in runs {
+            assert_ne!(folder.run(run).code, 0, "{run}");
+        }
+    }
+}

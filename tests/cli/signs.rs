@@ -1,4 +1,4 @@
-//! Values below zero: the option says what is wrong, never that there is no such option.
+//! Values below zero reach their option, whose message names the value and the limit.
 
 use super::{Folder, good, refused};
 

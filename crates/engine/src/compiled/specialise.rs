@@ -183,11 +183,14 @@ impl Specialised {
     /// Counters that go down by at most one at a time, with each comparison for a number up to [`END`].
     fn ends(&self, netlist: &Netlist, registers: &[(Net, Net)]) -> Vec<(Net, Net)> {
         let counts_down = |&(net, next): &(Net, Net)| {
-            let within = |Phase { logic, fixed }: &Phase| {
-                let directions = moves(&logic.netlist, logic.net(net), logic.net(next));
-                !fixed.contains_key(&net) && directions.is_some_and(|[_, up]| !up)
+            let directions = |Phase { logic, fixed }: &Phase| {
+                let own = moves(&logic.netlist, logic.net(net), logic.net(next))?;
+                (!fixed.contains_key(&net)).then_some(own)
             };
-            netlist.width(net).get() > SMALL_COUNTER && self.phases.iter().all(within)
+            let each: Option<Vec<[bool; 2]>> = self.phases.iter().map(directions).collect();
+            // One that rests would stay near its end for ever.
+            let each = each.filter(|each| each.iter().any(|[down, _]| *down) && each.iter().all(|[_, up]| !up));
+            netlist.width(net).get() > SMALL_COUNTER && each.is_some()
         };
         let counters: HashSet<Net> = registers.iter().filter(|register| counts_down(register)).map(|of| of.0).collect();
         let end = |net: Net| matches!(netlist.cell(net).op, Op::Const(number) if number <= END);
