@@ -51,10 +51,12 @@ impl Promise {
 
 impl fmt::Display for Promise {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.ends == 0.0 {
-            return write!(f, "{} BLU", self.method);
+        // Never less than is promised.
+        let upwards = |bound: f64| (1000.0 * bound).ceil() / 1000.0;
+        let (bound, method, ends) = (self.bound(), upwards(self.method), self.ends);
+        if ends == 0.0 {
+            return write!(f, "{method} BLU");
         }
-        let (bound, method, ends) = (self.bound(), self.method, self.ends);
         write!(f, "{bound:.3} BLU ({method} and the {ends:.3} that an end is off the curve)")
     }
 }
