@@ -84,3 +84,60 @@ fn selects_that_come_to_the_same_in_a_branch_keep_their_own_arms() {
         }
     }
 }
+
+/// A ring of registers, each the sum of the one before and one far off, every fifth of them chosen between two such sums
+/// with work in them, where a bit of a counter decides; every ninth stays as it is for 128 clocks.
+fn ring(count: u32) -> (String, Vec<Net>) {
+    let mut lines = Lines::default();
+    // Four cells of the counter come first; then the registers, whose next values come after all of them.
+    let first = 5;
+    let nexts = |place: u32| first + count + 3 * place;
+    lines.add(16, "register reset 0x1 next %2");
+    lines.add(16, "const 0x1");
+    lines.add(16, "add %0 %1");
+    lines.add(1, "slice %0 4");
+    lines.add(1, "slice %0 7");
+    // The work of every fifth comes after the three cells of each.
+    let mut work_at = nexts(count);
+    let mut work = Vec::new();
+    for place in 0..count {
+        let next = match place {
+            _ if place % 5 == 0 => {
+                work.push(place);
+                work_at += 2 * 18 + 1;
+                work_at - 1
+            }
+            _ if place % 9 == 0 => nexts(place) + 1,
+            _ => nexts(place),
+        };
+        lines.add(16, &format!("register reset 0x{:x} next %{next}", place * 977 & 0xffff | 1));
+    }
+    for place in 0..count {
+        let [before, far] = [count - 1, 37].map(|step| first + (place + step) % count);
+        let sum = lines.add(16, &format!("add %{before} %{far}"));
+        let held = lines.add(16, &format!("mux %4 %{sum} %{}", first + place));
+        lines.add(16, &format!("xor %{held} %{before}"));
+    }
+    for place in work {
+        let [one, other] = [0, 2].map(|cell| lines.work(nexts(place) + cell, place + cell + 1));
+        lines.add(16, &format!("mux %3 %{one} %{other}"));
+    }
+    (format!("netlist ring\n{}", lines.text), (first..first + count).map(Net).collect())
+}
+
+#[test]
+fn registers_that_are_far_apart_are_found_again() {
+    for count in [7, 18, 50, 200] {
+        let (netlist, nets) = ring(count);
+        let design = elaborate(text::parse(&netlist).unwrap()).unwrap();
+        let watch = Watch { columns: nets, stops: Vec::new() };
+        let columns = watch.columns.len();
+        let expected = samples(&mut *EngineKind::Gates.build(&design, &watch), columns);
+        assert!(expected.iter().all(|column| column.iter().any(|value| *value != column[0])));
+        // Code made in one pass runs to the end, or for few clocks.
+        for (warm_up, worth) in [(300, 0), (300, 8), (300, 1000), (2, 8), (100, 8)] {
+            let branching = samples(&mut *branching_after(&design, &watch, warm_up, worth), columns);
+            assert!(branching == expected, "{count} registers, warm-up {warm_up}, worth {worth}");
+        }
+    }
+}

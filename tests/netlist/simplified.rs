@@ -246,3 +246,79 @@ fn concatenations_of_parts_that_meet_are_repeated_or_are_selected_together() {
         }
     }
 }
+
+#[test]
+fn comparisons_with_constants_through_other_cells() {
+    let bits = 3;
+    for constant in values(bits) {
+        for other in values(bits) {
+            let known = [format!("{bits} const {constant:#x}"), format!("{bits} const {other:#x}")];
+            let through = |width: u32, op: &str| {
+                for value in values(width) {
+                    let cells = [format!("{width} {op}"), format!("{width} const {value:#x}")];
+                    for equal in ["1 equal %4 %5", "1 equal %5 %4"] {
+                        assert_same(bits, &[&known[..], &cells, &[equal.to_owned()]].concat());
+                    }
+                }
+            };
+            through(3, "xor %0 %2");
+            through(3, "xor %2 %0");
+            through(3, "mux %1 %2 %3");
+            through(3, "mux %1 %0 %2");
+            through(6, "concat %2 %0");
+            through(6, "concat %0 %2");
+            if other == 0 {
+                through(3, "and %0 %2");
+                through(5, "sign-extend %0");
+                through(5, "zero-extend %0");
+                through(3, "not %0");
+                through(4, "concat %1 %0");
+                through(4, "concat %0 %1");
+            }
+        }
+    }
+    // Bit by bit, of all zeros, all ones and all that is between.
+    for value in values(5) {
+        let cells = lines([
+            "1 slice %0 2".to_owned(),
+            "1 slice %0 1".to_owned(),
+            "2 concat %1 %2".to_owned(),
+            "3 concat %3 %4".to_owned(),
+            "1 not %3".to_owned(),
+            "4 concat %6 %5".to_owned(),
+            "5 concat %2 %7".to_owned(),
+            format!("5 const {value:#x}"),
+            "1 equal %8 %9".to_owned(),
+        ]);
+        assert_same(bits, &cells);
+        assert_same(bits, &[&cells[..], &["1 not %10".to_owned()]].concat());
+    }
+}
+
+#[test]
+fn bits_that_are_cleared_twice_or_by_a_shift_there_and_back() {
+    for bits in 2..=4u32 {
+        for (one, other) in values(bits).flat_map(|one| values(bits).map(move |other| (one, other))) {
+            let masks = [format!("{bits} const {one:#x}"), format!("{bits} const {other:#x}")];
+            for (first, second) in [("%0 %2", "%4 %3"), ("%2 %0", "%3 %4"), ("%2 %0", "%4 %3")] {
+                let and = [format!("{bits} and {first}"), format!("{bits} and {second}")];
+                assert_same(bits, &[&masks[..], &and].concat());
+            }
+            for (low, cut) in (0..bits).flat_map(|low| (1..=bits - low).map(move |cut| (low, cut))) {
+                let part = [format!("{bits} and %0 %2"), format!("{cut} slice %4 {low}")];
+                assert_same(bits, &[&masks[..], &part].concat());
+            }
+        }
+        for (low, cut) in (0..bits).flat_map(|low| (1..=bits - low).map(move |cut| (low, cut))) {
+            for zeros in 1..=4 {
+                let back = [
+                    format!("{cut} slice %0 {low}"),
+                    format!("{zeros} const 0x0"),
+                    format!("{} concat %2 %3", cut + zeros),
+                ];
+                assert_same(bits, &back);
+                assert_same(bits, &[&back[..], &[format!("{} concat %4 %0", cut + zeros + bits)]].concat());
+            }
+        }
+    }
+}

@@ -5,7 +5,7 @@
 //! nets and scopes fit and are unique in their scope. All mistakes are reported at once; only where a name belongs to
 //! nothing are such names reported alone.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::sync::Arc;
 
 use crate::bits::Width;
@@ -181,7 +181,7 @@ fn check_names(netlist: &Netlist, report: &mut impl FnMut(Code, Place, String)) 
         }
     }
     // The scope or net of each name.
-    let mut used: HashMap<(Option<ScopeId>, &str), String> = HashMap::new();
+    let mut used: HashMap<(Option<ScopeId>, &str), String> = HashMap::default();
     for (scope, name, bearer) in scopes.chain(nets).chain(memories) {
         let place = Place::Component(name.to_owned());
         if !is_identifier(name) {

@@ -10,7 +10,9 @@
 //! the flag of a guard and that of a stop: nets that are used outside of the branch that they are evaluated in, and values of
 //! registers that wait for the end of the clock.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::BTreeMap;
+
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, Type, Value, types};
@@ -24,6 +26,10 @@ use stepwave_netlist::passes::Simplified;
 
 /// Steps after which a value is loaded again rather than kept.
 const NEAR: usize = 16;
+/// Words that the register of the state follows: from those that a byte of an address does not reach, to where it would
+/// come back soon.
+const NEXT: usize = 16;
+const FURTHER: usize = 48;
 
 struct Branching<'a, 'c> {
     generator: Generator<'a, 'c>,
@@ -32,6 +38,9 @@ struct Branching<'a, 'c> {
     state: Value,
     /// The state is in a register of its own: code that is made in one pass would load it for every access.
     is_pinned: bool,
+    /// The word that this register points to, and the branches around this place.
+    at: usize,
+    depth: usize,
     /// Word that a failed guard sets; the next one says that a stop net is 1.
     flag: usize,
     /// Values that dominate this place, and their nets in the order in which they came.
@@ -93,10 +102,12 @@ pub(super) fn generate(plan: &Plan<'_>, resting: &[usize], f: &mut FunctionBuild
         regions: &regions,
         state,
         is_pinned: !lasting,
+        at: 0,
+        depth: 0,
         flag,
-        scoped: HashMap::new(),
+        scoped: HashMap::default(),
         log: Vec::new(),
-        near: HashMap::new(),
+        near: HashMap::default(),
         step: 0,
         words,
         late: BTreeMap::new(),
@@ -120,10 +131,12 @@ impl Branching<'_, '_> {
         for (index, word) in self.late.clone() {
             self.copy(index, word);
         }
+        self.point_to(0);
         let before = self.generator.f.ins().iconst(types::I64, -1);
         self.generator.f.ins().jump(header, &[before.into()]);
         self.enter(header);
         self.steps(first);
+        self.point_to(0);
         let now = self.generator.f.ins().iadd_imm(done, 1);
         self.generator.f.ins().brif(now, record, &[], edge, &[]);
 
@@ -131,6 +144,7 @@ impl Branching<'_, '_> {
         let leaves = self.record(plan, observed, [rows, done]);
         let ended = self.generator.f.ins().icmp(IntCC::Equal, now, clocks);
         let leaves = leaves.map_or(ended, |stop| self.generator.f.ins().bor(ended, stop));
+        self.point_to(0);
         self.generator.f.ins().brif(leaves, exit, &[now.into()], edge, &[]);
 
         self.enter(edge);
@@ -138,11 +152,13 @@ impl Branching<'_, '_> {
         for (index, word) in self.late.clone() {
             self.copy(word, index);
         }
+        self.point_to(0);
         let again: [BlockArg; 1] = [now.into()];
         if plan.phases.iter().all(|phase| phase.fixed.is_empty()) {
             self.generator.f.ins().jump(header, &again);
         } else {
             let failed = self.load(types::I8, self.flag);
+            self.point_to(0);
             self.generator.f.ins().brif(failed, exit, &again, header, &again);
         }
         self.generator.f.switch_to_block(exit);
@@ -174,13 +190,13 @@ impl Branching<'_, '_> {
         let mut scopes = Scopes {
             netlist: self.netlist,
             regions: self.regions,
-            of: HashMap::new(),
-            chosen: HashSet::new(),
+            of: HashMap::default(),
+            chosen: HashSet::default(),
             open: vec![true],
-            far: HashSet::new(),
-            late: HashSet::new(),
-            uses: HashMap::new(),
-            passed: HashMap::new(),
+            far: HashSet::default(),
+            late: HashSet::default(),
+            uses: HashMap::default(),
+            passed: HashMap::default(),
         };
         scopes.walk(parts[0], 0);
         observed.iter().for_each(|&net| scopes.used(net));
@@ -205,6 +221,7 @@ impl Branching<'_, '_> {
     fn enter(&mut self, block: Block) {
         self.generator.f.switch_to_block(block);
         self.near.clear();
+        self.generator.sums.clear();
     }
 
     fn steps(&mut self, steps: &[Step]) {
@@ -266,7 +283,9 @@ impl Branching<'_, '_> {
             }
             self.enter(block);
             let kept = self.log.len();
+            self.depth += 1;
             self.steps(steps);
+            self.depth -= 1;
             self.generator.f.ins().jump(after, &[]);
             for net in self.log.drain(kept..) {
                 self.scoped.remove(&net);
@@ -282,9 +301,11 @@ impl Branching<'_, '_> {
         self.generator.f.set_cold_block(other);
         self.generator.f.ins().brif(differs, other, &[], after, &[]);
         self.generator.f.switch_to_block(other);
+        self.depth += 1;
         self.store(index, value);
         let one = self.generator.f.ins().iconst(types::I8, 1);
         self.store(self.flag, one);
+        self.depth -= 1;
         self.generator.f.ins().jump(after, &[]);
         self.enter(after);
     }
@@ -295,18 +316,37 @@ impl Branching<'_, '_> {
         self.store(to, value);
     }
 
-    fn base(&mut self) -> Value {
-        if self.is_pinned { self.generator.f.ins().get_pinned_reg(types::I64) } else { self.state }
+    /// Where a word of the state is: an address and bytes from it. The register of the state follows the words, which lie
+    /// in the order of their use, so that a byte holds most distances: shorter code of a machine that no cache holds.
+    fn place_of(&mut self, word: usize) -> (Value, i32) {
+        if !self.is_pinned {
+            return (self.state, offset(word));
+        }
+        if self.depth == 0 && (NEXT..FURTHER).contains(&word.abs_diff(self.at)) {
+            self.point_to(word);
+        }
+        (self.generator.f.ins().get_pinned_reg(types::I64), offset(word) - offset(self.at))
+    }
+
+    /// The register of the state points to a word.
+    fn point_to(&mut self, word: usize) {
+        if self.is_pinned && word != self.at {
+            let pinned = self.generator.f.ins().get_pinned_reg(types::I64);
+            let bytes = offset(word) - offset(self.at);
+            let pinned = self.generator.f.ins().iadd_imm(pinned, i64::from(bytes));
+            self.generator.f.ins().set_pinned_reg(pinned);
+            self.at = word;
+        }
     }
 
     fn load(&mut self, kind: Type, word: usize) -> Value {
-        let state = self.base();
-        self.generator.f.ins().load(kind, trusted(), state, offset(word))
+        let (base, bytes) = self.place_of(word);
+        self.generator.f.ins().load(kind, trusted(), base, bytes)
     }
 
     fn store(&mut self, word: usize, value: Value) {
-        let state = self.base();
-        self.generator.f.ins().store(trusted(), value, state, offset(word));
+        let (base, bytes) = self.place_of(word);
+        self.generator.f.ins().store(trusted(), value, base, bytes);
     }
 
     /// The value of a net in this place.

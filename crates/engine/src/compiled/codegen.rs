@@ -14,7 +14,7 @@
 //! It ends at one of two points: *after a recorded sample* (a stop net, or the budget), or *after an edge* whose sample
 //! is not recorded yet (a guard failed), which the last word of the state says.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, MemFlags, Type, Value, types};
@@ -61,7 +61,7 @@ pub(super) struct Plan<'a> {
 pub(super) struct Branches {
     /// Work in the two branches of a select, in cells, from which on one of them is taken, rather than both evaluated.
     pub(super) worth: u32,
-    /// The code will run for long, and is not too large to be made with care.
+    /// The code will run for long: it is made with care.
     pub(super) lasting: bool,
 }
 
@@ -125,6 +125,8 @@ pub(super) struct Generator<'a, 'c> {
     pub(super) narrow: bool,
     /// Words that bits were taken from, which are 0 or 1 too.
     pub(super) words: HashMap<Value, Value>,
+    /// Sums of this block, in narrow code: an adder and its carry have one.
+    pub(super) sums: HashMap<[Value; 2], Value>,
 }
 
 /// Type of the value of a net.
@@ -235,8 +237,8 @@ impl<'a, 'c> Generator<'a, 'c> {
         [state, memories]: [Value; 2],
     ) -> Generator<'a, 'c> {
         let (inputs, busy) = (Vec::new(), Vec::new());
-        let (exact, words) = (HashSet::new(), HashMap::new());
-        Generator { plan, f, state, memories, inputs, busy, exact, narrow: true, words }
+        let (exact, words, sums) = (HashSet::default(), HashMap::default(), HashMap::default());
+        Generator { plan, f, state, memories, inputs, busy, exact, narrow: true, words, sums }
     }
 
     /// A word of the state.
@@ -305,7 +307,7 @@ impl<'a, 'c> Generator<'a, 'c> {
                 netlist.cell(net).op.visit_inputs(|input| pending.push(input));
             }
         }
-        let mut values: HashMap<Net, Value> = HashMap::new();
+        let mut values: HashMap<Net, Value> = HashMap::default();
         for (index, &(net, _)) in self.plan.registers.iter().enumerate() {
             if matches!(netlist.cell(logic.net(net)).op, Op::Register { .. }) {
                 values.insert(logic.net(net), sample[index]);

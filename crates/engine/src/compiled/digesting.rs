@@ -16,7 +16,9 @@
 //! direction has them at the ends, one that rests or goes through known values has none, and a value that a register
 //! has held since the phase before is there already.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::BTreeSet;
+
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, BlockArg, InstBuilder, Value, types};
@@ -98,7 +100,7 @@ pub(super) fn generate(plan: &Plan<'_>, wanted: &Wanted, f: &mut FunctionBuilder
     let layout = Layout { span, rounds, words, ..Layout::default() };
     let repeats = |&times: &usize| rounds.is_multiple_of(times) && times * phases <= REPEATED;
     let repetitions = (1..=REPEATED).rev().find(repeats).unwrap_or(1);
-    let (lanes, put) = (HashMap::new(), HashSet::new());
+    let (lanes, put) = (HashMap::default(), HashSet::default());
     let mut digesting =
         Digesting { generator, plan, wanted, layout, abandoned, lanes, put, repetitions, repetition: 0 };
     digesting.place();

@@ -18,10 +18,10 @@ const LARGE: usize = 250;
 pub(super) const WORTH: u32 = 8;
 /// Clocks in the word engine before anything is compiled.
 const WARM_UP: u64 = 64;
+/// Clocks after which registers that have not changed are taken for constants; four times as many after each that was wrong.
+const LOOK_AT: u64 = 4 * 1024;
 /// Loops that take registers for constants, at most.
 const TRIES: u32 = 4;
-/// Cells of a netlist up to which code that runs for long is worth being made with care.
-const LASTING: usize = 20_000;
 /// Numbers of clocks run at a time while registers are watched.
 const STRIDES: [u64; 5] = [1, 2, 3, 5, 7];
 
@@ -37,13 +37,18 @@ pub(super) struct Large {
     /// Nothing more is to be found out.
     settled: bool,
     worth: u32,
-    /// What is compiled now will run for long, and is not too large for good code.
+    /// What is compiled now will run for long: it is made with care.
     lasting: bool,
     /// Times that native code ran while registers were watched.
     strides: usize,
 }
 
 impl Large {
+    /// What is compiled now is made with care; other code runs already.
+    pub(super) fn is_lasting(&self) -> bool {
+        self.lasting
+    }
+
     /// How a loop is compiled now.
     pub(super) fn branches(&self) -> Branches {
         Branches { worth: self.worth, lasting: self.lasting }
@@ -71,7 +76,7 @@ impl Compiled {
         };
         let unread = |register: &(Net, Net)| readers[register.0.index()] <= keeps(register);
         let changes = self.registers.iter().map(unread).collect();
-        let look_at = self.warm_up;
+        let look_at = self.warm_up.min(LOOK_AT);
         self.warm_up = look_at.min(WARM_UP);
         self.history = History::none();
         self.large = Some(Large {
@@ -133,17 +138,12 @@ impl Compiled {
     /// Enough clocks were looked at: compiles a loop that takes registers for constants, or the last one, without.
     fn specialise(&mut self, stride: usize) {
         let constants = self.constants();
-        let is_small = self.design.netlist().cells.len() <= LASTING;
         let Some(large) = &mut self.large else { return };
         large.tries += 1;
         let constant = large.tries <= TRIES && !constants.is_empty();
         large.left = if constant { large.look_at << (2 * large.tries) } else { 0 };
-        (large.settled, large.lasting) = (!constant, is_small);
-        if constant {
-            self.compile(stride, Some(constants));
-        } else if is_small {
-            self.compile(stride, None);
-        }
+        (large.settled, large.lasting) = (!constant, true);
+        self.compile(stride, constant.then_some(constants));
     }
 
     /// The loop for the present sample, one with constants before one without.

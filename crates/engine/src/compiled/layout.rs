@@ -1,6 +1,8 @@
 //! Where the code of a digest puts what is wanted, and what of it follows from the logic alone.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::BTreeSet;
+
+use rustc_hash::FxHashSet as HashSet;
 
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Net, Netlist, Op};

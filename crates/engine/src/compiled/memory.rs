@@ -1,6 +1,6 @@
 //! Native code of memories: loads where cells read, stores at the edge.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{InstBuilder, Value, types};
@@ -11,11 +11,14 @@ use stepwave_netlist::cells::{Net, Netlist, WritePort};
 
 impl Generator<'_, '_> {
     /// The word at an address. Outside it is the word after the last, which is always 0.
-    pub(super) fn read(&mut self, memory: usize, changes: bool, address: Value, width: Width) -> Value {
+    pub(super) fn read(&mut self, memory: usize, changes: bool, address: (Value, Width), width: Width) -> Value {
         let place = self.plan.memories[memory];
-        let address = self.wide(address);
-        let last = self.f.ins().iconst(types::I64, place.size.cast_signed());
-        let inside = self.f.ins().umin(address, last);
+        let (address, bits) = address;
+        let mut inside = self.wide(address);
+        if bits.mask() >= place.size {
+            let last = self.f.ins().iconst(types::I64, place.size.cast_signed());
+            inside = self.f.ins().umin(inside, last);
+        }
         let at = self.word_at(inside);
         let flags = if changes { trusted() } else { trusted().with_readonly().with_can_move() };
         let word = self.f.ins().load(types::I64, flags, at, offset(place.first));

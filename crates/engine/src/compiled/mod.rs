@@ -26,7 +26,7 @@ mod scan;
 mod specialise;
 mod steps;
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use super::word::WordEngine;
 use super::{Ahead, Digest, Engine, Extremes, Idle, Rows, Stop, Wanted, Watch};
@@ -247,7 +247,8 @@ impl Compiled {
                 let (guards, clocks) = (0, 0);
                 self.variants.push(Variant { native, inputs, last_phase, assumes_registers, guards, clocks, digests });
             }
-            None => self.unavailable = true,
+            // The frame of code made with care can be too large where that of the code that runs now is not.
+            None => self.unavailable = !self.large.as_ref().is_some_and(Large::is_lasting),
         }
     }
 

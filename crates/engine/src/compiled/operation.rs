@@ -3,8 +3,8 @@
 
 use std::cmp::Ordering;
 
-use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{InstBuilder, Type, Value, types};
+use cranelift_codegen::ir::condcodes::{CondCode, IntCC};
+use cranelift_codegen::ir::{InstBuilder, InstructionData, Type, Value, types};
 
 use super::codegen::{Generator, immediate};
 use stepwave_netlist::bits::Width;
@@ -21,14 +21,10 @@ impl Generator<'_, '_> {
             Op::Input | Op::Register { .. } => self.f.ins().iconst(kind, 0),
             Op::Read { memory, address } => {
                 let changes = !netlist.memories[memory as usize].writes.is_empty();
-                self.read(memory as usize, changes, at(address), width)
+                self.read(memory as usize, changes, (at(address), width_of(address)), width)
             }
             Op::Const(value) => self.f.ins().iconst(kind, immediate(value)),
-            Op::Not(a) if width == Width::ONE => match netlist.cell(a).op {
-                // A narrow loop evaluates the operands of this cell alone.
-                Op::Equal(a, b) if !self.narrow => self.f.ins().icmp(IntCC::NotEqual, at(a), at(b)),
-                _ => self.f.ins().bxor_imm(at(a), 1),
-            },
+            Op::Not(a) if width == Width::ONE => self.opposite(at(a)),
             Op::Not(a) => {
                 let ones = self.f.ins().iconst(kind, immediate(width.mask()));
                 self.f.ins().bxor(at(a), ones)
@@ -38,7 +34,7 @@ impl Generator<'_, '_> {
             Op::Xor(a, b) => self.f.ins().bxor(at(a), at(b)),
             Op::Mux { select, high, low } => self.f.ins().select(at(select), at(high), at(low)),
             Op::Add(a, b) => {
-                let sum = self.f.ins().iadd(at(a), at(b));
+                let sum = self.sum(at(a), at(b));
                 self.masked(sum, width)
             }
             Op::Sub(a, b) => {
@@ -59,7 +55,7 @@ impl Generator<'_, '_> {
             Op::Borrow(a, b) => self.f.ins().icmp(IntCC::UnsignedLessThan, at(a), at(b)),
             Op::AddOverflow(a, b) => {
                 // The sign of the sum differs from both operands'.
-                let sum = self.f.ins().iadd(at(a), at(b));
+                let sum = self.sum(at(a), at(b));
                 let (x, y) = (self.f.ins().bxor(at(a), sum), self.f.ins().bxor(at(b), sum));
                 self.sign_of_and(x, y, width_of(a))
             }
@@ -74,15 +70,20 @@ impl Generator<'_, '_> {
                 self.f.ins().icmp(IntCC::SignedLessThan, x, y)
             }
             Op::Slice { of, low } => {
-                let shifted = self.f.ins().ushr_imm(at(of), i64::from(low));
+                let whole = at(of);
+                let shifted = if low == 0 { whole } else { self.f.ins().ushr_imm(whole, i64::from(low)) };
                 let part = self.converted(shifted, kind);
                 let is_top = u32::from(low) + width.get() == width_of(of).get();
                 if is_top { part } else { self.masked(part, width) }
             }
             Op::Concat { high, low } => {
-                let [high, low_value] = [high, low].map(|part| self.converted(at(part), kind));
-                let high = self.f.ins().ishl_imm(high, i64::from(width_of(low).get()));
-                self.f.ins().bor(high, low_value)
+                let above = self.converted(at(high), kind);
+                let above = self.f.ins().ishl_imm(above, i64::from(width_of(low).get()));
+                if netlist.cell(low).op == Op::Const(0) {
+                    return above;
+                }
+                let below = self.converted(at(low), kind);
+                self.f.ins().bor(above, below)
             }
             Op::ZeroExtend(a) => self.converted(at(a), kind),
             Op::SignExtend(a) if width == Width::ONE => at(a),
@@ -114,6 +115,26 @@ impl Generator<'_, '_> {
         }
         let mask = self.f.ins().iconst(kind, immediate(width.mask()));
         self.f.ins().band(value, mask)
+    }
+
+    /// 1 for 0, and 0 for 1: of a comparison, the opposite one.
+    fn opposite(&mut self, bit: Value) -> Value {
+        let dfg = &self.f.func.dfg;
+        let made_by = dfg.value_def(bit).inst().map(|inst| dfg.insts[inst]);
+        match made_by {
+            Some(InstructionData::IntCompare { args: [a, b], cond, .. }) => self.f.ins().icmp(cond.complement(), a, b),
+            _ => self.f.ins().bxor_imm(bit, 1),
+        }
+    }
+
+    /// The sum of words, which an adder and its carry share.
+    fn sum(&mut self, a: Value, b: Value) -> Value {
+        if let Some(&sum) = self.sums.get(&[a, b]).filter(|_| self.narrow) {
+            return sum;
+        }
+        let sum = self.f.ins().iadd(a, b);
+        self.sums.insert([a, b], sum);
+        sum
     }
 
     /// Quotient or remainder of words. Native code takes no divisor of 0.
@@ -163,7 +184,7 @@ impl Generator<'_, '_> {
         if width == Width::ONE {
             return self.f.ins().band(a, b);
         }
-        let sum = self.f.ins().iadd(a, b);
+        let sum = self.sum(a, b);
         if width.get() == kind.bits() {
             return self.f.ins().icmp(IntCC::UnsignedLessThan, sum, a);
         }

@@ -16,6 +16,7 @@
 //! of the sample that the caller holds; four [`Extremes`](stepwave_netlist::Extremes) words of each running register,
 //! of unsigned values passed over: the least, the greatest, bits that were 1 in any and in all of them.
 
+use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 
 use cranelift_codegen::ir::condcodes::IntCC;
@@ -58,7 +59,7 @@ impl Rest {
         let registers = || plan.registers.iter().filter(|(net, _)| !plan.running.contains(net));
         let all = registers().flat_map(|&(net, next)| enables(&entry.netlist, entry.net(net), entry.net(next)));
         let enables: Vec<Net> = all.collect::<BTreeSet<_>>().into_iter().collect();
-        let resting = simplify(&entry.netlist, &enables.iter().map(|&net| (net, 0)).collect());
+        let resting = simplify(&entry.netlist, &enables.iter().map(|&net| (net, 0)).collect::<FxHashMap<Net, u64>>());
         let map = entry.map.iter().map(|&net| resting.net(net)).collect();
         let logic = Simplified { map, netlist: resting.netlist };
         let others = registers().map(|&(net, next)| (logic.net(net), logic.net(next)));

@@ -1,6 +1,8 @@
 //! Code generation of digests: where each thing that is wanted comes from, decided before the loop is generated.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::BTreeSet;
+
+use rustc_hash::FxHashSet as HashSet;
 
 use super::codegen::Phase;
 use super::digesting::{Digesting, Put};
@@ -140,7 +142,7 @@ impl Digesting<'_, '_> {
 
     /// Sums and differences that do not leave the width of an unsigned counter, since it comes to no end of its range.
     pub(super) fn exact(&self, logic: &Simplified) -> HashSet<Net> {
-        let mut found = HashSet::new();
+        let mut found = HashSet::default();
         for (&(net, turned), from) in self.wanted.ranges.iter().zip(&self.layout.ranges) {
             let next = self.plan.registers.iter().find(|(register, _)| *register == net).map(|(_, next)| *next);
             if let (RangeFrom::Counter { .. }, 0, Some(next)) = (from, turned, next) {

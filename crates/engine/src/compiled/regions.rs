@@ -5,7 +5,7 @@
 //! its users have in common, so it is evaluated whenever one of them is. Multiplexers of the same select in the same
 //! region share its two branches.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use stepwave_netlist::bits::Width;
 use stepwave_netlist::cells::{Cell, Net, Netlist, Op, WritePort};
@@ -115,7 +115,7 @@ impl<'a> Regions<'a> {
             netlist,
             gates: gates(netlist),
             nodes: vec![root],
-            forks: HashMap::new(),
+            forks: HashMap::default(),
             branching,
             of: vec![NOWHERE; netlist.cells.len()],
             ops: netlist.cells.iter().map(|cell| cell.op).collect(),

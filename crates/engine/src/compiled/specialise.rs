@@ -1,6 +1,8 @@
 //! What a loop takes for granted: which inputs and registers are folded in, and with which values.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::BTreeSet;
+
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::codegen::Phase;
 use super::layout::{SMALL_COUNTER, moves};
@@ -129,7 +131,7 @@ impl Specialised {
         let mut roots: Vec<Net> = registers.iter().map(|&(_, next)| next).collect();
         roots.extend(netlist.memories.iter().flat_map(|memory| &memory.writes).flat_map(|port| port.nets()));
         watched(&mut roots);
-        let mut fixed: HashMap<Net, u64> = HashMap::new();
+        let mut fixed: HashMap<Net, u64> = HashMap::default();
         let mut entry = simplify(netlist, &fixed);
         // The input with most readers first: `load` makes all others idle.
         while fixed.len() < MOST_INPUTS

@@ -4,7 +4,9 @@
 //! held back; where registers depend on each other in a ring, the value waits until the end of the clock.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap, HashMap, HashSet};
+use std::collections::{BTreeMap, BinaryHeap};
+
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::regions::{Fork, ROOT, Regions, Sink};
 use stepwave_netlist::cells::{Net, Netlist, Op, WritePort};
@@ -327,7 +329,7 @@ impl<'a> Planner<'a> {
     fn own(&mut self, fork: Fork) -> Vec<(Net, u32)> {
         let regions = self.regions;
         let inside: Vec<u32> = fork.branches.iter().flat_map(|&branch| regions.inside(branch)).collect();
-        let mut reads: HashMap<Net, u32> = HashMap::new();
+        let mut reads: HashMap<Net, u32> = HashMap::default();
         let mut pending = vec![];
         let mut read = |net: Net| *reads.entry(net).or_default() += 1;
         read(fork.condition);
@@ -368,7 +370,7 @@ fn best(level: &Level) -> Option<Fork> {
 
 /// Puts each cell right before the first step that uses it, or changes what it reads.
 fn near_uses(netlist: &Netlist, regions: &Regions<'_>, steps: Vec<Step>) -> Vec<Step> {
-    let mut near = Near { netlist, regions, waiting: HashSet::new(), readers: HashMap::new(), out: Vec::new() };
+    let mut near = Near { netlist, regions, waiting: HashSet::default(), readers: HashMap::default(), out: Vec::new() };
     let mut cells = Vec::new();
     for step in steps {
         if let Step::Cell(net) = step {

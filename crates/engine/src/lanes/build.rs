@@ -1,7 +1,7 @@
 //! Puts values into an order and into rows: dead ones are dropped, and a row is used again when its value was read for
 //! the last time, so that the working set stays small.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use super::code::{Code, LaneOp, Operation, PortRows, RegisterRow, Slot};
 use super::lower::{Lowering, Node, Value};
@@ -226,7 +226,7 @@ impl Rows {
                 });
             }
         }
-        Rows { last_use, row: HashMap::new(), free: Vec::new(), count: 0 }
+        Rows { last_use, row: HashMap::default(), free: Vec::new(), count: 0 }
     }
 
     fn is_live(&self, value: Value) -> bool {

@@ -1,7 +1,7 @@
 //! From a simplified netlist to operations on lanes. Each cell becomes one operation or less: where two cells read as
 //! one (a sum under a condition, a comparison with a constant), `fuse` makes them one.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use super::code::LaneOp;
 use super::fuse;
@@ -46,7 +46,7 @@ fn ones(width: Width) -> u64 {
 impl<'n> Lowering<'n> {
     pub(super) fn new(netlist: &'n Netlist) -> Lowering<'n> {
         let of_net = vec![None; netlist.cells.len()];
-        Lowering { netlist, nodes: Vec::new(), single: Vec::new(), made: HashMap::new(), of_net }
+        Lowering { netlist, nodes: Vec::new(), single: Vec::new(), made: HashMap::default(), of_net }
     }
 
     /// The value of a net.

@@ -32,7 +32,7 @@ mod native;
 mod watch;
 mod worker;
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use build::LaneRequest;
 use code::Code;
@@ -100,7 +100,7 @@ impl LaneProgram {
         };
         let rest = watch.rest.iter().map(|&(net, value)| (net, value & netlist.width(net).mask())).collect();
         let running = code(&rest, &[], &ends);
-        let whole = code(&HashMap::new(), &[&ends[..], &last].concat(), &[]);
+        let whole = code(&HashMap::default(), &[&ends[..], &last].concat(), &[]);
         let width = |observe: &Observe| match observe {
             Observe::Last(net) | Observe::Min { net, .. } | Observe::Max { net, .. } => netlist.width(*net),
             _ => Width::MAX,

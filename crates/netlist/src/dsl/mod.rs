@@ -15,8 +15,8 @@ mod register;
 mod signal;
 mod strict;
 
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::cell::RefCell;
-use std::collections::{HashMap, HashSet};
 
 use crate::bits::{Bits, Width};
 use crate::cells::{Cell, Claim, Format, NamedNet, Net, Netlist, OnOverflow, Op, Property, ScopeData, ScopeId, Source};
@@ -61,9 +61,9 @@ impl Module {
         let state = Draft {
             netlist: Netlist::new(name),
             diagnostics: Vec::new(),
-            used_names: HashMap::new(),
-            driven: HashMap::new(),
-            guesses: HashSet::new(),
+            used_names: HashMap::default(),
+            driven: HashMap::default(),
+            guesses: HashSet::default(),
         };
         let module = Module { state: RefCell::new(state), on_overflow };
         module.check_name(name);
@@ -81,7 +81,7 @@ impl Module {
             Some(((scope.parent?, scope.name.clone()), place))
         });
         let used_names = nets.chain(scopes).collect();
-        let (diagnostics, driven, guesses) = (Vec::new(), HashMap::new(), HashSet::new());
+        let (diagnostics, driven, guesses) = (Vec::new(), HashMap::default(), HashSet::default());
         let state = Draft { used_names, netlist, diagnostics, driven, guesses };
         Module { state: RefCell::new(state), on_overflow: OnOverflow::Trap }
     }

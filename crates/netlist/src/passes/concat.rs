@@ -1,5 +1,5 @@
 //! Concatenations: parts of one net that meet are one part, a bit that is repeated is the extension of a sign, and parts
-//! that are selected together are selected as one.
+//! that are selected together are selected as one; what is above zeros where it was before is a net with bits cleared.
 
 use super::identity::Rewrite;
 use super::share::Builder;
@@ -14,6 +14,9 @@ pub(super) fn rewrite(builder: &mut Builder, high: Net, low: Net) -> Option<Rewr
     if builder.known(high) == Some(0) {
         return Some(Rewrite::As(Op::ZeroExtend(low)));
     }
+    if let Some(op) = cleared(builder, high, low) {
+        return Some(Rewrite::As(op));
+    }
     if let Some(op) = joined(builder, high, low, 0) {
         return Some(Rewrite::As(op));
     }
@@ -23,6 +26,18 @@ pub(super) fn rewrite(builder: &mut Builder, high: Net, low: Net) -> Option<Rewr
     let width = sum(builder, high, middle)?;
     let high = builder.make(op, width);
     Some(Rewrite::As(Op::Concat { high, low: rest }))
+}
+
+/// A part of a net above as many zeros as were below it there: the net without those bits.
+fn cleared(builder: &mut Builder, high: Net, low: Net) -> Option<Op> {
+    let (width, zeros) = (sum(builder, high, low)?, builder.width(low));
+    let Op::Slice { of, low: from } = builder.op(high) else { return None };
+    if builder.known(low) != Some(0) || u32::from(from) != zeros.get() {
+        return None;
+    }
+    let whole = builder.make(Op::Slice { of, low: 0 }, width);
+    let mask = builder.constant(width.mask() & !zeros.mask(), width);
+    Some(Op::And(whole, mask))
 }
 
 fn sum(builder: &Builder, high: Net, low: Net) -> Option<Width> {

@@ -1,7 +1,7 @@
 //! Algebraic identities: a cell that is one of its operands, a constant, or a simpler operator.
 
-use super::concat;
 use super::share::Builder;
+use super::{concat, equal};
 use crate::bits::Width;
 use crate::cells::{Net, Op};
 
@@ -32,6 +32,8 @@ pub(super) fn rewrite(builder: &mut Builder, op: Op, width: Width) -> Option<Rew
             (_, Some(value)) if value == ones => Some(Same(a)),
             _ if a == b => Some(Same(a)),
             _ if complements(builder, a, b) => Some(Constant(0)),
+            (None, Some(mask)) => masked_twice(builder, a, mask, width),
+            (Some(mask), None) => masked_twice(builder, b, mask, width),
             _ => None,
         },
         Op::Or(a, b) => match (known(builder, a), known(builder, b)) {
@@ -86,14 +88,7 @@ pub(super) fn rewrite(builder: &mut Builder, op: Op, width: Width) -> Option<Rew
         }
         Op::Borrow(a, b) | Op::SubOverflow(a, b) if a == b || known(builder, b) == Some(0) => Some(Constant(0)),
         Op::LessSigned(a, b) if a == b => Some(Constant(0)),
-        Op::Equal(a, b) if a == b => Some(Constant(1)),
-        Op::Equal(a, b) if builder.width(a) == Width::ONE => match (known(builder, a), known(builder, b)) {
-            (Some(1), _) => Some(Same(b)),
-            (_, Some(1)) => Some(Same(a)),
-            (Some(0), _) => Some(As(Op::Not(b))),
-            (_, Some(0)) => Some(As(Op::Not(a))),
-            _ => None,
-        },
+        Op::Equal(a, b) => equal::rewrite(builder, a, b),
         Op::Mux { select, high, low } => mux(builder, select, high, low, width),
         Op::Slice { of, low } => slice(builder, of, low, width),
         Op::Concat { high, low } => concat::rewrite(builder, high, low),
@@ -104,6 +99,14 @@ pub(super) fn rewrite(builder: &mut Builder, op: Op, width: Width) -> Option<Rew
         },
         _ => None,
     }
+}
+
+/// Bits of bits: those of both masks.
+fn masked_twice(builder: &mut Builder, net: Net, mask: u64, width: Width) -> Option<Rewrite> {
+    let Op::And(a, b) = builder.op(net) else { return None };
+    let (inner, other) = builder.known(b).map(|known| (a, known)).or(builder.known(a).map(|known| (b, known)))?;
+    let mask = builder.constant(mask & other, width);
+    Some(As(Op::And(inner, mask)))
 }
 
 fn complements(builder: &Builder, a: Net, b: Net) -> bool {
@@ -177,6 +180,13 @@ fn slice(builder: &mut Builder, of: Net, low: u8, width: Width) -> Option<Rewrit
                 Some(As(Op::Slice { of: high, low: low - u8::try_from(split).unwrap_or(low) }))
             } else {
                 None
+            }
+        }
+        Op::And(a, b) => {
+            let (inner, mask) = builder.known(b).map(|mask| (a, mask)).or(builder.known(a).map(|mask| (b, mask)))?;
+            match mask >> low & width.mask() {
+                0 => Some(Constant(0)),
+                kept => (kept == width.mask()).then_some(As(Op::Slice { of: inner, low })),
             }
         }
         Op::ZeroExtend(part) => {

@@ -6,10 +6,12 @@
 
 mod concat;
 pub mod constant;
+mod equal;
 mod identity;
 mod share;
 
 use std::collections::HashMap;
+use std::hash::BuildHasher;
 
 use crate::cells::{Cell, Claim, Net, Netlist, Op, Property};
 use share::Builder;
@@ -43,7 +45,7 @@ impl Simplified {
 /// Simplifies an elaborated netlist. Nets in `fixed` are taken to have the given values: the result
 /// behaves as the original only while they do.
 #[must_use]
-pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64>) -> Simplified {
+pub fn simplify(netlist: &Netlist, fixed: &HashMap<Net, u64, impl BuildHasher>) -> Simplified {
     let mut builder = Builder::default();
     let mut map: Vec<Net> = Vec::with_capacity(netlist.cells.len());
     for (net, cell) in netlist.nets().zip(&netlist.cells) {

@@ -1,6 +1,6 @@
 //! The builder of a simplified netlist: equal cells become one.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use super::constant;
 use super::identity::{self, Rewrite};

@@ -1,6 +1,6 @@
 //! Values and the vector instructions that make them, each once; a value may also be known by its complement.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use super::assembler::{AND, AND_NOT, OR, Opcode, Shift, XOR};
 
