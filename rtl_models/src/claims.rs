@@ -4,13 +4,13 @@
 //! described by a few numbers, and where the machine is in the end.
 
 mod arc;
+pub(crate) mod crossing;
 pub mod extremes;
 mod line;
 mod travel;
 
 use stepwave_nc::Curve;
-use stepwave_netlist::formula::Symbol;
-use stepwave_netlist::formula::{Clause, Formula, name, number};
+use stepwave_netlist::formula::{ByMode, Clause, Formula, Symbol, name, number};
 
 use crate::hardware::Hardware;
 use crate::options::{END_POINT, EndPoint};
@@ -31,6 +31,10 @@ pub enum Region {
     /// Every arc about the origin inside one quadrant, with both ends on one circle: from (xs, ys) to (xt, yt),
     /// magnitudes.
     QuadrantArcs,
+    /// Every arc about the origin that crosses an axis, full circles too, with both ends on one circle.
+    CrossingArcs,
+    /// Every arc about the origin with both ends on one circle.
+    Arcs,
     /// Every line from the origin, and every such arc.
     LinesAndArcs,
     /// Every travel of one axis from the origin, by |dx|.
@@ -40,19 +44,23 @@ pub enum Region {
 /// What a model claims over a box of geometries.
 #[derive(Clone, Copy, Debug)]
 pub struct Claims {
-    /// Which geometries are meant.
+    /// Which geometries are meant, and what a box of them holds.
     pub geometries: Region,
+    /// More of them, of which this hardware is proved for every k.
+    pub everywhere: fn(&Hardware) -> Option<Region>,
     /// The same in finer kinds, where this hardware needs them.
     pub refined: fn(&Hardware) -> Option<Region>,
     /// Never below 0 while a block runs, and less after every step: why it ends. `None` where that is not claimed.
     pub rank: fn(&Hardware) -> Option<Formula>,
-    /// What may hold between two steps of the geometry, the place and `steps`, the number of steps that the block has
-    /// taken; left out where a step does not keep it.
-    pub guesses: fn(&Hardware) -> Vec<Clause>,
+    /// What may hold between two steps of a geometry of this kind, the place and `steps`, the number of steps that the
+    /// block has taken; left out where a step does not keep it.
+    pub guesses: fn(&Hardware, &Kind) -> Vec<Clause>,
     /// The same, where only the rank wants it.
     pub ends: fn(&Hardware) -> Vec<Clause>,
     /// Registers that change what the others mean.
     pub modes: &'static [Reg],
+    /// They come to the same values again, where the others mean something else: how often they have changed matters too.
+    pub counts_changes: bool,
     /// Whether a register of this name may be loaded with any word: what is proved holds whatever the loader gives it.
     pub loaded_any: fn(&Hardware, &str) -> bool,
     /// Inputs that may change at any clock: what is proved holds whatever they are.
@@ -70,11 +78,13 @@ impl Claims {
     pub const fn of(geometries: Region) -> Claims {
         Claims {
             geometries,
+            everywhere: |_| None,
             refined: |_| None,
             rank: steps_left,
-            guesses: |_| Vec::new(),
+            guesses: |_, _| Vec::new(),
             ends: |_| Vec::new(),
             modes: &[],
+            counts_changes: false,
             loaded_any: |_, _| false,
             free: &[],
             bitwise: &[],
@@ -82,7 +92,16 @@ impl Claims {
         }
     }
 
-    /// What is claimed of this hardware.
+    /// What is claimed of this hardware for every k.
+    #[must_use]
+    pub fn for_every_k(self, hardware: &Hardware) -> Claims {
+        match (self.everywhere)(hardware) {
+            Some(geometries) => Claims { geometries, ..self },
+            None => self.of_hardware(hardware),
+        }
+    }
+
+    /// What is claimed of this hardware over a box.
     #[must_use]
     pub fn of_hardware(self, hardware: &Hardware) -> Claims {
         Claims { geometries: (self.refined)(hardware).unwrap_or(self.geometries), ..self }
@@ -106,6 +125,8 @@ pub struct Kind {
     pub symbols: Vec<Symbol>,
     /// Names for numbers that all of them share; such a name is one of the netlist too.
     pub constants: Vec<(String, i128)>,
+    /// Names for numbers that are others in other modes.
+    pub by_mode: Vec<ByMode>,
     /// What else is true of them.
     pub premises: Vec<Clause>,
     /// Where the machine is in the end.
@@ -129,6 +150,14 @@ impl Region {
             Region::QuadrantArcs => {
                 "every arc about the origin inside a quadrant, with coordinates of k bits and both ends on the circle"
             }
+            Region::CrossingArcs => {
+                "every arc about the origin over one axis or more, with both ends on the circle and a path within \
+                 coordinates of k bits"
+            }
+            Region::Arcs => {
+                "every arc about the origin, full circles too, with both ends on the circle and a path within \
+                 coordinates of k bits"
+            }
             Region::LinesAndArcs => {
                 "every line from the origin, and every arc about it inside a quadrant with both ends on the circle, to \
                  coordinates of k bits"
@@ -146,6 +175,8 @@ impl Region {
             Region::LinesByLonger => &[Region::LinesByLonger],
             Region::LinesHalved => &[Region::LinesHalved],
             Region::QuadrantArcs => &[Region::QuadrantArcs],
+            Region::CrossingArcs => &[Region::CrossingArcs],
+            Region::Arcs => &[Region::QuadrantArcs, Region::CrossingArcs],
             Region::LinesAndArcs => &[Region::Lines, Region::QuadrantArcs],
             Region::Travels => &[Region::Travels],
         }
@@ -155,12 +186,13 @@ impl Region {
     #[must_use]
     pub fn kinds(self) -> Vec<Kind> {
         match self {
-            Region::LinesAndArcs => self.parts().iter().flat_map(|part| part.kinds()).collect(),
+            Region::LinesAndArcs | Region::Arcs => self.parts().iter().flat_map(|part| part.kinds()).collect(),
             Region::Lines => line::kinds(line::ANY, false),
             Region::LinesByLength => line::kinds(line::LONG, false),
             Region::LinesByLonger => line::kinds(line::LONGER, false),
             Region::LinesHalved => line::kinds(line::LONG, true),
             Region::QuadrantArcs => arc::kinds(),
+            Region::CrossingArcs => crossing::kinds(),
             Region::Travels => travel::kinds(),
         }
     }
@@ -169,12 +201,13 @@ impl Region {
     #[must_use]
     pub fn symbols(self, kind: &Kind, curve: &Curve) -> Option<Vec<i128>> {
         let symbols = match self {
-            Region::LinesAndArcs => {
+            Region::LinesAndArcs | Region::Arcs => {
                 return self.parts().iter().find_map(|part| part.symbols(kind, curve));
             }
             Region::Lines | Region::LinesByLength | Region::LinesByLonger => line::symbols(&kind.name, curve, false),
             Region::LinesHalved => line::symbols(&kind.name, curve, true),
             Region::QuadrantArcs => arc::symbols(&kind.name, curve),
+            Region::CrossingArcs => crossing::symbols(&kind.name, curve),
             Region::Travels => travel::symbols(&kind.name, curve),
         }?;
         let value = |name: &str| {
@@ -193,6 +226,7 @@ impl Region {
                 line::to([most, most])
             }
             Region::QuadrantArcs | Region::LinesAndArcs => arc::quarter(most),
+            Region::CrossingArcs | Region::Arcs => crossing::whole(most),
             Region::Travels => travel::to(most),
         }
     }
@@ -211,8 +245,9 @@ impl Region {
         match self {
             Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => k <= line::WHOLE,
             Region::QuadrantArcs => k <= arc::WHOLE,
+            Region::CrossingArcs => k <= crossing::WHOLE,
             Region::Travels => k <= travel::WHOLE,
-            Region::LinesAndArcs => self.parts().iter().all(|part| part.is_whole(k)),
+            Region::LinesAndArcs | Region::Arcs => self.parts().iter().all(|part| part.is_whole(k)),
         }
     }
 
@@ -224,14 +259,37 @@ impl Region {
                 line::curves(k, most)
             }
             Region::QuadrantArcs => arc::curves(k, most),
+            Region::CrossingArcs => crossing::curves(k, most),
             Region::Travels => travel::curves(k, most),
-            Region::LinesAndArcs => {
+            Region::LinesAndArcs | Region::Arcs => {
                 let all = self.parts().iter().flat_map(|part| part.curves(k, most)).collect();
                 spread(all, most)
             }
         }
     }
+
+    /// Curves of this kind among those of k-bit coordinates of which some thousands are looked at, with the numbers that describe
+    /// each.
+    #[must_use]
+    pub fn curves_of(self, kind: &Kind, k: u32) -> Box<dyn Iterator<Item = (Curve, Vec<i128>)>> {
+        let own = kind.clone();
+        let is_own = |other: &Kind| other.name == kind.name;
+        match self {
+            Region::CrossingArcs => Box::new(crossing::curves_of(&kind.name, k).into_iter()),
+            Region::Arcs => match self.parts().iter().find(|part| part.kinds().iter().any(is_own)) {
+                Some(part) => part.curves_of(kind, k),
+                None => Box::new(std::iter::empty()),
+            },
+            _ => Box::new(self.curves(k, LISTED).into_iter().filter_map(move |curve| {
+                let symbols = self.symbols(&own, &curve)?;
+                Some((curve, symbols))
+            })),
+        }
+    }
 }
+
+/// Curves of which those of a kind are taken.
+const LISTED: usize = 4000;
 
 /// A symbol from 0 to 2^k - 1.
 fn coordinate(letter: &str) -> Symbol {

@@ -45,7 +45,7 @@ use stepwave_netlist::Width;
 use stepwave_netlist::dsl::Scope;
 use stepwave_netlist::formula::{Clause, Formula, name, number};
 
-use crate::claims::{Claims, Region, steps_left};
+use crate::claims::{Claims, Kind, Region, steps_left};
 use crate::error::ModelError;
 use crate::hardware::{Hardware, Pace, modulus};
 use crate::interpolates::{Interpolates, Method};
@@ -108,7 +108,7 @@ fn rank(hardware: &Hardware) -> Option<Formula> {
 }
 
 /// What 2^n iterations have to do with a travel that is left.
-fn guesses(hardware: &Hardware) -> Vec<Clause> {
+fn guesses(hardware: &Hardware, _: &Kind) -> Vec<Clause> {
     if !matches!(hardware.get(&END_POINT), EndPoint::Total | EndPoint::Longest) {
         return Vec::new();
     }

@@ -23,15 +23,16 @@
 
 use stepwave_nc::{Arc, Crossing};
 use stepwave_netlist::dsl::Scope;
-use stepwave_netlist::formula::name;
+use stepwave_netlist::formula::{Clause, Formula, name};
 
-use crate::claims::{Claims, Region};
+use crate::claims::crossing::AXIS;
+use crate::claims::{Claims, Kind, Region};
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::{Interpolates, Method};
 use crate::model::Model;
-use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
+use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WIDTH};
 use crate::parts::{
     ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, POSITION, QUAD, XI_YI, judged_by_sign, step_of_circle,
 };
@@ -47,7 +48,14 @@ pub static MODEL: Model = Model {
     source: "逐点比较法, the circular interpolator of early NC systems, as in Chinese NC textbooks",
     registers: &[&F, &XI_YI, &QUAD, &E.width(N.plus(3)), &END, &POSITION],
     options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
-    claims: Some(Claims::of(Region::QuadrantArcs)),
+    claims: Some(Claims {
+        // With a counter for each axis the loader splits an arc at the axes.
+        everywhere: |hardware| (hardware.get(&END_POINT) == EndPoint::Total).then_some(Region::Arcs),
+        guesses,
+        modes: &[QUAD],
+        counts_changes: true,
+        ..Claims::of(Region::QuadrantArcs)
+    }),
     interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
     hardware,
 };
@@ -86,14 +94,33 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     arc.close(beat, taken);
 }
 
-/// F stays between what a step at 0 and a step at -1 leave.
+/// The coordinate that shrinks.
+fn shrinking() -> Formula {
+    let [x, y] = [0, 1].map(|axis| XI_YI.of(axis).value());
+    y * name("x_grows") + x.clone() - x * name("x_grows")
+}
+
+/// The coordinate that grows.
+fn growing() -> Formula {
+    let [x, y] = [0, 1].map(|axis| XI_YI.of(axis).value());
+    x * name("x_grows") + y.clone() - y * name("x_grows")
+}
+
+/// F stays between what a step at 0 and a step at -1 leave; whether an axis that is reached is crossed already or not.
 fn invariants(m: Scope<'_>) {
-    // The coordinate that shrinks, and the one that grows.
-    let x_grows = || name("x_grows");
-    let (x, y) = (|| XI_YI.of(0).value(), || XI_YI.of(1).value());
-    let shrinking = || y() * x_grows() + x() - x() * x_grows();
-    let growing = || x() * x_grows() + y() - y() * x_grows();
     m.between_steps("f_from_below", [F.value() + 2 * shrinking() + 1]);
-    m.between_steps("f_from_above", [2 * growing() - 2 - F.value(), -F.value()]);
-    m.between_steps("outside_there_is_a_way_to_shrink", [shrinking() - 1, -F.value() - 1]);
+    m.between_steps("f_from_above", [2 * growing() - 2 - F.value(), -F.value(), -growing()]);
+    m.between_steps("f_after_an_axis", [growing() - 1, 2 * shrinking() - 3 - F.value(), -F.value()]);
+    m.between_steps("f_on_an_axis", [shrinking() - 1, 2 * growing() - 3 - F.value(), -F.value()]);
+}
+
+/// An arc that crosses an axis does so at one place of each.
+fn guesses(_: &Hardware, kind: &Kind) -> Vec<Clause> {
+    if kind.symbols.iter().all(|symbol| symbol.name != AXIS) {
+        return Vec::new();
+    }
+    vec![
+        Clause::at_least_zero("no coordinate is beyond it", name(AXIS) - growing()),
+        Clause::either("it is reached with the axis", [shrinking() - 1, growing() - name(AXIS), -growing()]),
+    ]
 }

@@ -103,7 +103,7 @@ pub static MODEL: Model = Model {
         loaded_any: |hardware, register| hardware.get(&JERK).is_none() && ![E.name(), SIGN.of(0).name(), POSITION.of(0).name()].contains(&register),
         free: &["hold", "trim"],
         // At most the pulses that there were.
-        guesses: |hardware| match hardware.get(&BRAKE) {
+        guesses: |hardware, _| match hardware.get(&BRAKE) {
             Brake::Count => {
                 let made = name("|dx|") - E.value() - RISEN.value();
                 vec![Clause::at_least_zero("r counts pulses of the acceleration", made)]

@@ -125,7 +125,7 @@ fn check_options(args: &ProveArgs, proposition: &Proposition) -> Result<(), Erro
 fn asked(args: &ProveArgs, proposition: &Proposition, command: &str) -> Result<Option<Answer>, Error> {
     let Proposition { model, options, narrower, .. } = proposition;
     let k = args.bits.unwrap_or(ASKED);
-    let question = question(model, &proposition.claims()?, options, narrower, k)
+    let question = question(model, &proposition.claims_for_every_k()?, options, narrower, k)
         .map_err(|error| args.hardware.explain_study(error))?;
     let answer = match ask(command, &question.script, Duration::from_secs(args.solver_seconds), &temporary::attend) {
         Err(late @ SolverError::Late { .. }) => {

@@ -4,9 +4,11 @@
 mod certificates;
 mod command;
 mod counted;
+mod crossings;
 mod fixed;
 mod induction;
 mod invariants;
+mod modes;
 mod netlists;
 mod ramps;
 mod sat;
@@ -71,7 +73,7 @@ fn lines_are_proved_for_every_width_in_four_beats_and_in_one() {
 #[test]
 fn arcs_inside_a_quadrant_are_proved_for_every_width_in_both_directions() {
     for choices in beats() {
-        assert_proved("ppc-arc", &subject("ppc-arc", &choices), true);
+        assert_proved("ppc-arc", &subject("ppc-arc", &choices).of_box(), true);
         for weights in [Weights::Mid, Weights::Pre, Weights::Post] {
             let choices = choices.clone().with(&WEIGHTS, weights);
             assert_proved("cim-arc", &subject("cim-arc", &choices), true);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use stepwave::study::proof::{Narrower, choices_at};
 use stepwave::testbench::{Ending, Testbench};
 use stepwave_models::options::{ON_OVERFLOW, WIDTH};
-use stepwave_models::{Model, ModelError, Options, find};
+use stepwave_models::{Claims, Hardware, Model, ModelError, Options, find};
 use stepwave_netlist::{OnOverflow, Width};
 
 use crate::cli::{Folder, Ran};
@@ -19,13 +19,14 @@ struct Facts {
     endless: bool,
 }
 
-fn facts(model: &'static Model, choices: &Options, k: u32) -> Facts {
+fn facts(model: &'static Model, choices: &Options, k: u32, of: fn(Claims, &Hardware) -> Claims) -> Facts {
     let claims = model.claims.unwrap();
     let hardware = match model.plan(&claims.geometries.largest(k).unwrap(), choices) {
         Ok(hardware) => hardware,
         Err(ModelError::Widths(_)) => return Facts { overflow: true, missed: true, endless: true },
         Err(error) => panic!("{error}"),
     };
+    let claims = of(claims, &hardware);
     let kinds = claims.geometries.kinds();
     let mut curves = claims.geometries.curves(k, usize::MAX);
     curves.retain(|curve| kinds.iter().any(|kind| claims.geometries.symbols(kind, curve).is_some()));
@@ -91,7 +92,7 @@ fn what_is_proved_of_narrower_registers_is_true_of_every_geometry() {
             let narrower = Narrower::from([(register.to_owned(), bits)]);
             for k in 3..=4 {
                 let own = choices_at(model, &model.claims.unwrap(), &choices, &narrower, k).unwrap();
-                assert_true(&ran, facts(model, &own, k), &words);
+                assert_true(&ran, facts(model, &own, k, Claims::for_every_k), &words);
             }
             (ran.out.contains("PROVED"), ran.out.contains("COUNTEREXAMPLE"))
         })
@@ -126,7 +127,7 @@ fn a_verdict_on_one_hardware_is_what_every_geometry_of_its_box_shows() {
                 );
                 return None;
             }
-            let facts = facts(model, &choices.with_single(&WIDTH, widths), k);
+            let facts = facts(model, &choices.with_single(&WIDTH, widths), k, Claims::of_hardware);
             assert_true(&ran, facts, &words);
             // All is proved, or refuted by a run: of so few geometries nothing is left open.
             assert_eq!(ran.code == 0, facts == Facts::default(), "{words}: {facts:?} {ran:?}");

@@ -240,6 +240,17 @@ pub struct Symbol {
     pub greatest: Formula,
 }
 
+/// A name for a number that depends on what a mode register holds, and on nothing else.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ByMode {
+    /// The name in formulas.
+    pub name: String,
+    /// The register, by its name.
+    pub register: String,
+    /// The number where the register holds 0, 1, and so on.
+    pub values: Vec<i128>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

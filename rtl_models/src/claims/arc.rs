@@ -8,14 +8,15 @@ use super::{Kind, coordinate, spread};
 use crate::parts::POSITION;
 
 /// Quadrants by the signs of their coordinates.
-const QUADRANTS: [[i64; 2]; 4] = [[1, 1], [-1, 1], [-1, -1], [1, -1]];
-const DIRECTIONS: [(&str, Direction); 2] = [("SR", Direction::Clockwise), ("NR", Direction::CounterClockwise)];
+pub(super) const QUADRANTS: [[i64; 2]; 4] = [[1, 1], [-1, 1], [-1, -1], [1, -1]];
+pub(super) const DIRECTIONS: [(&str, Direction); 2] =
+    [("SR", Direction::Clockwise), ("NR", Direction::CounterClockwise)];
 
 /// Most bits of coordinates of which all arcs are listed; of more, the extreme ones.
 pub(super) const WHOLE: u32 = 8;
 
 /// |x| grows in this quadrant, 0 to 3: clockwise in Q1 and Q3.
-fn x_grows(quadrant: usize, direction: Direction) -> bool {
+pub(super) fn x_grows(quadrant: usize, direction: Direction) -> bool {
     (direction == Direction::Clockwise) == quadrant.is_multiple_of(2)
 }
 
@@ -47,6 +48,7 @@ pub(super) fn kinds() -> Vec<Kind> {
                 name: format!("{word}{}", quadrant + 1),
                 symbols: ["xs", "ys", "xt", "yt"].map(coordinate).to_vec(),
                 constants: vec![("x_grows".to_owned(), i128::from(x_grows(quadrant, direction)))],
+                by_mode: Vec::new(),
                 premises,
                 goals: ends.into_iter().flatten().collect(),
             });
@@ -66,7 +68,7 @@ pub(super) fn symbols(kind: &str, curve: &Curve) -> Option<Vec<i128>> {
     (own && arc.center() == [0, 0]).then(|| vec![xs, ys, xt, yt])
 }
 
-fn arc(from: [i64; 2], to: [i64; 2], direction: Direction) -> Option<Curve> {
+pub(super) fn arc(from: [i64; 2], to: [i64; 2], direction: Direction) -> Option<Curve> {
     Arc::new(from, to, [0, 0], direction).ok().map(Curve::Arc)
 }
 

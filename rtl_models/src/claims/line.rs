@@ -58,6 +58,7 @@ pub(super) fn kinds(lengths: &[&str], halved: bool) -> Vec<Kind> {
                 name: format!("{quadrant}{length}"),
                 symbols,
                 constants: [("sx", x), ("sy", y)].map(|(name, sign)| (name.to_owned(), i128::from(sign < 0))).to_vec(),
+                by_mode: Vec::new(),
                 premises,
                 goals: ends.into_iter().flatten().collect(),
             });

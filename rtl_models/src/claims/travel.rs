@@ -17,6 +17,7 @@ pub(super) fn kinds() -> Vec<Kind> {
         name: direction.to_owned(),
         symbols: vec![coordinate("|dx|")],
         constants: vec![("sx".to_owned(), i128::from(sign < 0))],
+        by_mode: Vec::new(),
         premises: vec![Clause::at_least_zero("the axis moves", name("|dx|") - 1)],
         goals: Clause::zero("x ends", POSITION.of(0).value() - sign * name("|dx|")).to_vec(),
     };

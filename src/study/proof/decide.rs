@@ -128,12 +128,13 @@ impl Proposition {
         Ok(each.concat())
     }
 
-    /// Simulates until a geometry refutes the claims on hardware of these options.
+    /// Simulates until a geometry refutes what is claimed for every k, on hardware of these options.
     fn search(&self, options: &Options, ks: RangeInclusive<u32>) -> Result<Survey, ProofError> {
+        let claims = self.claims_for_every_k()?;
         // A word that does not fit refutes a narrower register; else it says that a choice, such as a preset, needs more
         // bits.
         let refutes = |fault| fault != Fault::Refused || !self.narrower.is_empty();
-        Ok(search(self.model, &self.claims()?, options, &self.narrower, ks, refutes))
+        Ok(search(self.model, &claims, options, &self.narrower, ks, refutes))
     }
 
     /// Every width at once, step by step.

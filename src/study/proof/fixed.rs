@@ -119,7 +119,7 @@ impl Fixed {
             return None;
         }
         let free = without_widths(self.model, &self.choices);
-        let subject = Subject::with(self.model, &free, &self.offsets, Some(self.k)).ok()?;
+        let subject = Subject::with(self.model, &free, &self.offsets, Some(self.k)).ok()?.of_box();
         let own = subject.members.iter().find(|(k, ..)| *k == self.k);
         own.is_some_and(|(_, hardware, _)| *hardware == self.hardware).then_some(subject)
     }

@@ -13,6 +13,10 @@ use super::{ProofError, State, Subject, states};
 /// Words of the loader, and what the symbols of the geometry are.
 type Loaded = (Vec<(Net, u64)>, Vec<i128>);
 
+/// The name of the number of steps that a block has taken.
+const STEPS: &str = "steps";
+/// How many of the least k have all of their geometries looked at for what the loader gives them.
+const COMPARED: usize = 2;
 /// How many curves of each kind are simulated to learn from, at each of the least k.
 const LEARNED: [usize; 4] = [60, 40, 30, 12];
 
@@ -39,7 +43,10 @@ impl Subject {
         let mut words = self.words(kind, &curves)?;
         words.extend(any.iter().map(|(register, symbol)| (format!("{register}_in"), formula::name(&symbol.name))));
         let hardware = &self.claimed();
-        let guesses = [(self.claims.guesses)(hardware), (self.claims.ends)(hardware)].concat();
+        let guesses = [(self.claims.guesses)(hardware, kind), (self.claims.ends)(hardware)].concat();
+        let rank = (self.claims.rank)(hardware);
+        let counts_steps =
+            guesses.iter().flat_map(|clause| &clause.any).chain(&rank).any(|formula| formula.names().contains(&STEPS));
         let case = Case {
             name: kind.name.clone(),
             symbols: kind.symbols.iter().cloned().chain(any.into_iter().map(|(_, symbol)| symbol)).collect(),
@@ -48,10 +55,12 @@ impl Subject {
             words,
             free: self.claims.free.iter().map(|input| (*input).to_owned()).collect(),
             goals: kind.goals.clone(),
-            rank: (self.claims.rank)(hardware),
+            rank,
             modes: self.claims.modes.iter().map(|mode| mode.name().to_owned()).collect(),
             bitwise: self.claims.bitwise.iter().map(|register| register.name().to_owned()).collect(),
-            steps: (!guesses.is_empty()).then(|| "steps".to_owned()),
+            by_mode: kind.by_mode.clone(),
+            counts_changes: self.claims.counts_changes,
+            steps: counts_steps.then(|| STEPS.to_owned()),
             guesses,
         };
         Ok((case, rows))
@@ -88,18 +97,14 @@ impl Subject {
         let mut curves = Vec::new();
         for (member, most) in (0..self.members.len()).zip(LEARNED) {
             let k = self.members[member].0;
-            let all = self.claims.geometries.curves(k, 4000);
-            let own = all.into_iter().filter_map(|curve| {
-                let symbols = self.claims.geometries.symbols(kind, &curve)?;
-                Some((member, curve, symbols))
-            });
+            let own = self.claims.geometries.curves_of(kind, k).map(|(curve, symbols)| (member, curve, symbols));
             curves.extend(own.take(most));
         }
         curves
     }
 
-    /// What the loader puts on each input, as a formula of the geometry: learnt from its words, and compared with every
-    /// one of them.
+    /// What the loader puts on each input, as a formula of the geometry: learnt from its words for these curves, and compared
+    /// with those for every geometry of the least widths.
     fn words(&self, kind: &Kind, curves: &[(usize, Curve, Vec<i128>)]) -> Result<Vec<(String, Formula)>, ProofError> {
         let names: Vec<&str> =
             ["2^(k-1)"].into_iter().chain(kind.symbols.iter().map(|symbol| symbol.name.as_str())).collect();
@@ -121,6 +126,27 @@ impl Subject {
                 .ok_or_else(|| ProofError::Word { word: register.to_owned(), kind: kind.name.clone() })?;
             Ok((format!("{register}_in"), formula))
         };
-        samples.into_iter().map(formula).collect()
+        let formulas: Vec<(String, Formula)> = samples.into_iter().map(formula).collect::<Result<_, ProofError>>()?;
+        self.compare(kind, &formulas)?;
+        Ok(formulas)
+    }
+
+    /// Refuses formulas that give another word than the loader for some geometry of the kind.
+    fn compare(&self, kind: &Kind, formulas: &[(String, Formula)]) -> Result<(), ProofError> {
+        for (k, hardware, _) in self.members.iter().take(COMPARED) {
+            for (curve, symbols) in self.claims.geometries.curves_of(kind, *k) {
+                let of_symbols = || kind.symbols.iter().map(|symbol| symbol.name.as_str()).zip(symbols.iter().copied());
+                let value = |name: &str| of_symbols().chain([("2^(k-1)", 1 << (k - 1))]).find(|own| own.0 == name);
+                let Some(words) = self.model.words(hardware, &curve)?.into_iter().next() else { continue };
+                for (register, word) in words {
+                    let own = formulas.iter().find(|(input, _)| input.strip_suffix("_in") == Some(register));
+                    let given = own.map(|(_, formula)| formula.value(|name| value(name).map(|(_, number)| number)));
+                    if given.is_some_and(|given| given != Some(word)) {
+                        return Err(ProofError::Word { word: register.to_owned(), kind: kind.name.clone() });
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 }

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use stepwave_models::options::{PRESET, WIDTH};
 use stepwave_models::{Claims, Model, Options};
 
-use super::{Fixed, Narrower, ProofError, Subject};
+use super::{Fixed, Narrower, ProofError, Subject, choices_at, hardware_at};
 use crate::study::Extent;
+use crate::study::boxes::MOST_BITS;
 
 /// That the hardware of a model keeps its claims for all geometries of a box: no register overflows, the end point is
 /// reached exactly, every block ends.
@@ -116,6 +117,21 @@ impl Proposition {
     /// It claims nothing.
     pub(crate) fn claims(&self) -> Result<Claims, ProofError> {
         self.model.claims.ok_or(ProofError::NoClaims { model: self.model.name })
+    }
+
+    /// What the model claims for every k of hardware with these options.
+    ///
+    /// # Errors
+    /// It claims nothing.
+    pub(crate) fn claims_for_every_k(&self) -> Result<Claims, ProofError> {
+        let claims = self.claims()?;
+        let hardware = |k| {
+            let own = choices_at(self.model, &claims, &self.options, &self.narrower, k)?;
+            hardware_at(self.model, &claims, &own, k)
+        };
+        // One k is as good as another, but a choice may need more bits than the least have.
+        let any = (1..=MOST_BITS).find_map(|k| hardware(k).ok());
+        Ok(any.map_or(claims, |hardware| claims.for_every_k(&hardware)))
     }
 
     /// The box that is given, or what coordinates of the width that is given for all registers hold.

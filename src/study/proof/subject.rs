@@ -84,7 +84,7 @@ impl Subject {
         };
         let machine = &members[0].2;
         let strobes = strobes(machine);
-        let claims = claims.of_hardware(&members[0].1);
+        let claims = claims.for_every_k(&members[0].1);
         let is_whole = family.ks().iter().copied().eq(LEAST_K..=GREATEST_K) && (1..LEAST_K).all(|k| member(k).is_ok());
         Ok(Subject { model, claims, family, strobes, any_preset: false, is_whole, members })
     }
@@ -108,10 +108,18 @@ impl Subject {
         Hardware { presets, ..hardware }
     }
 
-    /// The same without what says only why a block ends, which widths do not depend on.
+    /// The same of the geometries that a box holds, where it is proved of more.
+    #[must_use]
+    pub fn of_box(self) -> Subject {
+        let own = self.model.claims.map(|claims| claims.of_hardware(&self.members[0].1).geometries);
+        Subject { claims: Claims { geometries: own.unwrap_or(self.claims.geometries), ..self.claims }, ..self }
+    }
+
+    /// The same [of a box](Subject::of_box), without what says only why a block ends, which widths do not depend on.
     #[must_use]
     pub fn of_widths(self) -> Subject {
-        Subject { claims: Claims { rank: |_| None, ends: |_| Vec::new(), ..self.claims }, ..self }
+        let own = self.of_box();
+        Subject { claims: Claims { rank: |_| None, ends: |_| Vec::new(), ..own.claims }, ..own }
     }
 
     /// Remainder registers that start from any value; their load words are numbers of the geometry themselves.
@@ -218,12 +226,10 @@ impl Subject {
         most: usize,
     ) -> Result<usize, ProofError> {
         let (case, _) = self.case(kind)?;
-        let all = self.claims.geometries.curves(k, 4000);
-        let own = all.iter().filter_map(|curve| Some((curve, self.claims.geometries.symbols(kind, curve)?)));
         let mut rows = Vec::new();
-        for (curve, symbols) in own.take(most) {
+        for (curve, symbols) in self.claims.geometries.curves_of(kind, k).take(most) {
             let Some((_, hardware, machine)) = self.members.iter().find(|(other, ..)| *other == k) else { continue };
-            let blocks = machine.encode(hardware, &self.model.words(hardware, curve)?)?;
+            let blocks = machine.encode(hardware, &self.model.words(hardware, &curve)?)?;
             let words = blocks.into_iter().next().unwrap_or_default();
             rows.extend(self::rows(k, &symbols, machine, &words));
         }
@@ -267,3 +273,6 @@ pub fn strobes(machine: &Machine) -> Strobes {
         [machine.load, machine.preset_position, machine.loaded, machine.stepped, machine.done].map(|port| port.net);
     Strobes { load, preset_position, loaded, stepped, done }
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,6 +9,7 @@
 //! answer [2 (1*3) (1*5)]
 //! ```
 //!
+//! After `modes` come the values of the mode registers, and where changes of these are counted, their number.
 //! `answer` is `-` where nothing was shown, a sum of factors and conditions (`factor*row` or `factor*row*row`) in round
 //! brackets, or in square brackets the number of a clause and an answer for each of its alternatives.
 

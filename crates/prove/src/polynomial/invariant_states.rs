@@ -35,7 +35,8 @@ impl<'f> InvariantStates<'f> {
         let system = System::new(family, strobes, case)?;
         let mut invariants = certificate.invariants.clone();
         for own in &mut invariants {
-            let lost: Vec<_> = system.authored.iter().filter(|(_, any)| !own.clauses.contains(any)).collect();
+            let authored = &system.stated(&own.modes).authored;
+            let lost: Vec<_> = authored.iter().filter(|(_, any)| !own.clauses.contains(any)).collect();
             own.clauses.extend(lost.into_iter().map(|(_, any)| any.clone()));
         }
         let mut relevant: Vec<Var> = system.relevant().into_iter().collect();
@@ -96,7 +97,8 @@ impl<'f> InvariantStates<'f> {
             let missed = self.system.goals.iter().find(|(_, any)| !is_any(any, &after));
             return missed.map(|(name, _)| format!("the block ends, but {name} does not hold"));
         }
-        let broken = self.system.authored.iter().find(|(_, any)| !is_any(any, &after));
+        let held: Vec<i128> = self.system.modes.iter().map(|(_, var)| after[var.index()]).collect();
+        let broken = self.system.stated(&held).authored.iter().find(|(_, any)| !is_any(any, &after));
         if let Some((name, any)) = broken {
             return Some(format!("{name} does not hold any more: {}", in_words(&self.system, any)));
         }

@@ -10,7 +10,7 @@ use super::system::System;
 /// What holds in every row of a block that runs, for one combination of the modes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Invariants {
-    /// Values of the mode registers.
+    /// Values of the mode registers, and, where they are counted, how often these have changed.
     pub(crate) modes: Vec<i128>,
     /// Variables and what they equal, as polynomials of other variables.
     pub(crate) equalities: Vec<(Var, Poly)>,
@@ -73,7 +73,7 @@ fn load(system: &System<'_>, all: &[Invariants], oracle: &mut dyn Oracle, findin
         if !path.truth(system.strobes.loaded, 1)? {
             return astray(&mut path, "the edge that loads does not load", findings);
         }
-        row(system, all, &mut path, [1, 0], findings)
+        row(system, all, &mut path, 1, None, findings)
     });
     count(explored, findings);
 }
@@ -109,7 +109,7 @@ fn step(system: &System<'_>, all: &[Invariants], place: usize, oracle: &mut dyn 
                     claims(system, &mut path, clock + 1, findings)?;
                     goals(system, &mut path, clock + 1, findings)
                 } else {
-                    row(system, all, &mut path, [clock + 1, 1], findings)
+                    row(system, all, &mut path, clock + 1, Some(&all[place]), findings)
                 };
             }
         }
@@ -178,18 +178,21 @@ fn claims(system: &System<'_>, path: &mut Path<'_, '_>, clock: usize, findings: 
     Ok(())
 }
 
-/// The invariants hold in the row at this clock, that many steps after the first: 1, or 0 where the block was loaded.
+/// The invariants hold in the row at this clock, a step after a row of those `before`, or where the block was loaded.
 fn row(
     system: &System<'_>,
     all: &[Invariants],
     path: &mut Path<'_, '_>,
-    [clock, steps]: [usize; 2],
+    clock: usize,
+    before: Option<&Invariants>,
     findings: &mut Findings,
 ) -> Result<(), Stop> {
-    let mut modes = Vec::new();
+    let mut held = Vec::new();
     for (register, _) in &system.modes {
-        modes.push(i128::from(path.truth(*register, clock)?));
+        let number = path.unsigned(*register, clock)?.constant();
+        held.push(number.ok_or_else(|| Stop::Unsupported("modes that depend on the geometry".to_owned()))?);
     }
+    let modes = system.after(before.map(|before| &before.modes[..]), held);
     let Some(place) = all.iter().position(|invariants| invariants.modes == modes) else {
         return astray(path, "modes that were never seen", findings);
     };
@@ -199,7 +202,7 @@ fn row(
         clauses.chain(equalities).collect()
     };
     let mut next = next_values(system, path, clock, |var| needed.contains(&var))?;
-    if let Some(var) = system.steps.filter(|_| steps == 0) {
+    if let Some(var) = system.steps.filter(|_| before.is_none()) {
         next[var.index()] = Some(Poly::from(0));
     }
     let value = |var: Var| next.get(var.index()).and_then(Option::as_ref);

@@ -23,7 +23,7 @@ pub struct Row {
     /// What every register holds as it is read, in the order of
     /// [`Design::registers`](stepwave_netlist::Design::registers).
     pub registers: Vec<i128>,
-    /// Steps that the block has taken.
+    /// Steps that the block has taken: 0 in the first row of a run.
     pub steps: i128,
 }
 
@@ -130,7 +130,8 @@ const MOST_OPEN: usize = 20_000;
 /// Rounds of dropping what is not inductive, at most.
 const MOST_ROUNDS: usize = 12;
 
-/// Attempts a proof of a case. `rows` are of running blocks, not of their ends.
+/// Attempts a proof of a case. `rows` are of running blocks, not of their ends: runs one after the other, each from its
+/// first row on.
 ///
 /// # Errors
 /// The case does not fit the netlist.
@@ -161,7 +162,7 @@ pub fn check(family: &Family, strobes: Strobes, case: &Case, certificate: &Certi
     let all = &certificate.invariants;
     let is_alone = |(place, own): (usize, &Invariants)| all[..place].iter().all(|other| other.modes != own.modes);
     let fits = certificate.fits(system.variables.len())
-        && all.iter().all(|own| own.modes.len() == system.modes.len())
+        && all.iter().all(|own| own.modes.len() == system.count_modes())
         && all.iter().enumerate().all(is_alone);
     if !fits {
         let astray =
@@ -180,7 +181,8 @@ pub fn check(family: &Family, strobes: Strobes, case: &Case, certificate: &Certi
     Ok(proof)
 }
 
-/// An invariant of a certificate that does not hold in one of these rows, in words.
+/// An invariant of a certificate that does not hold in one of these rows, in words. Runs are one after the other, each
+/// from its first row on.
 ///
 /// # Errors
 /// The case does not fit the netlist.
@@ -193,10 +195,8 @@ pub fn violated(
 ) -> Result<Option<String>, CaseError> {
     let system = System::new(family, strobes, case)?;
     let name = |var| system.variables.name(var);
-    for row in rows {
-        let values = system.row(family.scale_at(row.k), &row.symbols, &row.registers, row.steps);
+    for (modes, values) in system.modes_of(rows) {
         let value = |poly: &Poly| poly.value(|var| values[var.index()]);
-        let modes: Vec<i128> = system.modes.iter().map(|(_, var)| values[var.index()]).collect();
         let Some(own) = certificate.invariants.iter().find(|own| own.modes == modes) else {
             return Ok(Some(format!("modes {modes:?}")));
         };
@@ -222,7 +222,7 @@ fn drop_broken(system: &System<'_>, invariants: &mut [Invariants], findings: &Fi
         own.clauses.retain(|clause| {
             let broken = findings.broken_clauses.contains(&(place, number));
             number += 1;
-            let author = system.authored.iter().find(|(_, any)| any == clause);
+            let author = system.stated(&own.modes).authored.iter().find(|(_, any)| any == clause);
             if let (true, Some((name, any))) = (broken, author) {
                 authored.push(format!("{name}: {}", in_words(system, any)));
             }
@@ -242,8 +242,7 @@ fn proof(system: &System<'_>, findings: &Findings, certificate: &Certificate, no
     let name = |var| system.variables.name(var);
     let mut invariants = Vec::new();
     for own in &certificate.invariants {
-        let modes = system.modes.iter().zip(&own.modes).map(|((_, var), value)| format!("{} = {value}: ", name(*var)));
-        let mode: String = modes.collect();
+        let mode = system.in_modes(&own.modes);
         invariants
             .extend(own.equalities.iter().map(|(var, poly)| format!("{mode}{} = {}", name(*var), poly.display(name))));
         invariants.extend(own.clauses.iter().map(|any| format!("{mode}{}", in_words(system, any))));
@@ -268,9 +267,7 @@ type Values = (u32, Vec<i128>);
 /// Invariants that the recorded runs suggest, with those of the author.
 fn guess(system: &System<'_>, rows: &[Row]) -> Vec<Invariants> {
     let mut by_modes: Vec<(Vec<i128>, Vec<Values>)> = Vec::new();
-    for row in rows {
-        let values = system.row(system.family.scale_at(row.k), &row.symbols, &row.registers, row.steps);
-        let modes: Vec<i128> = system.modes.iter().map(|(_, var)| values[var.index()]).collect();
+    for ((modes, values), row) in system.modes_of(rows).into_iter().zip(rows) {
         match by_modes.iter_mut().find(|(other, _)| *other == modes) {
             Some((_, group)) => group.push((row.k, values)),
             None => by_modes.push((modes, vec![(row.k, values)])),
@@ -296,9 +293,10 @@ fn guess_in(system: &System<'_>, modes: Vec<i128>, rows: &[Values]) -> Invariant
     let free = scale.into_iter().chain(system.symbols.iter().copied()).chain(bits).chain(system.steps);
     let free: Vec<Var> = free.collect();
     let infer::Found { equalities, zeros } = infer::equalities(&values, &registers, &free, &flags);
-    let authored = system.authored.iter().map(|(_, any)| any.clone());
+    let stated = system.stated(&modes);
+    let authored = stated.authored.iter().map(|(_, any)| any.clone());
     let mut clauses: Vec<Vec<Poly>> = authored.chain(system.rank.iter().map(|rank| vec![rank.clone()])).collect();
-    clauses.extend(system.guesses.iter().cloned());
+    clauses.extend(stated.guesses.iter().cloned());
     clauses.extend(zeros.into_iter().flat_map(|zero| [vec![zero.negated()], vec![zero]]));
     // Bounds that are the same for every k.
     for var in

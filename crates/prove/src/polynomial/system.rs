@@ -4,10 +4,11 @@ use std::collections::HashSet;
 
 use stepwave_netlist::bits::Reading;
 use stepwave_netlist::cells::{Net, Op};
-use stepwave_netlist::formula::{Clause, Formula, Symbol};
+use stepwave_netlist::formula::{ByMode, Clause, Formula, Symbol};
 
 use super::family::{Bits, Family};
 use super::poly::{Poly, Var};
+use super::proof::Row;
 use super::variables::Variables;
 use crate::Strobes;
 
@@ -32,9 +33,14 @@ pub struct Case {
     pub goals: Vec<Clause>,
     /// Never below 0 while the block runs, and less after every step.
     pub rank: Option<Formula>,
-    /// Registers of one bit that change what the others mean: each combination of their values has invariants of its
-    /// own.
+    /// Registers of one or two bits that change what the others mean: each combination of their values has invariants of
+    /// its own.
     pub modes: Vec<String>,
+    /// Names for numbers that are others in other modes; for guesses and for what the netlist's author claims.
+    pub by_mode: Vec<ByMode>,
+    /// How often the modes have changed since the load is a mode too, which no register holds: what holds in a quadrant
+    /// may be something else when an arc comes to it again.
+    pub counts_changes: bool,
     /// Registers of fixed width that are held bit by bit.
     pub bitwise: Vec<String>,
     /// A name for the number of steps that the block has taken, which no register holds.
@@ -86,17 +92,27 @@ pub(crate) struct System<'f> {
     pub(crate) goals: Vec<(String, Vec<Poly>)>,
     pub(crate) rank: Option<Poly>,
     pub(crate) modes: Vec<(Net, Var)>,
+    /// A further mode is how often these have changed from row to row.
+    counts_changes: bool,
     /// The number of steps that the block has taken.
     pub(crate) steps: Option<Var>,
-    /// What else may be an invariant.
-    pub(crate) guesses: Vec<Vec<Poly>>,
+    /// What is stated of every combination of values of the mode registers.
+    stated: Vec<(Vec<i128>, Stated)>,
+}
+
+/// What may hold in each row of some modes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stated {
     /// Invariants of the netlist's author.
     pub(crate) authored: Vec<(String, Vec<Poly>)>,
+    /// What else may be an invariant.
+    pub(crate) guesses: Vec<Vec<Poly>>,
 }
+
+static NOTHING: Stated = Stated { authored: Vec::new(), guesses: Vec::new() };
 
 impl<'f> System<'f> {
     pub(crate) fn new(family: &'f Family, strobes: Strobes, case: &Case) -> Result<System<'f>, CaseError> {
-        let netlist = family.netlist();
         let too_large = || CaseError::TooLarge { case: case.name.clone() };
         let mut variables =
             Variables::new(family.scale_name(), if family.ks().len() == 1 { 1 } else { family.least_scale() });
@@ -115,35 +131,68 @@ impl<'f> System<'f> {
         let (registers, bitwise) = registers(family, case, &mut variables)?;
         let steps = case.steps.clone().map(|name| variables.add(name, Some(Poly::from(0)), None).ok_or_else(too_large));
         let steps = steps.transpose()?;
-        let clauses = |clauses: &[Clause]| -> Result<Vec<(String, Vec<Poly>)>, CaseError> {
-            let clause = |clause: &Clause| {
-                let any = clause.any.iter().map(|formula| poly(formula, case, family, &variables));
-                Ok((clause.name.clone(), any.collect::<Result<_, CaseError>>()?))
-            };
-            clauses.iter().map(clause).collect()
-        };
-        let modes = case.modes.iter().map(|mode| {
-            let var = variables.find(mode);
-            let one = Bits { fixed: 1, grows: false };
-            let found = registers.iter().find(|(net, other)| Some(*other) == var && family.width(*net) == one);
-            found.copied().ok_or_else(|| CaseError::UnknownName { case: case.name.clone(), name: mode.clone() })
-        });
+        let goals = clauses(&case.goals, case, family, &variables, &[])?;
+        let modes = modes(family, case, &variables, &registers)?;
+        let stated = stated(family, case, &variables, &modes)?;
         Ok(System {
             family,
             strobes,
             premises: premises?,
             words,
-            goals: clauses(&case.goals)?,
+            goals,
             rank: case.rank.as_ref().map(|formula| poly(formula, case, family, &variables)).transpose()?,
-            modes: modes.collect::<Result<_, CaseError>>()?,
+            modes,
+            counts_changes: case.counts_changes,
             steps,
-            guesses: clauses(&case.guesses)?.into_iter().map(|(_, any)| any).collect(),
-            authored: clauses(&netlist.invariants)?,
+            stated,
             variables,
             symbols,
             registers,
             bitwise,
         })
+    }
+
+    /// What is stated of these modes.
+    pub(crate) fn stated(&self, modes: &[i128]) -> &Stated {
+        let held = &modes[..self.modes.len().min(modes.len())];
+        self.stated.iter().find(|(own, _)| own == held).map_or(&NOTHING, |(_, stated)| stated)
+    }
+
+    /// Numbers that tell the modes of a row.
+    pub(crate) fn count_modes(&self) -> usize {
+        self.modes.len() + usize::from(self.counts_changes)
+    }
+
+    /// The modes of a row whose mode registers hold these numbers, after a row of the modes `before`, or the first one.
+    pub(crate) fn after(&self, before: Option<&[i128]>, held: Vec<i128>) -> Vec<i128> {
+        let mut modes = held;
+        if self.counts_changes {
+            let changes = before
+                .and_then(<[i128]>::split_last)
+                .map_or(0, |(changes, before)| changes.saturating_add(i128::from(*before != modes[..])));
+            modes.push(changes);
+        }
+        modes
+    }
+
+    /// The modes of the rows of runs, one run after the other, each from its first row on.
+    pub(crate) fn modes_of(&self, rows: &[Row]) -> Vec<(Vec<i128>, Vec<i128>)> {
+        let mut before: Option<Vec<i128>> = None;
+        let one = |row: &Row| {
+            let values = self.row(self.family.scale_at(row.k), &row.symbols, &row.registers, row.steps);
+            let held = self.modes.iter().map(|(_, var)| values[var.index()]).collect();
+            let modes = self.after(before.as_deref().filter(|_| row.steps > 0), held);
+            before = Some(modes.clone());
+            (modes, values)
+        };
+        rows.iter().map(one).collect()
+    }
+
+    /// The modes in words, for what holds in them: `quad = 1: changes = 2: `.
+    pub(crate) fn in_modes(&self, modes: &[i128]) -> String {
+        let names = self.modes.iter().map(|(_, var)| self.variables.name(*var));
+        let names = names.chain(self.counts_changes.then(|| "changes".to_owned()));
+        names.zip(modes).map(|(name, value)| format!("{name} = {value}: ")).collect()
     }
 
     /// The variables of registers on which claims, goals and strobes depend, directly or over some clocks.
@@ -279,19 +328,92 @@ pub(super) fn range(family: &Family, register: Net) -> (Poly, Poly) {
     }
 }
 
-/// A formula as a polynomial of variables.
+/// Most bits of a mode register.
+const MOST_MODE_BITS: i64 = 2;
+
+/// The mode registers.
+fn modes(
+    family: &Family,
+    case: &Case,
+    variables: &Variables,
+    registers: &[(Net, Var)],
+) -> Result<Vec<(Net, Var)>, CaseError> {
+    let mode = |mode: &String| {
+        let var = variables.find(mode);
+        let is_small = |net: Net| !family.width(net).grows && family.width(net).fixed <= MOST_MODE_BITS;
+        let found = registers.iter().find(|(net, other)| Some(*other) == var && is_small(*net));
+        found.copied().ok_or_else(|| CaseError::UnknownName { case: case.name.clone(), name: mode.clone() })
+    };
+    case.modes.iter().map(mode).collect()
+}
+
+/// What the author of the netlist and the case state of every combination of values of the mode registers.
+fn stated(
+    family: &Family,
+    case: &Case,
+    variables: &Variables,
+    modes: &[(Net, Var)],
+) -> Result<Vec<(Vec<i128>, Stated)>, CaseError> {
+    let mut combinations: Vec<Vec<i128>> = vec![Vec::new()];
+    for (net, _) in modes {
+        let count = 1_i128 << family.width(*net).fixed;
+        combinations = combinations
+            .into_iter()
+            .flat_map(|held| (0..count).map(move |value| [&held[..], &[value]].concat()))
+            .collect();
+    }
+    let one = |held: Vec<i128>| {
+        let authored = clauses(&family.netlist().invariants, case, family, variables, &held)?;
+        let guesses = clauses(&case.guesses, case, family, variables, &held)?;
+        Ok((held, Stated { authored, guesses: guesses.into_iter().map(|(_, any)| any).collect() }))
+    };
+    combinations.into_iter().map(one).collect()
+}
+
+/// Clauses as polynomials of variables where the mode registers hold these numbers; of none, in any modes.
+fn clauses(
+    all: &[Clause],
+    case: &Case,
+    family: &Family,
+    variables: &Variables,
+    held: &[i128],
+) -> Result<Vec<(String, Vec<Poly>)>, CaseError> {
+    let clause = |clause: &Clause| {
+        let any = clause.any.iter().map(|formula| poly_in(formula, case, family, variables, held));
+        Ok((clause.name.clone(), any.collect::<Result<_, CaseError>>()?))
+    };
+    all.iter().map(clause).collect()
+}
+
+/// A formula as a polynomial of variables, in any modes.
 fn poly(formula: &Formula, case: &Case, family: &Family, variables: &Variables) -> Result<Poly, CaseError> {
+    poly_in(formula, case, family, variables, &[])
+}
+
+/// A formula as a polynomial of variables where the mode registers hold these numbers.
+fn poly_in(
+    formula: &Formula,
+    case: &Case,
+    family: &Family,
+    variables: &Variables,
+    held: &[i128],
+) -> Result<Poly, CaseError> {
+    let by_mode = |name: &String| {
+        let own = case.by_mode.iter().find(|own| own.name == *name)?;
+        let (_, value) = case.modes.iter().zip(held).find(|(register, _)| **register == own.register)?;
+        own.values.get(usize::try_from(*value).ok()?).copied()
+    };
     let mut sum = Poly::from(0);
     for (product, coefficient) in formula.terms() {
         let mut term = Poly::from(coefficient);
         for name in product {
-            let constant = case.constants.iter().find(|(other, _)| other == name);
+            let constant = case.constants.iter().find(|(other, _)| other == name).map(|(_, number)| *number);
             let factor = if name == "2^k" {
                 family.two_to_k()
             } else if name == "2^(k-1)" {
                 family.half()
-            } else if let Some((_, number)) = constant {
-                Poly::from(*number)
+            } else if let Some(number) = constant.or_else(|| by_mode(name)) {
+                Poly::from(number)
             } else {
                 let var = variables.find(name).filter(|var| *var != Family::SCALE);
                 Poly::from(var.ok_or_else(|| CaseError::UnknownName { case: case.name.clone(), name: name.clone() })?)
