@@ -322,3 +322,51 @@ fn bits_that_are_cleared_twice_or_by_a_shift_there_and_back() {
         }
     }
 }
+
+#[test]
+fn sums_and_flags_whose_operand_is_chosen_by_the_bit_around_them() {
+    let bits = 3;
+    for (op, flag) in BINARY {
+        let width = if flag { 1 } else { bits };
+        for chosen in ["mux %1 %0 %2", "mux %1 %2 %0", "mux %4 %0 %2", "mux %4 %2 %0"] {
+            for operands in ["%0 %5", "%5 %0", "%5 %5"] {
+                let cells = [
+                    format!("{bits} const 0x5"),
+                    "2 slice %0 1".to_owned(),
+                    "1 not %1".to_owned(),
+                    format!("{bits} {chosen}"),
+                    format!("{width} {op} {operands}"),
+                ];
+                for around in ["mux %1 %6 %7", "mux %1 %7 %6", "mux %4 %6 %7", "and %6 %7"] {
+                    let other = format!("{width} slice %0 0");
+                    assert_same(bits, &[&cells[..], &[other, format!("{width} {around}")]].concat());
+                }
+                for bit in ["and %1 %7", "and %7 %4"] {
+                    let low = format!("1 slice %6 {}", width - 1);
+                    assert_same(bits, &[&cells[..], &[low, format!("1 {bit}")]].concat());
+                }
+            }
+        }
+        // A choice in fewer bits, extended.
+        for extend in ["zero-extend %5", "sign-extend %5"] {
+            for operands in ["%0 %6", "%6 %0"] {
+                let cells = [
+                    "2 const 0x2".to_owned(),
+                    "2 slice %0 1".to_owned(),
+                    "1 not %1".to_owned(),
+                    "2 mux %1 %2 %3".to_owned(),
+                    format!("{bits} {extend}"),
+                    format!("{width} {op} {operands}"),
+                    format!("1 slice %7 {}", width - 1),
+                ];
+                for around in ["1 and %1 %8", "1 and %8 %4", "1 mux %1 %8 %4", "1 mux %1 %4 %8"] {
+                    assert_same(bits, &[&cells[..], &[around.to_owned()]].concat());
+                }
+                let whole = [format!("{width} mux %1 %7 %9"), format!("{width} mux %4 %9 %7")];
+                for around in whole {
+                    assert_same(bits, &[&cells[..], &[format!("{width} slice %0 0"), around]].concat());
+                }
+            }
+        }
+    }
+}

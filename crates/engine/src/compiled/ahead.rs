@@ -126,10 +126,13 @@ impl DigestLoop {
         let (layout, words) = (&self.digester.layout, self.digester.words());
         digest.span = layout.span;
         digest.trains.resize(layout.trains.len(), Vec::new());
-        for (train, from) in digest.trains.iter_mut().zip(&layout.trains) {
+        for (index, from) in layout.trains.iter().enumerate() {
+            let (earlier, rest) = digest.trains.split_at_mut(index);
+            let train = &mut rest[0];
             train.clear();
             match *from {
                 TrainFrom::Pattern(word) => train.resize(layout.words, word),
+                TrainFrom::Inverted { of, bits } => train.extend(earlier[of].iter().map(|word| word ^ bits)),
                 TrainFrom::Stored(index) => {
                     train.resize(layout.words, 0);
                     scan::turned_over(self.level, &words[index..], layout.stored, 64 - layout.span, train);

@@ -371,7 +371,10 @@ impl Digesting<'_, '_> {
 
         f.switch_to_block(finished);
         for (index, &value) in sample.iter().enumerate() {
-            let value = self.generator.wide(value);
+            let value = match self.counted(index) {
+                Some(step) => self.counted_on(index, step),
+                None => self.generator.wide(value),
+            };
             self.generator.store_state(index, value);
         }
         let whole = self.constant(1);
@@ -379,6 +382,15 @@ impl Digesting<'_, '_> {
 
         self.generator.f.switch_to_block(further);
         self.jump(word, next.into_iter().chain([narrow, wide, out, left]));
+    }
+
+    /// The value after all rounds of a register that counts so far in each.
+    fn counted_on(&mut self, index: usize, step: i64) -> Value {
+        let rounds = i64::try_from(self.layout.records()).unwrap_or(0);
+        let before = self.generator.load(index, types::I64);
+        let after = self.generator.f.ins().iadd_imm(before, step.wrapping_mul(rounds));
+        let mask = self.constant(self.width(self.plan.registers[index].0).mask());
+        self.generator.f.ins().band(after, mask)
     }
 
     fn constant(&mut self, value: u64) -> Value {

@@ -42,6 +42,8 @@ pub(super) enum TrainFrom {
     /// It is not 0 where a counter is another than in the sample before, which is in a narrow lane. Where `register` is
     /// some, the code does not know what the train's own net, a register, comes to: 0, or this value.
     Moved { counter: Net, lane: usize, register: Option<(usize, u64)> },
+    /// Those of an earlier train with these bits inverted.
+    Inverted { of: usize, bits: u64 },
 }
 
 /// Where the values of a form come from.
@@ -94,7 +96,7 @@ impl Layout {
 }
 
 /// A net is 1 in every sample.
-fn is_const_one(netlist: &Netlist, net: Net) -> bool {
+pub(super) fn is_const_one(netlist: &Netlist, net: Net) -> bool {
     is_one(netlist, net) && !matches!(netlist.cell(net).op, Op::ZeroExtend(_))
 }
 

@@ -56,11 +56,13 @@ impl Generator<'_, '_> {
             Op::AddOverflow(a, b) => {
                 // The sign of the sum differs from both operands'.
                 let sum = self.sum(at(a), at(b));
+                let sum = self.masked(sum, width_of(a));
                 let (x, y) = (self.f.ins().bxor(at(a), sum), self.f.ins().bxor(at(b), sum));
                 self.sign_of_and(x, y, width_of(a))
             }
             Op::SubOverflow(a, b) => {
                 let difference = self.f.ins().isub(at(a), at(b));
+                let difference = self.masked(difference, width_of(a));
                 let (x, y) = (self.f.ins().bxor(at(a), at(b)), self.f.ins().bxor(at(a), difference));
                 self.sign_of_and(x, y, width_of(a))
             }
@@ -194,15 +196,14 @@ impl Generator<'_, '_> {
         bit
     }
 
-    /// The sign bit of `x & y`, as a byte.
+    /// The sign bit of `x & y`, which are zero above their width, as a byte.
     fn sign_of_and(&mut self, x: Value, y: Value, width: Width) -> Value {
         let both = self.f.ins().band(x, y);
         if width == Width::ONE {
-            return self.f.ins().band_imm(both, 1);
+            return both;
         }
         let shifted = self.f.ins().ushr_imm(both, i64::from(width.get()) - 1);
-        let byte = self.f.ins().ireduce(types::I8, shifted);
-        self.f.ins().band_imm(byte, 1)
+        self.f.ins().ireduce(types::I8, shifted)
     }
 
     /// The number in two's complement of all bits of a word; of a bit, of 64.

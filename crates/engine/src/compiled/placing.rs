@@ -7,7 +7,8 @@ use rustc_hash::FxHashSet as HashSet;
 use super::codegen::Phase;
 use super::digesting::{Digesting, Put};
 use super::layout::{
-    FormFrom, NARROW, RangeFrom, SMALL_COUNTER, TrainFrom, bit_of, counting, is_one, moves, moves_with, only_value,
+    FormFrom, NARROW, RangeFrom, SMALL_COUNTER, TrainFrom, bit_of, counting, is_const_one, is_one, moves, moves_with,
+    only_value,
 };
 use crate::digest::{Form, Term};
 use stepwave_netlist::bits::Width;
@@ -26,7 +27,8 @@ impl Digesting<'_, '_> {
             self.layout.forms.push(from);
         }
         for &net in &self.wanted.trains {
-            let from = self.pattern(net).or_else(|| self.moved(net)).unwrap_or_else(|| {
+            let known = self.pattern(net).or_else(|| self.moved(net)).or_else(|| self.inverted(net));
+            let from = known.unwrap_or_else(|| {
                 self.layout.stored += 1;
                 TrainFrom::Stored(self.layout.stored - 1)
             });
@@ -57,12 +59,69 @@ impl Digesting<'_, '_> {
         Some(TrainFrom::Moved { counter, lane: 0, register: (!self.is_read(logic, net)).then_some((index, value)) })
     }
 
+    /// A train that is an earlier one, or its opposite, in each phase: of two axes one of which steps in every round.
+    fn inverted(&self, net: Net) -> Option<TrainFrom> {
+        let stored = self.wanted.trains.iter().zip(&self.layout.trains).enumerate();
+        let stored = stored.filter(|(_, (_, from))| matches!(from, TrainFrom::Stored(_)));
+        stored.into_iter().find_map(|(of, (&other, _))| {
+            let each: Option<Vec<bool>> =
+                (0..self.plan.phases.len()).map(|phase| self.differs(net, other, phase)).collect();
+            let each = each?;
+            let set = (0..self.layout.span).filter(|sample| each[sample % each.len()]);
+            Some(TrainFrom::Inverted { of, bits: set.fold(0, |word, sample| word | 1 << sample) })
+        })
+    }
+
+    /// Whether of two registers one is 0 and one is not in all samples of a phase, or both are alike in all; `None` where
+    /// it is not known.
+    fn differs(&self, net: Net, other: Net, phase: usize) -> Option<bool> {
+        let logic = &self.plan.phases[phase].logic;
+        if let (Some(net), Some(other)) = (logic.constant(net), logic.constant(other)) {
+            return Some((net != 0) != (other != 0));
+        }
+        let before = &self.plan.phases[(phase + self.plan.phases.len() - 1) % self.plan.phases.len()].logic;
+        let [net, other] = [net, other].map(|net| {
+            let (_, next) = self.plan.registers.iter().find(|(register, _)| *register == net)?;
+            bit_of(&before.netlist, before.net(*next))
+        });
+        let (net, other) = (net?, other?);
+        let is_not = |a: Net, b: Net| before.netlist.cell(a).op == Op::Not(b);
+        if net == other { Some(false) } else { (is_not(net, other) || is_not(other, net)).then_some(true) }
+    }
+
+    /// How far a register counts in a round, whatever happens: it need not be evaluated where nothing else depends on it.
+    pub(super) fn counted(&self, index: usize) -> Option<i64> {
+        let (net, next) = self.plan.registers[index];
+        let step = |Phase { logic, fixed }: &Phase| {
+            let (register, next) = (logic.net(net), logic.net(next));
+            let is_one = |by: Net| is_const_one(&logic.netlist, by);
+            let step = match logic.netlist.cell(next).op {
+                _ if next == register => 0,
+                Op::Add(a, b) if a == register && is_one(b) || b == register && is_one(a) => 1,
+                Op::Sub(a, b) if a == register && is_one(b) => -1,
+                _ => return None,
+            };
+            (!fixed.contains_key(&net) && !self.is_read(logic, net)).then_some(step)
+        };
+        let round = self.plan.phases.iter().map(step).sum::<Option<i64>>()?;
+        let is_train = self.wanted.trains.contains(&net);
+        (round != 0 && !is_train && matches!(self.layout_of(net), None | Some(RangeFrom::Counter { .. })))
+            .then_some(round)
+    }
+
+    /// Where the extremes of a register come from, if they are wanted.
+    fn layout_of(&self, net: Net) -> Option<&RangeFrom> {
+        let place = self.wanted.ranges.iter().position(|(register, _)| *register == net)?;
+        self.layout.ranges.get(place)
+    }
+
     /// Something other than its own train depends on a net.
     pub(super) fn is_read(&self, logic: &Simplified, net: Net) -> bool {
         let others = self.plan.registers.iter().filter(|(register, _)| *register != net).map(|(_, next)| *next);
         let trains = self.wanted.trains.iter().copied().filter(|&train| train != net);
         let forms = self.wanted.forms.iter().flat_map(Form::terms).map(|term| term.net);
         let flags = self.wanted.never.iter().chain(self.plan.stops).copied();
+        let flags = flags.filter(|&flag| !self.is_excluded(logic, logic.net(flag)));
         let mut pending: Vec<Net> = others.chain(trains).chain(forms).chain(flags).map(|net| logic.net(net)).collect();
         let mut seen = vec![false; logic.netlist.cells.len()];
         while let Some(net) = pending.pop() {
@@ -191,5 +250,6 @@ impl Digesting<'_, '_> {
         !self.plan.phases[0].fixed.contains_key(&net)
             && !self.plan.phases.iter().all(holds)
             && !self.layout.trains.iter().any(is_unknown)
+            && self.counted(index).is_none()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+use rustc_hash::FxHashMap as HashMap;
 
 use super::codegen::Phase;
 use super::layout::{SMALL_COUNTER, moves};
@@ -158,12 +158,13 @@ impl Specialised {
     /// phase before. Counters that go down are never compared with what they come to at their end: gives those, which have
     /// to be greater than [`END`] in all samples.
     pub(super) fn settle(&mut self, netlist: &Netlist, registers: &[(Net, Net)], never: &[Net]) -> Vec<Net> {
-        let ends = self.ends(netlist, registers);
+        let counters = self.counters(netlist, registers);
+        let ends: Vec<Vec<(Net, Net)>> = self.phases.iter().map(|phase| phase.ends(netlist, &counters)).collect();
         let none = registers.iter().map(|&(net, _)| net).filter(|net| never.contains(net));
         let mut found: Vec<Vec<(Net, u64)>> = vec![none.map(|net| (net, 0)).collect(); self.phases.len()];
-        let mut is_new = !ends.is_empty();
+        let mut is_new = ends.iter().any(|ends| !ends.is_empty());
         while std::mem::take(&mut is_new) || found.iter().any(|nets| !nets.is_empty()) {
-            for (phase, nets) in self.phases.iter_mut().zip(found) {
+            for ((phase, nets), ends) in self.phases.iter_mut().zip(found).zip(&ends) {
                 nets.into_iter().for_each(|(net, value)| {
                     phase.fixed.entry(net).or_insert(value);
                 });
@@ -179,11 +180,11 @@ impl Specialised {
             };
             found = self.phases.iter().enumerate().map(after).collect();
         }
-        ends.into_iter().map(|(counter, _)| counter).collect::<BTreeSet<_>>().into_iter().collect()
+        ends.into_iter().flatten().map(|(counter, _)| counter).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// Counters that go down by at most one at a time, with each comparison for a number up to [`END`].
-    fn ends(&self, netlist: &Netlist, registers: &[(Net, Net)]) -> Vec<(Net, Net)> {
+    /// Counters that go down by at most one at a time.
+    fn counters(&self, netlist: &Netlist, registers: &[(Net, Net)]) -> Vec<Net> {
         let counts_down = |&(net, next): &(Net, Net)| {
             let directions = |Phase { logic, fixed }: &Phase| {
                 let own = moves(&logic.netlist, logic.net(net), logic.net(next))?;
@@ -194,14 +195,38 @@ impl Specialised {
             let each = each.filter(|each| each.iter().any(|[down, _]| *down) && each.iter().all(|[_, up]| !up));
             netlist.width(net).get() > SMALL_COUNTER && each.is_some()
         };
-        let counters: HashSet<Net> = registers.iter().filter(|register| counts_down(register)).map(|of| of.0).collect();
-        let end = |net: Net| matches!(netlist.cell(net).op, Op::Const(number) if number <= END);
-        let compared = |net: Net| match netlist.cell(net).op {
-            Op::Equal(a, b) if counters.contains(&a) && end(b) => Some((a, net)),
-            Op::Equal(a, b) if counters.contains(&b) && end(a) => Some((b, net)),
-            _ => None,
+        registers.iter().filter(|register| counts_down(register)).map(|register| register.0).collect()
+    }
+}
+
+impl Phase {
+    /// Nets that are 0 while a counter is greater than [`END`], with that counter: what compares it, or the number a few
+    /// below it that it goes down to, with a number that it comes to at its end.
+    fn ends(&self, netlist: &Netlist, counters: &[Net]) -> Vec<(Net, Net)> {
+        let new = &self.logic.netlist;
+        let counter = |net: Net| counters.iter().copied().find(|&counter| self.logic.net(counter) == net);
+        let below = |net: Net| match new.cell(net).op {
+            Op::Sub(a, b) => Some((counter(a)?, most(new, b))),
+            _ => Some((counter(net)?, 0)),
         };
-        netlist.nets().filter_map(compared).collect()
+        let compared = |a: Net, b: Net| {
+            let (counter, less) = below(a)?;
+            (most(new, b).saturating_add(less) <= END).then_some(counter)
+        };
+        let ends = netlist.nets().filter_map(|net| match new.cell(self.logic.net(net)).op {
+            Op::Equal(a, b) => Some((compared(a, b).or_else(|| compared(b, a))?, net)),
+            _ => None,
+        });
+        ends.collect()
+    }
+}
+
+/// A number that a net is never greater than.
+fn most(netlist: &Netlist, net: Net) -> u64 {
+    match netlist.cell(net).op {
+        Op::Const(value) => value,
+        Op::ZeroExtend(part) => netlist.width(part).mask(),
+        _ => netlist.width(net).mask(),
     }
 }
 

@@ -34,6 +34,7 @@ pub(super) fn rewrite(builder: &mut Builder, op: Op, width: Width) -> Option<Rew
             _ if complements(builder, a, b) => Some(Constant(0)),
             (None, Some(mask)) => masked_twice(builder, a, mask, width),
             (Some(mask), None) => masked_twice(builder, b, mask, width),
+            (None, None) if width == Width::ONE => both(builder, a, b),
             _ => None,
         },
         Op::Or(a, b) => match (known(builder, a), known(builder, b)) {
@@ -101,6 +102,45 @@ pub(super) fn rewrite(builder: &mut Builder, op: Op, width: Width) -> Option<Rew
     }
 }
 
+/// Two bits that are both 1, of which one chooses an operand of the other.
+fn both(builder: &mut Builder, a: Net, b: Net) -> Option<Rewrite> {
+    [(a, b), (b, a)].into_iter().find_map(|(bit, other)| {
+        let (select, value) = match builder.op(bit) {
+            Op::Not(inner) => (inner, false),
+            _ => (bit, true),
+        };
+        where_it_is(builder, other, select, value).map(|other| As(Op::And(bit, other)))
+    })
+}
+
+/// What a sum, a difference or a flag of two operands is where a select has a value that one of them is chosen by.
+fn where_it_is(builder: &mut Builder, net: Net, select: Net, value: bool) -> Option<Net> {
+    let op = builder.op(net);
+    if !matches!(
+        op,
+        Op::Add(..) | Op::Sub(..) | Op::AddOverflow(..) | Op::SubOverflow(..) | Op::Carry(..) | Op::Borrow(..)
+    ) {
+        return None;
+    }
+    let chosen = |builder: &Builder, operand: Net| match builder.op(operand) {
+        Op::Mux { select: inner, high, low } if inner == select => Some(if value { high } else { low }),
+        _ => None,
+    };
+    let mut any = false;
+    let op = op.map_inputs(|operand| {
+        // An operand is as wide as the sum.
+        let width = builder.width(operand);
+        let other = match builder.op(operand) {
+            Op::ZeroExtend(part) => chosen(builder, part).map(|part| builder.make(Op::ZeroExtend(part), width)),
+            Op::SignExtend(part) => chosen(builder, part).map(|part| builder.make(Op::SignExtend(part), width)),
+            _ => chosen(builder, operand),
+        };
+        any |= other.is_some();
+        other.unwrap_or(operand)
+    });
+    any.then(|| builder.make(op, builder.width(net)))
+}
+
 /// Bits of bits: those of both masks.
 fn masked_twice(builder: &mut Builder, net: Net, mask: u64, width: Width) -> Option<Rewrite> {
     let Op::And(a, b) = builder.op(net) else { return None };
@@ -134,6 +174,11 @@ fn mux(builder: &mut Builder, select: Net, high: Net, low: Net, width: Width) ->
     {
         return Some(As(Op::Mux { select, high, low: shown }));
     }
+    // What chooses an operand by the same select never has the other one.
+    let (with, without) = (where_it_is(builder, high, select, true), where_it_is(builder, low, select, false));
+    if with.is_some() || without.is_some() {
+        return Some(As(Op::Mux { select, high: with.unwrap_or(high), low: without.unwrap_or(low) }));
+    }
     if width == Width::ONE {
         return match (builder.known(high), builder.known(low)) {
             (Some(1), Some(0)) => Some(Same(select)),
@@ -151,17 +196,22 @@ fn mux(builder: &mut Builder, select: Net, high: Net, low: Net, width: Width) ->
             _ => None,
         };
     }
-    // Counting by one under a condition is adding the condition.
-    let counted = |builder: &mut Builder, make: fn(Net, Net) -> Op| {
-        let bit = builder.make(Op::ZeroExtend(select), width);
-        Some(As(make(low, bit)))
+    // Counting by one under a condition, or but for one, is adding the condition.
+    let by_one = |builder: &Builder, sum: Net, other: Net| -> Option<fn(Net, Net) -> Op> {
+        match builder.op(sum) {
+            Op::Add(a, b) if a == other && builder.known(b) == Some(1) => Some(Op::Add),
+            Op::Add(b, a) if a == other && builder.known(b) == Some(1) => Some(Op::Add),
+            Op::Sub(a, b) if a == other && builder.known(b) == Some(1) => Some(Op::Sub),
+            _ => None,
+        }
     };
-    match builder.op(high) {
-        Op::Add(a, b) if a == low && builder.known(b) == Some(1) => counted(builder, Op::Add),
-        Op::Add(b, a) if a == low && builder.known(b) == Some(1) => counted(builder, Op::Add),
-        Op::Sub(a, b) if a == low && builder.known(b) == Some(1) => counted(builder, Op::Sub),
-        _ => None,
-    }
+    let (count, from, bit) = match (by_one(builder, high, low), by_one(builder, low, high)) {
+        (Some(count), _) => (count, low, select),
+        (None, Some(count)) => (count, high, builder.make(Op::Not(select), Width::ONE)),
+        (None, None) => return None,
+    };
+    let bit = builder.make(Op::ZeroExtend(bit), width);
+    Some(As(count(from, bit)))
 }
 
 fn slice(builder: &mut Builder, of: Net, low: u8, width: Width) -> Option<Rewrite> {
