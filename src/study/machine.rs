@@ -181,7 +181,7 @@ pub fn dimensions(
         choices = choices.with(&STEP, Some(step));
     }
     let curves = corners(model, travel);
-    let found = in_box(model, &choices, travel, tick).unwrap_or_else(|| {
+    let mut found = in_box(model, &choices, travel, tick).unwrap_or_else(|| {
         let set = Geometries::these(model, &choices, curves.clone())?;
         let extent = extent(travel)?;
         simulated(model, &choices, &extent, set, tick).map(|found| found.registers)
@@ -193,8 +193,11 @@ pub fn dimensions(
     let choices = match curves.first().map(|curve| model.plan(curve, &least)) {
         Some(Err(ModelError::Widths(_))) => {
             let own = found.iter().filter(|register| !AXES.contains(&register.name.as_str()));
-            let widest = own.map(|register| register.needed).max().and_then(|bits| Width::new(bits.into()).ok());
-            choices.with_all(&WIDTH, widest)
+            let widest = own.map(|register| register.needed).max().unwrap_or(0);
+            for register in found.iter_mut().filter(|register| !AXES.contains(&register.name.as_str())) {
+                (register.needed, register.shown) = (widest, widest);
+            }
+            choices.with_all(&WIDTH, Width::new(widest.into()).ok())
         }
         _ => least,
     };

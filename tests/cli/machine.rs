@@ -66,6 +66,20 @@ fn one_bit_below_fails_as_it_says() {
 }
 
 #[test]
+fn registers_of_one_scale_are_listed_as_wide_as_they_are_built() {
+    // The rates of both axes are as wide as the counter, however short an axis is.
+    let all = json("machine dpm-line --travel 20um,7um --blu 1um --feed 30mm/min --json");
+    let machine = &all["machines"][0];
+    let ran = repeated(&machine["corners"][0]["run"]);
+    for name in ["mx", "my", "q"] {
+        let of = |registers: &Value| {
+            registers.as_array().unwrap().iter().find(|register| register["name"] == name).unwrap().clone()
+        };
+        assert_eq!(of(&machine["registers"])["needed"], of(&ran["registers"])["width"], "{name}");
+    }
+}
+
+#[test]
 fn a_machine_of_three_axes_has_the_methods_of_lines_in_space() {
     let all = json("machine ppc-line dda-line bresenham --travel 20um,15um,9um --blu 0.001mm --feed 10mm/s --json");
     for machine in all["machines"].as_array().unwrap() {

@@ -178,7 +178,9 @@ pub enum ProgramErrorKind {
     #[error("the block moves at a feed, but no F word has been given: write one into this block or one in front of it")]
     NoFeed,
     /// A feed move has no F word under G93.
-    #[error("under G93 every block with G01, G02 or G03 needs its own F word: write one, or go back to G94")]
+    #[error(
+        "under G93 every block with G01, G02, G03, G05 or G05.1 needs its own F word: write one, or go back to G94"
+    )]
     NoInverseTime,
     /// A feed is 0 or negative.
     #[error("invalid feed {word}, which must be more than 0: correct the F word")]
@@ -328,8 +330,8 @@ pub enum ProgramErrorKind {
     },
     /// The first control point of a curve is missing.
     #[error(
-        "{word} belongs to {name}, which needs I and J from its start to its control point: G05 needs both, or neither where \
-         the block before is a G05, and G05.1 one that is not 0"
+        "{word}: {name} needs I and J from its start to its control point, G05 both, or neither where the block before is a \
+         G05, and G05.1 one that is not 0"
     )]
     SplineHandle {
         /// The word.
@@ -338,7 +340,7 @@ pub enum ProgramErrorKind {
         name: &'static str,
     },
     /// The second control point of a G05 is missing.
-    #[error("{word} belongs to G05, which needs both P and Q, from its end to its second control point: give both")]
+    #[error("{word}: a G05 needs both P and Q, from its end to its second control point: give both")]
     SplineEndHandle {
         /// The word.
         word: String,

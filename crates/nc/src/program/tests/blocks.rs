@@ -75,7 +75,8 @@ fn inverse_time_needs_an_f_in_every_feed_block_and_a_change_of_mode_clears_f() {
     let feeds: Vec<Feed> = timed.iter().map(|one| one.feed).collect();
     assert_eq!(feeds, [Feed::Inverse(2.0), Feed::Inverse(0.5), Feed::Rapid, Feed::PerMinute(100.0)]);
     assert_eq!(moves("G20 G93\nG1 X1 F2")[0].feed, Feed::Inverse(2.0), "an inverse time is no length");
-    let missing = "under G93 every block with G01, G02 or G03 needs its own F word: write one, or go back to G94";
+    let missing =
+        "under G93 every block with G01, G02, G03, G05 or G05.1 needs its own F word: write one, or go back to G94";
     assert_eq!(fault("G93 G1 X1 F2\n X2"), (2, 2, missing.into()));
     let none =
         "the block moves at a feed, but no F word has been given: write one into this block or one in front of it";
