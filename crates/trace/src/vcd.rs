@@ -6,6 +6,8 @@
 //! Samples come in blocks, in which `Moves` finds the nets that change; a row costs what changes in it.
 
 mod background;
+#[cfg(test)]
+mod tests;
 mod text;
 
 use std::io::{self, Write};
@@ -21,15 +23,15 @@ use super::moves::{Moves, SPAN};
 use super::probe::{Probe, Role};
 use super::timescale::ClockTime;
 use super::wide::Wide;
-use background::{Background, Parts};
+use background::{Background, Buffer, Parts};
 use stepwave_netlist::Rows;
 use stepwave_netlist::cells::Format;
 use text::{Line, Stamps, Tail, WINDOW};
 
 pub(super) use text::digits;
 
-/// Bytes gathered before they go to the output.
-const BUFFER: usize = 128 * 1024;
+/// Bytes of every part that goes to the output, but the last: whole pages of a file.
+const BUFFER: usize = 512 * 1024;
 
 /// What the header says.
 #[derive(Clone, Debug)]
@@ -68,8 +70,10 @@ pub struct VcdBody<W: Write + Send + 'static> {
 /// The text of samples, which is the same whatever it is written to: compiled once, with this crate.
 struct Text {
     /// Room for `BUFFER` bytes and the longest row after them; the first `filled` bytes wait to be written.
-    buffer: Vec<u8>,
+    buffer: Buffer,
     filled: usize,
+    /// What is left of a row when its part goes to the output.
+    rest: Vec<u8>,
     changes: Vec<Change>,
     level: Level,
     moves: Moves,
@@ -114,7 +118,7 @@ impl VcdHeader<'_> {
     ///
     /// # Errors
     /// The output cannot be written.
-    pub fn write<W: Write + Send + 'static>(&self, mut out: W) -> io::Result<VcdBody<W>> {
+    pub fn write<W: Write + Send + 'static>(&self, out: W) -> io::Result<VcdBody<W>> {
         let mut head = Writer::new(Vec::new());
         // The crate spreads these two over three lines, which some readers do not take.
         writeln!(head.writer(), "$version stepwave {} $end", env!("CARGO_PKG_VERSION"))?;
@@ -125,15 +129,15 @@ impl VcdHeader<'_> {
         head.timescale(self.time.magnitude(), self.time.unit())?;
         let Declared { clk, changes, wide } = self.declarations(&mut head)?;
         head.enddefinitions()?;
-        out.write_all(head.writer())?;
         let longest: usize = changes.iter().map(|change| change.line.len()).sum();
         // A `b`, the digits, and a tail.
         let longest = longest + wide.words().map(|(_, width)| width + WINDOW).sum::<usize>();
         let ticks = self.time.ticks();
-        let text = Text {
+        let mut text = Text {
             // Two stamps and `$dumpvars` fit into a window too.
-            buffer: vec![0; BUFFER + longest + 3 * WINDOW],
+            buffer: Buffer::new(BUFFER + longest + 3 * WINDOW),
             filled: 0,
+            rest: Vec::new(),
             level: Level::new(),
             moves: Moves::new(changes.iter().map(|change| change.column).collect()),
             changes,
@@ -144,7 +148,12 @@ impl VcdHeader<'_> {
             ticks,
             last_clock: None,
         };
-        Ok(VcdBody { out: Background::new(out), text })
+        let mut out = Background::new(out);
+        for part in head.writer().chunks(WINDOW) {
+            text.text(part);
+            text.spill(&mut out)?;
+        }
+        Ok(VcdBody { out, text })
     }
 
     /// Declares the clock and every probe in its scope.
@@ -225,6 +234,7 @@ impl Text {
         let (first, last) = (rows.clock(range.start), rows.clock(range.end - 1));
         if self.seek(first) {
             self.first(first, rows, range.start);
+            self.spill(out)?;
             (self.last_clock, range.start) = (Some(first), range.start + 1);
         }
         for start in range.clone().step_by(SPAN) {
@@ -330,12 +340,15 @@ impl Text {
         self.filled += text.len();
     }
 
-    /// Writes the buffer if it is full.
+    /// Writes as much of the buffer as are whole parts.
     #[inline]
     fn spill(&mut self, out: &mut dyn Parts) -> io::Result<()> {
-        if self.filled >= BUFFER {
-            out.part(&mut self.buffer, self.filled)?;
-            self.filled = 0;
+        while self.filled >= BUFFER {
+            self.rest.clear();
+            self.rest.extend_from_slice(&self.buffer[BUFFER..self.filled]);
+            out.part(&mut self.buffer, BUFFER)?;
+            self.filled = self.rest.len();
+            self.buffer[..self.filled].copy_from_slice(&self.rest);
         }
         Ok(())
     }
