@@ -250,14 +250,18 @@ impl Text {
     /// Writes the rows scanned last.
     #[inline(always)]
     fn scanned<S: Simd>(&mut self, simd: S, rows: &Rows, range: Range<usize>, out: &mut dyn Parts) -> io::Result<()> {
+        // Calls in this loop would have all constants loaded again.
+        let sparse = rows.is_sparse();
         for row in range.clone() {
-            if rows.is_sparse() {
+            if sparse {
                 let clock = rows.clock(row);
                 self.seek(clock);
                 self.last_clock = Some(clock);
             }
             self.row(simd, rows, row, row - range.start);
-            self.spill(out)?;
+            if self.filled >= BUFFER {
+                self.spill(out)?;
+            }
         }
         Ok(())
     }
@@ -341,7 +345,7 @@ impl Text {
     }
 
     /// Writes as much of the buffer as are whole parts.
-    #[inline]
+    #[cold]
     fn spill(&mut self, out: &mut dyn Parts) -> io::Result<()> {
         while self.filled >= BUFFER {
             self.rest.clear();
