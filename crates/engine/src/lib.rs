@@ -67,7 +67,7 @@ pub struct Idle {
 pub enum Stop {
     /// The clocks asked for are done.
     Clocks,
-    /// No room for a further row.
+    /// No room for a further row, or for a further round of native code, of at most eight.
     RowsFull,
     /// The net `Watch::stops[_]` of this index is 1 in the last sample.
     Net(usize),

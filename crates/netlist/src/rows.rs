@@ -46,7 +46,7 @@ pub struct Rows {
     first_clock: u64,
     /// Column `c` begins at `c * stride`. After the last one come the clocks of sparse rows.
     values: Vec<u64>,
-    /// Columns whose whole room holds one value, and that value; empty where there is none.
+    /// Columns whose whole room holds one value, and that value; may be empty where there is none.
     still: Vec<Option<u64>>,
     sparse: bool,
     /// What columns came to in samples that were passed over.
@@ -266,13 +266,16 @@ impl Rows {
         if self.still(column) == Some(value) {
             return;
         }
-        // No more than `room`, which is a usize.
-        let rows = usize::try_from(rows).unwrap_or(0);
-        self.values[column * self.stride + self.len..][..rows].fill(value);
-        let whole = self.len == 0 && rows == self.capacity;
-        if whole || !self.still.is_empty() {
-            self.still.resize(self.columns, None);
-            self.still[column] = whole.then_some(value);
+        let place = &mut self.values[column * self.stride..][..self.capacity];
+        let (held, room) = place.split_at_mut(self.len);
+        self.still.resize(self.columns, None);
+        if held.iter().all(|&before| before == value) {
+            room.fill(value);
+            self.still[column] = Some(value);
+        } else {
+            // No more than `room`, which is a usize.
+            room[..usize::try_from(rows).unwrap_or(0)].fill(value);
+            self.still[column] = None;
         }
     }
 
@@ -299,14 +302,15 @@ impl Rows {
             self.first_clock = clock;
         }
         debug_assert!(self.sparse || self.first_clock + self.len as u64 == clock, "a row of another time");
-        if !self.still.is_empty() {
-            self.still.clear();
-        }
         if self.sparse {
             self.values[self.columns * self.stride + self.len] = clock;
         }
         for (column, place) in self.values[self.len..].iter_mut().step_by(self.stride).take(self.columns).enumerate() {
-            *place = value(column);
+            let value = value(column);
+            *place = value;
+            if let Some(still) = self.still.get_mut(column).filter(|still| **still != Some(value)) {
+                *still = None;
+            }
         }
         self.len += 1;
     }
@@ -383,16 +387,34 @@ mod tests {
         // Fewer rows of the same value, then others of another one.
         assert_eq!(call(&mut rows, &[0, 1], 5, 3), (whole(5), [Some(5), Some(6), None], true));
         rows.clear();
-        assert_eq!(call(&mut rows, &[0, 1], 0, 3), (whole(0), [None, None, None], false));
+        assert_eq!(call(&mut rows, &[0, 1], 0, 3), (whole(0), [Some(0), Some(1), None], false));
         rows.clear();
         assert_eq!(call(&mut rows, &[0, 1], 0, 4), (whole(0), [Some(0), Some(1), None], false));
         rows.clear();
         // A loop that writes column 1 too.
         assert_eq!(call(&mut rows, &[0], 0, 4).1, [Some(0), None, None]);
         rows.clear();
-        rows.push(9, |_| 3);
+        // Samples that are recorded one by one: the same value, and another.
+        rows.push(9, |_| 0);
+        assert_eq!([0, 1, 2].map(|column| rows.still(column)), [Some(0), None, None]);
+        rows.push(10, |_| 3);
         assert_eq!([0, 1, 2].map(|column| rows.still(column)), [None; 3]);
-        assert_eq!(rows.extremes(0, 0).map(|seen| (seen.least, seen.greatest)), Some((3, 3)));
+        assert_eq!(rows.extremes(0, 0).map(|seen| (seen.least, seen.greatest)), Some((0, 3)));
+        // What was recorded before is not of the value that the others rest at, and after it is.
+        rows.spare(&[0, 1]);
+        rows.fill(0, 1, 3);
+        rows.fill(1, 2, 5);
+        rows.grow(11, 1);
+        assert_eq!(rows.still(0), None);
+        assert_eq!(rows.column(0), [0, 3, 3]);
+        rows.clear();
+        rows.push(12, |column| column as u64);
+        rows.spare(&[0, 1]);
+        (0..2).for_each(|column| rows.fill(column, 2, column as u64));
+        rows.grow(13, 2);
+        rows.push(15, |_| 1);
+        assert_eq!([0, 1].map(|column| rows.still(column)), [None, Some(1)]);
+        assert_eq!([0, 1].map(|column| rows.column(column).to_vec()), [vec![0, 0, 0, 1], vec![1; 4]]);
     }
 
     #[test]

@@ -387,6 +387,12 @@ impl Engine for Compiled {
                         }
                         continue;
                     }
+                    // The next block begins with a round: its last clocks would be those of the word engine in each block.
+                    Some(variant)
+                        if bounded && !rows.is_empty() && rows.room() < self.variants[variant].native.phases() =>
+                    {
+                        return Stop::RowsFull;
+                    }
                     None if self.quiet >= self.warm_up && self.history.is_full() => {
                         if !self.will_fit(rows.stride()) {
                             self.compile(rows.stride(), self.period());
