@@ -3,6 +3,7 @@
 
 pub(crate) mod identity;
 mod kept;
+mod room;
 pub(crate) mod temporary;
 
 use std::borrow::Cow;
@@ -11,6 +12,7 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use self::identity::{Identity, folder_of, is_shareable, numbers, resolved};
+use self::room::Room;
 use self::temporary::Temporary;
 use crate::Error;
 use crate::stop;
@@ -174,7 +176,7 @@ impl Outputs {
             // A pipe or a device such as /dev/null is written as it is; renaming would replace it.
             Ok(found) if !found.is_file() => {
                 let file = File::options().write(true).open(&target).map_err(|error| cannot_write(path, &error))?;
-                Ok(Named { path: path.to_owned(), file })
+                Ok(Named::new(path, file))
             }
             // Such as a name that is too long: better said now than when other files have their final names already.
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(cannot_write(path, &error)),
@@ -183,7 +185,7 @@ impl Outputs {
                 if let Ok(found) = found {
                     keep_owner_and_mode(&file, &found);
                 }
-                Ok(Named { path: path.to_owned(), file })
+                Ok(Named::new(path, file))
             }
         }
     }
@@ -281,9 +283,14 @@ fn folds_case(path: &Path) -> bool {
 pub(crate) struct Named {
     path: PathBuf,
     file: File,
+    room: Room,
 }
 
 impl Named {
+    fn new(path: &Path, file: File) -> Named {
+        Named { path: path.to_owned(), file, room: Room::default() }
+    }
+
     fn named<T>(&self, result: io::Result<T>) -> io::Result<T> {
         result.map_err(|error| match error.kind() {
             io::ErrorKind::BrokenPipe => stop::reader_left(),
@@ -294,19 +301,21 @@ impl Named {
 
 impl Write for Named {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        self.room.ask(&self.file, buffer.len());
         let result = self.file.write(buffer);
+        self.room.take(*result.as_ref().unwrap_or(&0));
         self.named(result)
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        let result = self.file.flush();
+        let result = self.room.give_back(&self.file).and_then(|()| self.file.flush());
         self.named(result)
     }
 }
 
 impl Seek for Named {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        let result = self.file.seek(to);
+        let result = self.room.give_up(&self.file).and_then(|()| self.file.seek(to));
         self.named(result)
     }
 }
