@@ -23,13 +23,17 @@
 use stepwave_nc::{Arc, Crossing};
 use stepwave_netlist::dsl::Scope;
 
+use crate::claims::{Claims, Region};
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::{Interpolates, Method};
 use crate::model::Model;
 use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
-use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, LeastDeviation, POSITION, QUAD, XI_YI};
+use crate::parts::{
+    ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, LeastDeviation, POSITION, QUAD, XI_YI, ends_ahead,
+    growing, shrinking,
+};
 use crate::plan::Plan;
 use crate::registers::N;
 use crate::{sizes, words};
@@ -49,7 +53,7 @@ pub static MODEL: Model = Model {
         &POSITION,
     ],
     options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
-    claims: None,
+    claims: Some(Claims { guesses: |hardware, _| ends_ahead(hardware), ..Claims::of(Region::QuadrantArcs) }),
     interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
     hardware,
 };
@@ -69,6 +73,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let f = DeviationAccumulator::new(m, hardware.bits(F));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
 
+    invariants(m);
+
     // Judge: F after each of the three steps, and the least of their magnitudes.
     let wide = f.value().bits().max(arc.coordinates()[0].bits() + 2) + 2;
     let least = LeastDeviation::new(m, f.value(), arc.gains(wide));
@@ -83,4 +89,11 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
     // Coordinates, end point.
     arc.close(beat, taken);
+}
+
+/// A diagonal step lands between two others, nearer to 0 than both: |F| is at most half of what parts it from them, which
+/// is less than the coordinate that it leaves or comes to. A step along an axis comes from F on the other side.
+fn invariants(m: Scope<'_>) {
+    m.between_steps("f_from_below", [shrinking(), growing()].map(|c| F.value() + c));
+    m.between_steps("f_from_above", [shrinking(), growing()].map(|c| c - 1 - F.value()));
 }

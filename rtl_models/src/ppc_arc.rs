@@ -23,7 +23,7 @@
 
 use stepwave_nc::{Arc, Crossing};
 use stepwave_netlist::dsl::Scope;
-use stepwave_netlist::formula::{Clause, Formula, name};
+use stepwave_netlist::formula::{Clause, name};
 
 use crate::claims::crossing::AXIS;
 use crate::claims::{Claims, Kind, Region};
@@ -34,7 +34,8 @@ use crate::interpolates::{Interpolates, Method};
 use crate::model::Model;
 use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WIDTH};
 use crate::parts::{
-    ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, POSITION, QUAD, XI_YI, judged_by_sign, step_of_circle,
+    ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, POSITION, QUAD, XI_YI, growing, judged_by_sign,
+    shrinking, step_of_circle,
 };
 use crate::plan::Plan;
 use crate::registers::N;
@@ -92,18 +93,6 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
     // Coordinates, end point.
     arc.close(beat, taken);
-}
-
-/// The coordinate that shrinks.
-fn shrinking() -> Formula {
-    let [x, y] = [0, 1].map(|axis| XI_YI.of(axis).value());
-    y * name("x_grows") + x.clone() - x * name("x_grows")
-}
-
-/// The coordinate that grows.
-fn growing() -> Formula {
-    let [x, y] = [0, 1].map(|axis| XI_YI.of(axis).value());
-    x * name("x_grows") + y.clone() - y * name("x_grows")
 }
 
 /// F stays between what a step at 0 and a step at -1 leave; whether an axis that is reached is crossed already or not.

@@ -23,12 +23,13 @@
 use stepwave_nc::{Arc, Crossing};
 use stepwave_netlist::dsl::Scope;
 
+use crate::claims::{Claims, Region};
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::{Interpolates, Method};
 use crate::model::Model;
 use crate::options::BEATS;
-use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, F};
+use crate::parts::{ArcFrame, BeatRing, Block, DeviationAccumulator, F, ends_ahead, growing, shrinking};
 use crate::plan::Plan;
 use crate::{ppc_arc, sizes, words};
 
@@ -40,7 +41,7 @@ pub static MODEL: Model = Model {
     source: "矢量判别法; no primary source survives: a definition of this project",
     registers: ppc_arc::MODEL.registers,
     options: ppc_arc::MODEL.options,
-    claims: None,
+    claims: Some(Claims { guesses: |hardware, _| ends_ahead(hardware), ..Claims::of(Region::QuadrantArcs) }),
     interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
     hardware,
 };
@@ -59,6 +60,8 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
     let beat = BeatRing::new(m, hardware.get(&BEATS), block.busy);
     let f = DeviationAccumulator::new(m, hardware.bits(F));
     let arc = ArcFrame::new(m, &block, hardware, beat.judge);
+
+    invariants(m);
 
     // Judge: the octant's axis vector; the other axis only joins it on the diagonal.
     let [x, y] = arc.coordinates();
@@ -82,4 +85,16 @@ fn hardware(m: Scope<'_>, hardware: &Hardware) {
 
     // Coordinates, end point.
     arc.close(beat, taken);
+}
+
+/// F stays between what a step at 0 and a step at -1 leave; in the first octant of a quadrant the diagonal is the step
+/// inwards, which takes less off it. Whether an axis that is reached is crossed already or not.
+fn invariants(m: Scope<'_>) {
+    let in_second_octant = growing() - shrinking() - 1;
+    m.between_steps("f_from_below", [F.value() + 2 * shrinking() + 1]);
+    m.between_steps("f_from_below_at_first", [F.value() + 2 * shrinking() - 2 * growing() + 2, in_second_octant]);
+    m.between_steps("f_from_above", [2 * growing() - 2 - F.value(), -F.value(), -growing()]);
+    m.between_steps("f_after_an_axis", [growing() - 1, 2 * shrinking() - 3 - F.value(), -F.value()]);
+    m.between_steps("f_on_an_axis", [growing() - 1, F.value() + 1]);
+    m.between_steps("off_the_centre", [growing() - 1, F.value(), shrinking() - 1]);
 }

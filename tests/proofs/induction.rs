@@ -37,7 +37,7 @@ fn held(step: &CounterexampleToInduction, register: &str) -> i128 {
 #[test]
 fn no_state_that_the_invariants_of_a_proof_allow_shows_anything_wrong() {
     for choices in beats() {
-        for model in ["ppc-line", "ppc-arc", "cim-line", "mindev-line", "vector-line"] {
+        for model in ["ppc-line", "ppc-arc", "cim-line", "mindev-line", "vector-line", "mindev-arc", "vector-arc"] {
             let subject = subject(model, &choices);
             let kind = subject.kinds().remove(0);
             let InductionSearch { found, tried } = searched(&subject, &kind);

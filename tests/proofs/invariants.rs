@@ -21,7 +21,7 @@ fn curves(model: &Model) -> Vec<Curve> {
         name if name.ends_with("arc") => {
             let mut points =
                 vec![[5, 0], [4, 3], [3, 4], [0, 5], [-3, 4], [-5, 0], [0, -5], [25, 0], [15, 20], [7, 24], [1, 0]];
-            if name == "ppc-arc" {
+            if ["ppc-arc", "mindev-arc", "vector-arc"].contains(&name) {
                 // Circles that cross no axis on a whole number.
                 points.extend([[1, 1], [-1, 1], [2, 2], [-2, -2], [2, 3], [-3, 2], [3, 3], [1, -4], [4, 1], [7, 8]]);
             }
@@ -88,8 +88,8 @@ fn what_was_proved_holds_in_runs_of_widths_that_nothing_was_learnt_from() {
     let signed = Options::default().with(&FORM, Form::Signed);
     let post = Options::default().with(&WEIGHTS, Weights::Post);
     let total = Options::default().with(&END_POINT, EndPoint::Total);
-    let by_default =
-        ["ppc-line", "ppc-arc", "dda-line", "cim-arc", "mindev-line"].map(|model| (model, Options::default()));
+    let by_default = ["ppc-line", "ppc-arc", "dda-line", "cim-arc", "mindev-line", "mindev-arc", "vector-arc"]
+        .map(|model| (model, Options::default()));
     for (model, choices) in by_default.into_iter().chain([("ppc-line", signed), ("cim-arc", post), ("dda-line", total)])
     {
         // Arcs across axes are looked at by themselves.

@@ -20,7 +20,9 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use stepwave::study::proof::{Counterexample, Fault, Narrower, Subject, search};
 use stepwave_models::options::{BEATS, COMPARE, END_POINT, FORM, PRESET, WEIGHTS, WIDTH};
-use stepwave_models::{Beats, EndPoint, Form, Kind, Options, Preset, Weights, find};
+use stepwave_models::{
+    Beats, Claims, EndPoint, Form, Interpolates, Kind, Method, Model, Options, Preset, Weights, find,
+};
 use stepwave_netlist::formula::{Clause, name};
 use stepwave_prove::{Certificate, Proof};
 
@@ -78,6 +80,61 @@ fn arcs_inside_a_quadrant_are_proved_for_every_width_in_both_directions() {
             let choices = choices.clone().with(&WEIGHTS, weights);
             assert_proved("cim-arc", &subject("cim-arc", &choices), true);
         }
+    }
+    for (choices, end_point) in beats().into_iter().zip([EndPoint::Total, EndPoint::PerAxis]) {
+        assert_diagonal_steps_are_proved(&choices.with(&END_POINT, end_point));
+    }
+}
+
+#[test]
+#[ignore = "exhaustive"]
+fn arcs_with_diagonal_steps_are_proved_by_both_counters_in_four_beats_and_in_one() {
+    for (choices, end_point) in beats().into_iter().zip([EndPoint::PerAxis, EndPoint::Total]) {
+        assert_diagonal_steps_are_proved(&choices.with(&END_POINT, end_point));
+    }
+}
+
+fn assert_diagonal_steps_are_proved(choices: &Options) {
+    for model in DIAGONAL {
+        assert_proved(model, &subject(model, choices), true);
+    }
+}
+
+/// Arcs with diagonal steps.
+const DIAGONAL: [&str; 2] = ["mindev-arc", "vector-arc"];
+
+/// With one pulse left of both axes a diagonal step would count one too many.
+#[test]
+fn an_end_point_is_not_proved_without_what_diagonal_steps_need_of_it() {
+    for model in DIAGONAL {
+        let model = find(model).unwrap();
+        let claims = Claims { guesses: |_, _| Vec::new(), ..model.claims.unwrap() };
+        let Interpolates::Arcs(Method { plan, load }) = model.interpolates else { panic!("{model:?}") };
+        let interpolates = Interpolates::Arcs(Method { plan, load });
+        let without = Box::leak(Box::new(Model { claims: Some(claims), interpolates, ..*model }));
+        let subject = Subject::new(without, &Options::default(), &Narrower::new()).unwrap();
+        let (proof, _) = subject.prove(&subject.kinds()[0]).unwrap();
+        assert!(proof.violated.iter().any(|(claim, _)| subject.claim(*claim).ends_with(".e")), "{proof:#?}");
+    }
+}
+
+/// With a clause less, and with one that says 9 more, which is wrong of small circles.
+#[test]
+fn a_changed_certificate_of_diagonal_steps_is_refused() {
+    for model in DIAGONAL {
+        let (subject, text) = certified(model);
+        let kind = subject.kinds().remove(0);
+        let is_safe = |text: &str| subject.check(&kind, &text.parse::<Certificate>().unwrap()).unwrap().is_safe();
+        assert!(is_safe(&text), "{model}");
+        let clauses: Vec<&str> = text.lines().filter(|line| line.starts_with("clause")).collect();
+        assert!(clauses.len() > 6, "{model}: {clauses:?}");
+        for clause in clauses {
+            let tighter = clause.replace(" | ", " - 9 | ") + " - 9";
+            assert!(!is_safe(&text.replacen(clause, &tighter, 1)), "{model}: {clause}");
+            let gone = text.replacen(&format!("{clause}\n"), "", 1);
+            assert!(!is_safe(&gone), "{model} without {clause}");
+        }
+        assert!(!is_safe(&text.replacen("\nanswer (", "\nanswer -\nanswer (", 1)), "{model}");
     }
 }
 
@@ -149,7 +206,9 @@ fn refuted(model: &str, choices: &Options, narrower: &Narrower) -> Option<Counte
 
 #[test]
 fn a_deviation_one_bit_narrower_is_refuted_by_a_run_and_never_proved() {
-    for model in ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line"] {
+    for model in
+        ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line"].into_iter().chain(DIAGONAL)
+    {
         let found = refuted(model, &Options::default(), &narrower("f"));
         assert_eq!(found.map(|example| example.fault), Some(Fault::Overflow), "{model}");
     }
@@ -190,7 +249,8 @@ fn a_position_counter_without_its_sign_is_never_proved() {
 
 #[test]
 fn nothing_is_refuted_at_the_widths_that_are_proved() {
-    for model in ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line", "dda-line", "dda-arc"] {
+    let others = ["ppc-line", "ppc-arc", "cim-line", "cim-arc", "mindev-line", "vector-line", "dda-line", "dda-arc"];
+    for model in others.into_iter().chain(DIAGONAL) {
         assert_eq!(refuted(model, &Options::default(), &Narrower::new()), None, "{model}");
     }
 }
@@ -209,6 +269,8 @@ fn an_end_point_that_is_one_off_is_not_proved() {
         ("ppc-arc", "xt", &default),
         ("cim-arc", "xt", &default),
         ("cim-arc", "xt", &pre),
+        ("mindev-arc", "xt", &default),
+        ("vector-arc", "xt", &default),
     ] {
         let subject = subject(model, choices);
         let mut kind = subject.kinds().remove(0);
@@ -234,8 +296,10 @@ fn off_its_circle(model: &str, choices: &Options) -> Proof {
 #[ignore = "exhaustive"]
 fn an_arc_that_ends_off_its_circle_is_not_proved_with_one_counter() {
     let total = Options::default().with(&END_POINT, EndPoint::Total);
-    let proof = off_its_circle("ppc-arc", &total);
-    assert!(!proof.is_safe(), "{proof:#?}");
+    for model in ["ppc-arc"].into_iter().chain(DIAGONAL) {
+        let proof = off_its_circle(model, &total);
+        assert!(!proof.is_safe(), "{model}: {proof:#?}");
+    }
 }
 
 #[test]
@@ -270,12 +334,18 @@ fn unequal_presets_bring_an_arc_to_a_stand() {
     assert_eq!(outcome.reached, [0, 4]);
 }
 
+/// A model with the certificate of its first kind of geometry.
+fn certified(model: &str) -> (Subject, String) {
+    let subject = subject(model, &Options::default());
+    let (proof, certificate) = subject.prove(&subject.kinds()[0]).unwrap();
+    assert!(proof.is_safe(), "{proof:#?}");
+    (subject, certificate.to_string())
+}
+
 #[test]
 fn a_certificate_that_was_changed_is_refused() {
-    let subject = subject("ppc-line", &Options::default());
+    let (subject, text) = certified("ppc-line");
     let kind = subject.kinds().remove(0);
-    let (_, certificate) = subject.prove(&kind).unwrap();
-    let text = certificate.to_string();
     let changed = |from: &str, to: &str| {
         assert!(text.contains(from), "{from}");
         let certificate: Certificate = text.replacen(from, to, 1).parse().unwrap();

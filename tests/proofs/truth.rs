@@ -55,13 +55,15 @@ fn assert_true(ran: &Ran, facts: Facts, what: &str) {
     assert!(!(proved("every block ends") && facts.endless), "{what}: {facts:?} {ran:?}");
 }
 
-const MODELS: [(&str, &[&str]); 6] = [
+const MODELS: [(&str, &[&str]); 8] = [
     ("ppc-line", &["f", "x"]),
     ("cim-line", &["f"]),
     ("mindev-line", &["e"]),
     ("bresenham", &["cnt"]),
     ("dda-line", &["x"]),
     ("ppc-arc", &["x"]),
+    ("mindev-arc", &["f", "e"]),
+    ("vector-arc", &["f", "e"]),
 ];
 const MODES: [(&str, OnOverflow); 3] =
     [("trap", OnOverflow::Trap), ("wrap", OnOverflow::Wrap), ("saturate", OnOverflow::Saturate)];

@@ -35,6 +35,8 @@ fn the_least_widths_of_the_methods_are_those_of_the_literature() {
         ("dda-arc", Options::default(), vec![("jvx", 0), ("jry", 0), ("ex", 0)]),
         ("mindev-line", Options::default(), vec![("f", 2), ("l", 0), ("e", 0)]),
         ("bresenham", Options::default(), vec![("cntx", 1), ("e", 0)]),
+        ("mindev-arc", Options::default(), vec![("f", 1), ("e", 1)]),
+        ("vector-arc", Options::default(), vec![("f", 2), ("e", 1)]),
     ] {
         let k = 5;
         let found = widths(find(model).unwrap(), &choices, &Extent::Bits(k)).unwrap();
@@ -145,7 +147,7 @@ fn the_table_names_a_run_that_one_bit_less_does_not_hold() {
         ("widths ppc-line --box 0", "1 to 52 bits"),
         ("widths ppc-line --box 53", "1 to 52 bits"),
         ("widths cim-conic --box 17", "at most 16 bits"),
-        ("widths mindev-arc --box 20", "at most 16 bits"),
+        ("widths ppc-conic --box 20", "at most 16 bits"),
         ("widths ppc-line --box 20 --form bare", "at most 16 bits"),
         ("widths ppc-line --box 9..0x0..9", "give 0..9"),
         (

@@ -1,9 +1,10 @@
 //! What every interpolator that judges the steps of an arc has around its judgement.
 
 use stepwave_netlist::dsl::{Register, Scope, Signal};
+use stepwave_netlist::formula::{Clause, Formula, name};
 
 use super::{
-    ArcKind, BeatRing, Block, CCW, EndCounters, QUAD, axis_scope, negated, next_quadrant, quadrant_register,
+    ArcKind, BeatRing, Block, CCW, E, EndCounters, QUAD, axis_scope, negated, next_quadrant, quadrant_register,
     up_down_counter, x_grows,
 };
 use crate::hardware::Hardware;
@@ -12,6 +13,41 @@ use crate::registers::{N, Reg};
 
 /// The coordinates of an arc.
 pub const XI_YI: Reg<2> = Reg::each(["xi", "yi"], N, "|x|, |y| relative to the centre");
+
+/// The coordinate that shrinks along the motion, between two steps.
+#[must_use]
+pub fn shrinking() -> Formula {
+    let [x, y] = [0, 1].map(|axis| XI_YI.of(axis).value());
+    in_x_or_y([y, x])
+}
+
+/// The coordinate that grows along the motion, between two steps.
+#[must_use]
+pub fn growing() -> Formula {
+    let [x, y] = [0, 1].map(|axis| XI_YI.of(axis).value());
+    in_x_or_y([x, y])
+}
+
+/// The first where x grows, else the second.
+fn in_x_or_y([x_grows, y_grows]: [Formula; 2]) -> Formula {
+    x_grows * name("x_grows") + y_grows.clone() - y_grows * name("x_grows")
+}
+
+/// Between two steps of an arc inside a quadrant whose steps may be diagonal: no coordinate is beyond the end, and with
+/// one pulse left one of them is there.
+pub fn ends_ahead(hardware: &Hardware) -> Vec<Clause> {
+    if hardware.get(&END_POINT) == EndPoint::PerAxis {
+        return Vec::new();
+    }
+    let [xt, yt] = ["xt", "yt"].map(name);
+    let growth = in_x_or_y([xt.clone(), yt.clone()]) - growing();
+    let shrinkage = shrinking() - in_x_or_y([yt, xt]);
+    vec![
+        Clause::at_least_zero("what grows is not beyond the end", growth.clone()),
+        Clause::at_least_zero("what shrinks is not beyond the end", shrinkage.clone()),
+        Clause::either("with one pulse left one has come to it", [E.value() - 2, -growth, -shrinkage]),
+    ]
+}
 
 /// Coordinates, quadrant, end point and axes of an arc. The judgement between them says which axes a step takes.
 ///

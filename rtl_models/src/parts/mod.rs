@@ -43,7 +43,7 @@ mod wide;
 
 pub use after::{AxisAfter, Period, SETTLE};
 use arc_frame::square_gain;
-pub use arc_frame::{ArcFrame, XI_YI, count_coordinates, square_gains};
+pub use arc_frame::{ArcFrame, XI_YI, count_coordinates, ends_ahead, growing, shrinking, square_gains};
 pub use axis::{POSITION, SIGN, axis_counter, axis_scope};
 pub use beats::BeatRing;
 pub use block::{Block, Buffer};
