@@ -296,10 +296,8 @@ fn off_its_circle(model: &str, choices: &Options) -> Proof {
 #[ignore = "exhaustive"]
 fn an_arc_that_ends_off_its_circle_is_not_proved_with_one_counter() {
     let total = Options::default().with(&END_POINT, EndPoint::Total);
-    for model in ["ppc-arc"].into_iter().chain(DIAGONAL) {
-        let proof = off_its_circle(model, &total);
-        assert!(!proof.is_safe(), "{model}: {proof:#?}");
-    }
+    let proof = off_its_circle("ppc-arc", &total);
+    assert!(!proof.is_safe(), "{proof:#?}");
 }
 
 #[test]
