@@ -19,7 +19,7 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Asks for room before so many bytes are written, if there is none for them. A disk that is full is noticed where it
+    /// Asks for room before this many bytes are written, if there is none for them. A disk that is full is noticed where it
     /// is written.
     pub(super) fn ask(&mut self, file: &File, bytes: usize) {
         let end = self.written.saturating_add(bytes as u64);
@@ -33,7 +33,7 @@ impl Room {
         }
     }
 
-    /// So many bytes are written.
+    /// This many bytes are written.
     pub(super) fn take(&mut self, bytes: usize) {
         self.written += bytes as u64;
     }

@@ -67,7 +67,7 @@ pub struct Idle {
 pub enum Stop {
     /// The clocks asked for are done.
     Clocks,
-    /// No room for a further row, or for a further round of native code, of at most eight.
+    /// No room for a further row; where it was said what to [expect](Engine::expect), or for a round of at most eight.
     RowsFull,
     /// The net `Watch::stops[_]` of this index is 1 in the last sample.
     Net(usize),
@@ -108,7 +108,7 @@ pub trait Engine: Send {
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
 
     /// Says that at least as many clocks will be run, if nothing goes wrong: what pays only in long runs need not wait until this
-    /// one has proved long. Samples do not depend on it.
+    /// one has proved long. Samples do not depend on it; rows may be given a few before they are full.
     fn expect(&mut self, clocks: u64) {
         let _ = clocks;
     }

@@ -99,6 +99,8 @@ pub(super) struct Compiled {
     quiet: u64,
     /// Inputs have changed since a loop was left, and there is one for them.
     known: bool,
+    /// Rows may be given before they are full.
+    ends_early: bool,
     variants: Vec<Variant>,
     /// A large machine, and what is known of its registers.
     large: Option<Large>,
@@ -138,6 +140,7 @@ impl Compiled {
             registers,
             quiet: 0,
             known: false,
+            ends_early: false,
             variants: Vec::new(),
             large: None,
             unavailable: false,
@@ -389,7 +392,10 @@ impl Engine for Compiled {
                     }
                     // The next block begins with a round: its last clocks would be those of the word engine in each block.
                     Some(variant)
-                        if bounded && !rows.is_empty() && rows.room() < self.variants[variant].native.phases() =>
+                        if self.ends_early
+                            && bounded
+                            && !rows.is_empty()
+                            && rows.room() < self.variants[variant].native.phases() =>
                     {
                         return Stop::RowsFull;
                     }
@@ -410,6 +416,7 @@ impl Engine for Compiled {
     }
 
     fn expect(&mut self, clocks: u64) {
+        self.ends_early = true;
         // Large machines are compiled earlier still, and loops that pass over samples by other rules.
         if clocks >= LONG && self.large.is_none() && self.idle.is_none() {
             self.warm_up = self.warm_up.min(LOOK_BACK);
