@@ -76,3 +76,49 @@ fn loops_compiled_after_any_number_of_clocks_show_what_the_word_engine_shows() {
         }
     }
 }
+
+#[test]
+fn rows_may_end_before_they_are_full_and_no_clock_is_lost() {
+    let design = machine();
+    let columns: Vec<_> = design.netlist().names.iter().map(|named| named.net).collect();
+    let watch = Watch { columns, stops: Vec::new() };
+    let width = watch.columns.len();
+    let mut wanted = Rows::new(width, 3000);
+    let mut gates = EngineKind::Gates.build(&design, &watch);
+    gates.reset(&mut wanted);
+    gates.run(2999, &mut wanted);
+    let wanted: Vec<_> = wanted.iter().collect();
+    let mut early = 0;
+    for room in [1, 2, 3, 9, 30, 255, 256] {
+        // One clock alone now and then, wherever the block is; and calls of few clocks.
+        for (alone, burst) in [(0, u64::MAX), (1, u64::MAX), (3, u64::MAX), (2, 7)] {
+            let mut engine = compiled_after(&design, &watch, 20);
+            engine.expect(3000);
+            let mut rows = Rows::new(width, room);
+            let mut seen = Vec::new();
+            let mut show = |rows: &mut Rows| {
+                seen.extend(rows.iter());
+                rows.clear();
+            };
+            engine.reset(&mut rows);
+            while engine.clock() < 2999 {
+                for _ in 0..alone {
+                    if rows.is_full() {
+                        show(&mut rows);
+                    }
+                    let before = engine.clock();
+                    engine.run(1, &mut rows);
+                    assert_eq!(engine.clock(), before + 1, "room for {room}, {} rows held", rows.len());
+                }
+                let left = 2999_u64.saturating_sub(engine.clock());
+                if engine.run(left.min(burst), &mut rows) == Stop::RowsFull {
+                    early += usize::from(!rows.is_full());
+                    show(&mut rows);
+                }
+            }
+            show(&mut rows);
+            assert!(seen[..3000] == wanted[..], "room for {room}, {alone} clocks alone, {burst} at once");
+        }
+    }
+    assert!(early > 20, "{early}");
+}

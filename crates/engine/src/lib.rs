@@ -103,7 +103,7 @@ pub trait Engine: Send {
     fn restore(&mut self, clock: u64, registers: &[u64], inputs: &[u64], memories: &[Vec<u64>]);
 
     /// Runs until `clocks` clocks are done, `rows` is full, or a stop net is 1 in a sample; at least one clock is done
-    /// unless `clocks` is 0 or there is no room for a row. Every sample is recorded that is not passed over; what
+    /// unless `clocks` is 0 or there is no room for a row, or, after [`expect`](Engine::expect), for a round. Every sample is recorded that is not passed over; what
     /// `rows` holds already must be the samples right before.
     fn run(&mut self, clocks: u64, rows: &mut Rows) -> Stop;
 

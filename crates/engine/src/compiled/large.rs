@@ -150,7 +150,7 @@ impl Compiled {
     fn fitting_large(&self, stride: usize) -> Option<usize> {
         let fits = |index: &usize| {
             let variant = &self.variants[*index];
-            variant.native.stride() == stride && self.holds(&variant.inputs) && self.is_after_round(variant)
+            variant.native.stride() == stride && self.holds(&variant.inputs) && self.holds(&variant.last_phase)
         };
         (0..self.variants.len()).filter(fits).max_by_key(|&index| self.variants[index].assumes_registers)
     }
@@ -199,7 +199,7 @@ impl Compiled {
         let variant = self.variants.remove(variant);
         if let Some(large) = &mut self.large {
             for (changes, (register, _)) in large.changes.iter_mut().zip(&self.registers) {
-                let fixed = variant.last_phase().and_then(|phase| phase.get(register));
+                let fixed = variant.last_phase.get(register);
                 *changes |= fixed.is_some_and(|&value| self.word.value(*register) != value);
             }
         }

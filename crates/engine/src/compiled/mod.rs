@@ -57,8 +57,8 @@ struct Variant {
     native: Native,
     /// Values of the folded inputs.
     inputs: HashMap<Net, u64>,
-    /// Values of the fixed registers in each phase: a call may begin after the last one.
-    phases: Vec<HashMap<Net, u64>>,
+    /// Values of the fixed registers in the last phase: a call may begin after it.
+    last_phase: HashMap<Net, u64>,
     assumes_registers: bool,
     /// Times that a guard was left through.
     guards: u64,
@@ -69,11 +69,6 @@ struct Variant {
 }
 
 impl Variant {
-    /// Values of the fixed registers in the last phase.
-    fn last_phase(&self) -> Option<&HashMap<Net, u64>> {
-        self.phases.last()
-    }
-
     /// It leaves through its guards too often to pay.
     fn is_poor(&self, patience: u64) -> bool {
         self.guards >= 4 && self.clocks / self.guards < patience
@@ -207,24 +202,9 @@ impl Compiled {
     /// The loop that may be entered after the present sample and fills this many rows.
     fn fitting(&self, stride: usize) -> Option<usize> {
         let fits = |variant: &Variant| {
-            variant.native.stride() == stride && self.holds(&variant.inputs) && self.is_after_round(variant)
+            variant.native.stride() == stride && self.holds(&variant.inputs) && self.holds(&variant.last_phase)
         };
         self.variants.iter().position(|variant| !variant.is_poor(self.patience) && fits(variant))
-    }
-
-    /// The present sample is one of the last phase of a loop.
-    fn is_after_round(&self, variant: &Variant) -> bool {
-        variant.last_phase().is_some_and(|phase| self.holds(phase))
-    }
-
-    /// A loop may be entered after some further samples, once its round is over.
-    fn will_fit(&self, stride: usize) -> bool {
-        let fits = |variant: &Variant| {
-            variant.native.stride() == stride
-                && self.holds(&variant.inputs)
-                && variant.phases.iter().any(|phase| self.holds(phase))
-        };
-        self.variants.iter().any(|variant| !variant.is_poor(self.patience) && fits(variant))
     }
 
     /// The registers that have cycled in the recent clocks, unless it was of no use to assume that.
@@ -260,15 +240,15 @@ impl Compiled {
         match Native::compile(&plan) {
             Some(native) => {
                 self.state.resize(native.state_words().max(self.state.len()), 0);
-                let phases: Vec<_> = specialised.phases.iter().map(|phase| phase.fixed.clone()).collect();
-                let assumes_registers = phases.last().is_some_and(|phase| !phase.is_empty());
+                let last_phase = specialised.phases.last().map(|phase| phase.fixed.clone()).unwrap_or_default();
+                let assumes_registers = !last_phase.is_empty();
                 let inputs = specialised.inputs.clone();
                 let digests = self.wanted.as_ref().map(|wanted| {
                     let never = [&wanted.never[..], &self.watch.stops].concat();
                     Digests::of(specialised, self.design.netlist(), &self.registers, &never)
                 });
                 let (guards, clocks) = (0, 0);
-                self.variants.push(Variant { native, inputs, phases, assumes_registers, guards, clocks, digests });
+                self.variants.push(Variant { native, inputs, last_phase, assumes_registers, guards, clocks, digests });
             }
             // The frame of code made with care can be too large where that of the code that runs now is not.
             None => self.unavailable = !self.large.as_ref().is_some_and(Large::is_lasting),
@@ -287,6 +267,8 @@ impl Compiled {
     /// Runs a loop from the present sample on, at most `clocks` clocks.
     fn run_native(&mut self, variant: usize, clocks: u64, rows: &mut Rows) -> Option<Stop> {
         let count = self.registers.len();
+        // Clocks between two calls do not show that a loop is missing, however often there are some.
+        self.history.clear();
         self.load_state();
         if self.idle.is_some() {
             return self.run_passing(variant, clocks, rows);
@@ -306,7 +288,6 @@ impl Compiled {
             // The word engine records the sample after the edge that the loop left at.
             self.word.finish_edge(rows);
             self.quiet = self.warm_up.saturating_sub(self.history.window());
-            self.history.clear();
         }
         self.known = false;
         self.word.stopped()
@@ -392,17 +373,12 @@ impl Engine for Compiled {
                     }
                     // The next block begins with a round: its last clocks would be those of the word engine in each block.
                     Some(variant)
-                        if self.ends_early
-                            && bounded
-                            && !rows.is_empty()
-                            && rows.room() < self.variants[variant].native.phases() =>
+                        if self.ends_early && !rows.is_empty() && self.variants[variant].native.phases() <= left =>
                     {
                         return Stop::RowsFull;
                     }
                     None if self.quiet >= self.warm_up && self.history.is_full() => {
-                        if !self.will_fit(rows.stride()) {
-                            self.compile(rows.stride(), self.period());
-                        }
+                        self.compile(rows.stride(), self.period());
                         self.history.clear();
                     }
                     _ => {}

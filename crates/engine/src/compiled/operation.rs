@@ -129,14 +129,13 @@ impl Generator<'_, '_> {
         }
     }
 
-    /// The sum of words, which an adder and its carry share.
+    /// The sum of words, which an adder and its carry share; in other than narrow code the optimiser sees to that.
     fn sum(&mut self, a: Value, b: Value) -> Value {
-        if let Some(&sum) = self.sums.get(&[a, b]).filter(|_| self.narrow) {
-            return sum;
+        if !self.narrow {
+            return self.f.ins().iadd(a, b);
         }
-        let sum = self.f.ins().iadd(a, b);
-        self.sums.insert([a, b], sum);
-        sum
+        let f = &mut *self.f;
+        *self.sums.entry([a, b]).or_insert_with(|| f.ins().iadd(a, b))
     }
 
     /// Quotient or remainder of words. Native code takes no divisor of 0.
