@@ -205,6 +205,37 @@ impl Rows {
         self.values[column * self.stride + row]
     }
 
+    /// Where the value of a column in a row is among [all](Self::values); that of the next row comes after it.
+    ///
+    /// # Panics
+    /// If there is no such column, or no such row.
+    #[inline]
+    #[must_use]
+    pub fn place(&self, column: usize, row: usize) -> usize {
+        assert!(
+            row < self.len && column < self.columns,
+            "row {row} of {}, column {column} of {}",
+            self.len,
+            self.columns
+        );
+        column * self.stride + row
+    }
+
+    /// All values, for loops that have looked up their [places](Self::place).
+    #[must_use]
+    pub fn values(&self) -> &[u64] {
+        &self.values
+    }
+
+    /// The clocks of some rows, if samples between them may be left out; else nothing.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    #[must_use]
+    pub fn clocks(&self, rows: Range<usize>) -> &[u64] {
+        if self.sparse { &self.values[self.columns * self.stride..][..self.len][rows] } else { &[] }
+    }
+
     /// The values of a row, in the order of the columns; gathered one by one, so not for hot loops.
     ///
     /// # Panics

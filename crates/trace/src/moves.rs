@@ -1,7 +1,6 @@
 //! Which nets change in which samples: what the writers of waves walk along.
 //!
-//! Samples are looked at 64 at a time. A column gives a word with a bit for each sample; turned over, these are words
-//! with a bit for each net, one a sample.
+//! Samples are looked at 64 at a time. A column gives a word with a bit for each sample.
 
 use std::ops::Range;
 
@@ -38,12 +37,6 @@ impl Moves {
         }
     }
 
-    /// Takes the next samples, at most [`SPAN`], to be asked for [bits](Self::bits).
-    pub(super) fn scan(&mut self, rows: &Rows, range: Range<usize>) {
-        self.scan_nets(rows, range);
-        dispatch!(self.level, _simd => turn_over_all(&mut self.groups));
-    }
-
     /// Takes the next samples, at most [`SPAN`], to be asked for changes [net by net](Self::net).
     pub(super) fn scan_nets(&mut self, rows: &Rows, range: Range<usize>) {
         let Moves { level, columns, last, groups } = self;
@@ -64,13 +57,6 @@ impl Moves {
     /// The value of a net in the sample looked at last.
     pub(super) fn last(&self, net: usize) -> u64 {
         self.last[net]
-    }
-
-    /// The nets of a group that change in a sample: a bit each, the first the lowest. Group `g` begins with net
-    /// `g * SPAN`.
-    #[inline]
-    pub(super) fn bits(&self, group: usize, sample: usize) -> u64 {
-        self.groups[group][sample % SPAN]
     }
 }
 
@@ -119,39 +105,6 @@ fn few_changes(values: &[u64], before: u64) -> u64 {
     changed.enumerate().fold(0, |bits, (index, changed)| bits | changed << index)
 }
 
-#[inline(always)]
-fn turn_over_all(groups: &mut [[u64; SPAN]]) {
-    for words in groups {
-        turn_over(words);
-    }
-}
-
-/// Turns rows into columns: bit `b` of word `w` becomes bit `w` of word `b`.
-#[inline(always)]
-fn turn_over(words: &mut [u64; SPAN]) {
-    swap_halves::<32>(words);
-    swap_halves::<16>(words);
-    swap_halves::<8>(words);
-    swap_halves::<4>(words);
-    swap_halves::<2>(words);
-    swap_halves::<1>(words);
-}
-
-/// In squares of `2 * HALF` words and bits: the high bits of the first words change places with the low bits of the others.
-#[inline(always)]
-fn swap_halves<const HALF: usize>(words: &mut [u64; SPAN]) {
-    // The low half of every group of 2 * HALF bits.
-    let mask = u64::MAX / ((1 << HALF) + 1);
-    for square in words.chunks_exact_mut(2 * HALF) {
-        let (first, others) = square.split_at_mut(HALF);
-        for (low, high) in first.iter_mut().zip(others) {
-            let swapped = (*low >> HALF ^ *high) & mask;
-            *low ^= swapped << HALF;
-            *high ^= swapped;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -185,18 +138,10 @@ mod tests {
                 (0..3).for_each(|clock| rows.push(clock, |_| 9));
                 (0..len).for_each(|sample| rows.push(3 + sample as u64, |net| columns[net][sample]));
                 moves.scan_nets(&rows, 3..3 + len);
-                let by_net = moves.groups.clone();
-                turn_over_all(&mut moves.groups);
-                let changes = |sample, &net: &usize| moves.bits(net / SPAN, sample) >> (net % SPAN) & 1 == 1;
-                let missing = |sample| moves.bits(nets / SPAN, sample) >> (nets % SPAN);
-                assert!(nets % SPAN == 0 || (0..SPAN).all(|sample| missing(sample) == 0), "a net that is none");
+                let changes = |sample, &net: &usize| moves.net(net) >> sample & 1 == 1;
                 let found: Vec<Vec<usize>> =
                     (0..len).map(|sample| (0..nets).filter(|net| changes(sample, net)).collect()).collect();
                 assert_eq!(found, expected, "{nets} nets, {len} samples");
-                let changes = |sample, &net: &usize| by_net.as_flattened()[net] >> sample & 1 == 1;
-                let found: Vec<Vec<usize>> =
-                    (0..len).map(|sample| (0..nets).filter(|net| changes(sample, net)).collect()).collect();
-                assert_eq!(found, expected, "{nets} nets, {len} samples, net by net");
                 assert!((0..nets).all(|net| moves.last(net) == columns[net][len - 1]));
                 before = moves.last.clone();
             }
@@ -216,17 +161,5 @@ mod tests {
             moves.scan_nets(&rows, 0..SPAN);
             assert_eq!((moves.net(0), moves.last(0)), (expected, value));
         }
-    }
-
-    #[test]
-    fn turning_over_twice_changes_nothing() {
-        let words: [u64; SPAN] = std::array::from_fn(|word| (word as u64 + 3).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        let mut turned = words;
-        turn_over(&mut turned);
-        for (word, bit) in (0..SPAN).flat_map(|word| (0..SPAN).map(move |bit| (word, bit))) {
-            assert_eq!(words[word] >> bit & 1, turned[bit] >> word & 1);
-        }
-        turn_over(&mut turned);
-        assert_eq!(words, turned);
     }
 }

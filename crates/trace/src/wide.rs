@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::moves::{Moves, SPAN};
+use super::moves::Moves;
 use super::probe::Probe;
 use super::vcd::digits;
 use stepwave_netlist::Rows;
@@ -55,13 +55,6 @@ impl<I: Copy> Wide<I> {
         self.moves.start(rows, row);
     }
 
-    /// Takes the next samples, at most [`SPAN`].
-    pub(super) fn scan(&mut self, rows: &Rows, range: Range<usize>) {
-        if !self.words.is_empty() {
-            self.moves.scan(rows, range);
-        }
-    }
-
     /// Takes the next samples, at most [`SPAN`], to be asked for changes [word by word](Self::changes).
     pub(super) fn scan_nets(&mut self, rows: &Rows, range: Range<usize>) {
         if !self.words.is_empty() {
@@ -85,25 +78,15 @@ impl<I: Copy> Wide<I> {
         &self.words[word].columns
     }
 
-    /// A part of a word changes in a sample of those scanned last.
-    pub(super) fn moves(&self, word: usize, sample: usize) -> bool {
-        let Word { columns, first, .. } = &self.words[word];
-        (*first..first + columns.len()).any(|net| self.moves.bits(net / SPAN, sample) >> (net % SPAN) & 1 == 1)
-    }
-
-    /// Writes the digits of a word, the highest first, into `out`, which has one byte for each.
-    pub(super) fn digits(&self, word: usize, rows: &Rows, row: usize, out: &mut [u8]) {
-        digits_of(self.columns(word).iter().map(|&column| rows.value(column, row)), out);
-    }
-
-    /// The same in the sample looked at last.
+    /// Writes the digits that a word has in the sample looked at last into `out`, which has one byte for each.
     pub(super) fn last_digits(&self, word: usize, out: &mut [u8]) {
         let Word { columns, first, .. } = &self.words[word];
         digits_of((*first..first + columns.len()).map(|net| self.moves.last(net)), out);
     }
 }
 
-fn digits_of(parts: impl Iterator<Item = u64>, out: &mut [u8]) {
+/// Writes the digits of a word whose lowest 64 bits come first.
+pub(super) fn digits_of(parts: impl Iterator<Item = u64>, out: &mut [u8]) {
     for (value, part) in parts.zip(out.rchunks_mut(PART)) {
         let width = u32::try_from(part.len()).unwrap_or(64);
         part.copy_from_slice(digits(width, value, &mut [0; PART]));

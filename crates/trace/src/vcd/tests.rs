@@ -4,7 +4,8 @@ use std::sync::{Arc, Mutex};
 use stepwave_netlist::Rows;
 use stepwave_netlist::cells::Format;
 
-use super::{BUFFER, VcdHeader};
+use super::VcdHeader;
+use super::buffer::BUFFER;
 use crate::WaveBody;
 use crate::gtkw::tests::probe;
 use crate::probe::{Probe, Role};

@@ -67,6 +67,7 @@ impl Tail {
 }
 
 /// The lines that give one variable its values: `b0101 !` of a vector, `1!` of a scalar.
+#[derive(Clone)]
 pub(super) struct Line {
     /// Bits to shift a value up, so that its first digit is bit 63.
     shift: u32,
@@ -74,19 +75,22 @@ pub(super) struct Line {
     digits: usize,
     tail: Tail,
     tail_at: usize,
+    /// Bytes of every line.
+    len: usize,
 }
 
 impl Line {
     pub(super) fn new(width: u32, scalar: bool, id: &str) -> Line {
         let digits = usize::from(!scalar);
         let tail = Tail::new(&if scalar { format!("{id}\n") } else { format!(" {id}\n") });
-        Line { shift: 64 - width, digits, tail, tail_at: digits + width as usize }
+        let tail_at = digits + width as usize;
+        Line { shift: 64 - width, digits, tail, tail_at, len: tail_at + tail.len }
     }
 
     /// Bytes of every line.
     #[inline]
     pub(super) fn len(&self) -> usize {
-        self.tail_at + self.tail.len
+        self.len
     }
 
     /// Writes the line for `value` at the start of `out`.
@@ -170,6 +174,7 @@ impl Digits {
 }
 
 /// Time stamps at equal distances: `#5\n`, `#10\n`, …
+#[derive(Clone)]
 pub(super) struct Stamps {
     now: Digits,
     step: Digits,
