@@ -52,6 +52,8 @@ fn narrow_registers_trap() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
     #[test]
     fn any_displacement_follows_the_recurrence(pulses in 1..3000i64, step in 1..400i64, k in 1..=64i64, s in 1..=9u32) {
         check_filter(Filter::Sum(k), pulses, step, "zero", EngineKind::Compiled);

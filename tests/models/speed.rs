@@ -189,7 +189,7 @@ fn a_normalised_line_is_as_much_faster_as_its_integrands_are_shifted() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(ProptestConfig::with_cases(16))]
 
     #[test]
     fn lines_in_any_direction(to in prop::array::uniform2(-40_000i64..40_000), short in 0u32..12, one: bool) {

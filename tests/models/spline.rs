@@ -209,7 +209,7 @@ fn one_bit_less_traps_in_the_register_that_lacks_it() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
     fn divisions_and_widths_are_those_of_every_row(

@@ -159,7 +159,7 @@ fn straights() -> impl Strategy<Value = Vec<Straight>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]
 
     #[test]
     fn moves_take_the_clocks_of_the_plan_and_the_recurrence(moves in straights(), doubled: bool) {

@@ -94,7 +94,7 @@ fn expected(family: &str, bits: u32, from: &[i64], to: &[i64], steps: usize) -> 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(20) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]
 
     #[test]
     fn lines_of_many_axes_go_by_the_recurrence_of_their_method(

@@ -85,13 +85,21 @@ fn what_authors_claim_between_steps_holds_in_every_row_of_runs() {
 
 #[test]
 fn what_was_proved_holds_in_runs_of_widths_that_nothing_was_learnt_from() {
+    assert_hold_in_runs(["ppc-line", "ppc-arc", "dda-line", "mindev-line"].map(|model| (model, Options::default())));
+}
+
+#[test]
+#[ignore = "exhaustive"]
+fn what_was_proved_of_other_arcs_and_other_forms_holds_in_runs() {
     let signed = Options::default().with(&FORM, Form::Signed);
     let post = Options::default().with(&WEIGHTS, Weights::Post);
     let total = Options::default().with(&END_POINT, EndPoint::Total);
-    let by_default = ["ppc-line", "ppc-arc", "dda-line", "cim-arc", "mindev-line", "mindev-arc", "vector-arc"]
-        .map(|model| (model, Options::default()));
-    for (model, choices) in by_default.into_iter().chain([("ppc-line", signed), ("cim-arc", post), ("dda-line", total)])
-    {
+    assert_hold_in_runs(["cim-arc", "mindev-arc", "vector-arc"].map(|model| (model, Options::default())));
+    assert_hold_in_runs([("ppc-line", signed), ("cim-arc", post), ("dda-line", total)]);
+}
+
+fn assert_hold_in_runs(models: impl IntoIterator<Item = (&'static str, Options)>) {
+    for (model, choices) in models {
         // Arcs across axes are looked at by themselves.
         let subject: Subject = subject(model, &choices).of_box();
         let mut looked_at = 0;

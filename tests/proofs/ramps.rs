@@ -37,7 +37,7 @@ fn no_register_of_a_ramp_overflows_whatever_is_loaded_and_whatever_the_operator_
 #[test]
 fn a_box_of_a_ramp_is_simulated_to_its_ends() {
     let folder = Folder::new();
-    for words in ["--travel 40", "--box -3..30", "--box 6 --jerk 4 --accel 12", "--box 5 --brake count"] {
+    for words in ["--travel 40", "--box -3..30", "--box 5 --jerk 4 --accel 12", "--box 5 --brake count"] {
         let out = folder.good(&format!("prove ramp {words}"));
         for claim in ["no register overflows", "the end point is reached exactly", "every block ends"] {
             assert!(out.lines().any(|line| line.starts_with("PROVED") && line.ends_with(claim)), "{words}: {out}");
@@ -100,10 +100,10 @@ fn the_limits_of_the_speed_are_as_wide_as_v_and_no_other_width_is_taken() {
 fn the_least_widths_of_a_box_hold_in_every_run_of_it_all_at_once_and_one_bit_less_does_not() {
     let folder = Folder::new();
     for (name, words, register, k) in [
-        ("ramp-after", "--smooth exp=1 --step 3", "acc", 6),
-        ("ramp-after", "--smooth exp=2 --step 35", "acc", 7),
+        ("ramp-after", "--smooth exp=1 --step 3", "acc", 5),
+        ("ramp-after", "--smooth exp=2 --step 35", "acc", 6),
         ("ramp-after", "--smooth exp=3 --step 10", "acc", 6),
-        ("ramp-after", "--smooth sum=5 --step 7", "s", 6),
+        ("ramp-after", "--smooth sum=5 --step 7", "s", 5),
         // v holds the limits too, which these short travels do not come to.
         ("ramp", "--speed vs=33,vc=434,ve=33 --accel 32", "v", 2),
         ("ramp", "--speed vs=10,vc=71,ve=10 --accel 3 --jerk 1", "v", 3),
@@ -155,7 +155,7 @@ fn what_has_no_proof_says_so() {
 
 #[test]
 fn the_widths_of_a_box_are_those_that_runs_of_all_of_it_need() {
-    for (words, k) in [("", 6), ("--accel 12 --jerk 4", 6), ("--brake count --accel 9 --speed 100", 5)] {
+    for (words, k) in [("", 5), ("--accel 12 --jerk 4", 5), ("--brake count --accel 9 --speed 100", 5)] {
         let options = Options::parse(words.split_whitespace()).unwrap();
         let model = find("ramp").unwrap();
         let found = widths(model, &options, &Extent::Bits(k), &|_| {}).unwrap();
