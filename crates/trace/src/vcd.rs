@@ -139,7 +139,7 @@ impl VcdHeader<'_> {
                     columns.push(column);
                     lines.nets.push(Line::new(width, scalar, &id.to_string()));
                 } else {
-                    words.push(probe.columns.clone());
+                    words.push(probe);
                     lines.words.push((width as usize, Tail::new(&format!(" {id}\n"))));
                 }
             }
@@ -147,7 +147,7 @@ impl VcdHeader<'_> {
         for _ in 0..open.len() {
             head.upscope()?;
         }
-        Ok((Scan::new(columns, &words), lines))
+        Ok((Scan::new(columns, words), lines))
     }
 }
 

@@ -15,7 +15,8 @@ use super::scan::{Batch, Scan, Span};
 
 /// An output smaller than this, in bytes, never needs a thread.
 const SMALL: usize = 1 << 20;
-/// Parts in flight with which the thread has enough to do: one that it writes, and one that waits.
+/// Parts in flight with which the thread has enough to do. With fewer the run would make text while the thread, which was about
+/// to be free, waits for it.
 const ENOUGH: usize = 4;
 /// Most parts that wait.
 const WAITING: usize = 5;
@@ -55,8 +56,10 @@ impl<W: Write> Output<W> {
 
 impl<W: Write> Parts for Output<W> {
     fn part(&mut self, buffer: &mut Buffer) -> io::Result<()> {
-        self.written += buffer.filled;
-        buffer.write_parts(&mut self.out)
+        let before = buffer.filled;
+        buffer.write_parts(&mut self.out)?;
+        self.written += before - buffer.filled;
+        Ok(())
     }
 }
 
@@ -157,7 +160,7 @@ impl<W: Write + Send + 'static> Background<W> {
     pub(super) fn writer(&mut self) -> io::Result<Writer<W>> {
         match mem::replace(&mut self.state, State::Closed) {
             State::Direct { writer, .. } => Ok(*writer),
-            State::Thread(worker) => worker.join(),
+            State::Thread(worker) => worker.finish(),
             State::Closed => Err(closed()),
         }
     }
@@ -166,7 +169,10 @@ impl<W: Write + Send + 'static> Background<W> {
 /// Waits, so that nothing writes any more when the output's owner removes the file.
 impl<W: Write + Send + 'static> Drop for Background<W> {
     fn drop(&mut self) {
-        let _ = self.writer();
+        if let State::Thread(worker) = mem::replace(&mut self.state, State::Closed) {
+            drop(worker.link.parts);
+            let _ = worker.thread.join();
+        }
     }
 }
 
@@ -211,7 +217,7 @@ impl<W: Write + Send + 'static> Worker<W> {
         Ok(())
     }
 
-    fn join(self) -> io::Result<Writer<W>> {
+    fn finish(self) -> io::Result<Writer<W>> {
         drop(self.link.parts);
         let panicked = |_| Err(io::Error::other("the thread that writes the wave has panicked"));
         let mut writer = self.thread.join().unwrap_or_else(panicked)?;

@@ -7,7 +7,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch};
 
 use super::buffer::{BUFFER, Buffer};
-use super::scan::{Batch, Scan, Span, by_column};
+use super::scan::{Batch, Scan, Span, by_column, parts};
 use super::text::{Line, Stamps, Tail, WINDOW};
 use super::turn::turn_over_all;
 use crate::moves::SPAN;
@@ -78,7 +78,7 @@ impl Samples {
             level: Level::new(),
             groups: vec![[0; SPAN]; lines.nets.len().div_ceil(SPAN)],
             words: vec![0; lines.words.len()],
-            next: vec![0; lines.nets.len() + lines.words.iter().map(|(width, _)| width.div_ceil(64)).sum::<usize>()],
+            next: vec![0; lines.nets.len() + lines.words.iter().map(|(width, _)| parts(*width)).sum::<usize>()],
             rise: Stamps::new(lines.ticks),
             fall: Stamps::new(lines.ticks),
             lines,
@@ -126,7 +126,7 @@ impl Samples {
         for &span in &batch.spans {
             let (of_span, more_bits) = bits.split_at(self.lines.nets.len() + self.lines.words.len());
             let (sparse, more_clocks) = clocks.split_at(if span.is_sparse { span.samples } else { 0 });
-            let words = self.lines.words.iter().map(|(width, _)| width.div_ceil(64));
+            let words = self.lines.words.iter().map(|(width, _)| parts(*width));
             for (next, bits) in self.next.iter_mut().zip(by_column(of_span, words)) {
                 *next = from;
                 from += bits.count_ones() as usize;
@@ -265,7 +265,7 @@ impl Samples {
         let text = &mut self.buffer[..];
         let mut columns = &mut self.next[self.lines.nets.len()..];
         for (&(width, tail), changes) in self.lines.words.iter().zip(&self.words) {
-            let (parts, others) = columns.split_at_mut(width.div_ceil(64));
+            let (parts, others) = columns.split_at_mut(parts(width));
             if changes >> (sample % SPAN) & 1 == 1 {
                 text[at] = b'b';
                 let values = parts.iter().map(|&next| if GATHERED { all[next] } else { all[next + sample] });

@@ -6,8 +6,10 @@ use std::ops::Range;
 use stepwave_netlist::Rows;
 
 use crate::moves::{Moves, SPAN};
+use crate::probe::Probe;
+use crate::wide::Wide;
 
-/// Words of 64 bits, for values and bits together, after which a batch is full.
+/// Words of 64 bits after which a batch is full.
 const BATCH: usize = 1 << 15;
 
 /// Up to [`SPAN`] samples.
@@ -25,9 +27,8 @@ pub(super) struct Span {
 pub(super) struct Scan {
     /// Those of the nets, and then those of the words, the lowest 64 bits first.
     columns: Vec<usize>,
-    /// How many columns each word has.
-    words: Vec<usize>,
     moves: Moves,
+    wide: Wide<()>,
     /// For every net and then for every word, a bit for each sample in which it changes, the first the lowest.
     bits: Vec<u64>,
     /// The first sample is taken.
@@ -35,12 +36,13 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    /// Of nets in these columns, and of words in these columns each.
-    pub(super) fn new(nets: Vec<usize>, words: &[Vec<usize>]) -> Scan {
+    /// Of nets in these columns, and of these words.
+    pub(super) fn new(nets: Vec<usize>, words: Vec<&Probe>) -> Scan {
         let bits = vec![0; nets.len() + words.len()];
-        let columns = [nets, words.concat()].concat();
-        let words = words.iter().map(Vec::len).collect();
-        Scan { moves: Moves::new(columns.clone()), columns, words, bits, begun: false }
+        let parts = words.iter().flat_map(|word| word.columns.iter().copied());
+        let columns = nets.iter().copied().chain(parts).collect();
+        let wide = Wide::new(words.into_iter().map(|word| (word, ())).collect());
+        Scan { columns, moves: Moves::new(nets), wide, bits, begun: false }
     }
 
     /// Cuts rows into spans. The first sample of all is one by itself, in which everything changes.
@@ -53,15 +55,11 @@ impl Scan {
     /// Looks at a span.
     pub(super) fn scan(&mut self, rows: &Rows, range: &Range<usize>) -> Span {
         self.moves.scan_nets(rows, range.clone());
-        let (of_nets, of_words) = self.bits.split_at_mut(self.columns.len() - self.words.iter().sum::<usize>());
-        let mut column = of_nets.len();
-        for (net, bits) in of_nets.iter_mut().enumerate() {
-            *bits = self.moves.net(net);
-        }
-        for (&parts, bits) in self.words.iter().zip(of_words) {
-            *bits = (column..column + parts).fold(0, |bits, column| bits | self.moves.net(column));
-            column += parts;
-        }
+        self.wide.scan_nets(rows, range.clone());
+        let nets = self.bits.len() - self.wide.words().len();
+        let (of_nets, of_words) = self.bits.split_at_mut(nets);
+        of_nets.iter_mut().enumerate().for_each(|(net, bits)| *bits = self.moves.net(net));
+        of_words.iter_mut().enumerate().for_each(|(word, bits)| *bits = self.wide.changes(word));
         if !self.begun {
             self.begun = true;
             self.bits.fill(1);
@@ -78,6 +76,11 @@ impl Scan {
     pub(super) fn columns(&self) -> &[usize] {
         &self.columns
     }
+}
+
+/// Columns of a word of this many bits.
+pub(super) fn parts(width: usize) -> usize {
+    width.div_ceil(64)
 }
 
 /// The changes of every column, where there is a word of bits for every net, and then for every word of these numbers of
@@ -98,15 +101,18 @@ pub(super) struct Batch {
     pub(super) bits: Vec<u64>,
     /// Span by span, column by column, sample by sample.
     pub(super) values: Vec<u64>,
+    samples: usize,
 }
 
 impl Batch {
     /// Adds the span that was looked at last.
     pub(super) fn add(&mut self, span: Span, scan: &Scan, rows: &Rows, range: &Range<usize>) {
         self.spans.push(span);
+        self.samples += span.samples;
         self.clocks.extend_from_slice(rows.clocks(range.clone()));
         self.bits.extend_from_slice(&scan.bits);
-        for (&column, changes) in scan.columns.iter().zip(by_column(&scan.bits, scan.words.iter().copied())) {
+        let words = scan.wide.words().map(|(_, width)| parts(width));
+        for (&column, changes) in scan.columns.iter().zip(by_column(&scan.bits, words)) {
             if changes != 0 {
                 self.take(&rows.column(column)[range.clone()], changes);
             }
@@ -127,12 +133,13 @@ impl Batch {
         }
     }
 
-    /// Nothing more should be added.
+    /// Nothing more should be added. The two time stamps of a sample are as much text as two values.
     pub(super) fn is_full(&self) -> bool {
-        self.values.len() + self.bits.len() >= BATCH
+        self.values.len() + self.bits.len() + 2 * self.samples >= BATCH
     }
 
     pub(super) fn clear(&mut self) {
+        self.samples = 0;
         self.spans.clear();
         [&mut self.clocks, &mut self.bits, &mut self.values].into_iter().for_each(Vec::clear);
     }

@@ -80,7 +80,7 @@ struct Job {
     probes: Vec<Probe>,
     clk: bool,
     sparse: bool,
-    rows: u64,
+    blocks: u64,
 }
 
 impl Job {
@@ -89,13 +89,18 @@ impl Job {
         VcdHeader { comment: "c", probes: &self.probes, time, clk: self.clk, states: false }.write(disk).unwrap()
     }
 
-    /// Shows blocks of different lengths, their first rows left out at times; `prepare` comes after the first sample.
-    fn show(&self, body: &mut VcdBody<Disk>, prepare: fn(&mut VcdBody<Disk>)) -> io::Result<()> {
+    /// Shows blocks of different lengths, their first rows left out at times; `after` is called after each with its number.
+    fn show(
+        &self,
+        body: &mut VcdBody<Disk>,
+        blocks: Range<u64>,
+        mut after: impl FnMut(u64, &mut VcdBody<Disk>),
+    ) -> io::Result<()> {
         let widths: Vec<u32> = self.probes.iter().flat_map(|probe| parts(probe.width)).collect();
         let columns = widths.len();
         let mut rows = if self.sparse { Rows::sparse(columns, 200) } else { Rows::new(columns, 200) };
-        let mut clock = 5;
-        for block in 0..self.rows / 100 {
+        let mut clock = 5 + 2000 * blocks.start;
+        for block in blocks {
             rows.clear();
             for row in 0..block * 37 % 200 + 1 {
                 rows.push(clock, |column| value(column, widths[column], clock));
@@ -105,9 +110,7 @@ impl Job {
             clock += block / 50 % 2;
             let from = if block % 7 == 3 { rows.len() / 3 } else { 0 };
             body.rows(&rows, from..rows.len())?;
-            if block == 0 {
-                prepare(body);
-            }
+            after(block, body);
         }
         body.rest(clock + 3);
         Ok(())
@@ -115,10 +118,24 @@ impl Job {
 
     fn text(&self, disk: &Disk, prepare: fn(&mut VcdBody<Disk>)) -> io::Result<Vec<u8>> {
         let mut body = self.body(disk.clone());
-        self.show(&mut body, prepare)?;
+        self.show(&mut body, 0..self.blocks, first(prepare))?;
         body.finish()?;
         Ok(std::mem::take(&mut *disk.text.lock().unwrap()))
     }
+}
+
+/// Done after the first block.
+fn first(prepare: fn(&mut VcdBody<Disk>)) -> impl FnMut(u64, &mut VcdBody<Disk>) {
+    move |block, body| {
+        if block == 0 {
+            prepare(body);
+        }
+    }
+}
+
+fn worker(body: &mut VcdBody<Disk>) -> &mut Worker<Disk> {
+    let State::Thread(worker) = &mut body.out.state else { panic!("it has ended") };
+    worker
 }
 
 /// Bits of every column of a word.
@@ -141,7 +158,7 @@ fn threaded(body: &mut VcdBody<Disk>) {
 #[test]
 fn the_bytes_are_those_of_no_thread_however_fast_the_output_is() {
     for (clk, sparse) in [(true, false), (false, false), (false, true), (true, true)] {
-        let job = Job { probes: probes(), clk, sparse, rows: 6_000 };
+        let job = Job { probes: probes(), clk, sparse, blocks: 60 };
         let expected = job.text(&disk(usize::MAX, |_| false), alone).unwrap();
         assert!(expected.len() > 6 * BATCHES, "{}", expected.len());
         for slow in [|_| false, |_| true, |write| write / 4 % 2 == 0] {
@@ -155,22 +172,38 @@ fn the_bytes_are_those_of_no_thread_however_fast_the_output_is() {
 const BATCHES: usize = 1 << 20;
 
 #[test]
-fn a_thread_that_has_enough_to_do_gets_text_and_then_changes_again() {
-    let job = Job { probes: probes(), clk: true, sparse: false, rows: 6_000 };
-    let mut body = job.body(disk(usize::MAX, |write| write < 12));
-    job.show(&mut body, threaded).unwrap();
-    let State::Thread(worker) = &mut body.out.state else { panic!("it has ended") };
-    while worker.link.in_flight > 0 {
-        worker.link.is_busy();
+fn the_run_makes_text_while_the_thread_has_enough_to_do_and_not_after_it() {
+    let job = Job { probes: probes(), clk: true, sparse: false, blocks: 0 };
+    let disk = disk(usize::MAX, |_| false);
+    let mut body = job.body(disk.clone());
+    // Nothing is written while the text is held here. The first part, which the thread cannot end, is one of those in flight.
+    let held = disk.text.lock().unwrap();
+    job.show(&mut body, 0..1, first(threaded)).unwrap();
+    let mut block = 1;
+    while !worker(&mut body).is_text {
+        job.show(&mut body, block..block + 1, |_, _| ()).unwrap();
+        block += 1;
+        assert!(worker(&mut body).link.in_flight <= ENOUGH);
+    }
+    assert_eq!(worker(&mut body).link.in_flight, ENOUGH);
+    drop(held);
+    while worker(&mut body).link.in_flight > 0 {
+        worker(&mut body).link.is_busy();
         thread::yield_now();
     }
-    let seen = [worker.link.buffers.len(), worker.link.batches.len()].map(|parts| parts > 0);
-    assert_eq!(seen, [true, true]);
+    // With the next part of text it is seen that the thread waits.
+    let busy = block;
+    while worker(&mut body).is_text {
+        job.show(&mut body, block..block + 1, |_, _| ()).unwrap();
+        block += 1;
+        assert!(block < busy + 100, "it makes text for ever");
+    }
+    body.finish().unwrap();
 }
 
 #[test]
 fn a_full_disk_is_reported_in_its_own_words_wherever_it_happens() {
-    let job = Job { probes: probes(), clk: true, sparse: false, rows: 6_000 };
+    let job = Job { probes: probes(), clk: true, sparse: false, blocks: 60 };
     let all = job.text(&disk(usize::MAX, |_| false), alone).unwrap().len();
     for slow in [|_| false, |_| true] {
         for room in [0, SMALL + 50_000, all / 2, all / 4 * 3, all - 1] {
@@ -184,10 +217,10 @@ fn a_full_disk_is_reported_in_its_own_words_wherever_it_happens() {
 
 #[test]
 fn what_is_dropped_unfinished_neither_waits_for_ever_nor_panics() {
-    let job = Job { probes: probes(), clk: true, sparse: false, rows: 6_000 };
+    let job = Job { probes: probes(), clk: true, sparse: false, blocks: 60 };
     for room in [SMALL, usize::MAX] {
         let mut body = job.body(disk(room, |_| true));
-        let _ = job.show(&mut body, threaded);
+        let _ = job.show(&mut body, 0..60, first(threaded));
         drop(body);
     }
 }
