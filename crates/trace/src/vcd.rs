@@ -7,6 +7,7 @@
 
 mod background;
 mod buffer;
+mod core;
 mod samples;
 mod scan;
 #[cfg(test)]
