@@ -9,7 +9,7 @@ pub mod extremes;
 mod line;
 mod travel;
 
-use stepwave_nc::Curve;
+use stepwave_nc::{Crossing, Curve};
 use stepwave_netlist::formula::{ByMode, Clause, Formula, Symbol, name, number};
 
 use crate::hardware::Hardware;
@@ -32,9 +32,9 @@ pub enum Region {
     /// magnitudes.
     QuadrantArcs,
     /// Every arc about the origin that crosses an axis, full circles too, with both ends on one circle.
-    CrossingArcs,
+    CrossingArcs(Crossing),
     /// Every arc about the origin with both ends on one circle.
-    Arcs,
+    Arcs(Crossing),
     /// Every line from the origin, and every such arc.
     LinesAndArcs,
     /// Every travel of one axis from the origin, by |dx|.
@@ -150,11 +150,11 @@ impl Region {
             Region::QuadrantArcs => {
                 "every arc about the origin inside a quadrant, with coordinates of k bits and both ends on the circle"
             }
-            Region::CrossingArcs => {
+            Region::CrossingArcs(_) => {
                 "every arc about the origin over one axis or more, with both ends on the circle and a path within \
                  coordinates of k bits"
             }
-            Region::Arcs => {
+            Region::Arcs(_) => {
                 "every arc about the origin, full circles too, with both ends on the circle and a path within \
                  coordinates of k bits"
             }
@@ -168,17 +168,11 @@ impl Region {
 
     /// The regions of one kind of curve that it is made of.
     #[must_use]
-    pub fn parts(self) -> &'static [Region] {
+    pub fn parts(self) -> Vec<Region> {
         match self {
-            Region::Lines => &[Region::Lines],
-            Region::LinesByLength => &[Region::LinesByLength],
-            Region::LinesByLonger => &[Region::LinesByLonger],
-            Region::LinesHalved => &[Region::LinesHalved],
-            Region::QuadrantArcs => &[Region::QuadrantArcs],
-            Region::CrossingArcs => &[Region::CrossingArcs],
-            Region::Arcs => &[Region::QuadrantArcs, Region::CrossingArcs],
-            Region::LinesAndArcs => &[Region::Lines, Region::QuadrantArcs],
-            Region::Travels => &[Region::Travels],
+            Region::Arcs(crossing) => vec![Region::QuadrantArcs, Region::CrossingArcs(crossing)],
+            Region::LinesAndArcs => vec![Region::Lines, Region::QuadrantArcs],
+            _ => vec![self],
         }
     }
 
@@ -186,13 +180,13 @@ impl Region {
     #[must_use]
     pub fn kinds(self) -> Vec<Kind> {
         match self {
-            Region::LinesAndArcs | Region::Arcs => self.parts().iter().flat_map(|part| part.kinds()).collect(),
+            Region::LinesAndArcs | Region::Arcs(_) => self.parts().iter().flat_map(|part| part.kinds()).collect(),
             Region::Lines => line::kinds(line::ANY, false),
             Region::LinesByLength => line::kinds(line::LONG, false),
             Region::LinesByLonger => line::kinds(line::LONGER, false),
             Region::LinesHalved => line::kinds(line::LONG, true),
             Region::QuadrantArcs => arc::kinds(),
-            Region::CrossingArcs => crossing::kinds(),
+            Region::CrossingArcs(crossing) => crossing::kinds(crossing),
             Region::Travels => travel::kinds(),
         }
     }
@@ -201,13 +195,13 @@ impl Region {
     #[must_use]
     pub fn symbols(self, kind: &Kind, curve: &Curve) -> Option<Vec<i128>> {
         let symbols = match self {
-            Region::LinesAndArcs | Region::Arcs => {
+            Region::LinesAndArcs | Region::Arcs(_) => {
                 return self.parts().iter().find_map(|part| part.symbols(kind, curve));
             }
             Region::Lines | Region::LinesByLength | Region::LinesByLonger => line::symbols(&kind.name, curve, false),
             Region::LinesHalved => line::symbols(&kind.name, curve, true),
             Region::QuadrantArcs => arc::symbols(&kind.name, curve),
-            Region::CrossingArcs => crossing::symbols(&kind.name, curve),
+            Region::CrossingArcs(crossing) => crossing::symbols(crossing, &kind.name, curve),
             Region::Travels => travel::symbols(&kind.name, curve),
         }?;
         let value = |name: &str| {
@@ -226,7 +220,7 @@ impl Region {
                 line::to([most, most])
             }
             Region::QuadrantArcs | Region::LinesAndArcs => arc::quarter(most),
-            Region::CrossingArcs | Region::Arcs => crossing::whole(most),
+            Region::CrossingArcs(_) | Region::Arcs(_) => crossing::whole(most),
             Region::Travels => travel::to(most),
         }
     }
@@ -245,9 +239,9 @@ impl Region {
         match self {
             Region::Lines | Region::LinesByLength | Region::LinesByLonger | Region::LinesHalved => k <= line::WHOLE,
             Region::QuadrantArcs => k <= arc::WHOLE,
-            Region::CrossingArcs => k <= crossing::WHOLE,
+            Region::CrossingArcs(_) => k <= crossing::WHOLE,
             Region::Travels => k <= travel::WHOLE,
-            Region::LinesAndArcs | Region::Arcs => self.parts().iter().all(|part| part.is_whole(k)),
+            Region::LinesAndArcs | Region::Arcs(_) => self.parts().iter().all(|part| part.is_whole(k)),
         }
     }
 
@@ -259,9 +253,9 @@ impl Region {
                 line::curves(k, most)
             }
             Region::QuadrantArcs => arc::curves(k, most),
-            Region::CrossingArcs => crossing::curves(k, most),
+            Region::CrossingArcs(crossing) => crossing::curves(crossing, k, most),
             Region::Travels => travel::curves(k, most),
-            Region::LinesAndArcs | Region::Arcs => {
+            Region::LinesAndArcs | Region::Arcs(_) => {
                 let all = self.parts().iter().flat_map(|part| part.curves(k, most)).collect();
                 spread(all, most)
             }
@@ -275,8 +269,8 @@ impl Region {
         let own = kind.clone();
         let is_own = |other: &Kind| other.name == kind.name;
         match self {
-            Region::CrossingArcs => Box::new(crossing::curves_of(&kind.name, k).into_iter()),
-            Region::Arcs => match self.parts().iter().find(|part| part.kinds().iter().any(is_own)) {
+            Region::CrossingArcs(crossing) => Box::new(crossing::curves_of(crossing, &kind.name, k).into_iter()),
+            Region::Arcs(_) => match self.parts().iter().find(|part| part.kinds().iter().any(is_own)) {
                 Some(part) => part.curves_of(kind, k),
                 None => Box::new(std::iter::empty()),
             },

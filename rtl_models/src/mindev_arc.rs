@@ -23,7 +23,7 @@
 use stepwave_nc::{Arc, Crossing};
 use stepwave_netlist::dsl::Scope;
 
-use crate::claims::{Claims, Region};
+use crate::claims::{Claims, crossing};
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
@@ -53,7 +53,11 @@ pub static MODEL: Model = Model {
         &POSITION,
     ],
     options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
-    claims: Some(Claims { guesses: |hardware, _| ends_ahead(hardware), ..Claims::of(Region::QuadrantArcs) }),
+    claims: Some(Claims {
+        everywhere: |hardware| crossing::every_arc(hardware, CROSSING),
+        guesses: |hardware, kind| [ends_ahead(hardware), crossing::places(kind)].concat(),
+        ..crossing::CLAIMS
+    }),
     interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
     hardware,
 };

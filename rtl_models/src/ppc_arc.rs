@@ -23,16 +23,14 @@
 
 use stepwave_nc::{Arc, Crossing};
 use stepwave_netlist::dsl::Scope;
-use stepwave_netlist::formula::{Clause, name};
 
-use crate::claims::crossing::AXIS;
-use crate::claims::{Claims, Kind, Region};
+use crate::claims::{Claims, crossing};
 use crate::docs::ARC_END_POINT;
 use crate::error::ModelError;
 use crate::hardware::Hardware;
 use crate::interpolates::{Interpolates, Method};
 use crate::model::Model;
-use crate::options::{BEATS, END_POINT, EndPoint, ON_OVERFLOW, WIDTH};
+use crate::options::{BEATS, ON_OVERFLOW, WIDTH};
 use crate::parts::{
     ArcFrame, BeatRing, Block, DeviationAccumulator, E, END, F, POSITION, QUAD, XI_YI, growing, judged_by_sign,
     shrinking, step_of_circle,
@@ -50,12 +48,9 @@ pub static MODEL: Model = Model {
     registers: &[&F, &XI_YI, &QUAD, &E.width(N.plus(3)), &END, &POSITION],
     options: &[&WIDTH, &ARC_END_POINT, &BEATS, &ON_OVERFLOW],
     claims: Some(Claims {
-        // With a counter for each axis the loader splits an arc at the axes.
-        everywhere: |hardware| (hardware.get(&END_POINT) == EndPoint::Total).then_some(Region::Arcs),
-        guesses,
-        modes: &[QUAD],
-        counts_changes: true,
-        ..Claims::of(Region::QuadrantArcs)
+        everywhere: |hardware| crossing::every_arc(hardware, CROSSING),
+        guesses: |_, kind| crossing::places(kind),
+        ..crossing::CLAIMS
     }),
     interpolates: Interpolates::Arcs(Method { plan, load: |arc, hardware| words::judged_arc(hardware, arc, CROSSING) }),
     hardware,
@@ -101,15 +96,4 @@ fn invariants(m: Scope<'_>) {
     m.between_steps("f_from_above", [2 * growing() - 2 - F.value(), -F.value(), -growing()]);
     m.between_steps("f_after_an_axis", [growing() - 1, 2 * shrinking() - 3 - F.value(), -F.value()]);
     m.between_steps("f_on_an_axis", [shrinking() - 1, 2 * growing() - 3 - F.value(), -F.value()]);
-}
-
-/// An arc that crosses an axis does so at one place of each.
-fn guesses(_: &Hardware, kind: &Kind) -> Vec<Clause> {
-    if kind.symbols.iter().all(|symbol| symbol.name != AXIS) {
-        return Vec::new();
-    }
-    vec![
-        Clause::at_least_zero("no coordinate is beyond it", name(AXIS) - growing()),
-        Clause::either("it is reached with the axis", [shrinking() - 1, growing() - name(AXIS), -growing()]),
-    ]
 }

@@ -103,7 +103,7 @@ fn arcs_with_diagonal_steps_are_proved_by_both_counters_in_four_beats_and_in_one
 
 fn assert_diagonal_steps_are_proved(choices: &Options) {
     for model in DIAGONAL {
-        assert_proved(model, &subject(model, choices), true);
+        assert_proved(model, &subject(model, choices).of_box(), true);
     }
 }
 

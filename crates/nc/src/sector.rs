@@ -20,6 +20,18 @@ pub enum Crossing {
     RoundedRadius,
 }
 
+impl Crossing {
+    /// |c| where an arc crosses the axes whose squared radius is `square`, at least 1 BLU², and that neither starts nor ends farther
+    /// out there.
+    #[must_use]
+    pub fn axis(self, square: u128) -> u128 {
+        match self {
+            Crossing::PathExtreme => ceil_sqrt(square.saturating_sub(1)).max(1),
+            Crossing::RoundedRadius => round_sqrt(square),
+        }
+    }
+}
+
 /// A piece of an arc inside one quadrant; the points are relative to the centre, in BLU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Sector {
@@ -60,11 +72,7 @@ impl Sector {
 ///
 /// [`Turn::sectors`]: crate::turn::Turn::sectors
 pub(crate) fn split(arc: &Arc, crossing: Crossing) -> Vec<Sector> {
-    let squared = norm_squared(vector(arc.start())); // at least 1
-    let radius = match crossing {
-        Crossing::PathExtreme => ceil_sqrt(squared - 1).max(1),
-        Crossing::RoundedRadius => round_sqrt(squared),
-    };
+    let radius = crossing.axis(norm_squared(vector(arc.start())));
     arc.turn().sectors([length(radius); 2])
 }
 

@@ -33,8 +33,8 @@ fn in_x_or_y([x_grows, y_grows]: [Formula; 2]) -> Formula {
     x_grows * name("x_grows") + y_grows.clone() - y_grows * name("x_grows")
 }
 
-/// Between two steps of an arc inside a quadrant whose steps may be diagonal: no coordinate is beyond the end, and with
-/// one pulse left one of them is there.
+/// Between two steps of an arc whose steps may be diagonal, in the quadrant of its end: no coordinate is beyond the end, and
+/// with one pulse left one of them is there.
 pub fn ends_ahead(hardware: &Hardware) -> Vec<Clause> {
     if hardware.get(&END_POINT) == EndPoint::PerAxis {
         return Vec::new();
