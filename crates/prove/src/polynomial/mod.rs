@@ -17,6 +17,7 @@
 
 mod certificate;
 mod decisions;
+mod exact;
 mod family;
 mod farkas;
 mod infer;

@@ -1,14 +1,11 @@
 //! Looks for contradictions: which products of conditions to add up, found in floating point and worked out exactly.
 
-use std::collections::{HashMap, HashSet};
-
-use num_bigint::BigInt;
-use num_rational::BigRational;
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::farkas::{Refutation, WeightedRow, holds, product};
 use super::poly::{Monomial, Poly};
-use super::simplex;
+use super::{exact, simplex};
 
 /// How hard to look.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -129,14 +126,14 @@ fn products(rows: &[Poly], own: usize) -> Vec<Product> {
 
 /// Conditions that are worth multiplying, each once: those of numbers that others speak of too.
 fn factors(rows: &[Poly]) -> Vec<usize> {
-    let mut met: HashSet<super::poly::Var> = HashSet::new();
+    let mut met: FxHashSet<super::poly::Var> = FxHashSet::default();
     for row in rows {
         let vars = row.vars();
         if vars.len() > 1 || row.degree() > 1 {
             met.extend(vars);
         }
     }
-    let mut seen = HashSet::new();
+    let mut seen = FxHashSet::default();
     (0..rows.len())
         .filter(|place| {
             let row = &rows[*place];
@@ -147,7 +144,7 @@ fn factors(rows: &[Poly]) -> Vec<usize> {
 
 /// A sum of these products that is a negative number.
 fn sum(rows: &[Poly], candidates: &[Product]) -> Option<Refutation> {
-    let mut seen = HashSet::new();
+    let mut seen = FxHashSet::default();
     let mut columns: Vec<(Product, Poly)> = Vec::with_capacity(candidates.len());
     for &(row, by) in candidates {
         let Some(poly) = product(rows, row, by) else { continue };
@@ -157,7 +154,7 @@ fn sum(rows: &[Poly], candidates: &[Product]) -> Option<Refutation> {
         columns.push(((row, by), poly));
     }
     prune(&mut columns);
-    let mut numbers: HashMap<Monomial, usize> = HashMap::from([(Monomial::ONE, 0)]);
+    let mut numbers: FxHashMap<Monomial, usize> = std::iter::once((Monomial::ONE, 0)).collect();
     let sparse: Vec<Vec<(usize, f64)>> = columns
         .iter()
         .map(|(_, poly)| {
@@ -173,7 +170,7 @@ fn sum(rows: &[Poly], candidates: &[Product]) -> Option<Refutation> {
         .collect();
     let support = simplex::support(&sparse, numbers.len())?;
     let polys: Vec<&Poly> = support.iter().map(|column| &columns[*column].1).collect();
-    let factors = exact_factors(&polys)?;
+    let factors = exact::factors(&polys)?;
     let parts = support.iter().zip(factors).filter(|(_, factor)| !factor.is_zero());
     let parts = parts.map(|(column, factor)| {
         let ((row, by), _) = columns[*column];
@@ -186,7 +183,7 @@ fn sum(rows: &[Poly], candidates: &[Product]) -> Option<Refutation> {
 /// Takes out what has a product that nothing can take away again: of one sign in all columns.
 fn prune(columns: &mut Vec<(Product, Poly)>) {
     loop {
-        let mut signs: HashMap<Monomial, (bool, bool)> = HashMap::new();
+        let mut signs: FxHashMap<Monomial, (bool, bool)> = FxHashMap::default();
         for (_, poly) in columns.iter() {
             for (monomial, coefficient) in poly.terms().iter().filter(|(monomial, _)| *monomial != Monomial::ONE) {
                 let sign = signs.entry(*monomial).or_default();
@@ -201,55 +198,6 @@ fn prune(columns: &mut Vec<(Product, Poly)>) {
             return;
         }
     }
-}
-
-/// Factors of 0 or more with which the polynomials add up to -1.
-fn exact_factors(polys: &[&Poly]) -> Option<Vec<BigRational>> {
-    let rational = |number: i128| BigRational::from(BigInt::from(number));
-    let mut monomials: Vec<Monomial> =
-        polys.iter().flat_map(|poly| poly.terms()).map(|(monomial, _)| *monomial).collect();
-    monomials.push(Monomial::ONE);
-    monomials.sort_unstable();
-    monomials.dedup();
-    // A row for each product: its coefficient in each polynomial, and what the sum is to have.
-    let mut rows: Vec<Vec<BigRational>> = monomials
-        .iter()
-        .map(|monomial| {
-            let coefficient = |poly: &&Poly| {
-                let term = poly.terms().iter().find(|(other, _)| other == monomial);
-                rational(term.map_or(0, |(_, coefficient)| *coefficient))
-            };
-            let wanted = rational(if *monomial == Monomial::ONE { -1 } else { 0 });
-            polys.iter().map(coefficient).chain([wanted]).collect()
-        })
-        .collect();
-    let width = polys.len();
-    let mut pivots = Vec::new();
-    for column in 0..width {
-        let start = pivots.len();
-        let Some(found) = (start..rows.len()).find(|row| !rows[*row][column].is_zero()) else { continue };
-        rows.swap(start, found);
-        let inverse = rows[start][column].recip();
-        rows[start].iter_mut().for_each(|value| *value *= &inverse);
-        let pivot = rows[start].clone();
-        for (index, row) in rows.iter_mut().enumerate() {
-            if index != start && !row[column].is_zero() {
-                let factor = row[column].clone();
-                for (value, own) in row.iter_mut().zip(&pivot) {
-                    if !own.is_zero() {
-                        *value -= &factor * own;
-                    }
-                }
-            }
-        }
-        pivots.push(column);
-    }
-    let solvable = rows[pivots.len()..].iter().all(|row| row[width].is_zero());
-    let mut factors = vec![BigRational::zero(); width];
-    for (row, column) in pivots.into_iter().enumerate() {
-        factors[column].clone_from(&rows[row][width]);
-    }
-    (solvable && factors.iter().all(|factor| !factor.is_negative())).then_some(factors)
 }
 
 #[cfg(test)]
