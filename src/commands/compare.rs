@@ -204,7 +204,7 @@ fn cells(
 ) -> [String; 8] {
     // Positions are as wide as the travel, for every method.
     let hardware = bench.hardware();
-    let length = ["exact", "missed"].contains(&end).then(|| curve.length());
+    let length = (end == "exact").then(|| curve.length());
     let clocks_of_step = hardware.clocks_of_step();
     let speeds = speed.zip(clocks_of_step).map(|(speed, step)| RelativeSpeed::new(&speed, step, length));
     let own = hardware.widths.iter().filter(|(name, _)| !hardware.letters().contains(name));

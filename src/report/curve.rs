@@ -254,7 +254,8 @@ impl OfCurve {
 
     /// Length of the curve in BLU, if it was run to its end.
     fn length_run(&self, report: &Report) -> Option<f64> {
-        (report.outcome.ending == Ending::Done).then(|| self.curve.length())
+        let is_run = report.outcome.ending == Ending::Done && report.outcome.ends(&self.curve);
+        is_run.then(|| self.curve.length())
     }
 
     /// Its speed over v_max; `None` without a step, or where it is not known how many clocks a step of the hardware takes.

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::sweep::rows;
 use super::{Csv, Folder, engines};
 
 /// The line to (6, 4) by hand: F = 0, -4, 2, -2, and step 4, in Y, makes -2 + 6 = 4, where three bits end at 3.
@@ -119,6 +120,30 @@ fn saturated_the_run_goes_on_and_misses_its_end() {
                     stepwave: the path left the line: 1.387 BLU off at (5, 5) after step 10, where the method promises at \
                     most 1 BLU\n";
     assert_eq!(sentences, expected);
+}
+
+/// Both end after ten steps, where the line does not.
+#[test]
+fn a_run_that_misses_its_end_has_no_mean_speed() {
+    for choice in ["wrap", "saturate"] {
+        let words = format!("--width f=3 --on-overflow {choice}");
+        let folder = Folder::new();
+        let ran = folder.run(&format!("run ppc-line --to 6,4 {words} --json r.json"));
+        let report: Value = serde_json::from_str(&folder.read("r.json")).unwrap();
+        let feed = &report["feed"];
+        assert_eq!([&feed["mean"], &feed["mean_mm_per_min"], &feed["ripple"]], [&Value::Null; 3], "{feed}");
+        assert!(feed["least"]["value"].is_f64() && ran.out.contains("speed over v_max: "), "{feed} {ran:?}");
+        assert!(!ran.out.contains(", mean ") && !ran.out.contains("ripple"), "{ran:?}");
+        let swept = folder.good(&format!("sweep ppc-line --to-grid 6..6x4..4 {words} --ripple --csv rows.csv"));
+        assert!(!swept.contains("mean speed"), "{swept}");
+        // In lanes, and alone.
+        for more in ["", " --ripple"] {
+            let rows = rows(&folder.good(&format!("sweep ppc-line --to-grid 6..6x4..4 {words}{more} --csv -")));
+            let ends = (&*rows[0]["ending"], &*rows[0]["exact"], &*rows[0]["steps"], &*rows[0]["v_mean"]);
+            assert!(rows.len() == 1 && ends == ("done", "false", "10", ""), "{rows:?}");
+            assert!(rows[0].get("ripple").is_none_or(String::is_empty), "{rows:?}");
+        }
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ use super::instruments::{cross, offset};
 use super::tool::Tool;
 use super::{
     Ending, LaneOutcome, Observer, ObserverError, Outcome, OverflowWatch, PathWatch, RelativeSpeed, SpeedWatch,
-    StepColumns, Testbench,
+    StepColumns, Testbench, is_ended,
 };
 
 /// What one geometry came to, and how well its path kept to the ideal curve.
@@ -71,10 +71,14 @@ impl Measured {
         }
     }
 
+    /// The curve was run to its end.
+    fn is_run(&self, curve: &Curve) -> bool {
+        self.ending == Some(Ending::Done) && is_ended(&curve.description(), &self.reached, &self.pulses)
+    }
+
     /// Takes the clocks from row 0 of the step table to its last row, if the curve was run.
     pub(super) fn take_speed(&mut self, bench: &Testbench, curve: &Curve, clocks: u64) {
-        let is_run = self.ending == Some(Ending::Done) && clocks > 0;
-        let step = bench.hardware().clocks_of_step().filter(|_| is_run);
+        let step = bench.hardware().clocks_of_step().filter(|_| clocks > 0 && self.is_run(curve));
         self.speed = step.map(|step| step * curve.length() / clocks as f64);
     }
 
@@ -142,7 +146,7 @@ impl Testbench {
         };
         measured.take_speed(self, curve, motion.clocks());
         if let Some(speed) = speed.and_then(|speed| speed.finish()) {
-            let length = (measured.ending == Some(Ending::Done)).then(|| curve.length());
+            let length = measured.is_run(curve).then(|| curve.length());
             let over = |step| RelativeSpeed::new(&speed, step, length);
             let of = self.hardware().clocks_of_step().map(over);
             measured.extremes = of.map(|of| [of.least.0, of.greatest.0]);
