@@ -136,8 +136,13 @@ fn table(model: &Model, found: &Widths) -> String {
         text +=
             "\nat least: results did not fit, and what the register held after the first says nothing of a wider one\n";
     }
+    if found.missed > 0 {
+        let _ =
+            writeln!(text, "\n{} geometries end, but miss their end points; what registers held counts", found.missed);
+    }
     if found.cut > 0 {
-        let _ = writeln!(text, "\n{} geometries were followed for their first clocks only", found.cut);
+        let Widths { cut, limit, .. } = found;
+        let _ = writeln!(text, "\n{cut} geometries had not ended after {limit} clocks, and were followed no further");
     }
     text
 }
@@ -175,6 +180,8 @@ fn as_json(model: &Model, found: &Widths) -> String {
         "all": found.all && found.ran() == found.simulated,
         "faults": found.faults,
         "followed_in_part": found.cut,
+        "followed_clocks": found.limit,
+        "missed_end_points": found.missed,
         "registers": registers_json(model, &found.registers),
     });
     format!("{all:#}\n")

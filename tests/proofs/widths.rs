@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use stepwave::study::proof::ProofError;
 use stepwave::study::widths::{Known, Widths, by_proof, ranges_alone, simulated};
 use stepwave::study::{Extent, Geometries};
-use stepwave::testbench::Testbench;
+use stepwave::testbench::{Ending, Testbench};
 use stepwave_engine::EngineKind;
 use stepwave_models::options::WEIGHTS;
 use stepwave_models::{CurveKind, Model, Options, Weights, catalogue, find};
@@ -127,6 +127,36 @@ fn boxes_of_conics_and_helices_hold_what_is_counted_by_hand() {
     for model in ["ppc-conic", "cim-conic", "dda-conic", "dda-helix"] {
         let found = widths(find(model).unwrap(), &Options::default(), &Extent::Bits(3)).unwrap();
         assert!(found.all && found.registers.iter().all(|register| register.known == Known::Exhaustive), "{model}");
+    }
+}
+
+/// One counter for both axes ends some conics elsewhere; with a full preset some come to a stand.
+#[test]
+fn geometries_that_miss_their_ends_are_counted_as_single_runs_end() {
+    let folder = Folder::new();
+    for options in ["", " --end-point total", " --preset full"] {
+        let choices = Options::parse(options.split_whitespace()).unwrap();
+        let model = find("dda-conic").unwrap();
+        let Geometries { curves, hardware, .. } = Geometries::of(model, &choices, &Extent::Bits(3)).unwrap();
+        let bench = Testbench::of_hardware(model, hardware).unwrap();
+        let (mut missed, mut open) = (0, 0);
+        for curve in &curves {
+            let outcome = bench.of(model, curve).unwrap().run(EngineKind::Word, &mut []).unwrap();
+            match outcome.ending {
+                Ending::Done => missed += usize::from(outcome.reached != curve.to()),
+                _ => open += 1,
+            }
+        }
+        assert_eq!([missed > 0, open > 0], [options.contains("total"), options.contains("full")], "{options}");
+        let printed = folder.good(&format!("widths dda-conic --box 3{options}"));
+        let says = |count: usize, what: &str| printed.contains(&format!("\n{count} geometries {what}")) == (count > 0);
+        assert!(says(missed, "end, but miss their end points; what registers held counts\n"), "{options} {printed}");
+        assert!(says(open, "had not ended after 16777216 clocks, and were followed no further\n"), "{printed}");
+        let printed = folder.good(&format!("widths dda-conic --box 3{options} --json"));
+        let json: serde_json::Value = serde_json::from_str(&printed).unwrap();
+        let counts = ["missed_end_points", "followed_in_part", "faults"].map(|field| json[field].as_u64());
+        assert_eq!(counts, [Some(missed as u64), Some(open as u64), Some(0)], "{options}");
+        assert_eq!(json["followed_clocks"], 1 << 24);
     }
 }
 

@@ -32,6 +32,7 @@ struct Ran {
     held: Vec<(&'static str, Held)>,
     ended: bool,
     cut: bool,
+    missed: bool,
 }
 
 /// The widths that all geometries of a box need, or the extreme ones: no register is given another width.
@@ -47,7 +48,7 @@ pub(super) fn widths(
     let choices = choices.clone().without(&STRICT);
     let Geometries { curves, all, k, hardware, .. } = Geometries::of(model, &choices, extent)?;
     let bench = Testbench::of_hardware(model, hardware)?;
-    let (mut faults, mut cut) = (0, 0);
+    let (mut faults, mut cut, mut missed) = (0, 0, 0);
     let mut found: BTreeMap<&'static str, (Held, usize)> = BTreeMap::new();
     for (chunk, first) in curves.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
         let runs: Vec<Option<Ran>> = chunk.par_iter().map(|curve| run(model, &bench, curve, tick)).collect();
@@ -58,6 +59,7 @@ pub(super) fn widths(
             };
             faults += usize::from(!ran.ended && !ran.cut);
             cut += usize::from(ran.cut);
+            missed += usize::from(ran.missed);
             for (name, held) in ran.held {
                 let (all, worst) = found.entry(name).or_insert((held, place));
                 if held.needed > all.needed {
@@ -84,7 +86,7 @@ pub(super) fn widths(
         }
     });
     let registers = registers.collect();
-    Ok(Widths { extent: extent.clone(), k, simulated: curves.len(), all, faults, cut, registers })
+    Ok(Widths { extent: extent.clone(), k, simulated: curves.len(), all, faults, cut, limit: LIMIT, missed, registers })
 }
 
 fn run(model: &Model, bench: &Testbench, curve: &Curve, tick: Tick<'_>) -> Option<Ran> {
@@ -103,5 +105,5 @@ fn run(model: &Model, bench: &Testbench, curve: &Curve, tick: Tick<'_>) -> Optio
         name.map(|(name, _)| (*name, held))
     });
     let (ended, cut) = (outcome.ending == Ending::Done, outcome.ending == Ending::Limit);
-    Some(Ran { held: held.collect(), ended, cut })
+    Some(Ran { held: held.collect(), ended, cut, missed: ended && !outcome.ends(curve) })
 }

@@ -90,8 +90,12 @@ pub struct Widths {
     pub all: bool,
     /// Geometries that end in a fault at the default widths.
     pub faults: usize,
-    /// Geometries that were followed for some clocks only.
+    /// Geometries that had not ended after [these clocks](Self::limit), as they stall or are longer.
     pub cut: usize,
+    /// Clocks for which each was followed at most.
+    pub limit: u64,
+    /// Geometries that were done, but not at their end points.
+    pub missed: usize,
     /// Every register with a width to choose, by name.
     pub registers: Vec<RegisterWidth>,
 }
@@ -206,7 +210,7 @@ pub fn simulated(
 ) -> Result<Widths, ProofError> {
     let Geometries { curves, all, k, hardware, choices: wide } = set;
     let bench = Testbench::of_hardware(model, hardware)?;
-    let Runs { seen, faults, cut } = simulate(&bench, &curves, LIMIT, tick)?;
+    let Runs { seen, faults, cut, missed } = simulate(&bench, &curves, LIMIT, tick)?;
     let known = by_simulation(curves.len(), all, faults + cut);
     let extreme: BTreeSet<usize> = seen.values().flat_map(|seen| [seen.least.1, seen.greatest.1]).collect();
     let row = |(name, seen): (String, Seen)| {
@@ -230,7 +234,7 @@ pub fn simulated(
     if let Some(claims) = model.claims.filter(|_| bench.hardware().axes == 2 && k >= LEAST_PROVED && faults == 0) {
         mark_proved(model, &claims, ample, k, &mut registers);
     }
-    Ok(Widths { extent: extent.clone(), k, simulated: curves.len(), all, faults, cut, registers })
+    Ok(Widths { extent: extent.clone(), k, simulated: curves.len(), all, faults, cut, limit: LIMIT, missed, registers })
 }
 
 /// How widths are known of `simulated` geometries, `lost` of which did not run to their end.
@@ -258,7 +262,7 @@ fn by_form(
     let bench = Testbench::of_hardware(model, set.hardware.clone())?;
     // Of a counted block, which is proved at one k, the counter comes round in 2^k clocks.
     let limit = if form.is_for_every_k() { FOLLOWED } else { LIMIT };
-    let Runs { mut seen, faults, cut } = simulate(&bench, &set.curves, limit, tick)?;
+    let Runs { mut seen, faults, cut, missed } = simulate(&bench, &set.curves, limit, tick)?;
     // Every end is reached: that is proved.
     for (place, curve) in set.curves.iter().enumerate() {
         for (axis, (from, to)) in AXES.iter().zip(curve.from().iter().zip(curve.to())) {
@@ -294,7 +298,17 @@ fn by_form(
             witness,
         });
     }
-    Ok(Widths { extent: extent.clone(), k: set.k, simulated: set.curves.len(), all: false, faults, cut, registers })
+    Ok(Widths {
+        extent: extent.clone(),
+        k: set.k,
+        simulated: set.curves.len(),
+        all: false,
+        faults,
+        cut,
+        limit,
+        missed,
+        registers,
+    })
 }
 
 /// What registers of these geometries need: name, width by default, bits needed.

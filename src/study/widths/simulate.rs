@@ -54,6 +54,8 @@ pub(super) struct Runs {
     pub(super) faults: usize,
     /// Runs that were cut off at the limit; what they showed until then counts.
     pub(super) cut: usize,
+    /// Runs that were done, but not where their curve ends; what they showed counts.
+    pub(super) missed: usize,
 }
 
 /// Least and greatest value of every register with a width to choose, by name, in runs of at most `limit` clocks.
@@ -71,7 +73,7 @@ pub(super) fn simulate(bench: &Testbench, curves: &[Curve], limit: u64, tick: Ti
     let watch = LaneWatch {
         traps: netlist.properties.iter().map(|property| property.never).collect(),
         rest: vec![(machine.load.net, 0), (machine.preset_position.net, 0)],
-        observe: ends.collect(),
+        observe: ends.chain(machine.positions.iter().map(|port| Observe::Last(port.net))).collect(),
         limit,
         ..LaneWatch::new(machine.done.net)
     };
@@ -84,8 +86,12 @@ pub(super) fn simulate(bench: &Testbench, curves: &[Curve], limit: u64, tick: Ti
         |end: Result<_, ModelError>| {
             match end {
                 Ok(end) if matches!(end.stop, LaneStop::Done | LaneStop::Limit) => {
+                    let (ranges, last) = end.values.split_at(2 * registers.len());
+                    let at = machine.positions.iter().zip(last).map(|(port, &bits)| to_signed(port.width, bits));
+                    let is_at_end = at.eq(curves[place].to().iter().copied());
                     runs.cut += usize::from(end.stop == LaneStop::Limit);
-                    for ((name, net, signed), pair) in registers.iter().zip(end.values.chunks(2)) {
+                    runs.missed += usize::from(end.stop == LaneStop::Done && !is_at_end);
+                    for ((name, net, signed), pair) in registers.iter().zip(ranges.chunks(2)) {
                         let width = netlist.width(*net);
                         let number =
                             |bits: u64| if *signed { i128::from(to_signed(width, bits)) } else { i128::from(bits) };
@@ -114,27 +120,29 @@ fn simulate_alone(
     tick: Tick<'_>,
 ) -> Result<Runs, ModelError> {
     let model = find(bench.hardware().model)?;
-    // The ranges, and whether the run was cut off; none of a run that ends in a fault.
+    // The ranges, whether the run was cut off, and whether it missed its end; none of a run that ends in a fault.
     let run = |curve: &Curve| {
         let bench = bench.of(model, curve).ok()?.limited(limit);
         let mut watch = RangeWatch::new(&bench);
         let outcome = bench.run(EngineKind::Word, &mut [&mut watch]).ok()?;
         let cut = outcome.ending == Ending::Limit;
+        let missed = !cut && !outcome.ends(curve);
         let ranges = watch.finish();
         let range = |(name, ..): &(String, Net, bool)| {
             ranges.iter().find(|range| range.name == *name).map(|range| (range.least, range.greatest))
         };
         tick(1);
-        (cut || outcome.ending == Ending::Done).then(|| (registers.iter().map(range).collect::<Vec<_>>(), cut))
+        (cut || outcome.ending == Ending::Done).then(|| (registers.iter().map(range).collect::<Vec<_>>(), cut, missed))
     };
     let mut runs = Runs::default();
     for (chunk, first) in curves.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
         for (place, ran) in (first..).zip(chunk.par_iter().map(run).collect::<Vec<_>>()) {
-            let Some((ranges, cut)) = ran else {
+            let Some((ranges, cut, missed)) = ran else {
                 runs.faults += 1;
                 continue;
             };
             runs.cut += usize::from(cut);
+            runs.missed += usize::from(missed);
             for ((name, ..), range) in registers.iter().zip(ranges) {
                 let Some((least, greatest)) = range else { continue };
                 let first = Seen { least: (least, place), greatest: (greatest, place) };
