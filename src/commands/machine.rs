@@ -49,6 +49,13 @@ struct Whole {
     cost: Cost,
 }
 
+impl Whole {
+    /// The family interpolates free curves too, by integrators that a machine for lines and arcs is built without.
+    fn lacks_curves(&self) -> bool {
+        self.machine.moves().is_ok_and(|moves| moves.curves())
+    }
+}
+
 /// What the ramp costs, which is the same for all: a machine without it and with it.
 struct RampCost {
     machine: &'static Model,

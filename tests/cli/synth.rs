@@ -107,6 +107,24 @@ fn costs_are_counted_in_the_netlist_and_read_from_the_report() {
 }
 
 #[test]
+fn of_a_family_with_free_curves_it_is_said_that_their_integrators_are_not_counted() {
+    let folder = tools(&[("yosys", YOSYS), ("nextpnr-ice40", NEXTPNR)]);
+    let words = "machine dda-line dda-arc ppc-line --travel 0.02mm,0.015mm --feed 30 --synth ice40";
+    let sentence =
+        "\ndda-machine is counted without the integrators of free curves, which a program with G5 or G5.1 adds\n";
+    for more in ["", " --markdown"] {
+        let text = ran(&folder, &format!("{words}{more}")).out;
+        assert!(text.matches(sentence).count() == 1 && text.matches("is counted without").count() == 1, "{text}");
+    }
+    let all: Value = serde_json::from_str(&ran(&folder, &format!("{words} --json")).out).unwrap();
+    let of = |row: usize| all["machines"][row]["program_cost"]["not_counted"].to_string();
+    assert_eq!([of(0), of(1), of(2)], [r#"["integrators of free curves"]"#, r#"["integrators of free curves"]"#, "[]"]);
+    // Without costs there is nothing to be left out.
+    let text = ran(&folder, words.trim_end_matches(" --synth ice40")).out;
+    assert!(!text.contains("is counted without"), "{text}");
+}
+
+#[test]
 fn what_the_device_does_not_hold_has_no_clock() {
     let many = (0..7681).map(|lut| format!("\"{lut}\": {{ \"type\": \"SB_LUT4\" }}")).collect::<Vec<_>>().join(",");
     let json = format!("{{ \"modules\": {{ \"top\": {{ \"cells\": {{ {many} }} }} }} }}");

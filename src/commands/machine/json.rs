@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Answer, RampCost, Row, Whole};
+use super::{Answer, RampCost, Row};
 use crate::commands::widths::registers_json;
 use crate::report::{export_command, run_command};
 use crate::study::ramp::{Part, Ramped};
@@ -94,9 +94,11 @@ fn machine(row: &Row, answer: &Answer) -> Value {
         own_cost["export"] = json!(export);
         own_cost["feed"] = ends(own.clock_hz.and_then(|clock| row.feeds(size, clock)));
         all["cost"] = own_cost;
-        all["program_cost"] = json!(row.whole.as_ref().map(|Whole { machine, cost: own }| {
-            let mut whole = cost(*own);
-            whole["machine"] = json!(machine.name);
+        all["program_cost"] = json!(row.whole.as_ref().map(|own| {
+            let mut whole = cost(own.cost);
+            whole["machine"] = json!(own.machine.name);
+            let left_out: &[&str] = if own.lacks_curves() { &["integrators of free curves"] } else { &[] };
+            whole["not_counted"] = json!(left_out);
             whole
         }));
     }

@@ -159,6 +159,14 @@ fn table(answer: &Answer, is_markdown: bool) -> String {
     if answer.rows.iter().any(|row| unfinished(&row.found) > 0) {
         text += "\n* not all runs at the corners came to their end: clock and feed are not known\n";
     }
+    // Lines and arcs of a method have one machine.
+    let lacks = answer.rows.iter().find_map(|row| row.whole.filter(Whole::lacks_curves));
+    if let Some(Whole { machine, .. }) = lacks {
+        text += &format!(
+            "\n{} is counted without the integrators of free curves, which a program with G5 or G5.1 adds\n",
+            machine.name
+        );
+    }
     let alone = answer.rows.iter().filter_map(|row| Some((row.found.model.name, row.cost?)));
     let whole = answer.rows.iter().filter_map(|row| row.whole.as_ref().map(|whole| (whole.machine.name, whole.cost)));
     let mut named = Vec::new();
