@@ -60,9 +60,9 @@ fn shard(text: &str) -> Result<[u64; 2], String> {
     curves p0_x, p0_y, p1_x, … of each point, of NURBS p0_w, …, degree and knots too), choices,\n\
     ending (done, trapped, stalled, limit, refused), clocks, steps, pulses and end point of each axis,\n\
     whether that is exact, error_max and error_mean (BLU, after all steps), v_mean (mean speed over\n\
-    v_max, one BLU in each step that nothing delays; none where the end is missed), with --ripple v_least, v_greatest and ripple of\n\
-    windows of 32 steps as in the report of `stepwave run`, overflows and the first\n\
-    overflow's component, spacing_min and spacing_max (clocks between two pulses of an axis), and the\n\
+    v_max, one BLU in each step that nothing delays; none where the end is missed), with --ripple\n\
+    v_least, v_greatest and ripple of windows of 32 steps as in the report of `stepwave run`,\n\
+    overflows and the first overflow's component, spacing_min and spacing_max (clocks between two pulses of an axis), and the\n\
     reason of a refusal. Rows are the same, byte for byte, whatever the number of threads\n\
     (RAYON_NUM_THREADS). The summary has the least and the greatest v_mean, and of lines of one\n\
     length, within a BLU, k_v, their ratio.\n\

@@ -25,13 +25,26 @@ fn every_family_draws_the_chords_of_all_curves_and_ends_each_exactly() {
         };
         let whole = family == "dda";
         assert_eq!(
-            [3, 7, 8, 9, 10].map(|line| of(line, "line")),
+            [3, 7, 8, 9, 10].map(|line| of(line, if line == 3 { "line" } else { "chord" })),
             if whole { [1, 62, 0, 0, 0] } else { CHORDS },
             "{family}"
         );
         assert_eq!([8, 9, 10].map(|line| of(line, "curve")), [usize::from(whole); 3], "{family}");
         let off = number(&report["compensated_contour_error"]["blu"]);
         assert!(off < 2.0, "{family}: {off}");
+    }
+}
+
+#[test]
+fn the_table_names_chords_and_curves() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("p.ngc"), "G1 F600 X0.4\nG5.1 X1 Y0.6 I0.3 J0.1\nG1 X0 Y0\nM2\n").unwrap();
+    for (family, kinds) in [("dda --normalize", ["line", "curve", "line"]), ("ppc", ["line", "chord", "line"])] {
+        let out = folder.good(&format!("program p.ngc --method {family} {OPTIONS}"));
+        let table = out.lines().filter_map(|line| line.split_whitespace().find(|word| kinds.contains(word)));
+        let mut table: Vec<&str> = table.collect();
+        table.dedup();
+        assert_eq!(table, kinds, "{family}: {out}");
     }
 }
 
@@ -44,7 +57,7 @@ fn chords_that_are_asked_for_and_ramps_have_chords_by_dda_too() {
         assert_eq!((&report["missed_end_points"], &report["beyond_bound"]), (&0.into(), &0.into()), "{options}");
         assert_eq!(report["reached"], serde_json::json!([1000, 0, 0]), "{options}");
         let blocks = report["blocks"].as_array().unwrap();
-        (blocks.iter().filter(|block| block["kind"] == "line").count(), blocks.len())
+        (blocks.iter().filter(|block| block["kind"] != "curve").count(), blocks.len())
     };
     assert_eq!(of(""), (63, 66));
     assert_eq!(of("--chords 0.5"), (189, 189));

@@ -30,6 +30,7 @@ pub(super) fn tool_move(from: [f64; 3], to: [f64; 3], shape: SegmentShape) -> To
         side: Side::On,
         path: PathControl::default(),
         others: Others::default(),
+        chord: false,
     }
 }
 

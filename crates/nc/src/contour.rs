@@ -228,6 +228,8 @@ pub struct Move {
     pub path: PathControl,
     /// The axes other than x, y and z.
     pub others: Others,
+    /// It is a chord of a free curve, whose block has as many moves as chords.
+    pub chord: bool,
 }
 
 /// Why the tool moves.
@@ -262,6 +264,8 @@ pub struct ToolMove {
     pub path: PathControl,
     /// The axes other than x, y and z.
     pub others: Others,
+    /// It is a chord of a free curve.
+    pub chord: bool,
 }
 
 /// A place of the tool and of the other axes.

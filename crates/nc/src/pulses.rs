@@ -69,6 +69,7 @@ impl PulseBlock {
             side: Side::On,
             path: PathControl::default(),
             others: Others { from: from_others, to: to_others },
+            chord: false,
         };
         Some(PulseBlock { of, axes, curve, from, to })
     }

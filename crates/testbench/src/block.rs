@@ -201,7 +201,7 @@ impl BlockReport {
         self.windows.speed()
     }
 
-    /// `line`, `arc`, `curve`, and why where it was not programmed.
+    /// `line`, `arc`, `curve`, `chord` of a curve, and why where it was not programmed.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match (self.of.cause, self.of.segment.shape, self.of.feed) {
@@ -210,6 +210,7 @@ impl BlockReport {
             (Cause::Inserted, SegmentShape::Line, _) => "inserted line",
             (Cause::Inserted, SegmentShape::Arc { .. }, _) => "inserted arc",
             (Cause::Programmed, _, Feed::Rapid) => "rapid",
+            (Cause::Programmed, SegmentShape::Line, _) if self.of.chord => "chord",
             (Cause::Programmed, SegmentShape::Line, _) => "line",
             (Cause::Programmed, SegmentShape::Arc { .. }, _) => "arc",
             (_, SegmentShape::Bezier(_), _) => "curve",

@@ -175,6 +175,7 @@ mod tests {
             side: Side::On,
             path: PathControl::Continuous,
             others,
+            chord: false,
         }
     }
 

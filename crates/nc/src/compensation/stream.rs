@@ -31,6 +31,7 @@ const GAP: f64 = 1e-3;
 ///     side,
 ///     path: PathControl::Continuous,
 ///     others: Others::default(),
+///     chord: false,
 /// };
 /// let mut compensator = Compensator::new(Scheme::C, Corner::Straight);
 /// let mut out = Vec::new();
@@ -164,10 +165,10 @@ impl Compensator {
     /// A block while compensation is off.
     fn start(&mut self, block: Move, edge: Edge, out: &mut Vec<ToolMove>) -> Result<(), Kind> {
         let Some((side, radius)) = sided(block.side)?.filter(|_| edge.moves()) else {
-            let Move { place, segment, feed, path, others, .. } = block;
+            let Move { place, segment, feed, path, others, chord, .. } = block;
             let (cause, side) = (Cause::Programmed, Side::On);
             self.others = others.to;
-            out.push(ToolMove { place, segment, feed, cause, programmed: segment, side, path, others });
+            out.push(ToolMove { place, segment, feed, cause, programmed: segment, side, path, others, chord });
             return Ok(());
         };
         let length = edge.length();
@@ -276,9 +277,9 @@ impl Compensator {
             let [_, _, third] = source.plane.of(source.segment.to);
             let to = source.plane.point([u, v, third]);
             let segment = Segment { from: self.position, to, shape: SegmentShape::Line };
-            let Move { place, feed, segment: programmed, path, others, .. } = source;
+            let Move { place, feed, segment: programmed, path, others, chord, .. } = source;
             let (cause, side) = (Cause::Programmed, before.source.side);
-            self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others }, out);
+            self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others, chord }, out);
         }
     }
 
@@ -301,7 +302,7 @@ impl Compensator {
             let programmed = Segment { from: corner, to: corner, shape: SegmentShape::Line };
             let Move { place, feed, side, path, .. } = before.source;
             let (cause, others) = (Cause::Inserted, Others::at(self.others));
-            self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others }, out);
+            self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others, chord: false }, out);
         }
     }
 
@@ -315,8 +316,8 @@ impl Compensator {
         let [u, v] = if closed { [u, v] } else { path.to };
         let segment = Segment { from: self.position, to: plane.point([u, v, third]), shape: path.shape };
         let cause = path.cause;
-        let Move { place, feed, side, segment: programmed, path, others, .. } = block.source;
-        self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others }, out);
+        let Move { place, feed, side, segment: programmed, path, others, chord, .. } = block.source;
+        self.send(ToolMove { place, segment, feed, cause, programmed, side, path, others, chord }, out);
     }
 
     fn send(&mut self, tool: ToolMove, out: &mut Vec<ToolMove>) {

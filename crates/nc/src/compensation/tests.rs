@@ -41,6 +41,7 @@ fn block(line: u64, from: Vector, to: Vector, shape: SegmentShape, side: Side) -
         side,
         path: PathControl::default(),
         others: Others::default(),
+        chord: false,
     }
 }
 

@@ -171,7 +171,16 @@ impl Modal {
         let of = |(segment, [from, to]): (Segment, [f64; 2])| {
             let feed = if let Feed::Inverse(number) = feed { Feed::Inverse(number / (to - from)) } else { feed };
             let others = Others { from: others.after(from), to: others.after(to) };
-            Event::Move(Move { place, segment, feed, plane: self.plane, side: self.side, path: self.path, others })
+            Event::Move(Move {
+                place,
+                segment,
+                feed,
+                plane: self.plane,
+                side: self.side,
+                path: self.path,
+                others,
+                chord: false,
+            })
         };
         events.extend(arc::turns(segment, turns).map(of));
         self.compensated = self.side != Side::On;

@@ -278,6 +278,7 @@ impl Modal {
                 side: Side::On,
                 path: self.path,
                 others: Others::at(self.others),
+                chord: true,
             }));
         }
         self.position = ends.last().copied().unwrap_or(self.position);

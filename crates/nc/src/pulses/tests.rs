@@ -16,6 +16,7 @@ fn moved(from: Point, to: Point, shape: SegmentShape) -> ToolMove {
         side: Side::On,
         path: PathControl::default(),
         others: Others::default(),
+        chord: false,
     }
 }
 
