@@ -7,7 +7,7 @@
 
 mod background;
 mod buffer;
-mod core;
+mod cores;
 mod samples;
 mod scan;
 #[cfg(test)]

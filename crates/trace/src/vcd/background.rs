@@ -10,7 +10,7 @@ use std::thread::{self, JoinHandle};
 use stepwave_netlist::Rows;
 
 use super::buffer::Buffer;
-use super::core;
+use super::cores;
 use super::samples::{Parts, Samples};
 use super::scan::{Batch, Scan, Span};
 
@@ -186,9 +186,9 @@ impl<W: Write + Send + 'static> Worker<W> {
         let samples = writer.samples.later();
         let (parts, incoming) = sync_channel::<Part>(WAITING);
         let (sender, done) = channel();
-        let here = core::current();
+        let here = cores::current();
         let thread = thread::Builder::new().name("wave writer".to_owned()).spawn(move || {
-            core::avoid(here);
+            cores::avoid(here);
             for mut part in incoming {
                 writer.part(&mut part)?;
                 // Nobody takes it back any more when the sender has ended.

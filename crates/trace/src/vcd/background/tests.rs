@@ -201,6 +201,26 @@ fn the_run_makes_text_while_the_thread_has_enough_to_do_and_not_after_it() {
     body.finish().unwrap();
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn the_thread_leaves_a_core_to_the_run() {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use rustix::thread::sched_getaffinity;
+
+    static ALLOWED: AtomicU32 = AtomicU32::new(0);
+    let note = |_| {
+        if thread::current().name() == Some("wave writer") {
+            ALLOWED.store(sched_getaffinity(None).unwrap().count(), Ordering::Relaxed);
+        }
+        false
+    };
+    let job = Job { probes: probes(), clk: true, sparse: false, blocks: 60 };
+    job.text(&disk(usize::MAX, note), threaded).unwrap();
+    let all = sched_getaffinity(None).unwrap().count();
+    assert_eq!(ALLOWED.load(Ordering::Relaxed), (all - 1).max(1));
+}
+
 #[test]
 fn a_full_disk_is_reported_in_its_own_words_wherever_it_happens() {
     let job = Job { probes: probes(), clk: true, sparse: false, blocks: 60 };
