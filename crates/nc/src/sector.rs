@@ -21,8 +21,17 @@ pub enum Crossing {
 }
 
 impl Crossing {
-    /// |c| where an arc crosses the axes whose squared radius is `square`, at least 1 BLU², and that neither starts nor ends farther
-    /// out there.
+    /// The coordinate, without its sign and in BLU, at which an arc of this squared radius (1 BLU² or more) crosses an axis, unless
+    /// it starts or ends farther out there.
+    ///
+    /// ```
+    /// use stepwave_nc::Crossing;
+    ///
+    /// // R is 3.16 and 3.32 BLU.
+    /// assert_eq!(Crossing::PathExtreme.axis(10), 3);
+    /// assert_eq!(Crossing::PathExtreme.axis(11), 4);
+    /// assert_eq!(Crossing::RoundedRadius.axis(11), 3);
+    /// ```
     #[must_use]
     pub fn axis(self, square: u128) -> u128 {
         match self {
